@@ -1,0 +1,75 @@
+//! What happened in a tick, and what the HUD shows.
+
+use crate::map::Turn;
+use crate::signals::LightPhase;
+use crate::{state, state_enum};
+
+state_enum! {
+    /// What kind of event.
+    pub enum EventKind {
+        /// The ego car began to touch an actor; `actor` names it.
+        CollisionActor = 0,
+        /// The ego car began to touch a static object.
+        CollisionScenery = 1,
+        /// The ego car passed a stop line at red.
+        RedLight = 2,
+        /// The ego car began to exceed the limit by more than 3 km/h.
+        Speeding = 3,
+        /// A wheel of the ego car left road and parking lanes.
+        OffRoad = 4,
+        /// The ego car began to drive against the direction of its lane.
+        WrongWay = 5,
+        /// The run is armed: from now on the safety driver's action counts as an intervention.
+        Armed = 6,
+        /// The safety driver intervened.
+        Intervention = 7,
+        /// A driver pressed the "I see it" button.
+        Seen = 8,
+        /// The run ended.
+        Ended = 9,
+    }
+}
+
+state! {
+    /// An event of the ego car.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Event {
+        /// What happened.
+        pub kind: EventKind,
+        /// The other actor's id, or 0.
+        pub actor: u32,
+        /// Speed of the ego car, m/s.
+        pub speed_mps: f32,
+    }
+}
+
+state! {
+    /// The navigation arrow of the HUD.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct RouteArrow {
+        /// Which way the route leads at the junction ahead.
+        pub turn: Turn,
+        /// Distance to that junction in whole metres; 0 inside it.
+        pub distance_m: u16,
+        /// Bearing of the route 12 m ahead relative to the car in degrees, positive to the right,
+        /// in steps of 5.
+        pub bearing_deg: i16,
+    }
+}
+
+state! {
+    /// What both drivers see besides the picture.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Hud {
+        /// Speed of the ego car, m/s.
+        pub speed_mps: f32,
+        /// Speed limit, m/s; at most 50 km/h.
+        pub limit_mps: f32,
+        /// Phase of the next traffic light within 50 m on the route.
+        pub light: Option<LightPhase>,
+        /// Distance to its stop line in whole metres; 0 when there is none.
+        pub light_distance_m: u16,
+        /// The navigation arrow.
+        pub arrow: RouteArrow,
+    }
+}

@@ -1,0 +1,28 @@
+//! The deterministic world of A-Eye.
+//!
+//! A [`World`] advances in fixed ticks from a [`Scenario`], a [`RoadNetwork`] and one [`TickInput`]
+//! a tick. Nothing else reaches it: no clock, file, thread, environment variable or GPU. The same
+//! inputs give the same [`StateHash`] on every machine; `DETERMINISM.md` says how far that goes.
+//!
+//! Coordinates follow ISO 8855 and OpenDRIVE: metres, x east, y north, z up, radians
+//! counter-clockwise. Steering is positive to the right, as devices and CARLA have it.
+
+pub mod arbiter;
+pub mod controls;
+pub mod events;
+pub mod map;
+pub mod ops;
+pub mod rng;
+pub mod scenario;
+pub mod scene;
+pub mod signals;
+pub mod state;
+pub mod time;
+pub mod world;
+
+pub use controls::{Controls, Seat, TickInput};
+pub use map::RoadNetwork;
+pub use scenario::Scenario;
+pub use scene::SceneSnapshot;
+pub use state::StateHash;
+pub use world::{Keyframe, TickOutput, World, WorldError};

@@ -1,0 +1,18 @@
+//! OpenDRIVE text to [`RoadNetwork`].
+
+use super::RoadNetwork;
+
+/// Why a text is not a usable map.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {reason}")]
+pub struct BakeError {
+    /// Where in the file: a line, a road, or the whole document.
+    pub place: String,
+    /// What is wrong, and what was expected.
+    pub reason: String,
+}
+
+/// Bakes the text of an OpenDRIVE file; `name` goes into [`RoadNetwork::name`].
+pub fn bake(_name: &str, _xodr: &str) -> Result<RoadNetwork, BakeError> {
+    todo!()
+}

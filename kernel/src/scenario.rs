@@ -1,0 +1,82 @@
+//! What a run starts from. Parsed, hence valid.
+
+use crate::scene::Weather;
+use crate::state;
+
+state! {
+    /// How many actors of each kind there are, and how they behave.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct TrafficCounts {
+        /// Cars, lorries and buses.
+        pub cars: u16,
+        /// Motorcycles.
+        pub motorcycles: u16,
+        /// Bicycles.
+        pub bicycles: u16,
+        /// Pedestrians.
+        pub pedestrians: u16,
+        /// Mean number of times that a pedestrian walking beside a road steps onto it, per minute.
+        pub jaywalks_per_min: f32,
+    }
+}
+
+state! {
+    /// Rules of a run.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Rules {
+        /// Highest speed asked of the semantic driver, km/h.
+        pub max_speed_kmh: f32,
+        /// Length after which a run ends as censored, seconds.
+        pub max_seconds: u32,
+        /// Brake fraction of the safety driver above which it takes over, (0, 1).
+        pub brake_threshold: f32,
+        /// Steering fraction of the safety driver above which it takes over, (0, 1).
+        pub steer_threshold: f32,
+    }
+}
+
+state! {
+    /// Where the ego car starts.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct EgoStart {
+        /// Lane index and distance along it in metres; chosen from the seed when absent.
+        pub lane: Option<u32>,
+        /// Distance along the lane, metres.
+        pub s_m: f32,
+    }
+}
+
+/// A validated scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Name of a bundled map, or of the foreign map that goes with it.
+    pub map: String,
+    /// Seed of every random number of the run.
+    pub seed: u64,
+    /// Other road users.
+    pub traffic: TrafficCounts,
+    /// Weather.
+    pub weather: Weather,
+    /// Start of the ego car.
+    pub ego: EgoStart,
+    /// Rules.
+    pub rules: Rules,
+}
+
+/// Why a text is not a valid scenario; says line and key.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ScenarioError(pub String);
+
+impl Scenario {
+    /// Parses TOML; unknown keys and values out of range are refused by name and line.
+    pub fn from_toml(_text: &str) -> Result<Self, ScenarioError> {
+        todo!()
+    }
+
+    /// The default scenario of a bundled map for a seed: weather and counts drawn from the paper's
+    /// ranges.
+    pub fn default_for(_map: &str, _seed: u64) -> Self {
+        todo!()
+    }
+}

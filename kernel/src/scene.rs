@@ -1,0 +1,144 @@
+//! What there is to see at one tick, apart from the static map.
+//!
+//! Every value is on the grid of its byte layout ([`quantise`]), so that a snapshot that was stored
+//! and read back renders to the same pixels as the live one.
+
+use glam::{Quat, Vec3};
+
+use crate::signals::LightPhase;
+use crate::time::Tick;
+use crate::{ops, state, state_enum};
+
+state_enum! {
+    /// What an actor is.
+    pub enum ActorKind {
+        /// Passenger car.
+        Car = 0,
+        /// Lorry or van.
+        Truck = 1,
+        /// Bus.
+        Bus = 2,
+        /// Motorcycle with its rider.
+        Motorcycle = 3,
+        /// Bicycle with its rider.
+        Bicycle = 4,
+        /// Person on foot.
+        Pedestrian = 5,
+    }
+}
+
+state! {
+    /// Weather of a run. Rain, wetness, puddles and fog are 0, as in the paper.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Weather {
+        /// Share of the sky under clouds in percent, 0 to 100 (paper: 0 to 30).
+        pub cloudiness_pct: f32,
+        /// Wind in percent of a storm, 0 to 100 (paper: 0 to 50); moves branches and clouds.
+        pub wind_pct: f32,
+        /// Height of the sun above the horizon in degrees, -90 to 90 (paper: 20 to 90).
+        pub sun_altitude_deg: f32,
+        /// Direction to the sun in degrees counter-clockwise from east, 0 to 360.
+        pub sun_azimuth_deg: f32,
+    }
+}
+
+state! {
+    /// The ego car.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct EgoScene {
+        /// Centre of the rear axle's projection on the ground plane of the car, metres.
+        pub position: Vec3,
+        /// Rotation from the car's axes (x forward, y left, z up) to the world's.
+        pub rotation: Quat,
+        /// Speed along the car's x axis, m/s; negative in reverse.
+        pub speed_mps: f32,
+        /// Mean angle of the front wheels, radians, positive to the right.
+        pub wheel_angle_rad: f32,
+    }
+}
+
+state! {
+    /// Another road user.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct ActorScene {
+        /// Stable number of the actor within the run, 1 or more.
+        pub id: u32,
+        /// What it is.
+        pub kind: ActorKind,
+        /// Selects colour and shape.
+        pub variant: u32,
+        /// Centre of its footprint on the ground, metres.
+        pub position: Vec3,
+        /// Rotation from its axes (x forward, y left, z up) to the world's.
+        pub rotation: Quat,
+        /// Speed along its x axis, m/s.
+        pub speed_mps: f32,
+        /// Phase of its gait or pedalling, radians in [0, 2 pi).
+        pub phase_rad: f32,
+        /// Brake lights on.
+        pub braking: bool,
+    }
+}
+
+state! {
+    /// The moving world at one tick.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct SceneSnapshot {
+        /// The tick.
+        pub tick: Tick,
+        /// The ego car.
+        pub ego: EgoScene,
+        /// The other road users, by ascending id.
+        pub actors: Vec<ActorScene>,
+        /// Phase of each light group of the map, by index.
+        pub lights: Vec<LightPhase>,
+        /// Weather.
+        pub weather: Weather,
+    }
+}
+
+impl ActorKind {
+    /// Length, width and height of the box around an actor, metres.
+    pub fn size_m(self) -> Vec3 {
+        match self {
+            Self::Car => Vec3::new(4.5, 1.85, 1.5),
+            Self::Truck => Vec3::new(7.0, 2.4, 3.0),
+            Self::Bus => Vec3::new(11.0, 2.5, 3.1),
+            Self::Motorcycle => Vec3::new(2.1, 0.8, 1.6),
+            Self::Bicycle => Vec3::new(1.8, 0.6, 1.75),
+            Self::Pedestrian => Vec3::new(0.5, 0.6, 1.75),
+        }
+    }
+}
+
+/// Steps a metre, radian, m/s or unit is divided into in a snapshot.
+const STEPS: f32 = 1024.0;
+const QUAT_STEPS: f32 = 16384.0;
+
+fn grid(v: f32, steps: f32) -> f32 {
+    ops::round(v * steps) / steps
+}
+
+fn grid3(v: Vec3) -> Vec3 {
+    Vec3::new(grid(v.x, STEPS), grid(v.y, STEPS), grid(v.z, STEPS))
+}
+
+fn grid_quat(q: Quat) -> Quat {
+    Quat::from_xyzw(grid(q.x, QUAT_STEPS), grid(q.y, QUAT_STEPS), grid(q.z, QUAT_STEPS), grid(q.w, QUAT_STEPS))
+}
+
+/// Puts every value of a snapshot on its grid: 2^-10 for lengths, angles and speeds, 2^-14 for
+/// the components of rotations.
+pub fn quantise(scene: &mut SceneSnapshot) {
+    let ego = &mut scene.ego;
+    ego.position = grid3(ego.position);
+    ego.rotation = grid_quat(ego.rotation);
+    ego.speed_mps = grid(ego.speed_mps, STEPS);
+    ego.wheel_angle_rad = grid(ego.wheel_angle_rad, STEPS);
+    for actor in &mut scene.actors {
+        actor.position = grid3(actor.position);
+        actor.rotation = grid_quat(actor.rotation);
+        actor.speed_mps = grid(actor.speed_mps, STEPS);
+        actor.phase_rad = grid(actor.phase_rad, STEPS);
+    }
+}
