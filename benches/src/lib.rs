@@ -1,1 +1,1 @@
-//! benches
+//! Budgets of the benchmarks, kept as ratios measured in one run.

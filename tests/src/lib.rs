@@ -1,1 +1,1 @@
-//! tests
+//! Scenes shared by the integration tests and the benchmarks.

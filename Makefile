@@ -1,0 +1,32 @@
+# demo and test install what they need on Debian (apt; sudo only where you are not root).
+
+PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers
+SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
+
+.PHONY: demo test bench setup build
+
+## Drives the bundled maps until three corner cases have happened and reports on them.
+demo: build
+	$(AEYE) demo --out out/demo
+
+## Everything that CI runs.
+test: setup
+	cargo fmt --all --check
+	cargo clippy --release --workspace --all-targets -- -D warnings
+	cargo test --release --workspace
+	kernel/tests/portable.sh
+
+## Benchmarks; fails when a budget is broken.
+bench: setup
+	cargo bench -p benches
+
+build: setup
+	cargo build --release -p rig
+
+setup:
+	@missing=$$(for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || echo $$p; done); \
+	if [ -n "$$missing" ]; then \
+		echo "installing:" $$missing; \
+		$(SUDO) apt-get update -qq && $(SUDO) apt-get install -y -qq --no-install-recommends $$missing; \
+	fi

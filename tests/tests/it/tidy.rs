@@ -1,0 +1,178 @@
+//! The rules of the house as a test: who imports whom, where a library may be named, how long files
+//! and functions may be. Each rule is itself tested on a text that breaks it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Longest source file in lines.
+const MAX_FILE_LINES: usize = 600;
+/// Longest function in lines, from `fn` to its closing brace.
+const MAX_FUNCTION_LINES: usize = 100;
+
+/// Who may import whom from the workspace.
+const IMPORTS: [(&str, &[&str]); 7] = [
+    ("kernel", &[]),
+    ("perception", &[]),
+    ("render", &["kernel"]),
+    ("replay", &["kernel"]),
+    ("rig", &["kernel", "perception", "render", "replay"]),
+    ("tests", &["kernel", "perception", "render", "replay", "rig"]),
+    ("benches", &["kernel", "perception", "render", "replay", "rig", "tests"]),
+];
+
+/// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
+const NAMED_ONCE: [(&str, &[&str], &[&str]); 6] = [
+    ("rapier3d::", &["kernel", "render", "perception", "replay", "rig"], &["kernel/src/physics.rs", "kernel/src/physics/"]),
+    ("bincode::", &["kernel", "render", "perception", "replay", "rig"], &["replay/src/wire.rs"]),
+    ("mcap::", &["kernel", "render", "perception", "rig"], &[]),
+    ("wgpu::", &["kernel", "perception", "replay", "rig"], &[]),
+    ("std::time", &["kernel", "render", "replay"], &[]),
+    ("HashMap", &["kernel"], &[]),
+];
+
+/// What the kernel may not name: each of these would make a step depend on more than its inputs.
+const KERNEL_BANNED: [&str; 9] =
+    ["std::fs", "std::env", "std::thread", "std::net", "Instant", "SystemTime", "HashSet", ".mul_add(", "rayon"];
+
+/// Marks of unfinished work.
+const UNFINISHED: [&str; 5] = ["todo!(", "unimplemented!(", "#[ignore]", "FIXME", "XXX"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace is above").to_owned()
+}
+
+/// Every file below the workspace's crates with one of the endings, as (relative path, text).
+fn sources(endings: &[&str]) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (name, _) in IMPORTS {
+        collect(&root().join(name), endings, &mut found);
+    }
+    assert!(found.len() > 10, "the walk found only {} files", found.len());
+    found.sort();
+    found
+}
+
+fn collect(dir: &Path, endings: &[&str], found: &mut Vec<(String, String)>) {
+    for entry in fs::read_dir(dir).expect("a readable folder") {
+        let path = entry.expect("a readable entry").path();
+        if path.is_dir() {
+            collect(&path, endings, found);
+        } else if endings.iter().any(|e| path.to_string_lossy().ends_with(e)) {
+            let relative = path.strip_prefix(root()).expect("below the root").to_string_lossy().into_owned();
+            found.push((relative, fs::read_to_string(&path).expect("a text file")));
+        }
+    }
+}
+
+fn check(rule: impl Fn(&str, &str) -> Vec<String>, endings: &[&str]) {
+    let broken: Vec<String> = sources(endings).iter().flat_map(|(path, text)| rule(path, text)).collect();
+    assert!(broken.is_empty(), "\n{}", broken.join("\n"));
+}
+
+fn is_this_file(path: &str) -> bool {
+    path == "tests/tests/it/tidy.rs"
+}
+
+fn wrong_imports(path: &str, manifest: &str) -> Vec<String> {
+    let crate_name = path.split('/').next().unwrap_or_default();
+    let Some((_, allowed)) = IMPORTS.iter().find(|(name, _)| *name == crate_name) else {
+        return vec![format!("{path}: not a crate of the table")];
+    };
+    let names = IMPORTS.iter().map(|(name, _)| *name);
+    names
+        .filter(|name| manifest.lines().any(|l| l.starts_with(&format!("{name}."))) && !allowed.contains(name))
+        .map(|name| format!("{path}: {crate_name} may not import {name}"))
+        .collect()
+}
+
+fn misplaced_names(path: &str, text: &str) -> Vec<String> {
+    let in_crate = |names: &[&str]| names.iter().any(|n| path.starts_with(&format!("{n}/src/")));
+    let allowed = |files: &[&str]| files.iter().any(|f| path == *f || (f.ends_with('/') && path.starts_with(f)));
+    let code = without_comments(text);
+    let mut broken: Vec<String> = NAMED_ONCE
+        .iter()
+        .filter(|(word, crates, files)| in_crate(crates) && !allowed(files) && code.contains(word))
+        .map(|(word, _, files)| format!("{path}: {word} belongs in {files:?}"))
+        .collect();
+    if path.starts_with("kernel/src/") {
+        broken.extend(
+            KERNEL_BANNED.iter().filter(|w| code.contains(**w)).map(|w| format!("{path}: the kernel may not use {w}")),
+        );
+    }
+    broken
+}
+
+fn without_comments(text: &str) -> String {
+    text.lines().map(|l| l.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+fn too_long(path: &str, text: &str) -> Vec<String> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut broken = Vec::new();
+    if lines.len() > MAX_FILE_LINES {
+        broken.push(format!("{path}: {} lines, more than {MAX_FILE_LINES}", lines.len()));
+    }
+    for (start, line) in lines.iter().enumerate() {
+        let indent = line.len() - line.trim_start().len();
+        let head = line.trim_start();
+        let is_function = ["fn ", "pub fn ", "pub(crate) fn ", "pub(super) fn ", "const fn ", "pub const fn "]
+            .iter()
+            .any(|k| head.starts_with(k));
+        if !is_function || !path.ends_with(".rs") {
+            continue;
+        }
+        let close = format!("{}}}", " ".repeat(indent));
+        let length = lines[start..].iter().position(|l| *l == close).unwrap_or(0) + 1;
+        if length > MAX_FUNCTION_LINES {
+            broken.push(format!("{path}:{}: a function of {length} lines", start + 1));
+        }
+    }
+    broken
+}
+
+fn unfinished(path: &str, text: &str) -> Vec<String> {
+    if is_this_file(path) {
+        return Vec::new();
+    }
+    UNFINISHED.iter().filter(|w| text.contains(**w)).map(|w| format!("{path}: {w}")).collect()
+}
+
+fn undocumented_module(path: &str, text: &str) -> Vec<String> {
+    let documented = text.lines().find(|l| !l.starts_with("#![")).is_some_and(|l| l.starts_with("//!"));
+    if documented { Vec::new() } else { vec![format!("{path}: does not say in its first line what it is for")] }
+}
+
+#[test]
+fn crates_import_only_what_the_table_allows() {
+    check(wrong_imports, &["Cargo.toml"]);
+    assert_eq!(wrong_imports("kernel/Cargo.toml", "render.workspace = true").len(), 1);
+    assert_eq!(wrong_imports("rig/Cargo.toml", "render.workspace = true"), Vec::<String>::new());
+}
+
+#[test]
+fn libraries_and_hazards_stand_where_they_may() {
+    check(misplaced_names, &[".rs"]);
+    assert_eq!(misplaced_names("kernel/src/ego.rs", "use rapier3d::prelude::*;").len(), 1);
+    assert_eq!(misplaced_names("kernel/src/ego.rs", "let t = Instant::now();").len(), 1);
+    assert_eq!(misplaced_names("kernel/src/ego.rs", "// Instant is banned"), Vec::<String>::new());
+}
+
+#[test]
+fn files_and_functions_are_short() {
+    check(too_long, &[".rs", ".wgsl"]);
+    assert_eq!(too_long("a.rs", &"\n".repeat(MAX_FILE_LINES + 1)).len(), 1);
+    let long = format!("fn f() {{\n{}}}\n", "    x();\n".repeat(MAX_FUNCTION_LINES));
+    assert_eq!(too_long("a.rs", &long).len(), 1);
+}
+
+#[test]
+fn nothing_is_left_unfinished() {
+    check(unfinished, &[".rs", ".wgsl"]);
+    assert_eq!(unfinished("a.rs", "todo!()").len(), 1);
+}
+
+#[test]
+fn every_module_says_what_it_is_for() {
+    check(undocumented_module, &[".rs"]);
+    assert_eq!(undocumented_module("a.rs", "use std::fs;").len(), 1);
+}
