@@ -1,0 +1,75 @@
+//! Where the picture is taken from.
+
+use glam::{Quat, Vec3};
+use kernel::scene::EgoScene;
+
+/// What a camera is fixed to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mount {
+    /// The ego car: moves and turns with it.
+    Ego,
+    /// The ego car's place: moves with it, keeps its direction in the world.
+    EgoPlace,
+    /// The world.
+    World,
+}
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// What it is fixed to.
+    pub mount: Mount,
+    /// Position in the mount's frame, metres.
+    pub position: Vec3,
+    /// Rotation from the camera's axes (x along the view, y left, z up) to the mount's.
+    pub rotation: Quat,
+    /// Horizontal field of view, radians, (0, pi).
+    pub fov_x_rad: f32,
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// From the rear axle, where [`EgoScene::position`] lies, to the middle of the ego car.
+const MIDDLE_M: f32 = 1.3;
+
+impl Camera {
+    /// The camera both drivers see through: on the ego car, 1.2 m forward of its middle, 1.5 m high,
+    /// level, 90 degrees horizontal field of view.
+    pub fn driver(width: u32, height: u32) -> Self {
+        let position = Vec3::new(MIDDLE_M + 1.2, 0.0, 1.5);
+        Self { mount: Mount::Ego, position, ..Self::level(width, height) }
+    }
+
+    /// Behind and above the ego car, which is in the picture.
+    pub fn chase(width: u32, height: u32) -> Self {
+        let position = Vec3::new(-6.5, 0.0, 3.2);
+        let rotation = Quat::from_rotation_y(0.16);
+        Self { mount: Mount::Ego, position, rotation, ..Self::level(width, height) }
+    }
+
+    /// Straight down on the ego car, north up, `span_m` metres of ground from left to right.
+    pub fn top(width: u32, height: u32, span_m: f32) -> Self {
+        let fov_x_rad = 0.5;
+        let above = 0.5 * span_m / kernel::ops::tan(0.5 * fov_x_rad);
+        // The view's x axis looks down, its z axis (up in the picture) points north, its y axis west.
+        let rotation = Quat::from_mat3(&glam::Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y));
+        let position = Vec3::new(0.0, 0.0, above);
+        Self { mount: Mount::EgoPlace, position, rotation, fov_x_rad, width, height }
+    }
+
+    fn level(width: u32, height: u32) -> Self {
+        let fov_x_rad = core::f32::consts::FRAC_PI_2;
+        Self { mount: Mount::World, position: Vec3::ZERO, rotation: Quat::IDENTITY, fov_x_rad, width, height }
+    }
+
+    /// Position and rotation in the world.
+    pub fn pose(&self, ego: &EgoScene) -> (Vec3, Quat) {
+        match self.mount {
+            Mount::Ego => (ego.position + ego.rotation * self.position, ego.rotation * self.rotation),
+            Mount::EgoPlace => (ego.position + self.position, self.rotation),
+            Mount::World => (self.position, self.rotation),
+        }
+    }
+}

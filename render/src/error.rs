@@ -1,0 +1,51 @@
+//! Why nothing could be drawn.
+
+/// Why nothing could be drawn; each says in one sentence what to do about it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RenderError {
+    /// No adapter of the wanted kind answered.
+    #[error(
+        "no graphics adapter for '{wanted}': install a Vulkan driver (on Debian: apt install libvulkan1 \
+         mesa-vulkan-drivers, whose lavapipe needs no GPU); found: {found}"
+    )]
+    NoAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// The adapters that were found, or "none".
+        found: String,
+    },
+    /// The adapter gave no device.
+    #[error("adapter '{adapter}' gives no device: {reason}")]
+    Device {
+        /// Its name.
+        adapter: String,
+        /// The driver's words.
+        reason: String,
+    },
+    /// The camera asks for an image that cannot be drawn.
+    #[error("camera asks for an image of {width}x{height} pixels, expected 1x1 to {limit}x{limit}")]
+    ImageSize {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+        /// Largest side that the adapter draws.
+        limit: u32,
+    },
+    /// The snapshot belongs to another map.
+    #[error("snapshot has {got} light groups, the map has {expected}: it belongs to another map")]
+    OtherMap {
+        /// Light groups of the renderer's map.
+        expected: usize,
+        /// Light groups in the snapshot.
+        got: usize,
+    },
+    /// The device was lost while drawing.
+    #[error("reading the frame of tick {tick} back failed: {reason}")]
+    Readback {
+        /// Tick of the frame.
+        tick: u64,
+        /// The driver's words.
+        reason: String,
+    },
+}
