@@ -18,6 +18,7 @@ pub mod scene;
 pub mod signals;
 pub mod state;
 pub mod time;
+pub mod traffic;
 pub mod world;
 
 pub use controls::{Controls, Seat, TickInput};

@@ -1,0 +1,41 @@
+//! What is remembered of a vehicle.
+
+use crate::map::LaneId;
+use crate::scene::ActorKind;
+use crate::state;
+
+state! {
+    /// A vehicle on a lane. 26 bytes.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Vehicle {
+        /// Id of the actor.
+        pub id: u16,
+        /// What it is.
+        pub kind: ActorKind,
+        /// Bit set of the `Vehicle::*` flags.
+        pub flags: u8,
+        /// Lane under its middle.
+        pub lane: LaneId,
+        /// Its middle, metres from the start of the lane.
+        pub s_m: f32,
+        /// Its middle, metres to the left of the lane's centre line.
+        pub offset_m: f32,
+        /// Speed, m/s, never negative.
+        pub speed_mps: f32,
+        /// Lanes entered so far (wrapping): the counter of its random turns.
+        pub hops: u16,
+        /// Ticks it has waited at the line before it, saturating.
+        pub wait_ticks: u16,
+        /// Phase of pedalling, 2^-16 turns.
+        pub phase: u16,
+    }
+}
+
+impl Vehicle {
+    /// Brake lights on.
+    pub const BRAKING: u8 = 1;
+    /// May cross the junction before it, or is crossing it.
+    pub const GRANTED: u8 = 2;
+    /// Has halted at the stop sign before it.
+    pub const HALTED: u8 = 4;
+}

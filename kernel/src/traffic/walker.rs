@@ -1,0 +1,45 @@
+//! What is remembered of a person on foot.
+
+use crate::map::WalkEdgeId;
+use crate::{state, state_enum};
+
+state_enum! {
+    /// What a person on foot is doing.
+    pub enum WalkerMode {
+        /// Walks along an edge, on a sidewalk or a crosswalk.
+        Walk = 0,
+        /// Stands at a kerb and waits to cross.
+        Wait = 1,
+        /// Crosses the road where there is no crosswalk: `s_m` stays, `offset_m` grows.
+        Jaywalk = 2,
+    }
+}
+
+state! {
+    /// A person on foot. 28 bytes.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Walker {
+        /// Id of the actor.
+        pub id: u16,
+        /// What it does.
+        pub mode: WalkerMode,
+        /// Walks from the first to the last point of the edge.
+        pub forward: bool,
+        /// The edge it walks along.
+        pub edge: WalkEdgeId,
+        /// Metres along the edge from its first point; may lie beyond an end by the width of the way.
+        pub s_m: f32,
+        /// Metres to the left of the edge, seen from its first point.
+        pub offset_m: f32,
+        /// Speed, m/s, never negative.
+        pub speed_mps: f32,
+        /// Edges entered so far (wrapping): the counter of its random choices.
+        pub hops: u16,
+        /// Ticks it has waited, saturating.
+        pub wait_ticks: u16,
+        /// Phase of its gait, 2^-16 turns.
+        pub phase: u16,
+        /// Where it faces, 2^-16 turns counter-clockwise from east.
+        pub heading: u16,
+    }
+}
