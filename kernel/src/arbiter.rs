@@ -53,6 +53,8 @@ state! {
     pub struct Arbiter {
         /// Where the run stands.
         pub phase: Phase,
+        /// The safety driver has taken the wheel over and keeps it.
+        pub safety_steers: bool,
         /// The intervention, once there was one.
         pub intervention: Option<Intervention>,
         /// How the run ended, once it has.
@@ -62,13 +64,15 @@ state! {
     }
 }
 
-/// What the arbitration decided in one tick.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Applied {
-    /// Controls that reach the car.
-    pub controls: Controls,
-    /// Who steers.
-    pub steering: Seat,
-    /// Who brakes or accelerates.
-    pub pedals: Seat,
+state! {
+    /// What the arbitration decided in one tick.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Applied {
+        /// Controls that reach the car.
+        pub controls: Controls,
+        /// Who steers.
+        pub steering: Seat,
+        /// Who brakes or accelerates.
+        pub pedals: Seat,
+    }
 }

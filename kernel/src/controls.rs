@@ -1,14 +1,15 @@
 //! What a driver's hands and feet give, as integers.
 
-use crate::state;
+use crate::{state, state_enum};
 
-/// One of the two seats.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Seat {
-    /// The driver who sees only the predicted mask.
-    Semantic,
-    /// The driver who sees the real image and always has priority.
-    Safety,
+state_enum! {
+    /// One of the two seats.
+    pub enum Seat {
+        /// The driver who sees only the predicted mask.
+        Semantic = 0,
+        /// The driver who sees the real image and always has priority.
+        Safety = 1,
+    }
 }
 
 state! {

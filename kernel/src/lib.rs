@@ -12,6 +12,7 @@ pub mod controls;
 pub mod events;
 pub mod map;
 pub mod ops;
+pub mod physics;
 pub mod rng;
 pub mod scenario;
 pub mod scene;

@@ -25,6 +25,8 @@ pub enum Stream {
     Signal = 7,
     /// Reserved for drivers outside the kernel (reaction times of bots).
     Driver = 8,
+    /// Weather and counts of a default scenario.
+    Scenario = 9,
 }
 
 fn mix(z: u64) -> u64 {

@@ -35,7 +35,7 @@ pub enum WorldError {
 }
 
 /// Parts of the state with a hash of their own, in the order of [`World::part_hashes`].
-pub const PARTS: [&str; 6] = ["input", "ego", "vehicles", "pedestrians", "arbiter", "output"];
+pub const PARTS: [&str; 7] = ["input", "ego", "vehicles", "pedestrians", "bodies", "arbiter", "output"];
 
 /// The compact state of the world at a keyframe tick.
 #[derive(Clone, Debug, PartialEq, Eq)]

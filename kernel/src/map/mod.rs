@@ -5,6 +5,7 @@
 
 use glam::Vec3;
 
+use crate::physics::Statics;
 use crate::state_enum;
 
 /// Index of a lane in [`RoadNetwork::lanes`].
@@ -299,6 +300,8 @@ pub struct RoadNetwork {
     pub props: Vec<Prop>,
     /// Least and greatest corner of everything.
     pub bounds: [Vec3; 2],
+    /// The colliders of all that, built on first use; start with `Statics::default()`.
+    pub statics: Statics,
 }
 
 mod bake;
