@@ -1,1 +1,29 @@
-//! rig
+//! The application `aeye`: drivers and sessions, and the offline lab.
+
+pub mod cli;
+pub mod commands;
+pub mod drivers;
+pub mod exit;
+pub mod lab;
+pub mod output;
+pub mod progress;
+
+use cli::{Cli, Command, DatasetCommand};
+use exit::Verdict;
+
+/// Runs a command.
+pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
+    let json = cli.json;
+    match &cli.command {
+        Command::Drive(args) => commands::drive::run(args, json),
+        Command::Campaign(args) => commands::campaign::run(args, json),
+        Command::Verify(args) => commands::verify::run(args, json),
+        Command::Inspect(args) => commands::inspect::run(args, json),
+        Command::Rerender(args) => lab::rerender::run(args, json),
+        Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
+        Command::Train(args) => lab::train::run(args, json),
+        Command::Eval(args) => lab::eval::run(args, json),
+        Command::Demo(args) => lab::demo::run(args, json),
+        Command::Doctor => commands::doctor::run(json),
+    }
+}

@@ -1,0 +1,302 @@
+//! The command line of `aeye`.
+
+use std::convert::Infallible;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand};
+use kernel::time::{CLIP_FPS, TICK_HZ, Tick};
+
+/// Drive by the eyes of a network, record every tick, and learn from every takeover.
+///
+/// Data goes to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 error (unreadable,
+/// damaged), 2 usage, 3 a check failed.
+#[derive(Debug, Parser)]
+#[command(name = "aeye", version)]
+pub struct Cli {
+    /// Print JSON on stdout instead of text.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Every command.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Drive one run and record it.
+    Drive(DriveArgs),
+    /// Simulated drives, headless, until so many runs, kilometres or corner cases.
+    Campaign(CampaignArgs),
+    /// Simulate recordings again and compare every tick.
+    Verify(VerifyArgs),
+    /// Say what is in recordings or cases.
+    Inspect(InspectArgs),
+    /// Render the window of recordings or cases through checkpoints.
+    Rerender(RerenderArgs),
+    /// Make datasets.
+    #[command(subcommand)]
+    Dataset(DatasetCommand),
+    /// Train Fast-SCNN from a dataset folder.
+    Train(TrainArgs),
+    /// Measure a checkpoint on a dataset folder.
+    Eval(EvalArgs),
+    /// Drive until three corner cases, verify, render them again, and write a report.
+    Demo(DemoArgs),
+    /// Say what this machine has and how fast it is.
+    Doctor,
+}
+
+/// What the semantic driver looks at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CheckpointChoice {
+    /// `truth`: the renderer's class ids instead of a prediction.
+    Truth,
+    /// An ONNX file.
+    File(PathBuf),
+}
+
+impl FromStr for CheckpointChoice {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(if text == "truth" { Self::Truth } else { Self::File(PathBuf::from(text)) })
+    }
+}
+
+/// Arguments of `drive`.
+#[derive(Args, Debug)]
+pub struct DriveArgs {
+    /// Without windows: bots in both seats, as fast as the machine allows.
+    #[arg(long, required = true)]
+    pub headless: bool,
+    /// A bundled map or an OpenDRIVE file.
+    #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
+    pub map: Option<String>,
+    /// A scenario file.
+    #[arg(long, value_name = "FILE.toml")]
+    pub scenario: Option<PathBuf>,
+    /// What the semantic driver sees: an ONNX file, or `truth`.
+    #[arg(long, default_value = "truth", value_name = "FILE.onnx|truth")]
+    pub checkpoint: CheckpointChoice,
+    /// Seed of everything random; replaces the scenario's.
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Longest simulated time, seconds.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub seconds: Option<u32>,
+    /// Where the recording goes.
+    #[arg(long, value_name = "FILE.mcap")]
+    pub record: PathBuf,
+}
+
+/// Arguments of `campaign`.
+#[derive(Args, Debug)]
+#[command(group = clap::ArgGroup::new("until").required(true).args(["runs", "km", "cases"]))]
+pub struct CampaignArgs {
+    /// What the semantic driver sees: ONNX files, or `truth`; each drives the same runs.
+    #[arg(long, required = true, num_args = 1.., value_name = "FILE.onnx|truth")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
+    #[arg(long, value_delimiter = ',', default_value = "all", value_name = "NAMES|all")]
+    pub maps: Vec<String>,
+    /// A scenario file; its map and seed are replaced for each run.
+    #[arg(long, value_name = "FILE.toml")]
+    pub scenario: Option<PathBuf>,
+    /// Number of runs of each checkpoint.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub runs: Option<u32>,
+    /// Kilometres of each checkpoint.
+    #[arg(long)]
+    pub km: Option<f64>,
+    /// Corner cases of each checkpoint.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub cases: Option<u32>,
+    /// Longest simulated time of a run, seconds.
+    #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(10..=86_400))]
+    pub run_seconds: u32,
+    /// Seed of the campaign; run `i` follows from it and `i` alone.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Folder of the results; a campaign that was interrupted goes on there.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `verify`.
+#[derive(Args, Debug)]
+pub struct VerifyArgs {
+    /// Recordings or cases.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Also go back this many ticks again and again and compare (rollback self-check).
+    #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(1..=600))]
+    pub rewind: Option<u16>,
+    /// Compare with this recording tick by tick, and name the field that differs first.
+    #[arg(long, value_name = "FILE")]
+    pub against: Option<PathBuf>,
+}
+
+/// Arguments of `inspect`.
+#[derive(Args, Debug)]
+pub struct InspectArgs {
+    /// Recordings or cases.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+}
+
+/// Arguments of `rerender`.
+#[derive(Args, Debug)]
+pub struct RerenderArgs {
+    /// Recordings or cases.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    #[arg(long, required = true, num_args = 1.., value_name = "FILE.onnx|truth")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Length of the window that ends at the intervention (or at the end), as in `3s`.
+    #[arg(long, default_value = "3s", value_parser = duration)]
+    pub last: Tick,
+    /// Frames a second; must divide 60.
+    #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
+    pub fps: u32,
+    /// Size of the pictures.
+    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Folder of the results; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// The datasets that can be made.
+#[derive(Debug, Subcommand)]
+pub enum DatasetCommand {
+    /// Frames with ground truth from simulated drives.
+    Natural(NaturalArgs),
+}
+
+/// Arguments of `dataset natural`.
+#[derive(Args, Debug)]
+pub struct NaturalArgs {
+    /// Scenes (drives) of the training split (paper: 85).
+    #[arg(long, default_value_t = 85)]
+    pub scenes: u32,
+    /// Scenes of the validation split, with seeds of their own (paper: 20).
+    #[arg(long, default_value_t = 20)]
+    pub val_scenes: u32,
+    /// Frames a scene, one a second (paper: 60).
+    #[arg(long, default_value_t = 60)]
+    pub frames: u32,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
+    #[arg(long, value_delimiter = ',', default_value = "all", value_name = "NAMES|all")]
+    pub maps: Vec<String>,
+    /// Seed of the dataset.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Folder of the dataset; one that was interrupted is completed.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `train`.
+#[derive(Args, Debug)]
+pub struct TrainArgs {
+    /// Dataset folder.
+    #[arg(long, value_name = "DIR")]
+    pub dataset: PathBuf,
+    /// Where the checkpoint goes.
+    #[arg(long, value_name = "C.onnx")]
+    pub out: PathBuf,
+    /// Passes over the training split.
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..))]
+    pub epochs: u32,
+    /// Seed of weights, order and augmentation.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Size at which the network is trained.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+}
+
+/// Arguments of `eval`.
+#[derive(Args, Debug)]
+pub struct EvalArgs {
+    /// Checkpoint.
+    #[arg(long, value_name = "C.onnx|truth")]
+    pub checkpoint: CheckpointChoice,
+    /// Dataset folder.
+    #[arg(long, value_name = "DIR")]
+    pub dataset: PathBuf,
+}
+
+/// Arguments of `demo`.
+#[derive(Args, Debug)]
+pub struct DemoArgs {
+    /// Seed of the campaign.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Folder of the results.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// `WxH`, as in `512x256`.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |s: &str| s.parse::<u32>().ok().filter(|n| (8..=8192).contains(n));
+    text.split_once('x')
+        .and_then(|(w, h)| Some((side(w)?, side(h)?)))
+        .ok_or_else(|| "expected WIDTHxHEIGHT with sides of 8 to 8192 pixels, as in 512x256".into())
+}
+
+/// A number of seconds such as `3s` or `0.5s`, as ticks.
+fn duration(text: &str) -> Result<Tick, String> {
+    let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
+    let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (1.0..=1e9).contains(t));
+    ticks.map(|t| t as Tick).ok_or_else(|| "expected a number of seconds, as in 3s".into())
+}
+
+fn frame_rate(text: &str) -> Result<u32, String> {
+    let fps = text.parse::<u32>().ok().filter(|f| *f > 0 && TICK_HZ.is_multiple_of(*f));
+    fps.ok_or_else(|| format!("expected a divisor of {TICK_HZ}, as in 10"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn values_are_read_and_nonsense_is_refused() {
+        assert_eq!(size("512x256"), Ok((512, 256)));
+        assert!(size("512").is_err() && size("0x9").is_err() && size("12x99999999").is_err());
+        assert_eq!(duration("3s"), Ok(180));
+        assert_eq!(duration("0.5"), Ok(30));
+        assert!(duration("-1s").is_err() && duration("NaN").is_err());
+        assert!(frame_rate("7").is_err() && frame_rate("0").is_err());
+    }
+
+    #[test]
+    fn a_campaign_needs_exactly_one_end() {
+        let parse = |tail: &[&str]| {
+            let head = ["aeye", "campaign", "--checkpoint", "truth", "--out", "d"];
+            Cli::try_parse_from(head.iter().chain(tail)).is_ok()
+        };
+        assert!(parse(&["--runs", "4"]) && parse(&["--km", "1.5"]));
+        assert!(!parse(&[]) && !parse(&["--runs", "4", "--cases", "1"]));
+    }
+}

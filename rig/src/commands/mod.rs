@@ -1,0 +1,7 @@
+//! The commands that drive, and those that look at recordings.
+
+pub mod campaign;
+pub mod doctor;
+pub mod drive;
+pub mod inspect;
+pub mod verify;

@@ -1,0 +1,39 @@
+//! How a command ends: the exit codes that scripts rely on.
+
+use std::process::ExitCode;
+
+/// What a command that ran to its end says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Everything went well: exit code 0.
+    Ok,
+    /// A check failed (divergence, budget, gate): exit code 3.
+    CheckFailed,
+}
+
+/// The command line asks for something that does not exist or contradicts itself: exit code 2.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Usage(pub String);
+
+impl std::fmt::Display for Usage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// The exit code: 0 ok, 1 error (unreadable, damaged), 2 usage, 3 a check failed.
+pub fn code(result: &anyhow::Result<Verdict>) -> ExitCode {
+    ExitCode::from(match result {
+        Ok(Verdict::Ok) => 0,
+        Ok(Verdict::CheckFailed) => 3,
+        Err(error) if error.is::<Usage>() => 2,
+        Err(_) => 1,
+    })
+}
+
+/// An error with its causes as one line.
+pub fn sentence(error: &anyhow::Error) -> String {
+    format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" ")
+}

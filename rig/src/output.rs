@@ -1,0 +1,127 @@
+//! What a command prints, and files that appear only when they are whole.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use serde::Serialize;
+
+/// Version of everything that `--json` prints; raised when a field changes its meaning or goes.
+pub const JSON_VERSION: u32 = 1;
+
+#[derive(Serialize)]
+struct Versioned<'a, T> {
+    version: u32,
+    #[serde(flatten)]
+    value: &'a T,
+}
+
+/// One line of JSON with its `version`.
+pub fn json_line<T: Serialize>(value: &T) -> anyhow::Result<String> {
+    Ok(serde_json::to_string(&Versioned { version: JSON_VERSION, value })?)
+}
+
+/// Indented JSON with its `version`, for files.
+pub fn json_file<T: Serialize>(value: &T) -> anyhow::Result<String> {
+    let mut text = serde_json::to_string_pretty(&Versioned { version: JSON_VERSION, value })?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// Prints a command's result: one line of JSON, or the text.
+pub fn print<T: Serialize>(json: bool, value: &T, text: impl FnOnce() -> String) -> anyhow::Result<()> {
+    let line = if json { json_line(value)? } else { text() };
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{line}").and_then(|()| out.flush()).context("stdout")
+}
+
+/// Writes a file in one step: under a temporary name beside it, then renamed.
+pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let folder = folder_of(path);
+    let mut file = tempfile::NamedTempFile::new_in(&folder).with_context(|| folder.display().to_string())?;
+    file.write_all(bytes).with_context(|| path.display().to_string())?;
+    file.persist(path).with_context(|| path.display().to_string())?;
+    Ok(())
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
+}
+
+/// A folder that gets its name only when it is complete; dropped before, nothing remains.
+pub struct PendingFolder {
+    temporary: tempfile::TempDir,
+    path: PathBuf,
+}
+
+impl PendingFolder {
+    /// Starts a folder; `path` must not exist, or be an empty folder.
+    pub fn new(path: &Path) -> anyhow::Result<Self> {
+        let is_free = match fs::read_dir(path) {
+            Ok(mut entries) => entries.next().is_none(),
+            Err(_) => !path.exists(),
+        };
+        if !is_free {
+            bail!("{}: exists already; expected a new or an empty folder", path.display());
+        }
+        let parent = folder_of(path);
+        fs::create_dir_all(&parent).with_context(|| parent.display().to_string())?;
+        let temporary = tempfile::Builder::new().prefix(".aeye-").tempdir_in(&parent);
+        Ok(Self { temporary: temporary.with_context(|| parent.display().to_string())?, path: path.to_owned() })
+    }
+
+    /// Where to write until [`PendingFolder::finish`].
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
+    /// Gives the folder its name.
+    pub fn finish(self) -> anyhow::Result<()> {
+        make_readable(self.temporary.path())?;
+        if self.path.exists() {
+            fs::remove_dir(&self.path).with_context(|| self.path.display().to_string())?;
+        }
+        fs::rename(self.temporary.path(), &self.path).with_context(|| self.path.display().to_string())?;
+        // It has moved away: nothing is left to delete.
+        let _ = self.temporary.keep();
+        Ok(())
+    }
+}
+
+/// Temporary folders are private; results are not.
+fn make_readable(path: &Path) -> anyhow::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).with_context(|| path.display().to_string())?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_appears_only_when_finished() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("out");
+        drop(PendingFolder::new(&path).expect("free"));
+        assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 0);
+        let pending = PendingFolder::new(&path).expect("free");
+        fs::write(pending.path().join("a"), "b").expect("writable");
+        pending.finish().expect("renamed");
+        assert_eq!(fs::read_to_string(path.join("a")).expect("there"), "b");
+        assert!(PendingFolder::new(&path).is_err());
+    }
+
+    #[test]
+    fn json_carries_its_version() {
+        #[derive(Serialize)]
+        struct Ticks {
+            ticks: u64,
+        }
+        assert_eq!(json_line(&Ticks { ticks: 3 }).expect("serialises"), r#"{"version":1,"ticks":3}"#);
+    }
+}
