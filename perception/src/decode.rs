@@ -1,0 +1,1 @@
+//! Bilinear upsampling and argmax, fused.
