@@ -306,6 +306,8 @@ pub struct RoadNetwork {
 
 mod bake;
 mod bundled;
+mod query;
 
 pub use bake::{BakeError, bake};
 pub use bundled::{BUNDLED, bundled};
+pub use query::{Ground, Projection};

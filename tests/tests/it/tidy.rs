@@ -22,7 +22,11 @@ const IMPORTS: [(&str, &[&str]); 7] = [
 
 /// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
 const NAMED_ONCE: [(&str, &[&str], &[&str]); 6] = [
-    ("rapier3d::", &["kernel", "render", "perception", "replay", "rig"], &["kernel/src/physics.rs", "kernel/src/physics/"]),
+    (
+        "rapier3d::",
+        &["kernel", "render", "perception", "replay", "rig"],
+        &["kernel/src/physics.rs", "kernel/src/physics/"],
+    ),
     ("bincode::", &["kernel", "render", "perception", "replay", "rig"], &["replay/src/wire.rs"]),
     ("mcap::", &["kernel", "render", "perception", "rig"], &[]),
     ("wgpu::", &["kernel", "perception", "replay", "rig"], &[]),
