@@ -1,8 +1,14 @@
 //! Who is in control, and what counts as an intervention (DOMAIN: the safety driver always wins).
 
-use crate::controls::{Controls, Seat};
-use crate::time::Tick;
+use crate::controls::{Controls, Seat, TickInput};
+use crate::scenario::Rules;
+use crate::time::{CLIP_TICKS, Tick, seconds};
 use crate::{state, state_enum};
+
+/// Longest time that a run goes on after a takeover.
+pub const TAKEOVER_TICKS: Tick = seconds(5);
+/// Speed below which the car stands, m/s.
+const STANDSTILL_MPS: f32 = 0.1;
 
 state_enum! {
     /// How a run ended.
@@ -74,5 +80,185 @@ state! {
         pub steering: Seat,
         /// Who brakes or accelerates.
         pub pedals: Seat,
+    }
+}
+
+/// What [`Arbiter::arbitrate`] found in one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// Controls that reach the car.
+    pub applied: Applied,
+    /// The run was armed in this tick.
+    pub armed: bool,
+    /// The intervention, if it happened in this tick.
+    pub intervention: Option<Intervention>,
+}
+
+impl Arbiter {
+    /// The arbitration at the start of a run.
+    pub fn new() -> Self {
+        Self { phase: Phase::Arming, safety_steers: false, intervention: None, outcome: None, ended_at: None }
+    }
+
+    /// Arms the run, notes a takeover, and mixes the controls of both seats. `tick` is the tick that
+    /// is being computed, `speed_mps` the speed before it.
+    pub fn arbitrate(&mut self, tick: Tick, input: &TickInput, rules: &Rules, speed_mps: f32) -> Decision {
+        let armed = self.phase == Phase::Arming && tick >= CLIP_TICKS;
+        if armed {
+            self.phase = Phase::Driving;
+        }
+        let wants = Wish::of(&input.safety, rules);
+        let intervention = (self.phase == Phase::Driving && (wants.brake || wants.steer)).then_some(Intervention {
+            tick,
+            controls: input.safety,
+            by_brake: wants.brake,
+            by_steering: wants.steer,
+            speed_mps,
+        });
+        if intervention.is_some() {
+            self.phase = Phase::TakenOver;
+            self.intervention = intervention;
+        }
+        Decision { applied: self.mix(input, wants), armed, intervention }
+    }
+
+    /// A takeover lasts; before arming, and after a run that ended without one, the safety driver
+    /// acts on the car for as long as a threshold is passed.
+    fn mix(&mut self, input: &TickInput, wants: Wish) -> Applied {
+        let taken = self.intervention.is_some();
+        self.safety_steers = wants.steer || (taken && self.safety_steers);
+        let seat = |safety| if safety { Seat::Safety } else { Seat::Semantic };
+        let (steering, pedals) = (seat(self.safety_steers), seat(taken || wants.brake || wants.steer));
+        let (semantic, safety) = (&input.semantic, &input.safety);
+        let mut controls = match pedals {
+            Seat::Semantic => *semantic,
+            Seat::Safety => override_pedals(semantic, safety, taken),
+        };
+        controls.steer = if self.safety_steers { safety.steer } else { semantic.steer };
+        controls.flags &= Controls::HAND_BRAKE | Controls::REVERSE;
+        Applied { controls, steering, pedals }
+    }
+
+    /// Ends the run if this tick ended it. `collided` says that the ego car began to touch an actor
+    /// or scenery, `speed_mps` is the speed after the tick. True when the run ended now.
+    pub fn judge(&mut self, tick: Tick, collided: bool, speed_mps: f32, rules: &Rules) -> bool {
+        let outcome = match (self.phase, self.intervention) {
+            (Phase::Driving, _) if collided => Outcome::Missed,
+            (Phase::Driving, _) if tick >= seconds(rules.max_seconds) => Outcome::Censored,
+            (Phase::TakenOver, Some(intervention))
+                if speed_mps.abs() < STANDSTILL_MPS || tick >= intervention.tick + TAKEOVER_TICKS =>
+            {
+                Outcome::Intervened
+            }
+            _ => return false,
+        };
+        self.phase = Phase::Done;
+        self.outcome = Some(outcome);
+        self.ended_at = Some(tick);
+        true
+    }
+}
+
+impl Default for Arbiter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What the safety driver asks for by passing a threshold.
+#[derive(Clone, Copy)]
+struct Wish {
+    brake: bool,
+    steer: bool,
+}
+
+impl Wish {
+    fn of(safety: &Controls, rules: &Rules) -> Self {
+        Self {
+            brake: safety.brake_fraction() > rules.brake_threshold || safety.has(Controls::HAND_BRAKE),
+            steer: safety.steer_fraction().abs() > rules.steer_threshold,
+        }
+    }
+}
+
+/// The safety driver's pedals over the semantic driver's: the semantic throttle is cut; its brake
+/// still adds, unless the safety driver accelerates, which only a takeover allows.
+fn override_pedals(semantic: &Controls, safety: &Controls, taken: bool) -> Controls {
+    let throttle = if taken { safety.throttle } else { 0 };
+    let (brake, hand_brake) = if throttle > 0 {
+        (safety.brake, safety.flags & Controls::HAND_BRAKE)
+    } else {
+        (safety.brake.max(semantic.brake), (safety.flags | semantic.flags) & Controls::HAND_BRAKE)
+    };
+    Controls { steer: 0, throttle, brake, flags: hand_brake | (safety.flags & Controls::REVERSE) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RULES: Rules = Rules { max_speed_kmh: 50.0, max_seconds: 600, brake_threshold: 0.1, steer_threshold: 0.1 };
+
+    fn controls(steer: f32, throttle: f32, brake: f32) -> Controls {
+        Controls::from_fractions(steer, throttle, brake)
+    }
+
+    fn decide(arbiter: &mut Arbiter, tick: Tick, semantic: Controls, safety: Controls) -> Decision {
+        arbiter.arbitrate(tick, &TickInput { semantic, safety }, &RULES, 10.0)
+    }
+
+    #[test]
+    fn before_arming_the_safety_driver_acts_but_does_not_intervene() {
+        let mut arbiter = Arbiter::new();
+        let curve = controls(0.3, 0.8, 0.0);
+        let acted = decide(&mut arbiter, 10, curve, controls(0.0, 0.0, 1.0));
+        assert_eq!(acted.applied.controls, controls(0.3, 0.0, 1.0));
+        assert_eq!(acted.intervention, None);
+        let released = decide(&mut arbiter, 11, curve, Controls::default());
+        assert_eq!(released.applied.controls, curve);
+        assert_eq!(arbiter.phase, Phase::Arming);
+    }
+
+    #[test]
+    fn braking_keeps_the_semantic_steering_until_the_safety_wheel_turns() {
+        let mut arbiter = Arbiter::new();
+        let curve = controls(0.3, 0.8, 0.2);
+        let armed = decide(&mut arbiter, CLIP_TICKS, curve, Controls::default());
+        assert!(armed.armed && armed.intervention.is_none());
+        let braked = decide(&mut arbiter, 200, curve, controls(0.05, 0.7, 0.5));
+        let intervention = braked.intervention.expect("braking is an intervention");
+        assert!(intervention.by_brake && !intervention.by_steering);
+        assert_eq!(braked.applied.controls, controls(0.3, 0.7, 0.5));
+        assert_eq!((braked.applied.steering, braked.applied.pedals), (Seat::Semantic, Seat::Safety));
+        let steered = decide(&mut arbiter, 201, curve, controls(-0.2, 0.0, 0.0));
+        assert_eq!(steered.applied.controls, controls(-0.2, 0.0, 0.2));
+        let centred = decide(&mut arbiter, 202, curve, Controls::default());
+        assert_eq!(centred.applied.steering, Seat::Safety);
+        assert_eq!(centred.intervention, None, "there is one intervention a run");
+    }
+
+    #[test]
+    fn a_run_ends_at_standstill_or_five_seconds_after_the_takeover() {
+        let mut arbiter = Arbiter::new();
+        decide(&mut arbiter, 300, Controls::default(), controls(0.5, 0.0, 0.0));
+        assert!(!arbiter.judge(300, true, 9.0, &RULES), "a collision after the takeover is no miss");
+        assert!(!arbiter.judge(599, false, 9.0, &RULES));
+        let mut standing = arbiter.clone();
+        assert!(standing.judge(400, false, 0.0, &RULES));
+        assert!(arbiter.judge(600, false, 9.0, &RULES));
+        assert_eq!((arbiter.outcome, arbiter.ended_at), (Some(Outcome::Intervened), Some(600)));
+        assert!(!arbiter.judge(601, false, 9.0, &RULES), "a run ends once");
+    }
+
+    #[test]
+    fn a_collision_is_missed_and_the_last_tick_censors() {
+        let mut arbiter = Arbiter::new();
+        assert!(!arbiter.judge(100, true, 9.0, &RULES), "nothing before arming is judged");
+        decide(&mut arbiter, 200, Controls::default(), Controls::default());
+        let mut crashed = arbiter.clone();
+        assert!(crashed.judge(200, true, 9.0, &RULES));
+        assert_eq!(crashed.outcome, Some(Outcome::Missed));
+        assert!(arbiter.judge(36_000, false, 9.0, &RULES));
+        assert_eq!(arbiter.outcome, Some(Outcome::Censored));
     }
 }

@@ -9,17 +9,20 @@
 
 pub mod arbiter;
 pub mod controls;
+pub mod ego;
 pub mod events;
 pub mod map;
 pub mod ops;
 pub mod physics;
 pub mod rng;
+pub mod route;
 pub mod scenario;
 pub mod scene;
 pub mod signals;
 pub mod state;
 pub mod time;
 pub mod traffic;
+pub mod watch;
 pub mod world;
 
 pub use controls::{Controls, Seat, TickInput};

@@ -1,5 +1,8 @@
 //! What a run starts from. Parsed, hence valid.
 
+mod default;
+mod text;
+
 use crate::scene::Weather;
 use crate::state;
 
@@ -69,14 +72,15 @@ pub struct Scenario {
 pub struct ScenarioError(pub String);
 
 impl Scenario {
-    /// Parses TOML; unknown keys and values out of range are refused by name and line.
-    pub fn from_toml(_text: &str) -> Result<Self, ScenarioError> {
-        todo!()
+    /// Parses TOML; unknown keys and values out of range are refused by name and line. What the
+    /// text leaves out is as in [`Scenario::default_for`] its map and seed. Whether the map exists
+    /// is for the caller to check, who knows where maps come from.
+    pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
+        text::parse(text)
     }
 
-    /// The default scenario of a bundled map for a seed: weather and counts drawn from the paper's
-    /// ranges.
-    pub fn default_for(_map: &str, _seed: u64) -> Self {
-        todo!()
+    /// The text that [`Scenario::from_toml`] reads back as this scenario.
+    pub fn to_toml(&self) -> String {
+        text::print(self)
     }
 }

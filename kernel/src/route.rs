@@ -1,0 +1,182 @@
+//! Where the ego car is asked to drive: seeded random turns, drawn as the car gets there.
+
+use glam::Vec3;
+
+use crate::ego;
+use crate::events::{Hud, RouteArrow};
+use crate::map::{LaneId, LaneKind, LightGroupId, RoadNetwork, StopKind, Turn};
+use crate::rng::{self, Stream};
+use crate::scenario::Scenario;
+use crate::time::Tick;
+use crate::{ops, signals, state};
+
+/// The route is known at least this far ahead, metres (less before a dead end).
+pub const HORIZON_M: f32 = 250.0;
+/// How far from the edge of its lane the car may be until the route is planned anew, metres.
+const STRAY_M: f32 = 0.6;
+/// How far the car may be from its lane while it faces no other lane, metres.
+const LOST_M: f32 = 8.0;
+/// Radius in which a new lane is looked for, metres.
+const SEARCH_M: f32 = 50.0;
+/// Distance of the place that the HUD's arrow points to, metres.
+const ARROW_M: f32 = 12.0;
+/// Distance within which the HUD shows a light, metres.
+const LIGHT_M: f32 = 50.0;
+/// From the middle of the car to its front bumper, metres.
+const NOSE_M: f32 = ego::FRONT_M - ego::CENTRE_M.x;
+
+state! {
+    /// The route and the car's place on it.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Route {
+        /// Lanes from the one under the car on; never empty.
+        pub lanes: Vec<LaneId>,
+        /// Where the middle of the car is on the first lane, metres from its start.
+        pub s_m: f32,
+        /// Turns drawn so far.
+        pub drawn: u32,
+    }
+}
+
+/// A light's stop line ahead on the route.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightAhead {
+    /// The lane with the line.
+    pub lane: LaneId,
+    /// The light.
+    pub group: LightGroupId,
+    /// From the car's front bumper to the line, metres.
+    pub distance_m: f32,
+}
+
+impl Route {
+    /// A route that starts at a place.
+    pub fn from(network: &RoadNetwork, seed: u64, lane: LaneId, s_m: f32) -> Self {
+        let mut route = Self { lanes: vec![lane], s_m, drawn: 0 };
+        route.extend(network, seed);
+        route
+    }
+
+    /// Follows the car to `middle`. True when the car had left the route and it was planned anew.
+    pub fn follow(&mut self, network: &RoadNetwork, seed: u64, middle: Vec3, heading_rad: f32) -> bool {
+        let mut here = network.project(self.lanes[0], middle);
+        while let Some(&next) = self.lanes.get(1) {
+            let there = network.project(next, middle);
+            if here.s_m < network.lanes[here.lane as usize].length_m || there.distance_m > here.distance_m {
+                break;
+            }
+            self.lanes.remove(0);
+            here = there;
+        }
+        self.s_m = here.s_m;
+        let stray = here.distance_m - network.lane_point(here.lane, here.s_m).half_width_m;
+        let strayed = stray > STRAY_M && self.plan_anew(network, middle, heading_rad, stray);
+        self.extend(network, seed);
+        strayed
+    }
+
+    fn plan_anew(&mut self, network: &RoadNetwork, middle: Vec3, heading_rad: f32, stray_m: f32) -> bool {
+        let along = |lane: LaneId, s_m: f32| ops::cos(network.lane_point(lane, s_m).heading_rad - heading_rad) > 0.5;
+        let under = network.lanes_at(middle, LaneKind::Driving).into_iter().find(|p| along(p.lane, p.s_m));
+        let lost = || network.nearest_lane(middle, LaneKind::Driving, Some(heading_rad), SEARCH_M);
+        let place = under.or_else(|| (stray_m > LOST_M).then(lost).flatten());
+        let Some(place) = place.filter(|place| place.lane != self.lanes[0]) else { return false };
+        self.lanes.clear();
+        self.lanes.push(place.lane);
+        self.s_m = place.s_m;
+        true
+    }
+
+    fn extend(&mut self, network: &RoadNetwork, seed: u64) {
+        let length = |lane: LaneId| network.lanes[lane as usize].length_m;
+        let mut known_m = self.lanes.iter().map(|&lane| length(lane)).sum::<f32>() - self.s_m;
+        while known_m < HORIZON_M {
+            let last = self.lanes[self.lanes.len() - 1];
+            let choices = &network.lanes[last as usize].successors;
+            if choices.is_empty() {
+                break;
+            }
+            let pick = rng::below(seed, Stream::Route, u64::from(self.drawn), 0, choices.len() as u32);
+            self.drawn = self.drawn.wrapping_add(1);
+            let next = choices[pick as usize];
+            self.lanes.push(next);
+            known_m += length(next).max(0.1);
+        }
+    }
+
+    /// Each lane of the route with the distance from the middle of the car to its start, metres;
+    /// negative for the lane under the car.
+    fn stretches<'a>(&'a self, network: &'a RoadNetwork) -> impl Iterator<Item = (LaneId, f32)> + 'a {
+        self.lanes.iter().scan(-self.s_m, |start, &lane| {
+            let at = *start;
+            *start += network.lanes[lane as usize].length_m;
+            Some((lane, at))
+        })
+    }
+
+    /// The next traffic light's line that the front of the car has not passed.
+    pub fn light_ahead(&self, network: &RoadNetwork) -> Option<LightAhead> {
+        self.stretches(network).find_map(|(lane, start)| {
+            let stop = network.lanes[lane as usize].stop?;
+            let StopKind::Light(group) = stop.kind else { return None };
+            let distance_m = start + stop.s_m - NOSE_M;
+            (distance_m >= 0.0).then_some(LightAhead { lane, group, distance_m })
+        })
+    }
+
+    /// Whether the front of the car has passed the line of `light`, which was ahead before.
+    pub fn passed(&self, network: &RoadNetwork, light: &LightAhead) -> bool {
+        let line = self.stretches(network).find(|(lane, _)| *lane == light.lane);
+        let stop = network.lanes[light.lane as usize].stop;
+        match (line, stop) {
+            (Some((_, start)), Some(stop)) => start + stop.s_m - NOSE_M < 0.0,
+            _ => true,
+        }
+    }
+
+    /// The place of the route `ahead_m` before the middle of the car.
+    fn point(&self, network: &RoadNetwork, ahead_m: f32) -> Vec3 {
+        let (lane, start) = self
+            .stretches(network)
+            .take_while(|(_, start)| *start <= ahead_m)
+            .last()
+            .unwrap_or((self.lanes[0], -self.s_m));
+        network.lane_point(lane, ahead_m - start).position
+    }
+
+    /// The middle of the route from the car on, points about 1 m apart.
+    pub fn ahead(&self, network: &RoadNetwork, distance_m: f32) -> Vec<Vec3> {
+        let known: f32 =
+            self.stretches(network).last().map_or(0.0, |(lane, start)| start + network.lanes[lane as usize].length_m);
+        let steps = ops::floor(distance_m.clamp(0.0, known.max(0.0))) as u32;
+        (0..=steps).map(|step| self.point(network, step as f32)).collect()
+    }
+
+    /// The speed limit under the car, m/s, at most the rules' own.
+    pub fn limit_mps(&self, network: &RoadNetwork, scenario: &Scenario) -> f32 {
+        network.lanes[self.lanes[0] as usize].speed_limit_mps.min(scenario.rules.max_speed_kmh / 3.6)
+    }
+
+    /// What the HUD shows to a driver at `middle`.
+    pub fn hud(&self, network: &RoadNetwork, scenario: &Scenario, tick: Tick, car: &ego::Ego) -> Hud {
+        let light = self.light_ahead(network).filter(|light| light.distance_m <= LIGHT_M);
+        Hud {
+            speed_mps: car.speed_mps(),
+            limit_mps: self.limit_mps(network, scenario),
+            light: light.map(|light| signals::phase(network, scenario.seed, light.group, tick).0),
+            light_distance_m: light.map_or(0, |light| light.distance_m as u16),
+            arrow: self.arrow(network, car),
+        }
+    }
+
+    fn arrow(&self, network: &RoadNetwork, car: &ego::Ego) -> RouteArrow {
+        let junction = self.stretches(network).find(|(lane, _)| network.lanes[*lane as usize].junction.is_some());
+        let (turn, distance_m) = junction.map_or((Turn::Straight, HORIZON_M), |(lane, start)| {
+            (network.lanes[lane as usize].turn, (start - NOSE_M).max(0.0))
+        });
+        let to = self.point(network, ARROW_M) - car.middle();
+        let bearing_rad = ops::wrap_angle(car.heading_rad() - ops::atan2(to.y, to.x));
+        let bearing_deg = 5 * ops::round(bearing_rad.to_degrees() / 5.0) as i16;
+        RouteArrow { turn, distance_m: distance_m as u16, bearing_deg }
+    }
+}

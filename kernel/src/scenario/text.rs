@@ -1,0 +1,222 @@
+//! Scenarios as text.
+
+use std::ops::{Bound, RangeBounds};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Scenario, ScenarioError};
+
+/// Most actors of one kind.
+const MOST_OF_A_KIND: u16 = 500;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Text {
+    map: String,
+    #[serde(default)]
+    seed: u64,
+    #[serde(default)]
+    traffic: Traffic,
+    #[serde(default)]
+    weather: Weather,
+    #[serde(default)]
+    ego: Ego,
+    #[serde(default)]
+    rules: Rules,
+}
+
+type Given<T> = Option<Spanned<T>>;
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Traffic {
+    cars: Given<u16>,
+    motorcycles: Given<u16>,
+    bicycles: Given<u16>,
+    pedestrians: Given<u16>,
+    jaywalks_per_min: Given<f32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Weather {
+    cloudiness_pct: Given<f32>,
+    wind_pct: Given<f32>,
+    sun_altitude_deg: Given<f32>,
+    sun_azimuth_deg: Given<f32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Ego {
+    lane: Given<u32>,
+    s_m: Given<f32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Rules {
+    max_speed_kmh: Given<f32>,
+    max_seconds: Given<u32>,
+    brake_threshold: Given<f32>,
+    steer_threshold: Given<f32>,
+}
+
+/// Takes over given values, checked.
+struct Reader<'a> {
+    text: &'a str,
+}
+
+impl Reader<'_> {
+    fn line(&self, at: usize) -> usize {
+        1 + self.text.bytes().take(at).filter(|&byte| byte == b'\n').count()
+    }
+
+    fn take<T>(&self, key: &str, given: Given<T>, range: impl RangeBounds<T>, to: &mut T) -> Result<(), ScenarioError>
+    where
+        T: PartialOrd + Copy + std::fmt::Display,
+    {
+        let Some(given) = given else { return Ok(()) };
+        let value = *given.get_ref();
+        if !range.contains(&value) {
+            let (line, range) = (self.line(given.span().start), words(&range));
+            return Err(ScenarioError(format!("line {line}: {key} is {value}, expected {range}")));
+        }
+        *to = value;
+        Ok(())
+    }
+}
+
+fn words<T: std::fmt::Display>(range: &impl RangeBounds<T>) -> String {
+    let low = match range.start_bound() {
+        Bound::Included(low) => format!("at least {low}"),
+        Bound::Excluded(low) => format!("more than {low}"),
+        Bound::Unbounded => String::from("anything"),
+    };
+    match range.end_bound() {
+        Bound::Included(high) => format!("{low} and at most {high}"),
+        Bound::Excluded(high) => format!("{low} and less than {high}"),
+        Bound::Unbounded => low,
+    }
+}
+
+pub(super) fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+    let reader = Reader { text };
+    let given: Text = toml::from_str(text).map_err(|error| {
+        let line = reader.line(error.span().map_or(0, |span| span.start));
+        ScenarioError(format!("line {line}: {}", error.message().replace('\n', " ")))
+    })?;
+    let mut scenario = Scenario::default_for(&given.map, given.seed);
+    traffic(&reader, given.traffic, &mut scenario)?;
+    weather(&reader, given.weather, &mut scenario)?;
+    rules(&reader, given.rules, &mut scenario)?;
+    if let Some(lane) = given.ego.lane {
+        scenario.ego.lane = Some(*lane.get_ref());
+    }
+    reader.take("ego.s_m", given.ego.s_m, 0.0..=1e6, &mut scenario.ego.s_m)?;
+    Ok(scenario)
+}
+
+fn traffic(reader: &Reader<'_>, given: Traffic, scenario: &mut Scenario) -> Result<(), ScenarioError> {
+    let to = &mut scenario.traffic;
+    let count = 0..=MOST_OF_A_KIND;
+    reader.take("traffic.cars", given.cars, count.clone(), &mut to.cars)?;
+    reader.take("traffic.motorcycles", given.motorcycles, count.clone(), &mut to.motorcycles)?;
+    reader.take("traffic.bicycles", given.bicycles, count.clone(), &mut to.bicycles)?;
+    reader.take("traffic.pedestrians", given.pedestrians, count, &mut to.pedestrians)?;
+    reader.take("traffic.jaywalks_per_min", given.jaywalks_per_min, 0.0..=60.0, &mut to.jaywalks_per_min)
+}
+
+fn weather(reader: &Reader<'_>, given: Weather, scenario: &mut Scenario) -> Result<(), ScenarioError> {
+    let to = &mut scenario.weather;
+    reader.take("weather.cloudiness_pct", given.cloudiness_pct, 0.0..=100.0, &mut to.cloudiness_pct)?;
+    reader.take("weather.wind_pct", given.wind_pct, 0.0..=100.0, &mut to.wind_pct)?;
+    reader.take("weather.sun_altitude_deg", given.sun_altitude_deg, -90.0..=90.0, &mut to.sun_altitude_deg)?;
+    reader.take("weather.sun_azimuth_deg", given.sun_azimuth_deg, 0.0..=360.0, &mut to.sun_azimuth_deg)
+}
+
+fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(), ScenarioError> {
+    let to = &mut scenario.rules;
+    let threshold = 0.01..=0.99;
+    reader.take("rules.max_speed_kmh", given.max_speed_kmh, 5.0..=130.0, &mut to.max_speed_kmh)?;
+    reader.take("rules.max_seconds", given.max_seconds, 4..=86_400, &mut to.max_seconds)?;
+    reader.take("rules.brake_threshold", given.brake_threshold, threshold.clone(), &mut to.brake_threshold)?;
+    reader.take("rules.steer_threshold", given.steer_threshold, threshold, &mut to.steer_threshold)
+}
+
+/// Every key, so that the text still says the same when a default changes.
+pub(super) fn print(scenario: &Scenario) -> String {
+    let Scenario { map, seed, traffic, weather, ego, rules } = scenario;
+    let map = toml::Value::from(map.as_str());
+    let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));
+    format!(
+        "map = {map}\nseed = {seed}\n\n\
+         [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\n\
+         [weather]\ncloudiness_pct = {:?}\nwind_pct = {:?}\nsun_altitude_deg = {:?}\nsun_azimuth_deg = {:?}\n\n\
+         [ego]\n{lane}s_m = {:?}\n\n\
+         [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n",
+        traffic.cars,
+        traffic.motorcycles,
+        traffic.bicycles,
+        traffic.pedestrians,
+        traffic.jaywalks_per_min,
+        weather.cloudiness_pct,
+        weather.wind_pct,
+        weather.sun_altitude_deg,
+        weather.sun_azimuth_deg,
+        ego.s_m,
+        rules.max_speed_kmh,
+        rules.max_seconds,
+        rules.brake_threshold,
+        rules.steer_threshold,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A map that is not bundled, so that no map has to be baked.
+    const TEXT: &str = "map = \"field\"\nseed = 7\n\n[weather]\nsun_altitude_deg = 30\n\n[ego]\nlane = 2\ns_m = 4.5\n";
+
+    fn refused(from: &str, to: &str) -> String {
+        assert!(TEXT.contains(from));
+        Scenario::from_toml(&TEXT.replace(from, to)).expect_err("this text is no scenario").0
+    }
+
+    #[test]
+    fn what_is_left_out_is_the_default() {
+        let scenario = Scenario::from_toml(TEXT).expect("a valid text");
+        let mut expected = Scenario::default_for("field", 7);
+        expected.weather.sun_altitude_deg = 30.0;
+        (expected.ego.lane, expected.ego.s_m) = (Some(2), 4.5);
+        assert_eq!(scenario, expected);
+    }
+
+    #[test]
+    fn a_text_comes_back() {
+        for seed in [0, 1, 7, u64::MAX / 2, u64::MAX] {
+            let scenario = Scenario::default_for("a \"map\" of its own", seed);
+            assert_eq!(Scenario::from_toml(&scenario.to_toml()), Ok(scenario));
+        }
+    }
+
+    #[test]
+    fn mistakes_are_named_by_line_and_key() {
+        let unit = refused("sun_altitude_deg", "sun_altitude_rad");
+        assert!(unit.starts_with("line 5: unknown field `sun_altitude_rad`, expected"), "{unit}");
+        let range = refused("= 30", "= 95");
+        assert_eq!(range, "line 5: weather.sun_altitude_deg is 95, expected at least -90 and at most 90");
+        let kind = refused("= 30", "= \"high\"");
+        assert!(kind.starts_with("line 5: ") && !kind.contains('\n'), "{kind}");
+        let number = refused("= 4.5", "= nan");
+        assert!(number.starts_with("line 9: ego.s_m is NaN"), "{number}");
+        let syntax = refused("[ego]", "[ego");
+        assert!(syntax.starts_with("line 7: "), "{syntax}");
+        let section = refused("[ego]", "[car]");
+        assert!(section.contains("unknown field `car`"), "{section}");
+        let missing = refused("map = \"field\"\n", "");
+        assert!(missing.contains("missing field `map`"), "{missing}");
+    }
+}
