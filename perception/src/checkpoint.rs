@@ -1,37 +1,258 @@
 //! A segmentation network in a file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use crate::metadata::{Layout, Metadata};
+use crate::onnx::{self, Element, pb};
+use crate::peel::peel;
 use crate::{ClassMap, PerceptionError};
 
 /// An ONNX segmentation network with one image as input and logits or a class map as output, and
 /// what it says about itself.
 #[derive(Clone, Debug)]
-pub struct Checkpoint {}
+pub struct Checkpoint {
+    path: PathBuf,
+    name: String,
+    digest: blake3::Hash,
+    metadata: Metadata,
+    pub(crate) model: Arc<pb::ModelProto>,
+    pub(crate) input: Input,
+    pub(crate) align_corners: bool,
+}
+
+/// The network's input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Input {
+    pub element: Element,
+    pub layout: Layout,
+    /// Pixels, where the model fixes them.
+    pub width: Option<usize>,
+    pub height: Option<usize>,
+}
 
 impl Checkpoint {
     /// Reads a model with its metadata or sidecar (see [`crate::Metadata`]).
-    pub fn load(_path: impl AsRef<Path>) -> Result<Self, PerceptionError> {
-        todo!()
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, PerceptionError> {
+        let path = path.as_ref();
+        let bytes = std::fs::read(path).map_err(|source| PerceptionError::Io { path: path.into(), source })?;
+        let mut model =
+            onnx::decode(&bytes).map_err(|reason| PerceptionError::NotOnnx { path: path.into(), reason })?;
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&bytes);
+        let metadata = read_metadata(path, &model, &mut hasher)?;
+        let input = check(&model, &metadata)
+            .map_err(|reason| PerceptionError::NotSegmentation { path: path.into(), reason })?;
+        if input.element == Element::Float && metadata.normalisation.is_none() {
+            let reason = "mean and std are missing, which a network with a float input needs".into();
+            return Err(PerceptionError::Metadata { path: path.into(), reason });
+        }
+        let align_corners = peel(&mut model).unwrap_or(metadata.align_corners);
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let digest = hasher.finalize();
+        Ok(Self { path: path.into(), name, digest, metadata, model: Arc::new(model), input, align_corners })
+    }
+
+    /// Where it was read.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Stem of the file's name.
     pub fn name(&self) -> &str {
-        todo!()
+        &self.name
     }
 
     /// BLAKE3 over the model and its sidecar.
     pub fn digest(&self) -> blake3::Hash {
-        todo!()
+        self.digest
+    }
+
+    /// What it says about its input and output.
+    pub fn metadata(&self) -> &Metadata {
+        &self.metadata
     }
 
     /// What the outputs mean.
     pub fn classes(&self) -> &ClassMap {
-        todo!()
+        &self.metadata.classes
     }
 
-    /// Width and height that the network takes, unless it takes any.
+    /// Width and height in pixels that the network takes, unless it takes any.
     pub fn input_size(&self) -> Option<(usize, usize)> {
-        todo!()
+        Some((self.input.width?, self.input.height?))
+    }
+}
+
+/// The sidecar's word, or else the model's own.
+fn read_metadata(
+    path: &Path,
+    model: &pb::ModelProto,
+    hasher: &mut blake3::Hasher,
+) -> Result<Metadata, PerceptionError> {
+    let sidecar = path.with_extension("toml");
+    match std::fs::read_to_string(&sidecar) {
+        Ok(text) => {
+            hasher.update(text.as_bytes());
+            Metadata::from_toml(&text).map_err(|reason| PerceptionError::Metadata { path: sidecar, reason })
+        }
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            let props = model.metadata_props.iter().map(|p| (p.key.as_str(), p.value.as_str()));
+            let absent = || {
+                let beside = sidecar.file_name().unwrap_or_default().to_string_lossy();
+                Err(format!("no class names: expected aeye.classes in the model's metadata, or {beside} beside it"))
+            };
+            Metadata::from_props(props)
+                .unwrap_or_else(absent)
+                .map_err(|reason| PerceptionError::Metadata { path: path.into(), reason })
+        }
+        Err(source) => Err(PerceptionError::Io { path: sidecar, source }),
+    }
+}
+
+/// What the model declares of its input, once that is an image and the output is a segmentation.
+fn check(model: &pb::ModelProto, metadata: &Metadata) -> Result<Input, String> {
+    let graph = model.graph.as_ref().ok_or("it holds no graph")?;
+    let weights: Vec<&str> = graph.initializer.iter().map(|t| t.name.as_str()).collect();
+    let inputs: Vec<_> = graph.input.iter().filter(|i| !weights.contains(&i.name.as_str())).collect();
+    let [input] = inputs[..] else {
+        return Err(format!("it has {} inputs, expected one image", inputs.len()));
+    };
+    let output = graph.output.first().ok_or("it has no output")?;
+    check_output(output, metadata.classes.count())?;
+    let tensor = tensor_of(input).ok_or("its input has no type")?;
+    let element = match tensor.elem_type {
+        t if t == pb::tensor_proto::DataType::Float as i32 => Element::Float,
+        t if t == pb::tensor_proto::DataType::Uint8 as i32 => Element::Byte,
+        _ => return Err("its input is neither float nor uint8".into()),
+    };
+    let shape = shape_of(input);
+    let layout = layout_of(&shape, metadata.layout)
+        .ok_or_else(|| format!("its input has the shape {}, expected 1x3xHxW or 1xHxWx3", shape_text(&shape)))?;
+    let (height, width) = match layout {
+        Layout::Nchw => (shape[2], shape[3]),
+        Layout::Nhwc => (shape[1], shape[2]),
+    };
+    Ok(Input { element, layout, width, height })
+}
+
+fn check_output(output: &pb::ValueInfoProto, classes: usize) -> Result<(), String> {
+    let shape = shape_of(output);
+    let text = shape_text(&shape);
+    let channels_fit = |n: &Option<usize>| n.is_none_or(|n| n == classes || n == 1);
+    match shape.len() {
+        // Exporters may leave the output's shape out; the engine finds it later.
+        0 | 3 => Ok(()),
+        4 if channels_fit(&shape[1]) || channels_fit(&shape[3]) => Ok(()),
+        4 => Err(format!("its output has the shape {text}, but the metadata names {classes} classes")),
+        _ => Err(format!("its output has the shape {text}, expected scores 1xCxHxW or 1xHxWxC, or a class map 1xHxW")),
+    }
+}
+
+fn tensor_of(value: &pb::ValueInfoProto) -> Option<&pb::type_proto::Tensor> {
+    let pb::type_proto::Value::TensorType(tensor) = value.r#type.as_ref()?.value.as_ref()?;
+    Some(tensor)
+}
+
+/// The declared dimensions; `None` for those that are open.
+fn shape_of(value: &pb::ValueInfoProto) -> Vec<Option<usize>> {
+    use pb::tensor_shape_proto::dimension::Value;
+    let dims = tensor_of(value).and_then(|t| t.shape.as_ref()).map_or(&[][..], |s| &s.dim);
+    let fixed = |value: &Option<Value>| match value {
+        Some(Value::DimValue(n)) => usize::try_from(*n).ok().filter(|n| *n > 0),
+        _ => None,
+    };
+    dims.iter().map(|d| fixed(&d.value)).collect()
+}
+
+fn shape_text(shape: &[Option<usize>]) -> String {
+    let dims: Vec<String> = shape.iter().map(|d| d.map_or("?".into(), |n| n.to_string())).collect();
+    if dims.is_empty() { "()".into() } else { dims.join("x") }
+}
+
+/// The order of the dimensions, if the shape can be that of one picture.
+fn layout_of(shape: &[Option<usize>], declared: Option<Layout>) -> Option<Layout> {
+    let &[batch, second, _, fourth] = shape else { return None };
+    let colours = |n: Option<usize>| n.is_none_or(|n| n == 3);
+    let guess = if second != Some(3) && fourth == Some(3) { Layout::Nhwc } else { Layout::Nchw };
+    let layout = declared.unwrap_or(guess);
+    let channels = if layout == Layout::Nchw { second } else { fourth };
+    (batch.is_none_or(|n| n == 1) && colours(channels)).then_some(layout)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::toy::{self, Tail, Toy};
+
+    fn said(path: &Path) -> String {
+        let text = Checkpoint::load(path).unwrap_err().to_string();
+        assert!(text.contains(&path.file_stem().unwrap().to_string_lossy().into_owned()), "{text}");
+        assert!(!text.contains('\n'), "{text}");
+        text
+    }
+
+    #[test]
+    fn a_model_tells_about_itself() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = Toy { size: Some((32, 48)), ..Toy::default() }.write(dir.path());
+        let checkpoint = Checkpoint::load(&path).unwrap();
+        assert_eq!(checkpoint.name(), "toy");
+        assert_eq!(checkpoint.input_size(), Some((48, 32)));
+        assert_eq!(checkpoint.classes().names(), toy::CLASSES);
+        assert_eq!(checkpoint.metadata(), &toy::metadata());
+        assert_eq!(checkpoint.digest(), blake3::hash(&std::fs::read(&path).unwrap()));
+    }
+
+    #[test]
+    fn a_sidecar_goes_before_the_metadata_and_changes_the_digest() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = Toy { metadata: None, ..Toy::default() }.write(dir.path());
+        assert!(said(&path).contains("no class names"));
+        let sidecar = "classes = [\"rider\", \"Bus\", \"road line\"]\nmean = [0.0, 0.0, 0.0]\nstd = [1.0, 1.0, 1.0]";
+        std::fs::write(dir.path().join("toy.toml"), sidecar).unwrap();
+        let checkpoint = Checkpoint::load(&path).unwrap();
+        assert_eq!(checkpoint.classes().tags(), [4, 10, 6]);
+        assert_ne!(checkpoint.digest(), blake3::hash(&std::fs::read(&path).unwrap()));
+    }
+
+    #[test]
+    fn other_files_are_refused_in_one_sentence() {
+        let dir = tempfile::tempdir().unwrap();
+        assert!(said(&dir.path().join("absent.onnx")).contains("No such file"));
+        let noise = dir.path().join("noise.onnx");
+        std::fs::write(&noise, (0..999u32).map(|i| (i * i % 251) as u8).collect::<Vec<_>>()).unwrap();
+        assert!(said(&noise).contains("not an ONNX model"));
+        std::fs::write(&noise, []).unwrap();
+        assert!(said(&noise).contains("not an ONNX model"));
+        let classifier = toy::write(dir.path(), "classifier.onnx", &toy::classifier(&toy::metadata()));
+        assert!(said(&classifier).contains("shape 1x3, expected scores"), "{}", said(&classifier));
+    }
+
+    #[test]
+    fn contradictions_are_refused_in_one_sentence() {
+        let dir = tempfile::tempdir().unwrap();
+        let two = Metadata { classes: ClassMap::from_names(&["Road", "Sky"]).unwrap(), ..toy::metadata() };
+        let path = Toy { metadata: Some(two), ..Toy::default() }.write(dir.path());
+        assert!(said(&path).contains("names 2 classes"), "{}", said(&path));
+        let bytes = Metadata { normalisation: None, ..toy::metadata() };
+        let path = Toy { metadata: Some(bytes), ..Toy::default() }.write(dir.path());
+        assert!(said(&path).contains("mean and std are missing"), "{}", said(&path));
+        let mut model = Toy::default().model();
+        model.metadata_props[1].value = "[\"Zebra\"]".into();
+        let path = toy::write(dir.path(), "zebra.onnx", &model);
+        assert!(said(&path).contains("Zebra"), "{}", said(&path));
+    }
+
+    #[test]
+    fn upsampling_and_argmax_are_taken_out_of_the_graph() {
+        let ops = |toy: Toy| {
+            let dir = tempfile::tempdir().unwrap();
+            let model = Checkpoint::load(toy.write(dir.path())).unwrap().model;
+            model.graph.as_ref().unwrap().node.iter().map(|n| n.op_type.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(ops(Toy { tail: Tail::Argmax, ..Toy::default() }), ["Conv"]);
+        assert_eq!(ops(Toy { tail: Tail::Upsample, ..Toy::default() }), ["Conv"]);
+        assert_eq!(ops(Toy { tail: Tail::CoarseArgmax, ..Toy::default() }), ["Conv", "ArgMax"]);
     }
 }

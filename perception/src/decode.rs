@@ -1,1 +1,257 @@
-//! Bilinear upsampling and argmax, fused.
+//! Bilinear upsampling and argmax, fused: logits of low resolution to a class for every pixel.
+//!
+//! The scores of a pixel are a convex combination of those at the four source pixels around it.
+//! So where one class has the highest score at all four, it has the highest at every pixel
+//! between them, and such cells (most of a street) are filled without interpolation.
+
+use std::ops::Range;
+
+use crate::taps::Taps;
+
+/// Pixels that are interpolated at a time.
+const LANES: usize = 8;
+
+/// How the scores lie in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Grid {
+    pub channels: usize,
+    pub width: usize,
+    pub height: usize,
+    /// Channels of a pixel beside each other (NHWC) instead of planes (NCHW).
+    pub interleaved: bool,
+}
+
+impl Grid {
+    fn channel_stride(&self) -> usize {
+        if self.interleaved { 1 } else { self.width * self.height }
+    }
+
+    fn pixel_stride(&self) -> usize {
+        if self.interleaved { self.channels } else { 1 }
+    }
+}
+
+/// Turns scores on a grid into class indices on a picture of another size.
+#[derive(Clone)]
+pub(crate) struct Decoder {
+    grid: Grid,
+    width: usize,
+    height: usize,
+    columns: Vec<Span>,
+    rows: Vec<Span>,
+}
+
+/// The output pixels between two neighbouring source pixels along one axis.
+#[derive(Clone)]
+struct Span {
+    left: usize,
+    right: usize,
+    pixels: Range<usize>,
+    /// Weight of the right source pixel for each output pixel, padded to whole lanes.
+    weights: Vec<f32>,
+}
+
+impl Span {
+    fn nearest(&self) -> impl Iterator<Item = usize> + '_ {
+        let side = |weight: &f32| if *weight < 0.5 { self.left } else { self.right };
+        self.weights[..self.pixels.len()].iter().map(side)
+    }
+}
+
+fn spans(from: usize, to: usize, align_corners: bool) -> Vec<Span> {
+    let taps = Taps::new(from, to, align_corners);
+    let mut spans: Vec<Span> = Vec::new();
+    for (i, &left) in taps.left.iter().enumerate() {
+        match spans.last_mut().filter(|span| span.left == left) {
+            Some(span) => span.pixels.end = i + 1,
+            None => spans.push(Span { left, right: taps.right(i, from), pixels: i..i + 1, weights: vec![] }),
+        }
+    }
+    for span in &mut spans {
+        span.weights = taps.weight[span.pixels.clone()].to_vec();
+        span.weights.resize(span.pixels.len().next_multiple_of(LANES), 0.0);
+    }
+    spans
+}
+
+impl Decoder {
+    /// For scores on `grid` and a picture of `width` x `height` pixels.
+    pub fn new(grid: Grid, width: usize, height: usize, align_corners: bool) -> Self {
+        let columns = spans(grid.width, width, align_corners);
+        let rows = spans(grid.height, height, align_corners);
+        Self { grid, width, height, columns, rows }
+    }
+
+    /// The index of the highest score at every pixel; the lowest index where several are equal.
+    pub fn classes(&self, scores: &[f32]) -> Vec<u8> {
+        let coarse = argmax(&self.grid, scores);
+        if (self.grid.width, self.grid.height) == (self.width, self.height) {
+            return coarse;
+        }
+        let mut out = vec![0; self.width * self.height];
+        let at = |x: usize, y: usize| y * self.grid.width + x;
+        for row in &self.rows {
+            for column in &self.columns {
+                let corners = [
+                    at(column.left, row.left),
+                    at(column.right, row.left),
+                    at(column.left, row.right),
+                    at(column.right, row.right),
+                ];
+                let class = coarse[corners[0]];
+                if corners.iter().all(|&corner| coarse[corner] == class) {
+                    for y in row.pixels.clone() {
+                        out[y * self.width..][column.pixels.clone()].fill(class);
+                    }
+                } else {
+                    self.interpolate(scores, corners, row, column, &mut out);
+                }
+            }
+        }
+        out
+    }
+
+    /// A class map as it is, resized to the picture: every pixel takes the nearest source pixel.
+    pub fn nearest(&self, ids: &[i64]) -> Vec<i64> {
+        let mut out = Vec::with_capacity(self.width * self.height);
+        for y in self.rows.iter().flat_map(Span::nearest) {
+            let line = &ids[y * self.grid.width..];
+            out.extend(self.columns.iter().flat_map(Span::nearest).map(|x| line[x]));
+        }
+        out
+    }
+
+    /// Fills the cell between four source pixels.
+    fn interpolate(&self, scores: &[f32], corners: [usize; 4], row: &Span, column: &Span, out: &mut [u8]) {
+        let (step, stride) = (self.grid.pixel_stride(), self.grid.channel_stride());
+        let corners = corners.map(|corner| &scores[corner * step..]);
+        for (y, &down) in row.pixels.clone().zip(&row.weights) {
+            let line = &mut out[y * self.width..][column.pixels.clone()];
+            for (line, weights) in line.chunks_mut(LANES).zip(column.weights.as_chunks::<LANES>().0) {
+                let mut best = [f32::NEG_INFINITY; LANES];
+                let mut class = [0u32; LANES];
+                for channel in 0..self.grid.channels {
+                    let [a, b, c, d] = corners.map(|scores| scores[channel * stride]);
+                    let left = a + (c - a) * down;
+                    let slope = b + (d - b) * down - left;
+                    for lane in 0..LANES {
+                        let score = left + slope * weights[lane];
+                        let better = score > best[lane];
+                        best[lane] = if better { score } else { best[lane] };
+                        class[lane] = if better { channel as u32 } else { class[lane] };
+                    }
+                }
+                for (pixel, class) in line.iter_mut().zip(class) {
+                    *pixel = class as u8;
+                }
+            }
+        }
+    }
+}
+
+/// The index of the highest score of each source pixel.
+fn argmax(grid: &Grid, scores: &[f32]) -> Vec<u8> {
+    let pixels = grid.width * grid.height;
+    let mut class = vec![0u8; pixels];
+    if grid.interleaved {
+        for (class, scores) in class.iter_mut().zip(scores.chunks_exact(grid.channels)) {
+            let first_highest = |best: usize, i: usize| if scores[i] > scores[best] { i } else { best };
+            *class = (1..grid.channels).fold(0, first_highest) as u8;
+        }
+        return class;
+    }
+    let mut best = scores[..pixels].to_vec();
+    for (channel, plane) in scores.chunks_exact(pixels).enumerate().skip(1) {
+        for ((best, class), &score) in best.iter_mut().zip(&mut class).zip(plane) {
+            let better = score > *best;
+            *best = if better { score } else { *best };
+            *class = if better { channel as u8 } else { *class };
+        }
+    }
+    class
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Smooth random scores, so that classes form areas with borders.
+    fn scores(grid: &Grid, seed: u32) -> Vec<f32> {
+        let value = |c: usize, y: usize, x: usize| {
+            let phase = (c as f32 + 1.0) * (seed as f32 + 0.7);
+            (x as f32 * 0.9 + phase).sin() + (y as f32 * 0.7 + 1.7 * phase).cos()
+        };
+        let mut out = vec![0.0; grid.channels * grid.width * grid.height];
+        for y in 0..grid.height {
+            for x in 0..grid.width {
+                for c in 0..grid.channels {
+                    let pixel = y * grid.width + x;
+                    out[pixel * grid.pixel_stride() + c * grid.channel_stride()] = value(c, y, x);
+                }
+            }
+        }
+        out
+    }
+
+    /// Scores of one output pixel by the textbook, in f64.
+    fn upsampled(d: &Decoder, scores: &[f32], align: bool, x: usize, y: usize) -> Vec<f64> {
+        let g = &d.grid;
+        let place = |i: usize, from: usize, to: usize| match align {
+            true => i as f64 * (from - 1) as f64 / (to - 1) as f64,
+            false => ((i as f64 + 0.5) * from as f64 / to as f64 - 0.5).clamp(0.0, (from - 1) as f64),
+        };
+        let (sx, sy) = (place(x, g.width, d.width), place(y, g.height, d.height));
+        let mut sums = vec![0.0; g.channels];
+        for v in 0..g.height {
+            for u in 0..g.width {
+                let weight = (1.0 - (sx - u as f64).abs()).max(0.0) * (1.0 - (sy - v as f64).abs()).max(0.0);
+                for (c, sum) in sums.iter_mut().enumerate() {
+                    let at = (v * g.width + u) * g.pixel_stride() + c * g.channel_stride();
+                    *sum += weight * f64::from(scores[at]);
+                }
+            }
+        }
+        sums
+    }
+
+    #[test]
+    fn agrees_with_the_textbook() {
+        let sizes = [((8, 4), (64, 32)), ((5, 3), (17, 11)), ((16, 8), (16, 8)), ((9, 6), (7, 5)), ((2, 1), (30, 9))];
+        for (seed, ((w, h), (width, height))) in sizes.into_iter().enumerate() {
+            for (interleaved, align) in [(false, false), (true, false), (false, true), (true, true)] {
+                let grid = Grid { channels: 16, width: w, height: h, interleaved };
+                let decoder = Decoder::new(grid, width, height, align);
+                let scores = scores(&grid, seed as u32);
+                let classes = decoder.classes(&scores);
+                for (i, &class) in classes.iter().enumerate() {
+                    let sums = upsampled(&decoder, &scores, align, i % width, i / width);
+                    let highest = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                    let below = highest - sums[usize::from(class)];
+                    assert!(below < 1e-4, "{w}x{h} to {width}x{height}: pixel {i} is {below} below the highest");
+                }
+                assert!(classes.iter().any(|c| *c != classes[0]), "the scores must form several areas");
+            }
+        }
+    }
+
+    #[test]
+    fn both_memory_layouts_give_the_same_classes() {
+        let planes = Grid { channels: 5, width: 6, height: 4, interleaved: false };
+        let pixels = Grid { interleaved: true, ..planes };
+        let of = |grid: Grid| Decoder::new(grid, 48, 32, false).classes(&scores(&grid, 3));
+        assert_eq!(of(planes), of(pixels));
+    }
+
+    #[test]
+    fn class_maps_are_resized_to_the_nearest() {
+        let grid = Grid { channels: 1, width: 2, height: 2, interleaved: false };
+        let ids = Decoder::new(grid, 4, 4, false).nearest(&[1, 2, 3, 4]);
+        assert_eq!(ids, [1, 1, 2, 2, 1, 1, 2, 2, 3, 3, 4, 4, 3, 3, 4, 4]);
+    }
+
+    #[test]
+    fn the_first_of_equal_scores_wins() {
+        let grid = Grid { channels: 3, width: 2, height: 2, interleaved: false };
+        assert!(Decoder::new(grid, 8, 8, false).classes(&[1.0; 12]).iter().all(|class| *class == 0));
+    }
+}

@@ -12,7 +12,11 @@ mod image;
 mod metadata;
 mod metrics;
 mod onnx;
+mod peel;
 mod segmenter;
+mod taps;
+#[cfg(test)]
+mod toy;
 
 pub use checkpoint::Checkpoint;
 pub use classes::ClassMap;

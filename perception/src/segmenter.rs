@@ -1,21 +1,225 @@
 //! Runs a checkpoint on pictures of one size.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::classes::UNLABELED_TAG;
+use crate::decode::{Decoder, Grid};
+use crate::image::resample;
+use crate::metadata::Layout;
+use crate::onnx::{Element, Engine, Output, Pixels};
 use crate::{Checkpoint, Mask, PerceptionError, RgbView};
 
 /// A network made ready for pictures of one size. Single-threaded and deterministic; a clone
 /// shares the weights.
 #[derive(Clone)]
-pub struct Segmenter {}
+pub struct Segmenter {
+    path: PathBuf,
+    width: usize,
+    height: usize,
+    network: (usize, usize),
+    layout: Layout,
+    element: Element,
+    /// Input value of each byte for red, green and blue.
+    table: Arc<[[f32; 256]; 3]>,
+    engine: Engine,
+    decoder: Decoder,
+    tags: Vec<u8>,
+    floats: Vec<f32>,
+    bytes: Vec<u8>,
+}
 
 impl Segmenter {
     /// Makes the network ready for pictures of `width` x `height` pixels. Where the network takes
     /// one size only, pictures are resampled to it; the mask always has the picture's size.
-    pub fn new(_checkpoint: &Checkpoint, _width: usize, _height: usize) -> Result<Self, PerceptionError> {
-        todo!()
+    pub fn new(checkpoint: &Checkpoint, width: usize, height: usize) -> Result<Self, PerceptionError> {
+        if width == 0 || height == 0 {
+            return Err(PerceptionError::ImageSize { bytes: 0, width, height, channels: 3 });
+        }
+        let input = checkpoint.input;
+        let network = (input.width.unwrap_or(width), input.height.unwrap_or(height));
+        let shape = match input.layout {
+            Layout::Nchw => [1, 3, network.1, network.0],
+            Layout::Nhwc => [1, network.1, network.0, 3],
+        };
+        let path = checkpoint.path().to_path_buf();
+        let refuse = |reason| PerceptionError::NotSegmentation { path: path.clone(), reason };
+        let engine =
+            Engine::new(&checkpoint.model, checkpoint.path().parent(), input.element, shape).map_err(refuse)?;
+        let grid = grid(&engine, checkpoint.classes().count(), input.layout).map_err(refuse)?;
+        let decoder = Decoder::new(grid, width, height, checkpoint.align_corners);
+        Ok(Self {
+            path,
+            width,
+            height,
+            network,
+            layout: input.layout,
+            element: input.element,
+            table: Arc::new(checkpoint.metadata().normalisation.map_or([[0.0; 256]; 3], |n| n.table())),
+            engine,
+            decoder,
+            tags: checkpoint.classes().tags().to_vec(),
+            floats: Vec::new(),
+            bytes: Vec::new(),
+        })
+    }
+
+    /// Width and height in pixels of the pictures it takes.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
     }
 
     /// The class of every pixel.
-    pub fn run(&mut self, _image: RgbView<'_>) -> Result<Mask, PerceptionError> {
-        todo!()
+    pub fn run(&mut self, image: RgbView<'_>) -> Result<Mask, PerceptionError> {
+        if (image.width(), image.height()) != (self.width, self.height) {
+            let (width, height) = (self.width, self.height);
+            return Err(PerceptionError::ImageSize { bytes: image.bytes().len(), width, height, channels: 3 });
+        }
+        let resampled;
+        let rgb = if (self.width, self.height) == self.network {
+            image.bytes()
+        } else {
+            resampled = resample(image, self.network.0, self.network.1);
+            &resampled
+        };
+        self.fill(rgb);
+        let pixels = match self.element {
+            Element::Float => Pixels::Float(&self.floats),
+            Element::Byte => Pixels::Byte(&self.bytes),
+        };
+        let fail = |reason| PerceptionError::Inference { path: self.path.clone(), reason };
+        let tags = match self.engine.run(pixels).map_err(fail)? {
+            Output::Scores(scores) => {
+                self.decoder.classes(&scores).into_iter().map(|class| self.tags[usize::from(class)]).collect()
+            }
+            Output::Ids(ids) => self.decoder.nearest(&ids).into_iter().map(|id| self.tag_of_id(id)).collect(),
+        };
+        Mask::new(self.width, self.height, tags)
+    }
+
+    /// Values that name no class, such as an "ignore" of 255, are unlabelled.
+    fn tag_of_id(&self, id: i64) -> u8 {
+        usize::try_from(id).ok().and_then(|id| self.tags.get(id)).copied().unwrap_or(UNLABELED_TAG)
+    }
+
+    /// Writes the picture in the network's own form.
+    fn fill(&mut self, rgb: &[u8]) {
+        match self.element {
+            Element::Float => fill(&mut self.floats, rgb, self.layout, |c, byte| self.table[c][usize::from(byte)]),
+            Element::Byte => fill(&mut self.bytes, rgb, self.layout, |_, byte| byte),
+        }
+    }
+}
+
+fn fill<T: Copy + Default>(out: &mut Vec<T>, rgb: &[u8], layout: Layout, value: impl Fn(usize, u8) -> T) {
+    out.resize(rgb.len(), T::default());
+    let pixels = rgb.as_chunks::<3>().0;
+    match layout {
+        Layout::Nhwc => {
+            for (out, pixel) in out.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
+                *out = std::array::from_fn(|c| value(c, pixel[c]));
+            }
+        }
+        Layout::Nchw => {
+            for (c, plane) in out.chunks_exact_mut(pixels.len()).enumerate() {
+                for (out, pixel) in plane.iter_mut().zip(pixels) {
+                    *out = value(c, pixel[c]);
+                }
+            }
+        }
+    }
+}
+
+/// How the network's output is to be read.
+fn grid(engine: &Engine, classes: usize, input: Layout) -> Result<Grid, String> {
+    let shape = &engine.output_shape;
+    let text = || shape.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
+    let ids = |height, width| Ok(Grid { channels: 1, width, height, interleaved: false });
+    match (engine.gives_ids, shape.as_slice()) {
+        (true, &[1, h, w] | &[1, 1, h, w] | &[1, h, w, 1]) => ids(h, w),
+        (false, &[1, c, h, w]) if c == classes && (input == Layout::Nchw || w != classes) => {
+            Ok(Grid { channels: c, width: w, height: h, interleaved: false })
+        }
+        (false, &[1, h, w, c]) if c == classes => Ok(Grid { channels: c, width: w, height: h, interleaved: true }),
+        _ => Err(format!(
+            "its output has the shape {}, expected scores of {classes} classes (1xCxHxW or 1xHxWxC) or a class map",
+            text()
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::onnx::pb::tensor_proto::DataType;
+    use crate::toy::{self, Tail, Toy};
+
+    const SIZE: (usize, usize) = (48, 32);
+
+    fn mask(toy: &Toy, (width, height): (usize, usize)) -> Mask {
+        let dir = tempfile::tempdir().unwrap();
+        let checkpoint = Checkpoint::load(toy.write(dir.path())).unwrap();
+        let mut segmenter = Segmenter::new(&checkpoint, width, height).unwrap();
+        let rgb = toy::picture(width, height);
+        let image = RgbView::new(width, height, &rgb).unwrap();
+        let mask = segmenter.run(image).unwrap();
+        assert_eq!(segmenter.clone().run(image).unwrap(), mask, "a clone gives the same");
+        mask
+    }
+
+    fn expected(toy: &Toy) -> Vec<[f32; 3]> {
+        let table = toy::metadata().normalisation.unwrap().table();
+        let value = |c: usize, byte: u8| match toy.element {
+            DataType::Uint8 => f32::from(byte),
+            _ => table[c][usize::from(byte)],
+        };
+        toy::scores(&toy::picture(SIZE.0, SIZE.1), SIZE.0, SIZE.1, toy.stride, value)
+    }
+
+    #[test]
+    fn every_kind_of_network_gives_the_mask_of_its_definition() {
+        for layout in [Layout::Nchw, Layout::Nhwc] {
+            for element in [DataType::Float, DataType::Uint8] {
+                for tail in [Tail::None, Tail::Upsample, Tail::Argmax] {
+                    for size in [None, Some((SIZE.1 as i64, SIZE.0 as i64))] {
+                        let toy = Toy { layout, element, tail, size, ..Toy::default() };
+                        toy::assert_highest(&mask(&toy, SIZE), &expected(&toy));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn scores_at_full_resolution_need_no_upsampling() {
+        let toy = Toy { stride: 1, ..Toy::default() };
+        toy::assert_highest(&mask(&toy, SIZE), &expected(&toy));
+    }
+
+    #[test]
+    fn a_coarse_class_map_is_enlarged_to_the_nearest() {
+        let toy = Toy { tail: Tail::CoarseArgmax, ..Toy::default() };
+        let mask = mask(&toy, SIZE);
+        for (i, id) in mask.ids.iter().enumerate() {
+            let (x, y) = (i % SIZE.0 / 4 * 4, i / SIZE.0 / 4 * 4);
+            assert_eq!(*id, mask.ids[y * SIZE.0 + x]);
+        }
+    }
+
+    #[test]
+    fn pictures_of_another_size_are_resampled() {
+        let toy = Toy { size: Some((32, 48)), ..Toy::default() };
+        let mask = mask(&toy, (96, 64));
+        assert_eq!((mask.width, mask.height, mask.ids.len()), (96, 64, 96 * 64));
+        assert!(mask.ids.iter().any(|id| *id != mask.ids[0]));
+    }
+
+    #[test]
+    fn the_wrong_size_of_picture_is_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let checkpoint = Checkpoint::load(Toy::default().write(dir.path())).unwrap();
+        let mut segmenter = Segmenter::new(&checkpoint, 48, 32).unwrap();
+        let rgb = toy::picture(32, 48);
+        assert!(segmenter.run(RgbView::new(32, 48, &rgb).unwrap()).is_err());
     }
 }
