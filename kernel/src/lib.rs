@@ -31,3 +31,6 @@ pub use scenario::Scenario;
 pub use scene::SceneSnapshot;
 pub use state::StateHash;
 pub use world::{Keyframe, TickOutput, World, WorldError};
+
+#[cfg(test)]
+mod testing;

@@ -234,6 +234,8 @@ impl Physics {
             .restitution(0.1)
             .collision_groups(groups(EGO, GROUND | PROPS | ACTORS));
         let ego_collider = colliders.insert_with_parent(shell, body, &mut bodies);
+        // The wheels push before the first step would do this: without a mass they give NaN.
+        bodies[body].recompute_mass_properties_from_colliders(&colliders);
         Self {
             broad_phase: template.broad_phase.clone(),
             template,
