@@ -1,1 +1,27 @@
-//! replay
+//! The log of a run: what a world started from, both drivers' controls at every tick, and the hashes
+//! that prove that a replay is the same run.
+//!
+//! A [`Recorder`] writes while the run goes on; a [`Recording`] is such a file read back, every byte
+//! of it checked; a [`Replayer`] simulates it again and compares each tick; a [`Case`] is a
+//! self-contained cut around an intervention. [`Log`] is the content of all of these as plain data.
+//!
+//! Files are MCAP; `layout.rs` describes every channel.
+
+mod case;
+mod error;
+mod log;
+mod recorder;
+mod recording;
+mod replayer;
+mod verify;
+
+pub use case::Case;
+pub use error::Error;
+pub use log::{
+    Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Provenance,
+    RunSummary,
+};
+pub use recorder::Recorder;
+pub use recording::Recording;
+pub use replayer::{Divergence, Replayer};
+pub use verify::{Report, against, resumes, rewind, verify};

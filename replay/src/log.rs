@@ -1,0 +1,238 @@
+//! The content of a recording or case as plain data.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+use kernel::arbiter::{Intervention, Outcome};
+use kernel::events::Event;
+use kernel::time::Tick;
+use kernel::world::PARTS;
+use kernel::{Keyframe, RoadNetwork, Scenario, SceneSnapshot, StateHash, TickInput};
+
+use crate::Error;
+
+/// Version of the file layout; other versions are refused.
+pub const FORMAT_VERSION: u16 = 1;
+/// Version of the kernel; only the version that made a log can drive it again.
+pub const KERNEL_VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Where a run came from, as names and values: seat drivers, checkpoint with its digest, camera,
+/// latency. Nothing here steers a replay.
+pub type Provenance = BTreeMap<String, String>;
+
+/// What a run started from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Manifest {
+    /// [`FORMAT_VERSION`] of the writer.
+    pub format: u16,
+    /// [`KERNEL_VERSION`] of the writer.
+    pub kernel: String,
+    /// The scenario, with the map's name.
+    pub scenario: Scenario,
+    /// [`RoadNetwork::digest`].
+    pub map_digest: u128,
+    /// Text of the OpenDRIVE file, when the map is not a bundled one.
+    pub foreign_map: Option<String>,
+    /// Where the run came from.
+    pub provenance: Provenance,
+    /// What was cut, when this is a corner case.
+    pub case: Option<CaseInfo>,
+}
+
+impl Manifest {
+    /// The manifest of a new run. `foreign_map` is the text of the map's file when it is not bundled.
+    pub fn new(
+        scenario: &Scenario,
+        network: &RoadNetwork,
+        foreign_map: Option<String>,
+        provenance: Provenance,
+    ) -> Self {
+        Self {
+            format: FORMAT_VERSION,
+            kernel: KERNEL_VERSION.to_owned(),
+            scenario: scenario.clone(),
+            map_digest: network.digest,
+            foreign_map,
+            provenance,
+            case: None,
+        }
+    }
+}
+
+/// What makes a log a corner case.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CaseInfo {
+    /// blake3 of the recording it was cut from.
+    pub source: [u8; 32],
+    /// First tick of the window.
+    pub from: Tick,
+    /// Last tick of the window: the intervention, or the collision of a missed one.
+    pub to: Tick,
+}
+
+/// The state of things after the last tick of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// The tick.
+    pub tick: Tick,
+    /// Full hash of that tick.
+    pub hash: StateHash,
+    /// A hash for each of [`PARTS`].
+    pub parts: [u64; PARTS.len()],
+    /// Distance driven so far, millimetres.
+    pub odometer_mm: u64,
+}
+
+/// Wall-clock times of a frame in a live drive, microseconds since the session began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LiveTimes {
+    /// The scene was captured.
+    pub capture_us: u64,
+    /// The prediction was there.
+    pub inference_us: u64,
+    /// The mask was on the screen.
+    pub present_us: u64,
+}
+
+/// A mask that came onto the semantic driver's screen. The replayer never reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MaskShown {
+    /// The first tick whose controls were given with this mask in view.
+    pub tick_shown: Tick,
+    /// The tick that the mask is a picture of.
+    pub tick_of_frame: Tick,
+    /// Number of the camera; 0 is the driver's.
+    pub camera: u8,
+    /// First 8 bytes of a digest of the mask.
+    pub digest: u64,
+    /// Wall-clock times, in live drives only: simulated recordings compare byte for byte.
+    pub times: Option<LiveTimes>,
+}
+
+/// What kind of corner case an intervention was (paper, section 3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+pub enum Label {
+    /// A walker was overlooked.
+    Walker = 0,
+    /// A vehicle was overlooked.
+    Vehicle = 1,
+    /// Traffic rules were disregarded.
+    Rules = 2,
+    /// The safety driver intervened out of boredom.
+    Boredom = 3,
+}
+
+impl Label {
+    /// Every label, in the order of their codes.
+    pub const ALL: [Self; 4] = [Self::Walker, Self::Vehicle, Self::Rules, Self::Boredom];
+
+    /// The name that files and commands use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Walker => "walker",
+            Self::Vehicle => "vehicle",
+            Self::Rules => "rules",
+            Self::Boredom => "boredom",
+        }
+    }
+}
+
+impl fmt::Display for Label {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Label {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let label = Self::ALL.into_iter().find(|l| l.name() == text);
+        label.ok_or_else(|| Error::Unsuited(format!("label {text:?}: expected walker, vehicle, rules or boredom")))
+    }
+}
+
+/// What the operators, or the truth, say about an intervention.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Annotation {
+    /// What kind of corner case.
+    pub label: Label,
+    /// Anything worth saying; may be empty.
+    pub comment: String,
+    /// Whether the run needs no intervention when driven by true masks; unknown when nobody tried.
+    pub perception_caused: Option<bool>,
+}
+
+/// How a run went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunSummary {
+    /// Last tick.
+    pub ticks: Tick,
+    /// Distance driven, millimetres.
+    pub odometer_mm: u64,
+    /// The intervention, if there was one.
+    pub intervention: Option<Intervention>,
+    /// How the run ended; `None` when it was stopped from outside.
+    pub outcome: Option<Outcome>,
+}
+
+/// Everything a recording or case holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Log {
+    /// What the run started from.
+    pub manifest: Manifest,
+    /// States by ascending tick. The first is the start; the log's ticks follow it.
+    pub keyframes: Vec<Keyframe>,
+    /// The input of each tick after the first keyframe.
+    pub inputs: Vec<TickInput>,
+    /// The low 32 bits of the hash of each of these ticks.
+    pub hashes: Vec<u32>,
+    /// Full hashes: after every second, at an intervention, and at the end.
+    pub marks: Vec<Mark>,
+    /// Events with their ticks, by ascending tick.
+    pub events: Vec<(Tick, Event)>,
+    /// The intervention, if there was one.
+    pub intervention: Option<Intervention>,
+    /// Masks shown, by ascending tick.
+    pub masks: Vec<MaskShown>,
+    /// What was said about the intervention.
+    pub annotation: Option<Annotation>,
+    /// How the run went; `None` in a file whose writer was stopped.
+    pub summary: Option<RunSummary>,
+    /// Snapshots of the window of a corner case, by ascending tick; empty in recordings.
+    pub scenes: Vec<SceneSnapshot>,
+}
+
+impl Log {
+    /// The tick of the first keyframe; 0 in recordings.
+    pub fn first_tick(&self) -> Tick {
+        self.keyframes.first().map_or(0, |k| k.tick)
+    }
+
+    /// The last tick.
+    pub fn last_tick(&self) -> Tick {
+        self.first_tick() + self.inputs.len() as Tick
+    }
+
+    /// The input of a tick after the first.
+    pub fn input(&self, tick: Tick) -> Option<&TickInput> {
+        self.inputs.get(self.index(tick)?)
+    }
+
+    /// The low 32 bits of the hash of a tick after the first.
+    pub fn hash(&self, tick: Tick) -> Option<u32> {
+        self.hashes.get(self.index(tick)?).copied()
+    }
+
+    fn index(&self, tick: Tick) -> Option<usize> {
+        usize::try_from(tick.checked_sub(self.first_tick() + 1)?).ok()
+    }
+
+    /// The file with this content, byte for byte what a [`crate::Recorder`] writes. Nothing of the
+    /// content is checked against a simulation: that is what verifying is for.
+    pub fn encode(&self) -> Result<Vec<u8>, Error> {
+        todo!()
+    }
+}
