@@ -10,7 +10,7 @@ use crate::{ClassMap, PerceptionError};
 
 /// An ONNX segmentation network with one image as input and logits or a class map as output, and
 /// what it says about itself.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Checkpoint {
     path: PathBuf,
     name: String,
@@ -29,6 +29,13 @@ pub(crate) struct Input {
     /// Pixels, where the model fixes them.
     pub width: Option<usize>,
     pub height: Option<usize>,
+}
+
+/// Without the weights.
+impl std::fmt::Debug for Checkpoint {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Checkpoint").field("path", &self.path).field("digest", &self.digest).finish_non_exhaustive()
+    }
 }
 
 impl Checkpoint {
@@ -139,11 +146,11 @@ fn check(model: &pb::ModelProto, metadata: &Metadata) -> Result<Input, String> {
 fn check_output(output: &pb::ValueInfoProto, classes: usize) -> Result<(), String> {
     let shape = shape_of(output);
     let text = shape_text(&shape);
-    let channels_fit = |n: &Option<usize>| n.is_none_or(|n| n == classes || n == 1);
+    let fits = |n: Option<usize>| n.is_some_and(|n| n == classes || n == 1);
     match shape.len() {
         // Exporters may leave the output's shape out; the engine finds it later.
         0 | 3 => Ok(()),
-        4 if channels_fit(&shape[1]) || channels_fit(&shape[3]) => Ok(()),
+        4 if shape[1].is_none() || fits(shape[1]) || fits(shape[3]) => Ok(()),
         4 => Err(format!("its output has the shape {text}, but the metadata names {classes} classes")),
         _ => Err(format!("its output has the shape {text}, expected scores 1xCxHxW or 1xHxWxC, or a class map 1xHxW")),
     }

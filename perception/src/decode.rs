@@ -175,11 +175,11 @@ fn argmax(grid: &Grid, scores: &[f32]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// Smooth random scores, so that classes form areas with borders.
+    /// Scores without any order, the same in both memory layouts.
     fn scores(grid: &Grid, seed: u32) -> Vec<f32> {
         let value = |c: usize, y: usize, x: usize| {
-            let phase = (c as f32 + 1.0) * (seed as f32 + 0.7);
-            (x as f32 * 0.9 + phase).sin() + (y as f32 * 0.7 + 1.7 * phase).cos()
+            let mixed = ((c * 64 + y) * 64 + x + 1).wrapping_mul(0x9e37_79b9) as u32 ^ seed.wrapping_mul(0x85eb_ca6b);
+            (mixed.wrapping_mul(0xc2b2_ae35) >> 8) as f32 / (1 << 24) as f32
         };
         let mut out = vec![0.0; grid.channels * grid.width * grid.height];
         for y in 0..grid.height {
