@@ -1,5 +1,7 @@
 //! Who sits in the seats. People and bots share one path: controls each tick.
 
+pub mod semantic;
+
 use kernel::Controls;
 use kernel::events::Hud;
 

@@ -1,0 +1,68 @@
+//! The simulated semantic driver: a function of the mask, the HUD and its last steering.
+
+mod path;
+mod sight;
+mod speed;
+#[cfg(test)]
+mod tests;
+
+use kernel::Controls;
+use kernel::ops;
+use kernel::time::TICK_S;
+
+use super::{Driver, SemanticView};
+use path::Arc;
+use sight::Sight;
+use speed::Wish;
+
+/// From axle to axle, metres.
+const WHEELBASE_M: f32 = 2.7;
+/// Angle of the front wheels at full steering, radians.
+const FULL_STEER_RAD: f32 = 0.6;
+/// Fastest turning of the steering wheel, fractions of full steering a second.
+const STEER_RATE: f32 = 1.6;
+/// Acceleration at full throttle and deceleration at full brake, m/s^2.
+const FULL_THROTTLE_MPS2: f32 = 4.0;
+const FULL_BRAKE_MPS2: f32 = 8.0;
+/// Time in which a wrong speed is made right, seconds.
+const SPEED_TIME_S: f32 = 0.7;
+
+/// Drives by the mask and the HUD alone.
+#[derive(Clone, Debug, Default)]
+pub struct SemanticBot {
+    /// Steering of the last tick, [-1, 1], positive to the right.
+    steer: f32,
+}
+
+impl Driver<SemanticView<'_>> for SemanticBot {
+    fn controls(&mut self, view: &SemanticView<'_>) -> Controls {
+        let sight = Sight::new(view.mask);
+        let arc = path::choose(&sight, &view.hud.arrow);
+        let wish = speed::wish(&sight, arc, &view.hud);
+        self.steer = follow(self.steer, steer_for(arc));
+        let (throttle, brake) = pedals(view.hud.speed_mps, &wish);
+        Controls::from_fractions(self.steer, throttle, brake)
+    }
+}
+
+/// Steering that drives an arc (kinematic single-track model).
+fn steer_for(arc: Arc) -> f32 {
+    (-ops::atan2(WHEELBASE_M * arc.curvature, 1.0) / FULL_STEER_RAD).clamp(-1.0, 1.0)
+}
+
+/// Turns the wheel towards the wanted angle as fast as hands do.
+fn follow(steer: f32, wanted: f32) -> f32 {
+    steer + (wanted - steer).clamp(-STEER_RATE * TICK_S, STEER_RATE * TICK_S)
+}
+
+/// Throttle and brake for a wish.
+fn pedals(speed_mps: f32, wish: &Wish) -> (f32, f32) {
+    let by_speed = ((wish.speed_mps - speed_mps) / SPEED_TIME_S).clamp(-4.0, 2.5);
+    let by_stop = wish.stop_in_m.map_or(by_speed, |d| -speed_mps * speed_mps / (2.0 * d.max(0.3)));
+    // Beyond the comfortable deceleration the distance that is left decides.
+    let acceleration = if by_stop < -3.0 { by_speed.min(by_stop) } else { by_speed };
+    if wish.speed_mps < 0.3 && speed_mps < 0.5 {
+        return (0.0, 0.5);
+    }
+    if acceleration >= 0.0 { (acceleration / FULL_THROTTLE_MPS2, 0.0) } else { (0.0, -acceleration / FULL_BRAKE_MPS2) }
+}

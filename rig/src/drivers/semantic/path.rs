@@ -1,0 +1,168 @@
+//! Where to steer: the arc that follows the arrow, keeps the lane and stays on the asphalt.
+
+use kernel::events::RouteArrow;
+use kernel::ops;
+
+use super::sight::{Ground, Sight};
+
+/// Distance of the point that the arrow of the HUD shows, metres.
+pub const ARROW_M: f32 = 12.0;
+/// Sharpest arc that is tried, 1/m; about the car's turning circle.
+const SHARPEST: f32 = 0.2;
+/// Arcs tried on each side of the wanted one.
+const TRIED: i32 = 12;
+/// Half of the width that has to be asphalt, metres.
+const HALF_TRACK_M: f32 = 1.0;
+/// Length over which an arc is looked at, metres.
+const LOOKED_AT_M: f32 = 16.0;
+/// Lane widths that are believed, metres.
+const LANE_WIDTHS_M: std::ops::RangeInclusive<f32> = 2.5..=4.6;
+/// Distance kept from an edge of the road without lines, metres.
+const FROM_EDGE_M: f32 = 1.75;
+/// Largest correction of the arrow by the lane, metres.
+const LARGEST_SHIFT_M: f32 = 1.2;
+/// Rows that must agree before the lane is believed.
+const LEAST_ROWS: usize = 4;
+
+/// An arc of constant curvature from the rear axle, in the direction of travel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    /// Curvature, 1/m, positive to the left.
+    pub curvature: f32,
+}
+
+impl Arc {
+    /// The arc through a point `distance_m` away at a bearing in radians, positive to the left.
+    pub fn through(distance_m: f32, bearing_rad: f32) -> Self {
+        let bearing = bearing_rad.clamp(-core::f32::consts::FRAC_PI_2, core::f32::consts::FRAC_PI_2);
+        Self { curvature: (2.0 * ops::sin(bearing) / distance_m).clamp(-SHARPEST, SHARPEST) }
+    }
+
+    /// The point after `s_m` metres and the heading there, in the car's frame.
+    pub fn at(&self, s_m: f32) -> (f32, f32, f32) {
+        let turned = self.curvature * s_m;
+        if turned.abs() < 1e-4 {
+            return (s_m, 0.5 * turned * s_m, turned);
+        }
+        (ops::sin(turned) / self.curvature, (1.0 - ops::cos(turned)) / self.curvature, turned)
+    }
+
+    /// Metres to the left of the arc after `s_m` metres.
+    fn beside(&self, s_m: f32, left_m: f32) -> (f32, f32) {
+        let (x, y, heading) = self.at(s_m);
+        (x - left_m * ops::sin(heading), y + left_m * ops::cos(heading))
+    }
+
+    /// Metres along the arc and to its left of a point in front of the car.
+    pub fn project(&self, x_m: f32, y_m: f32) -> (f32, f32) {
+        if self.curvature.abs() < 1e-4 {
+            return (x_m, y_m);
+        }
+        let radius = 1.0 / self.curvature;
+        let (dx, dy) = (x_m, y_m - radius);
+        let turned = ops::atan2(dx * radius.signum(), -dy * radius.signum());
+        let left_m = radius - ops::hypot(dx, dy) * radius.signum();
+        let turned = if turned < 0.0 && x_m < 0.0 { 0.0 } else { ops::wrap_angle(turned) };
+        (turned.abs() * radius.abs(), left_m)
+    }
+
+    /// Metres along the arc until the middle of the car would leave the asphalt.
+    pub fn free_m(&self, sight: &Sight<'_>, reach_m: f32) -> f32 {
+        let mut blocked_m = 0.0;
+        let mut s_m = 6.0;
+        while s_m < reach_m {
+            let (x, y, _) = self.at(s_m);
+            blocked_m = if sight.ground(x, y) == Ground::Other { blocked_m + 0.5 } else { 0.0 };
+            if blocked_m > 1.5 {
+                return s_m - blocked_m;
+            }
+            s_m += 0.5;
+        }
+        reach_m
+    }
+
+    /// Share of the car's track over the next metres that is no asphalt, near ground counting more.
+    fn off_road(&self, sight: &Sight<'_>) -> f32 {
+        let (mut off, mut all) = (0.0, 0.0);
+        for step in 0..20 {
+            let s_m = 6.0 + step as f32 * (LOOKED_AT_M - 6.0) / 20.0;
+            for left_m in [-HALF_TRACK_M, 0.0, HALF_TRACK_M] {
+                let (x, y) = self.beside(s_m, left_m);
+                let weight = 1.0 / s_m;
+                all += weight;
+                off += if sight.ground(x, y) == Ground::Other { weight } else { 0.0 };
+            }
+        }
+        off / all
+    }
+}
+
+/// The arc to steer.
+pub fn choose(sight: &Sight<'_>, arrow: &RouteArrow) -> Arc {
+    let bearing_rad = -f32::from(arrow.bearing_deg).to_radians();
+    let by_arrow = Arc::through(ARROW_M, bearing_rad);
+    let in_junction = arrow.distance_m < 8;
+    let shift_m = if in_junction { None } else { lane_shift_m(sight, by_arrow) };
+    let wanted = shift_m.map_or(by_arrow, |shift_m| {
+        let (x, y) = by_arrow.beside(ARROW_M, shift_m);
+        Arc::through(ops::hypot(x, y), ops::atan2(y, x))
+    });
+    nearest_on_road(sight, wanted)
+}
+
+/// How far to the left of the arc the middle of its lane lies, by lines and edges.
+fn lane_shift_m(sight: &Sight<'_>, arc: Arc) -> Option<f32> {
+    let mut by_lane = Vec::new();
+    let mut by_edge = Vec::new();
+    for (row, x_m) in sight.rows_between(ARROW_M - 5.0, ARROW_M + 4.0) {
+        let y_m = 0.5 * arc.curvature * x_m * x_m;
+        match sight.borders(row, y_m, 4.5) {
+            [Some(left), Some(right)] if LANE_WIDTHS_M.contains(&(left.distance_m + right.distance_m)) => {
+                by_lane.push(0.5 * (left.distance_m - right.distance_m));
+            }
+            [_, Some(right)] if !right.is_line => by_edge.push(FROM_EDGE_M - right.distance_m),
+            _ => {}
+        }
+    }
+    let shift_m = median(by_lane).or_else(|| median(by_edge))?;
+    Some(shift_m.clamp(-LARGEST_SHIFT_M, LARGEST_SHIFT_M))
+}
+
+fn median(mut values: Vec<f32>) -> Option<f32> {
+    values.sort_by(f32::total_cmp);
+    (values.len() >= LEAST_ROWS).then(|| values[values.len() / 2])
+}
+
+/// The arc next to the wanted one whose track is asphalt.
+fn nearest_on_road(sight: &Sight<'_>, wanted: Arc) -> Arc {
+    let cost = |arc: Arc, step: i32| arc.off_road(sight) + 0.012 * step.abs() as f32;
+    let arc_of = |step: i32| Arc { curvature: (wanted.curvature + 0.01 * step as f32).clamp(-SHARPEST, SHARPEST) };
+    (-TRIED..=TRIED)
+        .map(|step| (cost(arc_of(step), step), arc_of(step)))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(wanted, |(_, arc)| arc)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projecting_undoes_placing() {
+        for curvature in [-0.15, -0.02, 0.0, 0.05, 0.12] {
+            let arc = Arc { curvature };
+            for (s, left) in [(4.0, 0.0), (9.0, 1.5), (7.0, -2.0)] {
+                let (x, y) = arc.beside(s, left);
+                let (s2, left2) = arc.project(x, y);
+                assert!((s - s2).abs() < 1e-2 && (left - left2).abs() < 1e-2, "{curvature} {s} {left}: {s2} {left2}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_arc_through_a_point_meets_it() {
+        let arc = Arc::through(12.0, 0.4);
+        let (s, left) = arc.project(12.0 * ops::cos(0.4), 12.0 * ops::sin(0.4));
+        assert!(left.abs() < 1e-3 && s > 12.0);
+    }
+}

@@ -1,0 +1,99 @@
+//! How fast to go: the limit, bends, junctions, lights, and whatever stands in the way.
+
+use kernel::events::Hud;
+use kernel::map::Turn;
+use kernel::signals::LightPhase;
+
+use super::path::Arc;
+use super::sight::{Contact, Sight};
+
+/// From the rear axle to the front of the car, metres.
+const FRONT_M: f32 = 3.6;
+/// Half of the car's width, metres.
+const HALF_WIDTH_M: f32 = 0.95;
+/// Deceleration that is planned with, m/s^2.
+const COMFORT_MPS2: f32 = 2.5;
+/// Deceleration that a yellow light is worth, m/s^2.
+const YELLOW_MPS2: f32 = 3.5;
+/// Lateral acceleration in bends, m/s^2.
+const LATERAL_MPS2: f32 = 2.2;
+/// Gap kept to what stands in the way, metres.
+const STANDOFF_M: f32 = 4.0;
+/// Where the car stops before a stop line, metres.
+const BEFORE_LINE_M: f32 = 1.5;
+/// Speed in turns at junctions, m/s.
+const TURN_MPS: f32 = 5.5;
+/// Speed across junctions without lights, m/s.
+const CROSSING_MPS: f32 = 7.0;
+/// Speed at which the end of the visible road is approached, m/s.
+const FEELING_MPS: f32 = 4.5;
+/// How far the road is looked at, metres.
+const REACH_M: f32 = 45.0;
+/// Side clearance to vehicles, to people beside the road, and to people on it, metres.
+const BESIDE_VEHICLE_M: f32 = 0.35;
+const BESIDE_WALKER_M: f32 = 0.6;
+const BESIDE_CROSSING_M: f32 = 2.6;
+
+/// The speed from which the car can slow to `end_mps` within `distance_m`.
+fn braking_from(end_mps: f32, distance_m: f32) -> f32 {
+    (end_mps * end_mps + 2.0 * COMFORT_MPS2 * distance_m.max(0.0)).sqrt()
+}
+
+/// What the driver wants of the pedals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wish {
+    /// Speed that is right now, m/s.
+    pub speed_mps: f32,
+    /// Distance to a point where the car has to stand, metres from its front.
+    pub stop_in_m: Option<f32>,
+}
+
+/// The speed for an arc.
+pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud) -> Wish {
+    let stops = [obstacle_m(sight, arc), stop_line_m(hud)];
+    let stop_in_m = stops.into_iter().flatten().reduce(f32::min);
+    let bend_mps = (LATERAL_MPS2 / arc.curvature.abs().max(1e-3)).sqrt();
+    let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M);
+    let speed_mps = hud.limit_mps.min(bend_mps).min(road_mps).min(junction_mps(hud));
+    let speed_mps = stop_in_m.map_or(speed_mps, |d| speed_mps.min(braking_from(0.0, d)));
+    Wish { speed_mps, stop_in_m }
+}
+
+/// Metres from the front of the car to where it must stand because of people and vehicles.
+fn obstacle_m(sight: &Sight<'_>, arc: Arc) -> Option<f32> {
+    let distances = sight.contacts().into_iter().filter_map(|contact| {
+        let (s_m, left_m) = arc.project(contact.x_m, contact.y_m);
+        let in_the_way = s_m < REACH_M && left_m.abs() < HALF_WIDTH_M + clearance_m(&contact);
+        in_the_way.then_some(s_m - FRONT_M - STANDOFF_M)
+    });
+    distances.reduce(f32::min)
+}
+
+fn clearance_m(contact: &Contact) -> f32 {
+    match (contact.is_person, contact.on_road) {
+        (false, _) => BESIDE_VEHICLE_M,
+        (true, false) => BESIDE_WALKER_M,
+        (true, true) => BESIDE_CROSSING_M,
+    }
+}
+
+/// Metres from the front of the car to a stop line that has to be respected.
+fn stop_line_m(hud: &Hud) -> Option<f32> {
+    let to_line_m = f32::from(hud.light_distance_m) - BEFORE_LINE_M;
+    let needed_mps2 = hud.speed_mps * hud.speed_mps / (2.0 * to_line_m.max(0.1));
+    match hud.light? {
+        LightPhase::Green => None,
+        LightPhase::Red => Some(to_line_m),
+        LightPhase::Yellow => (needed_mps2 < YELLOW_MPS2).then_some(to_line_m),
+    }
+}
+
+/// Speed allowed by the junction ahead.
+fn junction_mps(hud: &Hud) -> f32 {
+    let there_mps = match hud.arrow.turn {
+        Turn::Left | Turn::Right => TURN_MPS,
+        Turn::Straight if hud.light.is_none() && hud.arrow.distance_m < 30 => CROSSING_MPS,
+        Turn::Straight => return f32::INFINITY,
+    };
+    braking_from(there_mps, f32::from(hud.arrow.distance_m) - 2.0)
+}
