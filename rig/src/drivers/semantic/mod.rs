@@ -6,24 +6,19 @@ mod speed;
 #[cfg(test)]
 mod tests;
 
-use kernel::Controls;
-use kernel::ops;
 use kernel::time::TICK_S;
+use kernel::{Controls, ego, ops};
 
 use super::{Driver, SemanticView};
 use path::Arc;
 use sight::Sight;
 use speed::Wish;
 
-/// From axle to axle, metres.
-const WHEELBASE_M: f32 = 2.7;
-/// Angle of the front wheels at full steering, radians.
-const FULL_STEER_RAD: f32 = 0.6;
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
 /// Acceleration at full throttle and deceleration at full brake, m/s^2.
 const FULL_THROTTLE_MPS2: f32 = 4.0;
-const FULL_BRAKE_MPS2: f32 = 8.0;
+const FULL_BRAKE_MPS2: f32 = 8.4;
 /// Time in which a wrong speed is made right, seconds.
 const SPEED_TIME_S: f32 = 0.7;
 
@@ -47,7 +42,7 @@ impl Driver<SemanticView<'_>> for SemanticBot {
 
 /// Steering that drives an arc (kinematic single-track model).
 fn steer_for(arc: Arc) -> f32 {
-    (-ops::atan2(WHEELBASE_M * arc.curvature, 1.0) / FULL_STEER_RAD).clamp(-1.0, 1.0)
+    (-ops::atan2(ego::WHEELBASE_M * arc.curvature, 1.0) / ego::MAX_WHEEL_ANGLE_RAD).clamp(-1.0, 1.0)
 }
 
 /// Turns the wheel towards the wanted angle as fast as hands do.

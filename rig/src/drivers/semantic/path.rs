@@ -1,14 +1,16 @@
 //! Where to steer: the arc that follows the arrow, keeps the lane and stays on the asphalt.
 
 use kernel::events::RouteArrow;
-use kernel::ops;
+use kernel::{ego, ops};
 
 use super::sight::{Ground, Sight};
 
-/// Distance of the point that the arrow of the HUD shows, metres.
+/// Distance of the point that the arrow of the HUD shows, metres from the middle of the car.
 pub const ARROW_M: f32 = 12.0;
 /// Sharpest arc that is tried, 1/m; about the car's turning circle.
 const SHARPEST: f32 = 0.2;
+/// From the rear axle to the middle of the car, metres.
+const MIDDLE_M: f32 = ego::CENTRE_M.x;
 /// Arcs tried on each side of the wanted one.
 const TRIED: i32 = 12;
 /// Half of the width that has to be asphalt, metres.
@@ -32,10 +34,10 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// The arc through a point `distance_m` away at a bearing in radians, positive to the left.
-    pub fn through(distance_m: f32, bearing_rad: f32) -> Self {
-        let bearing = bearing_rad.clamp(-core::f32::consts::FRAC_PI_2, core::f32::consts::FRAC_PI_2);
-        Self { curvature: (2.0 * ops::sin(bearing) / distance_m).clamp(-SHARPEST, SHARPEST) }
+    /// The arc to a point in the car's frame; for one behind, the sharpest arc to its side.
+    pub fn to(x_m: f32, y_m: f32) -> Self {
+        let sideways = if x_m < 0.0 { SHARPEST.copysign(y_m) } else { 2.0 * y_m / (x_m * x_m + y_m * y_m) };
+        Self { curvature: sideways.clamp(-SHARPEST, SHARPEST) }
     }
 
     /// The point after `s_m` metres and the heading there, in the car's frame.
@@ -100,12 +102,12 @@ impl Arc {
 /// The arc to steer.
 pub fn choose(sight: &Sight<'_>, arrow: &RouteArrow) -> Arc {
     let bearing_rad = -f32::from(arrow.bearing_deg).to_radians();
-    let by_arrow = Arc::through(ARROW_M, bearing_rad);
+    let by_arrow = Arc::to(MIDDLE_M + ARROW_M * ops::cos(bearing_rad), ARROW_M * ops::sin(bearing_rad));
     let in_junction = arrow.distance_m < 8;
     let shift_m = if in_junction { None } else { lane_shift_m(sight, by_arrow) };
     let wanted = shift_m.map_or(by_arrow, |shift_m| {
-        let (x, y) = by_arrow.beside(ARROW_M, shift_m);
-        Arc::through(ops::hypot(x, y), ops::atan2(y, x))
+        let (x, y) = by_arrow.beside(MIDDLE_M + ARROW_M, shift_m);
+        Arc::to(x, y)
     });
     nearest_on_road(sight, wanted)
 }
@@ -160,9 +162,8 @@ mod tests {
     }
 
     #[test]
-    fn the_arc_through_a_point_meets_it() {
-        let arc = Arc::through(12.0, 0.4);
-        let (s, left) = arc.project(12.0 * ops::cos(0.4), 12.0 * ops::sin(0.4));
+    fn the_arc_to_a_point_meets_it() {
+        let (s, left) = Arc::to(11.0, 5.0).project(11.0, 5.0);
         assert!(left.abs() < 1e-3 && s > 12.0);
     }
 }

@@ -1,5 +1,6 @@
 //! How fast to go: the limit, bends, junctions, lights, and whatever stands in the way.
 
+use kernel::ego::{self, FRONT_M};
 use kernel::events::Hud;
 use kernel::map::Turn;
 use kernel::signals::LightPhase;
@@ -7,10 +8,8 @@ use kernel::signals::LightPhase;
 use super::path::Arc;
 use super::sight::{Contact, Sight};
 
-/// From the rear axle to the front of the car, metres.
-const FRONT_M: f32 = 3.6;
 /// Half of the car's width, metres.
-const HALF_WIDTH_M: f32 = 0.95;
+const HALF_WIDTH_M: f32 = 0.5 * ego::SIZE_M.y;
 /// Deceleration that is planned with, m/s^2.
 const COMFORT_MPS2: f32 = 2.5;
 /// Deceleration that a yellow light is worth, m/s^2.

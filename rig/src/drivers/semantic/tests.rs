@@ -57,13 +57,14 @@ impl Road {
 
     /// The arrow of the HUD: bearing of the lane 12 m ahead in steps of 5 degrees.
     fn arrow(&self, pose: Pose) -> RouteArrow {
+        let middle = pose.place(ego::CENTRE_M.x, 0.0);
         let travelled = if self.curvature == 0.0 {
-            pose.x
+            middle.0
         } else {
-            ops::atan2(pose.x * self.curvature, 1.0 - pose.y * self.curvature) / self.curvature
+            ops::atan2(middle.0 * self.curvature, 1.0 - middle.1 * self.curvature) / self.curvature
         };
         let (x, y, _) = Arc { curvature: self.curvature }.at(travelled + path::ARROW_M);
-        let bearing = ops::wrap_angle(ops::atan2(y - pose.y, x - pose.x) - pose.heading).to_degrees();
+        let bearing = ops::wrap_angle(ops::atan2(y - middle.1, x - middle.0) - pose.heading).to_degrees();
         RouteArrow { turn: Turn::Straight, distance_m: 100, bearing_deg: -(5.0 * (bearing / 5.0).round()) as i16 }
     }
 }
@@ -75,8 +76,8 @@ impl Pose {
     }
 
     fn drive(&mut self, controls: Controls, speed_mps: f32) {
-        let wheel = -controls.steer_fraction() * FULL_STEER_RAD;
-        self.heading += speed_mps * TICK_S * ops::tan(wheel) / WHEELBASE_M;
+        let wheel = -controls.steer_fraction() * ego::MAX_WHEEL_ANGLE_RAD;
+        self.heading += speed_mps * TICK_S * ops::tan(wheel) / ego::WHEELBASE_M;
         (self.x, self.y) = self.place(speed_mps * TICK_S, 0.0);
     }
 }

@@ -1,0 +1,3 @@
+//! Benchmarks with budgets.
+
+fn main() {}
