@@ -4,8 +4,21 @@
 //! order of actors cannot matter. State is what cannot be derived: places, speeds and waiting times.
 //! Poses follow from the map's geometry, individual differences from stateless random numbers.
 
+mod crossing;
+mod drive;
+mod hazard;
+mod jaywalk;
+mod junction;
+mod lists;
+mod look;
+mod plan;
+mod poses;
+mod spawn;
+mod traits;
 mod vehicle;
+mod walk;
 mod walker;
+mod ways;
 
 use std::sync::Arc;
 
@@ -16,6 +29,10 @@ use crate::scenario::Scenario;
 use crate::scene::ActorKind;
 use crate::state;
 use crate::time::Tick;
+
+use look::Sight;
+use traits::{Driver, Person, driver, person};
+use ways::Ways;
 
 pub use vehicle::Vehicle;
 pub use walker::{Walker, WalkerMode};
@@ -84,22 +101,49 @@ pub struct Body {
 #[derive(Clone, Debug)]
 pub struct Traffic {
     network: Arc<RoadNetwork>,
-    scenario: Scenario,
+    ways: Arc<Ways>,
+    seed: u64,
+    jaywalks_per_min: f32,
     state: TrafficState,
+    drivers: Vec<Driver>,
+    persons: Vec<Person>,
+    /// At the places of the state.
     bodies: Vec<Body>,
+    /// Memory for the next step; holds nothing between steps.
+    sight: Sight,
 }
 
 impl Traffic {
     /// Fills a map with the actors a scenario asks for, none inside another or within 20 m of
     /// `ego_start`; fewer where the map has no room (compare [`Traffic::bodies`] with the scenario).
-    pub fn spawn(_scenario: &Scenario, _network: &Arc<RoadNetwork>, _ego_start: Vec3) -> Self {
-        todo!()
+    pub fn spawn(scenario: &Scenario, network: &Arc<RoadNetwork>, ego_start: Vec3) -> Self {
+        let ways = Arc::new(Ways::new(network));
+        let state = spawn::spawn(scenario, network, &ways, ego_start);
+        Self::with(scenario, network, ways, state)
     }
 
     /// Traffic as it was, from its state. Fails with one sentence when the state does not fit the
     /// map (lane or edge out of range, ids not ascending).
-    pub fn resume(_scenario: &Scenario, _network: &Arc<RoadNetwork>, _state: TrafficState) -> Result<Self, String> {
-        todo!()
+    pub fn resume(scenario: &Scenario, network: &Arc<RoadNetwork>, state: TrafficState) -> Result<Self, String> {
+        state.check(network)?;
+        Ok(Self::with(scenario, network, Arc::new(Ways::new(network)), state))
+    }
+
+    fn with(scenario: &Scenario, network: &Arc<RoadNetwork>, ways: Arc<Ways>, state: TrafficState) -> Self {
+        let seed = scenario.seed;
+        let mut traffic = Self {
+            network: network.clone(),
+            ways,
+            seed,
+            jaywalks_per_min: scenario.traffic.jaywalks_per_min,
+            drivers: state.vehicles.iter().map(|v| driver(seed, v.id, v.kind)).collect(),
+            persons: state.walkers.iter().map(|w| person(seed, w.id)).collect(),
+            state,
+            bodies: Vec::new(),
+            sight: Sight::default(),
+        };
+        traffic.place_bodies();
+        traffic
     }
 
     /// The steering state, for hashing and keyframes.
@@ -107,14 +151,55 @@ impl Traffic {
         &self.state
     }
 
-    /// Advances everyone by one tick.
-    pub fn step(&mut self, _surroundings: &Surroundings<'_>) {
-        todo!()
-    }
-
     /// Every actor by ascending id, at its place on the map; physics overrides the pose of those
     /// it has made loose.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
+    }
+
+    /// Advances everyone by one tick.
+    pub fn step(&mut self, surroundings: &Surroundings<'_>) {
+        let mut sight = std::mem::take(&mut self.sight);
+        sight.look(self, surroundings);
+        let mut next = std::mem::take(&mut sight.next);
+        next.vehicles.clear();
+        next.walkers.clear();
+        let (view, streets) = (sight.view(self), sight.streets(self));
+        let driven = |i: usize, v: &Vehicle| if surroundings.holds(v.id) { *v } else { view.drive(i) };
+        next.vehicles.extend(self.state.vehicles.iter().enumerate().map(|(i, v)| driven(i, v)));
+        let walked = |i: usize, w: &Walker| if surroundings.holds(w.id) { *w } else { streets.walk(i) };
+        next.walkers.extend(self.state.walkers.iter().enumerate().map(|(i, w)| walked(i, w)));
+        sight.next = std::mem::replace(&mut self.state, next);
+        self.return_to_map(surroundings);
+        self.place_bodies();
+        self.sight = sight;
+    }
+}
+
+impl Surroundings<'_> {
+    /// Whether physics holds the actor.
+    fn holds(&self, id: u16) -> bool {
+        self.loose.binary_search_by_key(&u32::from(id), |o| o.id).is_ok()
+    }
+}
+
+impl TrafficState {
+    fn check(&self, network: &RoadNetwork) -> Result<(), String> {
+        let ids = || self.vehicles.iter().map(|v| v.id).chain(self.walkers.iter().map(|w| w.id));
+        if !ids().zip(ids().skip(1)).all(|(a, b)| a < b) || ids().next() == Some(0) {
+            return Err("actors: expected ascending ids from 1".into());
+        }
+        for v in &self.vehicles {
+            let lane = network.lanes.get(v.lane as usize).filter(|lane| (0.0..=lane.length_m).contains(&v.s_m));
+            let kind = v.kind != ActorKind::Pedestrian;
+            if lane.is_none() || !kind || v.speed_mps < 0.0 || v.flags & !Vehicle::ALL_FLAGS != 0 {
+                return Err(format!("vehicle {}: expected a vehicle on a lane of map {}", v.id, network.name));
+            }
+        }
+        let on_map = |w: &&Walker| (w.edge as usize) < network.walk_edges.len() && w.speed_mps >= 0.0;
+        match self.walkers.iter().find(|w| !on_map(w)) {
+            Some(w) => Err(format!("walker {}: expected a way of map {}", w.id, network.name)),
+            None => Ok(()),
+        }
     }
 }

@@ -34,8 +34,12 @@ state! {
 impl Vehicle {
     /// Brake lights on.
     pub const BRAKING: u8 = 1;
-    /// May cross the junction before it, or is crossing it.
+    /// May enter the junction before it.
     pub const GRANTED: u8 = 2;
     /// Has halted at the stop sign before it.
     pub const HALTED: u8 = 4;
+    /// Is inside a junction, or its rear still is.
+    pub const CROSSING: u8 = 8;
+    /// Every flag with a meaning.
+    pub const ALL_FLAGS: u8 = 15;
 }

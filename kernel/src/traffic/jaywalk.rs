@@ -1,0 +1,185 @@
+//! Stepping onto the road where there is no crosswalk.
+
+use glam::{Vec2, Vec3};
+
+use crate::map::{Prop, PropKind, RoadNetwork};
+use crate::rng::{Stream, bits, unit};
+use crate::time::{TICK_HZ, Tick};
+
+use super::Obstacle;
+use super::traits::Person;
+use super::walk::{edge_place, walker_place};
+use super::walker::{Walker, WalkerMode};
+use super::ways::Ways;
+
+/// Share of all jaywalking that happens just before the ego car, when somebody walks there.
+const BEFORE_EGO: f32 = 0.5;
+/// Share of jaywalkers who run.
+const RUNNERS: f32 = 0.25;
+/// Speed of those, m/s.
+const RUN_MPS: f32 = 2.8;
+/// Candidates whose way is looked at in one tick.
+const TRIES: usize = 8;
+/// Radius of a person, metres.
+const PERSON_M: f32 = 0.35;
+/// Roads narrower or wider than this between the middles of the sidewalks are not crossed, metres.
+const ROAD_M: std::ops::Range<f32> = 4.0..32.0;
+
+/// Where somebody who jaywalks arrives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Goal {
+    /// From the middle of the way left behind, metres across.
+    pub distance_m: f32,
+    edge: u32,
+    s_m: f32,
+}
+
+/// The walker who steps onto the road in this tick, if anybody does.
+pub(super) fn starter(
+    network: &RoadNetwork,
+    ways: &Ways,
+    seed: u64,
+    rate_per_min: f32,
+    tick: Tick,
+    walkers: &[Walker],
+    ego: &Obstacle,
+) -> Option<usize> {
+    if unit(seed, Stream::Jaywalk, 0, tick) >= rate_per_min / (60 * TICK_HZ) as f32 {
+        return None;
+    }
+    let seek_ego = unit(seed, Stream::Jaywalk, u64::MAX, tick) < BEFORE_EGO;
+    let rank = |i: &usize| {
+        let walker = &walkers[*i];
+        let place = walker_place(network, ways, walker).beside(walker.offset_m);
+        let far = !(seek_ego && is_before(ego, place));
+        (far, bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
+    };
+    let mut candidates: Vec<usize> = (0..walkers.len()).filter(|i| beside_road(network, &walkers[*i])).collect();
+    candidates.sort_by_cached_key(rank);
+    candidates.into_iter().take(TRIES).find(|i| can_cross(network, ways, &walkers[*i]))
+}
+
+fn beside_road(network: &RoadNetwork, walker: &Walker) -> bool {
+    let edge = &network.walk_edges[walker.edge as usize];
+    let inside = walker.s_m > 1.0 && walker.s_m < edge.length_m - 1.0;
+    walker.mode == WalkerMode::Walk && edge.crosswalk.is_none() && edge.beside.is_some() && inside
+}
+
+/// Whether somebody who starts from `place` now gets in front of the ego car.
+fn is_before(ego: &Obstacle, place: Vec3) -> bool {
+    let velocity = ego.velocity_mps.truncate();
+    let speed = velocity.length();
+    if speed < 3.0 {
+        return false;
+    }
+    let offset = (place - ego.position).truncate();
+    let ahead_m = offset.dot(velocity) / speed;
+    let aside_m = velocity.perp_dot(offset).abs() / speed;
+    let arrives_s = ahead_m / speed;
+    // At about 1.5 m/s: in the lane of the ego car when that is there, or a second before.
+    let steps_s = aside_m / 1.5;
+    ahead_m > 0.0 && aside_m < 14.0 && arrives_s > steps_s - 0.5 && arrives_s < steps_s + 1.5
+}
+
+fn can_cross(network: &RoadNetwork, ways: &Ways, walker: &Walker) -> bool {
+    let start = Walker { forward: road_is_left(network, ways, walker), ..*walker };
+    goal(network, ways, &start).is_some_and(|goal| {
+        let place = walker_place(network, ways, &start);
+        let sign = if start.forward { 1.0 } else { -1.0 };
+        let (from, to) = (place.beside(start.offset_m), place.beside(sign * goal.distance_m));
+        !network.props.iter().any(|prop| touches(prop, from.truncate(), to.truncate()))
+    })
+}
+
+/// Whether the road beside a walker's edge lies to the left of it.
+pub(super) fn road_is_left(network: &RoadNetwork, ways: &Ways, walker: &Walker) -> bool {
+    let place = walker_place(network, ways, walker);
+    let Some(lane) = network.walk_edges[walker.edge as usize].beside else { return true };
+    let offsets = network.lanes[lane as usize].points.iter().map(|p| (p.position - place.position).truncate());
+    let nearest = offsets.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    nearest.is_some_and(|offset| offset.dot(place.left()) > 0.0)
+}
+
+/// The nearest sidewalk straight across the road, seen from a walker on its way there.
+pub(super) fn goal(network: &RoadNetwork, ways: &Ways, walker: &Walker) -> Option<Goal> {
+    let place = walker_place(network, ways, walker);
+    let (origin, across) = (place.position.truncate(), place.left() * if walker.forward { 1.0 } else { -1.0 });
+    let mut best: Option<Goal> = None;
+    for &edge in &ways.edges[walker.edge as usize].facing {
+        let (points, way) = (&network.walk_edges[edge as usize].points, &ways.edges[edge as usize]);
+        for (i, pair) in points.windows(2).enumerate() {
+            let Some((distance_m, t)) = meet(origin, across, pair[0].truncate(), pair[1].truncate()) else { continue };
+            if ROAD_M.contains(&distance_m) && best.is_none_or(|b| distance_m < b.distance_m) {
+                let s_m = way.s_m[i] + t * (way.s_m[i + 1] - way.s_m[i]);
+                best = Some(Goal { distance_m, edge, s_m });
+            }
+        }
+    }
+    best
+}
+
+/// Where a ray meets a segment: distance along the ray, and fraction of the segment.
+fn meet(origin: Vec2, along: Vec2, a: Vec2, b: Vec2) -> Option<(f32, f32)> {
+    let (side, offset) = (b - a, a - origin);
+    let area = along.perp_dot(side);
+    if area.abs() < 1e-4 {
+        return None;
+    }
+    let (distance, t) = (offset.perp_dot(side) / area, offset.perp_dot(along) / area);
+    (distance > 0.0 && (0.0..=1.0).contains(&t)).then_some((distance, t))
+}
+
+/// Speed of somebody who crosses the road.
+pub(super) fn pace(seed: u64, walker: &Walker, person: &Person) -> f32 {
+    let runs = unit(seed, Stream::Jaywalk, u64::from(walker.id), !u64::from(walker.hops)) < RUNNERS;
+    if runs { RUN_MPS } else { person.speed_mps + 0.3 }
+}
+
+/// Puts a walker who has reached the other side on the way there.
+pub(super) fn arrive(network: &RoadNetwork, ways: &Ways, seed: u64, goal: &Goal, walker: &mut Walker) {
+    let from = walker_place(network, ways, walker).beside(walker.offset_m).truncate();
+    let edge = goal.edge as usize;
+    let place = edge_place(&network.walk_edges[edge], &ways.edges[edge], goal.s_m);
+    let offset = from - place.position.truncate();
+    walker.edge = goal.edge;
+    walker.s_m = goal.s_m + offset.dot(place.forward.truncate().normalize_or(Vec2::X));
+    walker.offset_m = offset.dot(place.left());
+    walker.hops = walker.hops.wrapping_add(1);
+    walker.forward = bits(seed, Stream::Walk, u64::from(walker.id), u64::from(walker.hops)) & 1 == 0;
+    walker.mode = WalkerMode::Walk;
+    walker.wait_ticks = 0;
+}
+
+/// Whether a person who goes from one point to another touches a prop.
+fn touches(prop: &Prop, from: Vec2, to: Vec2) -> bool {
+    let half = match prop.kind {
+        PropKind::Tree | PropKind::Lamp | PropKind::Sign | PropKind::SignalPole => Vec2::splat(0.2),
+        _ => prop.size.truncate() * 0.5,
+    } + PERSON_M;
+    let centre = prop.position.truncate();
+    let reach = half.length() + 1.0;
+    if (from.distance(centre) + to.distance(centre)) > from.distance(to) + 2.0 * reach {
+        return false;
+    }
+    let axis = Vec2::new(crate::ops::cos(prop.heading_rad), crate::ops::sin(prop.heading_rad));
+    let local = |p: Vec2| Vec2::new((p - centre).dot(axis), axis.perp_dot(p - centre));
+    segment_meets_box(local(from), local(to), half)
+}
+
+/// Whether a segment meets the box of half extent `half` around the origin (slab test).
+fn segment_meets_box(from: Vec2, to: Vec2, half: Vec2) -> bool {
+    let (mut enter, mut leave) = (0.0f32, 1.0f32);
+    for axis in 0..2 {
+        let (p, d) = (from[axis], to[axis] - from[axis]);
+        if d.abs() < 1e-6 {
+            if p.abs() > half[axis] {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = ((-half[axis] - p) / d, (half[axis] - p) / d);
+        enter = enter.max(a.min(b));
+        leave = leave.min(a.max(b));
+    }
+    enter <= leave
+}

@@ -1,0 +1,197 @@
+//! Who may enter a junction.
+//!
+//! A vehicle enters only with a grant. It is given when no vehicle that has one, or is inside, still
+//! has to clear a place where the two ways meet, when the vehicle goes before everyone else who asks,
+//! and when there is room to leave the junction again. Whoever asks and is not granted stops at the
+//! line, so a grant is safe whatever the others do, and the order below decides every pair one way.
+
+use crate::map::{LaneId, RoadNetwork, StopKind};
+use crate::signals::LightPhase;
+use crate::time::Tick;
+
+use super::lists::Lists;
+use super::plan::{Line, Plan, Step, braking_needed};
+use super::traits::Driver;
+use super::vehicle::Vehicle;
+use super::ways::{Encounter, Meeting, Ways};
+
+/// After this long at a line a vehicle goes before those that have the right of way.
+pub(super) const PATIENCE_TICKS: u16 = 240;
+/// Braking that a yellow light asks for at most, m/s².
+const YELLOW_BRAKE_MPS2: f32 = 3.0;
+/// Braking within which a vehicle asks for its grant, m/s².
+const ASK_BRAKE_MPS2: f32 = 1.5;
+/// Distance from the line within which it asks at any speed, metres.
+const ASK_M: f32 = 8.0;
+/// Vehicles slower than this may come to a stand where they are, m/s.
+const SLOW_MPS: f32 = 2.5;
+
+/// Somebody in a junction, or before it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Member {
+    pub junction: u32,
+    /// Index of the vehicle; [`EGO`] for the ego car.
+    pub vehicle: u32,
+    pub id: u16,
+    /// Inside, or granted; otherwise asking.
+    pub holds: bool,
+    pub half_m: f32,
+    pub wait_ticks: u16,
+    /// Its lanes in this junction, a stretch of the list of [`Members`].
+    pub lanes: (u32, u32),
+}
+
+/// [`Member::vehicle`] of the ego car.
+pub(super) const EGO: u32 = u32::MAX;
+
+/// Everybody in or before a junction, by junction and id.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Members {
+    list: Vec<Member>,
+    lanes: Vec<Step>,
+}
+
+impl Members {
+    pub fn clear(&mut self) {
+        self.list.clear();
+        self.lanes.clear();
+    }
+
+    pub fn push(&mut self, member: Member, lanes: impl IntoIterator<Item = Step>) {
+        let first = self.lanes.len() as u32;
+        self.lanes.extend(lanes);
+        self.list.push(Member { lanes: (first, self.lanes.len() as u32), ..member });
+    }
+
+    pub fn sort(&mut self) {
+        self.list.sort_unstable_by_key(|m| (m.junction, m.id, m.holds));
+    }
+
+    fn of(&self, junction: u32) -> &[Member] {
+        let first = self.list.partition_point(|m| m.junction < junction);
+        let count = self.list[first..].partition_point(|m| m.junction == junction);
+        &self.list[first..first + count]
+    }
+
+    fn lanes_of(&self, member: &Member) -> &[Step] {
+        &self.lanes[member.lanes.0 as usize..member.lanes.1 as usize]
+    }
+
+    /// Whether the one who asks may enter.
+    pub fn grants(&self, ways: &Ways, asking: &Member, steps: &[Step]) -> bool {
+        let others = self.of(asking.junction).iter().filter(|m| m.vehicle != asking.vehicle);
+        let meets = |other: &Member| {
+            steps.iter().any(|step| {
+                let encounters = &ways.lanes[step.lane as usize].encounters;
+                let theirs = self.lanes_of(other);
+                encounters.iter().any(|e| theirs.iter().any(|t| t.lane == e.lane && prevents(asking, other, e, t)))
+            })
+        };
+        !others.into_iter().any(meets)
+    }
+
+    /// The member that asks for vehicle `index`, if it asks.
+    pub fn asking(&self, junction: u32, index: usize) -> Option<&Member> {
+        self.of(junction).iter().find(|m| m.vehicle as usize == index && !m.holds)
+    }
+}
+
+/// Whether `other` on lane `there` keeps the one who asks out, where their lanes meet.
+fn prevents(asking: &Member, other: &Member, encounter: &Encounter, there: &Step) -> bool {
+    if encounter.meeting == Meeting::Diverge {
+        return false;
+    }
+    if other.holds {
+        let rear_m = -there.start_m - other.half_m;
+        return rear_m < encounter.there[1];
+    }
+    !goes_before(asking, other, encounter.precedence)
+}
+
+/// The order of two who ask, the same seen from both: the impatient first, then the right of way,
+/// then the longer wait, then the smaller id.
+fn goes_before(a: &Member, b: &Member, precedence: i8) -> bool {
+    let impatient = |m: &Member| m.wait_ticks > PATIENCE_TICKS;
+    match (impatient(a), impatient(b)) {
+        (true, false) => true,
+        (false, true) => false,
+        (false, false) if precedence != 0 => precedence > 0,
+        _ => (b.wait_ticks, a.id) < (a.wait_ticks, b.id),
+    }
+}
+
+/// What the signs and lights at a line say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Signal {
+    /// Go, as far as the others let.
+    Open,
+    /// Stop if it can be done safely.
+    Closing,
+    /// Stop.
+    Closed,
+}
+
+/// What the light or sign at the line of a plan says to a vehicle.
+pub(super) fn signal(
+    network: &RoadNetwork,
+    lights: &[(LightPhase, Tick)],
+    vehicle: &Vehicle,
+    approach: LaneId,
+) -> Signal {
+    match network.lanes[approach as usize].stop.map(|stop| stop.kind) {
+        Some(StopKind::Light(group)) => match lights[group as usize].0 {
+            LightPhase::Green => Signal::Open,
+            LightPhase::Yellow => Signal::Closing,
+            LightPhase::Red => Signal::Closed,
+        },
+        Some(StopKind::Stop) if vehicle.flags & Vehicle::HALTED == 0 => Signal::Closed,
+        _ => Signal::Open,
+    }
+}
+
+/// Whether a vehicle is close enough to the line to ask; `spare_m` widens the distance.
+pub(super) fn near_enough(vehicle: &Vehicle, line: &Line, spare_m: f32) -> bool {
+    let near_m = ASK_M + spare_m;
+    line.ahead_m < near_m || braking_needed(vehicle.speed_mps, line.ahead_m - near_m) > ASK_BRAKE_MPS2
+}
+
+/// Whether a granted vehicle gives its grant back because the light has changed.
+pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line) -> bool {
+    let needed = braking_needed(vehicle.speed_mps, line.ahead_m);
+    match signal {
+        Signal::Open => false,
+        Signal::Closing => needed < YELLOW_BRAKE_MPS2,
+        Signal::Closed => needed < 2.0 * YELLOW_BRAKE_MPS2,
+    }
+}
+
+/// Whether the way out of the junction has room for the vehicle behind everyone who is before it.
+pub(super) fn has_room(
+    network: &RoadNetwork,
+    lists: &Lists,
+    plan: &Plan,
+    line: &Line,
+    steps: &[Step],
+    index: usize,
+    driver: &Driver,
+) -> bool {
+    let last = steps[line.inside.1 - 1];
+    let end_m = last.start_m + network.lanes[last.lane as usize].length_m;
+    let mut needed_m = driver.size_m.x + driver.gap_m;
+    for step in &steps[line.approach..] {
+        for entry in lists.on(step.lane) {
+            let at_m = step.start_m + entry.s_m;
+            if entry.vehicle as usize == index || at_m <= 0.0 {
+                continue;
+            }
+            if at_m - entry.half_m > end_m {
+                return entry.speed_mps > SLOW_MPS || at_m - entry.half_m - end_m > needed_m;
+            }
+            if entry.speed_mps < 0.5 {
+                return false;
+            }
+            needed_m += 2.0 * entry.half_m + driver.gap_m;
+        }
+    }
+    plan.dead_end_m.is_none_or(|m| m - end_m > needed_m)
+}

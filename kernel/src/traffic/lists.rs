@@ -1,0 +1,94 @@
+//! Which vehicles are on which lane, rebuilt each tick in memory that is kept.
+
+use crate::map::{LaneId, RoadNetwork};
+
+use super::traits::Driver;
+use super::vehicle::Vehicle;
+
+/// A vehicle's place on a lane. One that reaches over an end stands on both lanes, its middle
+/// before the start or beyond the end of the one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub lane: LaneId,
+    pub s_m: f32,
+    pub half_m: f32,
+    pub speed_mps: f32,
+    /// Index of the vehicle.
+    pub vehicle: u32,
+    pub id: u16,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lists {
+    entries: Vec<Entry>,
+    /// For each lane, its first entry and the number of them.
+    spans: Vec<(u32, u32)>,
+}
+
+impl Lists {
+    /// Vehicles on a lane by ascending place.
+    pub fn on(&self, lane: LaneId) -> &[Entry] {
+        let (first, count) = self.spans[lane as usize];
+        &self.entries[first as usize..(first + count) as usize]
+    }
+
+    /// Takes the vehicles whose ids are `present`; `next_lane` tells where one goes on.
+    pub fn rebuild(
+        &mut self,
+        network: &RoadNetwork,
+        vehicles: &[Vehicle],
+        drivers: &[Driver],
+        next_lane: impl Fn(&Vehicle) -> Option<LaneId>,
+        present: impl Fn(u16) -> bool,
+    ) {
+        for entry in self.entries.drain(..) {
+            self.spans[entry.lane as usize] = (0, 0);
+        }
+        self.spans.resize(network.lanes.len(), (0, 0));
+        for (i, vehicle) in vehicles.iter().enumerate() {
+            if present(vehicle.id) {
+                self.add(network, i, vehicle, drivers[i].size_m.x * 0.5, &next_lane);
+            }
+        }
+        let key = |e: &Entry| (e.lane, e.s_m, e.id);
+        self.entries.sort_unstable_by(|a, b| {
+            let ((l, s, i), (m, t, j)) = (key(a), key(b));
+            l.cmp(&m).then(s.total_cmp(&t)).then(i.cmp(&j))
+        });
+        for (i, entry) in self.entries.iter().enumerate() {
+            let span = &mut self.spans[entry.lane as usize];
+            *span = if span.1 == 0 { (i as u32, 1) } else { (span.0, span.1 + 1) };
+        }
+    }
+
+    fn add(
+        &mut self,
+        network: &RoadNetwork,
+        index: usize,
+        vehicle: &Vehicle,
+        half_m: f32,
+        next_lane: &impl Fn(&Vehicle) -> Option<LaneId>,
+    ) {
+        let lane = &network.lanes[vehicle.lane as usize];
+        let entry = Entry {
+            lane: vehicle.lane,
+            s_m: vehicle.s_m,
+            half_m,
+            speed_mps: vehicle.speed_mps,
+            vehicle: index as u32,
+            id: vehicle.id,
+        };
+        self.entries.push(entry);
+        if vehicle.s_m < half_m {
+            for &before in &lane.predecessors {
+                let s_m = vehicle.s_m + network.lanes[before as usize].length_m;
+                self.entries.push(Entry { lane: before, s_m, ..entry });
+            }
+        }
+        if vehicle.s_m + half_m > lane.length_m {
+            let ahead =
+                next_lane(vehicle).map(|lane_id| Entry { lane: lane_id, s_m: vehicle.s_m - lane.length_m, ..entry });
+            self.entries.extend(ahead);
+        }
+    }
+}

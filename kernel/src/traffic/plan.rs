@@ -1,0 +1,152 @@
+//! The way a vehicle will take, as far as it has to look ahead.
+
+use crate::map::{LaneId, RoadNetwork};
+use crate::ops;
+use crate::rng::{self, Stream};
+
+use super::lists::Lists;
+use super::traits::Driver;
+use super::vehicle::Vehicle;
+use super::ways::Ways;
+
+/// Braking that the look-ahead distance allows for, m/s².
+const LOOK_BRAKE_MPS2: f32 = 2.0;
+/// Room beyond a junction that the plan covers, metres.
+const BEYOND_JUNCTION_M: f32 = 20.0;
+/// Most lanes of a plan.
+const MAX_STEPS: usize = 24;
+
+/// A lane of a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    pub lane: LaneId,
+    /// From the vehicle's middle to the start of the lane, metres; negative for the lane it is on.
+    pub start_m: f32,
+}
+
+/// The line before the next junction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    /// Index of the junction.
+    pub junction: u32,
+    /// From the vehicle's front to the line, metres; negative when it reaches over it.
+    pub ahead_m: f32,
+    /// The step whose lane ends at the junction.
+    pub approach: usize,
+    /// The steps inside the junction: from, and one past the last.
+    pub inside: (usize, usize),
+}
+
+/// The vehicle ahead on the planned way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leader {
+    /// Index of the vehicle.
+    pub vehicle: u32,
+    /// From bumper to bumper, metres.
+    pub gap_m: f32,
+    pub speed_mps: f32,
+}
+
+/// What a vehicle plans. `steps` is its stretch of the common list of steps.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Plan {
+    pub steps: (u32, u32),
+    pub line: Option<Line>,
+    pub leader: Option<Leader>,
+    /// From the vehicle's middle to where its lane ends without a successor, metres.
+    pub dead_end_m: Option<f32>,
+}
+
+/// The lane a vehicle takes after `lane`, when it has entered `hops` lanes.
+pub(super) fn next_lane(ways: &Ways, seed: u64, id: u16, hops: u16, lane: LaneId) -> Option<LaneId> {
+    match ways.lanes[lane as usize].onward.as_slice() {
+        [] => None,
+        [only] => Some(*only),
+        many => {
+            let pick = rng::below(seed, Stream::Turn, u64::from(id), u64::from(hops), many.len() as u32);
+            Some(many[pick as usize])
+        }
+    }
+}
+
+/// How far a vehicle looks ahead, metres.
+pub(super) fn horizon_m(speed_mps: f32, driver: &Driver) -> f32 {
+    12.0 + driver.size_m.x + 2.5 * speed_mps + speed_mps * speed_mps / (2.0 * LOOK_BRAKE_MPS2)
+}
+
+/// Appends a vehicle's steps and says what lies on them, apart from its leader.
+pub(super) fn plan(
+    network: &RoadNetwork,
+    ways: &Ways,
+    seed: u64,
+    vehicle: &Vehicle,
+    driver: &Driver,
+    out: &mut Vec<Step>,
+) -> Plan {
+    let first = out.len();
+    let horizon = horizon_m(vehicle.speed_mps, driver);
+    let mut plan = Plan::default();
+    let mut step = Step { lane: vehicle.lane, start_m: -vehicle.s_m };
+    let mut beyond_m = f32::NEG_INFINITY;
+    for k in 0..MAX_STEPS {
+        out.push(step);
+        let lane = &network.lanes[step.lane as usize];
+        let end_m = step.start_m + lane.length_m;
+        let Some(next) = next_lane(ways, seed, vehicle.id, vehicle.hops.wrapping_add(k as u16), step.lane) else {
+            plan.dead_end_m = Some(end_m);
+            break;
+        };
+        let junction = network.lanes[next as usize].junction;
+        match &mut plan.line {
+            None if junction != lane.junction && junction.is_some() => {
+                plan.line = Some(line(lane, junction.unwrap_or(0), end_m, driver, k));
+            }
+            Some(line) if line.inside.1 == k + 1 && junction == Some(line.junction) => line.inside.1 += 1,
+            Some(line) if line.inside.1 == k + 1 => beyond_m = end_m + BEYOND_JUNCTION_M,
+            _ => {}
+        }
+        let undecided = plan.line.is_some_and(|line| line.inside.1 > k && line.ahead_m < horizon);
+        if end_m > horizon.max(beyond_m) && !undecided {
+            break;
+        }
+        step = Step { lane: next, start_m: end_m };
+    }
+    plan.steps = (first as u32, out.len() as u32);
+    let count = out.len() - first;
+    plan.line = plan.line.filter(|line| line.inside.1 <= count);
+    plan
+}
+
+fn line(lane: &crate::map::Lane, junction: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
+    let front_m = driver.size_m.x * 0.5;
+    let marked = lane.stop.map(|stop| end_m - lane.length_m + stop.s_m - front_m);
+    // Whoever stands over the marked line may still stop where the junction begins.
+    let ahead_m = marked.filter(|m| *m > -1.0).unwrap_or(end_m - front_m);
+    Line { junction, ahead_m, approach: k, inside: (k + 1, k + 2) }
+}
+
+/// The nearest vehicle ahead on the planned way.
+pub(super) fn leader(lists: &Lists, steps: &[Step], index: usize, driver: &Driver, horizon_m: f32) -> Option<Leader> {
+    for step in steps.iter().take_while(|step| step.start_m < horizon_m) {
+        let ahead = lists.on(step.lane).iter().find(|e| e.vehicle as usize != index && step.start_m + e.s_m > 0.0);
+        if let Some(entry) = ahead {
+            let gap_m = step.start_m + entry.s_m - entry.half_m - driver.size_m.x * 0.5;
+            return Some(Leader { vehicle: entry.vehicle, gap_m, speed_mps: entry.speed_mps });
+        }
+    }
+    None
+}
+
+/// The braking that stops within `distance_m`, m/s², positive; infinite where there is no room.
+pub(super) fn braking_needed(speed_mps: f32, distance_m: f32) -> f32 {
+    if distance_m <= 0.0 {
+        if speed_mps > 0.0 { f32::INFINITY } else { 0.0 }
+    } else {
+        speed_mps * speed_mps / (2.0 * distance_m)
+    }
+}
+
+/// The speed from which braking at `brake_mps2` stops within `distance_m`, m/s.
+pub(super) fn stopping_speed(distance_m: f32, brake_mps2: f32) -> f32 {
+    ops::sqrt(2.0 * brake_mps2 * distance_m.max(0.0))
+}

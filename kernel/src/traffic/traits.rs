@@ -1,0 +1,85 @@
+//! Differences between individuals: functions of the seed and the actor's id, never stored.
+
+use glam::Vec3;
+
+use crate::rng::{Stream, bits, unit};
+use crate::scene::ActorKind;
+
+/// How somebody drives. Parameters of the intelligent driver model (Treiber, Hennecke and Helbing
+/// 2000) around the values of its section on city traffic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Driver {
+    /// Share of the speed limit that is aimed at. CARLA's traffic manager: 0.7.
+    pub limit_share: f32,
+    /// Highest speed at all, m/s.
+    pub top_mps: f32,
+    /// Greatest acceleration, m/s².
+    pub accel_mps2: f32,
+    /// Comfortable braking, m/s², positive.
+    pub brake_mps2: f32,
+    /// Time headway, s.
+    pub headway_s: f32,
+    /// Distance kept at standstill, metres.
+    pub gap_m: f32,
+    /// Length, width and height, metres.
+    pub size_m: Vec3,
+    /// Distance of its middle from the right edge of the lane; cars keep to the middle.
+    pub from_right_m: Option<f32>,
+    /// Selects colour and shape.
+    pub variant: u32,
+}
+
+/// How somebody walks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Person {
+    /// Speed aimed at, m/s: 0.8 to 1.8, half of all between 1.1 and 1.5.
+    pub speed_mps: f32,
+    /// Preferred place across the way, -1 (right edge as the edge runs) to 1.
+    pub place: f32,
+    /// Selects looks.
+    pub variant: u32,
+}
+
+fn trait_unit(seed: u64, id: u16, which: u64) -> f32 {
+    unit(seed, Stream::Trait, u64::from(id), which)
+}
+
+fn between(lo: f32, hi: f32, t: f32) -> f32 {
+    lo + (hi - lo) * t
+}
+
+/// The driver of vehicle `id`.
+pub(super) fn driver(seed: u64, id: u16, kind: ActorKind) -> Driver {
+    let t = |which| trait_unit(seed, id, which);
+    let (limit_share, top_mps, accel_mps2, from_right_m) = match kind {
+        ActorKind::Bicycle => (1.0, between(3.5, 6.0, t(0)), 0.9, Some(0.6)),
+        ActorKind::Motorcycle => (between(0.7, 0.9, t(0)), 40.0, 2.2, Some(1.2)),
+        ActorKind::Truck | ActorKind::Bus => (between(0.6, 0.7, t(0)), 22.0, 1.0, None),
+        ActorKind::Car | ActorKind::Pedestrian => (between(0.6, 0.8, t(0)), 40.0, between(1.3, 2.0, t(1)), None),
+    };
+    Driver {
+        limit_share,
+        top_mps,
+        accel_mps2,
+        brake_mps2: between(1.8, 2.4, t(2)),
+        headway_s: between(1.0, 1.8, t(3)),
+        gap_m: between(1.8, 2.8, t(4)),
+        size_m: kind.size_m(),
+        from_right_m,
+        variant: variant(seed, id),
+    }
+}
+
+/// The person `id`.
+pub(super) fn person(seed: u64, id: u16) -> Person {
+    let t = |which| trait_unit(seed, id, which);
+    Person {
+        speed_mps: between(0.8, 1.8, 0.5 * (t(0) + t(1))),
+        place: between(-1.0, 1.0, t(2)),
+        variant: variant(seed, id),
+    }
+}
+
+fn variant(seed: u64, id: u16) -> u32 {
+    bits(seed, Stream::Trait, u64::from(id), 16) as u32 & 0xffff
+}

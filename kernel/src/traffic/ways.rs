@@ -1,0 +1,283 @@
+//! Lookups of a map, made once: curve speeds, directions, who meets whom in a junction.
+
+use glam::{Vec2, Vec3};
+
+use crate::map::{Conflict, Lane, LaneId, LaneKind, RoadNetwork, StopKind};
+use crate::{map::LightGroupId, ops};
+
+/// Sideways acceleration that drivers accept in curves, m/s² (comfort limit of road design).
+const CURVE_ACCEL_MPS2: f32 = 2.0;
+/// Braking before curves, m/s².
+const CURVE_BRAKE_MPS2: f32 = 1.8;
+/// Nobody drives slower than this because of a curve, m/s.
+const CURVE_FLOOR_MPS: f32 = 2.5;
+/// Sidewalks farther apart than this do not face each other across a road, metres.
+const FACING_M: f32 = 32.0;
+
+/// A place on a lane or way: where, and the direction of travel as a unit vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub position: Vec3,
+    pub forward: Vec3,
+    pub half_width_m: f32,
+}
+
+impl Place {
+    /// Horizontal unit vector to the left.
+    pub fn left(&self) -> Vec2 {
+        Vec2::new(-self.forward.y, self.forward.x).normalize_or_zero()
+    }
+
+    /// The place `offset_m` to the left.
+    pub fn beside(&self, offset_m: f32) -> Vec3 {
+        self.position + (self.left() * offset_m).extend(0.0)
+    }
+}
+
+/// How two lanes of a junction meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// They leave the same lane.
+    Diverge,
+    /// They enter the same lane.
+    Merge,
+    /// They cross.
+    Cross,
+}
+
+/// A conflict seen from one lane, with the other lane's side of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Encounter {
+    pub lane: LaneId,
+    pub meeting: Meeting,
+    /// Stretch of this lane, metres.
+    pub here: [f32; 2],
+    /// Stretch of the other lane, metres.
+    pub there: [f32; 2],
+    /// 1 when traffic here goes first, -1 when the other does, 0 when neither has a right.
+    pub precedence: i8,
+}
+
+/// A crosswalk on a lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Zebra {
+    pub crosswalk: u32,
+    /// Its near edge, metres from the lane's start.
+    pub near_m: f32,
+    /// Its far edge.
+    pub far_m: f32,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct LaneWay {
+    /// Highest speed at each point: curves, and braking for those ahead on the lane. m/s.
+    pub speed_mps: Vec<f32>,
+    /// Successors that vehicles drive on.
+    pub onward: Vec<LaneId>,
+    pub encounters: Vec<Encounter>,
+    /// Crosswalks on it, in the direction of travel.
+    pub zebras: Vec<Zebra>,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct EdgeWay {
+    /// Distance of each point from the first, metres.
+    pub s_m: Vec<f32>,
+    /// Sidewalks that may lie across the road.
+    pub facing: Vec<u32>,
+}
+
+/// Lookups of a map.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ways {
+    pub lanes: Vec<LaneWay>,
+    pub edges: Vec<EdgeWay>,
+    /// Light groups that must be red for each crosswalk; empty for a zebra.
+    pub crosswalk_lights: Vec<Vec<LightGroupId>>,
+    /// Lanes without predecessors, where vehicles that leave the map come back.
+    pub entries: Vec<LaneId>,
+}
+
+impl Ways {
+    pub fn new(network: &RoadNetwork) -> Self {
+        let mut ways = Self {
+            lanes: (0..network.lanes.len()).map(|id| lane_way(network, id as LaneId)).collect(),
+            edges: (0..network.walk_edges.len()).map(|e| edge_way(network, e)).collect(),
+            crosswalk_lights: network.crosswalks.iter().map(|c| crosswalk_lights(network, c)).collect(),
+            entries: entries(network),
+        };
+        ways.add_zebras(network);
+        ways
+    }
+
+    fn add_zebras(&mut self, network: &RoadNetwork) {
+        for (i, crosswalk) in network.crosswalks.iter().enumerate() {
+            for &(lane, s_m) in &crosswalk.lanes {
+                let half = crosswalk.half_width_m;
+                let zebra = Zebra { crosswalk: i as u32, near_m: s_m - half, far_m: s_m + half };
+                self.lanes[lane as usize].zebras.push(zebra);
+            }
+        }
+        for lane in &mut self.lanes {
+            lane.zebras.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
+        }
+    }
+}
+
+/// Index of the segment of `lane` that holds `s_m`, and the fraction along it (beyond [0, 1]
+/// outside the lane).
+fn segment(lane: &Lane, s_m: f32) -> (usize, f32) {
+    let points = &lane.points;
+    let last = points.len() - 2;
+    let guess = (s_m / lane.length_m * (last + 1) as f32) as usize;
+    let mut i = guess.min(last);
+    while i > 0 && points[i].s_m > s_m {
+        i -= 1;
+    }
+    while i < last && points[i + 1].s_m <= s_m {
+        i += 1;
+    }
+    let span = (points[i + 1].s_m - points[i].s_m).max(1e-3);
+    (i, (s_m - points[i].s_m) / span)
+}
+
+/// The place on a lane's centre line; beyond its ends the lane goes straight on.
+pub(super) fn lane_place(lane: &Lane, s_m: f32) -> Place {
+    let (i, t) = segment(lane, s_m);
+    let (a, b) = (&lane.points[i], &lane.points[i + 1]);
+    let clamped = t.clamp(0.0, 1.0);
+    Place {
+        position: a.position + (b.position - a.position) * t,
+        forward: (b.position - a.position).normalize_or(Vec3::X),
+        half_width_m: a.half_width_m + (b.half_width_m - a.half_width_m) * clamped,
+    }
+}
+
+/// Like [`lane_place`], the direction turning smoothly between the points.
+pub(super) fn lane_pose(lane: &Lane, s_m: f32) -> Place {
+    let (i, t) = segment(lane, s_m);
+    let place = lane_place(lane, s_m);
+    let direction = |k: usize| lane.points[k + 1].position - lane.points[k].position;
+    let last = lane.points.len() - 2;
+    let here = direction(i).normalize_or(Vec3::X);
+    let forward = if t < 0.5 && i > 0 {
+        direction(i - 1).normalize_or(here).lerp(here, (t + 0.5).max(0.0))
+    } else if t > 0.5 && i < last {
+        here.lerp(direction(i + 1).normalize_or(here), (t - 0.5).min(0.5))
+    } else {
+        here
+    };
+    Place { forward: forward.normalize_or(here), ..place }
+}
+
+/// The highest speed at `s_m`, interpolated between the points. m/s.
+pub(super) fn curve_speed(lane: &Lane, way: &LaneWay, s_m: f32) -> f32 {
+    let (i, t) = segment(lane, s_m);
+    let (a, b) = (way.speed_mps[i], way.speed_mps[i + 1]);
+    a + (b - a) * t.clamp(0.0, 1.0)
+}
+
+fn lane_way(network: &RoadNetwork, id: LaneId) -> LaneWay {
+    let lane = &network.lanes[id as usize];
+    let mut speed_mps = curve_speeds(lane);
+    for i in (0..speed_mps.len().saturating_sub(1)).rev() {
+        let ds = lane.points[i + 1].s_m - lane.points[i].s_m;
+        let reachable = ops::sqrt(speed_mps[i + 1] * speed_mps[i + 1] + 2.0 * CURVE_BRAKE_MPS2 * ds.max(0.0));
+        speed_mps[i] = speed_mps[i].min(reachable);
+    }
+    let drivable = |next: &LaneId| network.lanes[*next as usize].kind == LaneKind::Driving;
+    let onward = lane.successors.iter().copied().filter(drivable).collect();
+    let encounters = lane.conflicts.iter().filter_map(|c| encounter(network, id, c)).collect();
+    LaneWay { speed_mps, onward, encounters, zebras: Vec::new() }
+}
+
+/// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken
+/// over 3 m each way, so that single bends of the baked line do not count.
+fn curve_speeds(lane: &Lane) -> Vec<f32> {
+    let heading = |s: f32| {
+        let forward = lane_place(lane, s.clamp(0.0, lane.length_m)).forward;
+        ops::atan2(forward.y, forward.x)
+    };
+    let at = |s: f32| {
+        let (from, to) = ((s - 3.0).max(0.0), (s + 3.0).min(lane.length_m));
+        let turned = ops::wrap_angle(heading(to) - heading(from)).abs();
+        let curvature = turned / (to - from).max(3.0);
+        ops::sqrt(CURVE_ACCEL_MPS2 / curvature.max(1e-4)).max(CURVE_FLOOR_MPS)
+    };
+    lane.points.iter().map(|p| at(p.s_m)).collect()
+}
+
+fn encounter(network: &RoadNetwork, id: LaneId, conflict: &Conflict) -> Option<Encounter> {
+    let lane = &network.lanes[id as usize];
+    let other = &network.lanes[conflict.lane as usize];
+    let mirrored = other.conflicts.iter().find(|c| c.lane == id);
+    let shares = |a: &[LaneId], b: &[LaneId]| a.iter().any(|x| b.contains(x));
+    let meeting = if shares(&lane.successors, &other.successors) {
+        Meeting::Merge
+    } else if shares(&lane.predecessors, &other.predecessors) {
+        Meeting::Diverge
+    } else {
+        Meeting::Cross
+    };
+    let there = mirrored.map_or([0.0, other.length_m], |c| [c.from_m, c.to_m]);
+    let gives_way = mirrored.is_some_and(|c| c.other_first);
+    let precedence = i8::from(gives_way) - i8::from(conflict.other_first);
+    (other.kind == LaneKind::Driving).then_some(Encounter {
+        lane: conflict.lane,
+        meeting,
+        here: [conflict.from_m, conflict.to_m],
+        there,
+        precedence,
+    })
+}
+
+fn crosswalk_lights(network: &RoadNetwork, crosswalk: &crate::map::Crosswalk) -> Vec<LightGroupId> {
+    let mut groups = Vec::new();
+    if crosswalk.junction.is_some() {
+        for &(lane, _) in &crosswalk.lanes {
+            if let Some(StopKind::Light(group)) = network.lanes[lane as usize].stop.map(|stop| stop.kind) {
+                groups.push(group);
+            }
+        }
+    }
+    groups.sort_unstable();
+    groups.dedup();
+    groups
+}
+
+fn entries(network: &RoadNetwork) -> Vec<LaneId> {
+    let drivable = |lane: &Lane| lane.kind == LaneKind::Driving && lane.length_m > 15.0;
+    let open = |lane: &Lane| drivable(lane) && lane.junction.is_none();
+    let lanes = || network.lanes.iter().enumerate();
+    let starts: Vec<_> =
+        lanes().filter(|(_, l)| open(l) && l.predecessors.is_empty()).map(|(i, _)| i as LaneId).collect();
+    if starts.is_empty() { lanes().filter(|(_, l)| open(l)).map(|(i, _)| i as LaneId).collect() } else { starts }
+}
+
+fn edge_way(network: &RoadNetwork, index: usize) -> EdgeWay {
+    let edge = &network.walk_edges[index];
+    let mut s_m = vec![0.0];
+    for pair in edge.points.windows(2) {
+        s_m.push(s_m[s_m.len() - 1] + pair[0].truncate().distance(pair[1].truncate()));
+    }
+    let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(network, index) } else { Vec::new() };
+    EdgeWay { s_m, facing }
+}
+
+fn facing(network: &RoadNetwork, index: usize) -> Vec<u32> {
+    let (low, high) = extent(&network.walk_edges[index].points);
+    let near = |points: &[Vec3]| {
+        let (l, h) = extent(points);
+        l.cmple(high + FACING_M).all() && h.cmpge(low - FACING_M).all()
+    };
+    let others = network.walk_edges.iter().enumerate();
+    others
+        .filter(|(i, e)| *i != index && e.crosswalk.is_none() && e.beside.is_some() && near(&e.points))
+        .map(|(i, _)| i as u32)
+        .collect()
+}
+
+fn extent(points: &[Vec3]) -> (Vec2, Vec2) {
+    let flat = || points.iter().map(|p| p.truncate());
+    (flat().fold(Vec2::MAX, Vec2::min), flat().fold(Vec2::MIN, Vec2::max))
+}
