@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use crate::physics::Statics;
 use crate::state_enum;
+use crate::traffic::Lookups;
 
 /// Index of a lane in [`RoadNetwork::lanes`].
 pub type LaneId = u32;
@@ -302,6 +303,8 @@ pub struct RoadNetwork {
     pub bounds: [Vec3; 2],
     /// The colliders of all that, built on first use; start with `Statics::default()`.
     pub statics: Statics,
+    /// What traffic looks up in it, built on first use; start with `Lookups::default()`.
+    pub lookups: Lookups,
 }
 
 mod bake;

@@ -36,6 +36,7 @@ use ways::Ways;
 
 pub use vehicle::Vehicle;
 pub use walker::{Walker, WalkerMode};
+pub use ways::Lookups;
 
 state! {
     /// Steering state of all traffic. Ids are unique over both lists, ascending in each, and start
@@ -117,7 +118,7 @@ impl Traffic {
     /// Fills a map with the actors a scenario asks for, none inside another or within 20 m of
     /// `ego_start`; fewer where the map has no room (compare [`Traffic::bodies`] with the scenario).
     pub fn spawn(scenario: &Scenario, network: &Arc<RoadNetwork>, ego_start: Vec3) -> Self {
-        let ways = Arc::new(Ways::new(network));
+        let ways = Ways::of(network);
         let state = spawn::spawn(scenario, network, &ways, ego_start);
         Self::with(scenario, network, ways, state)
     }
@@ -126,7 +127,7 @@ impl Traffic {
     /// map (lane or edge out of range, ids not ascending).
     pub fn resume(scenario: &Scenario, network: &Arc<RoadNetwork>, state: TrafficState) -> Result<Self, String> {
         state.check(network)?;
-        Ok(Self::with(scenario, network, Arc::new(Ways::new(network)), state))
+        Ok(Self::with(scenario, network, Ways::of(network), state))
     }
 
     fn with(scenario: &Scenario, network: &Arc<RoadNetwork>, ways: Arc<Ways>, state: TrafficState) -> Self {

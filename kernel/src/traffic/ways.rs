@@ -1,5 +1,7 @@
 //! Lookups of a map, made once: curve speeds, directions, who meets whom in a junction.
 
+use std::sync::{Arc, OnceLock};
+
 use glam::{Vec2, Vec3};
 
 use crate::map::{Conflict, Lane, LaneId, LaneKind, RoadNetwork, StopKind};
@@ -98,8 +100,17 @@ pub(super) struct Ways {
     pub entries: Vec<LaneId>,
 }
 
+/// The lookups that traffic makes of a map, built on first use and shared by all its worlds.
+#[derive(Clone, Debug, Default)]
+pub struct Lookups(OnceLock<Arc<Ways>>);
+
 impl Ways {
-    pub fn new(network: &RoadNetwork) -> Self {
+    /// The lookups of a map.
+    pub fn of(network: &RoadNetwork) -> Arc<Self> {
+        network.lookups.0.get_or_init(|| Arc::new(Self::new(network))).clone()
+    }
+
+    fn new(network: &RoadNetwork) -> Self {
         let mut ways = Self {
             lanes: (0..network.lanes.len()).map(|id| lane_way(network, id as LaneId)).collect(),
             edges: (0..network.walk_edges.len()).map(|e| edge_way(network, e)).collect(),
