@@ -1,5 +1,7 @@
 //! Which graphics adapter draws.
 
+use crate::RenderError;
+
 /// Which graphics adapter to draw with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
@@ -29,5 +31,70 @@ pub struct AdapterInfo {
 
 /// The graphics adapters of this machine, GPUs first; empty without any driver.
 pub fn adapters() -> Vec<AdapterInfo> {
-    todo!()
+    found().iter().map(|adapter| describe(&adapter.get_info())).collect()
+}
+
+/// The adapters of the native APIs; OpenGL's colours differ from Vulkan's, so it is left out.
+fn found() -> Vec<wgpu::Adapter> {
+    let backends = wgpu::Backends::PRIMARY;
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(descriptor);
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    adapters
+}
+
+fn rank(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+fn describe(info: &wgpu::AdapterInfo) -> AdapterInfo {
+    AdapterInfo {
+        name: info.name.clone(),
+        backend: info.backend.to_string(),
+        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        is_cpu: info.device_type == wgpu::DeviceType::Cpu,
+    }
+}
+
+impl AdapterChoice {
+    fn accepts(&self, info: &AdapterInfo) -> bool {
+        match self {
+            Self::Auto => true,
+            Self::Cpu => info.is_cpu,
+            Self::Gpu => !info.is_cpu,
+            Self::Named(part) => info.name.to_lowercase().contains(&part.to_lowercase()),
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Self::Auto => "any".into(),
+            Self::Cpu => "cpu".into(),
+            Self::Gpu => "gpu".into(),
+            Self::Named(part) => part.clone(),
+        }
+    }
+
+    /// The best adapter of the wanted kind.
+    pub(crate) fn open(&self) -> Result<(wgpu::Adapter, AdapterInfo), RenderError> {
+        let mut names = Vec::new();
+        for adapter in found() {
+            let info = describe(&adapter.get_info());
+            if self.accepts(&info) {
+                return Ok((adapter, info));
+            }
+            names.push(info.name);
+        }
+        let found = if names.is_empty() { "none".into() } else { names.join(", ") };
+        Err(RenderError::NoAdapter { wanted: self.text(), found })
+    }
 }

@@ -31,14 +31,15 @@ pub struct Camera {
     pub height: u32,
 }
 
-/// From the rear axle, where [`EgoScene::position`] lies, to the middle of the ego car.
-const MIDDLE_M: f32 = 1.3;
+/// From [`EgoScene::position`] (below the rear axle) to the middle of the ego car's footprint, metres
+/// forward.
+pub const EGO_MIDDLE_M: f32 = 1.3;
 
 impl Camera {
     /// The camera both drivers see through: on the ego car, 1.2 m forward of its middle, 1.5 m high,
     /// level, 90 degrees horizontal field of view.
     pub fn driver(width: u32, height: u32) -> Self {
-        let position = Vec3::new(MIDDLE_M + 1.2, 0.0, 1.5);
+        let position = Vec3::new(EGO_MIDDLE_M + 1.2, 0.0, 1.5);
         Self { mount: Mount::Ego, position, ..Self::level(width, height) }
     }
 

@@ -4,16 +4,27 @@
 //! come from the same draw and carry the same tick, so that they cannot be misaligned. Nothing
 //! here reads the clock; the same adapter and driver give the same bits for the same scene.
 
+mod actors;
 pub mod adapter;
+mod blob;
 pub mod camera;
 mod error;
 mod frame;
+mod gpu;
+mod light;
+pub mod mesh;
+mod noise;
 mod renderer;
+mod scenery;
 pub mod tags;
+mod view;
+pub mod wind;
 
+pub use actors::EGO_INSTANCE;
 pub use adapter::{AdapterChoice, AdapterInfo, adapters};
 pub use camera::{Camera, Mount};
 pub use error::RenderError;
 pub use frame::Frame;
 pub use renderer::{Preset, RenderOptions, Renderer};
+pub use scenery::{FIRST_PARKED_INSTANCE, static_meshes};
 pub use tags::SemanticTag;

@@ -1,7 +1,14 @@
 //! The renderer: one map on one adapter.
 
+use kernel::map::LightHead;
 use kernel::{RoadNetwork, SceneSnapshot};
 
+use crate::actors::{Cast, Moving};
+use crate::blob::{self, BlobVertex};
+use crate::gpu::{Draws, Gpu, Passes, SceneUniform, Targets};
+use crate::light::{Light, ShadowBox};
+use crate::scenery::Scenery;
+use crate::view::View;
 use crate::{AdapterChoice, AdapterInfo, Camera, Frame, RenderError};
 
 /// How much to draw. Classes, instances and depth are the same in both.
@@ -25,22 +32,114 @@ pub struct RenderOptions {
     pub preset: Preset,
 }
 
+/// What a preset stands for.
+#[derive(Clone, Copy)]
+struct Quality {
+    /// Samples a pixel along each axis; odd, so that one lies in the pixel's middle.
+    samples: u32,
+    shadow_side: u32,
+    shadow_taps: u32,
+    shadow_reach_m: f32,
+    moving_shadows: bool,
+}
+
+const CHEAP: Quality =
+    Quality { samples: 1, shadow_side: 1024, shadow_taps: 1, shadow_reach_m: 64.0, moving_shadows: false };
+const FULL: Quality =
+    Quality { samples: 3, shadow_side: 4096, shadow_taps: 3, shadow_reach_m: 128.0, moving_shadows: true };
+
 /// Draws one map on one adapter.
-pub struct Renderer {}
+pub struct Renderer {
+    gpu: Gpu,
+    passes: Passes,
+    quality: Quality,
+    scenery: Scenery,
+    heads: Vec<LightHead>,
+    light_groups: usize,
+    cast: Cast,
+    moving: Moving,
+    blobs: Vec<BlobVertex>,
+    targets: Option<Targets>,
+    /// What the shadow map shows.
+    shadowed: Option<ShadowBox>,
+}
 
 impl Renderer {
     /// Builds the map's static world on an adapter.
-    pub fn new(_network: &RoadNetwork, _options: &RenderOptions) -> Result<Self, RenderError> {
-        todo!()
+    pub fn new(network: &RoadNetwork, options: &RenderOptions) -> Result<Self, RenderError> {
+        let gpu = Gpu::open(&options.adapter)?;
+        let full = options.preset == Preset::Full || options.preset == Preset::Auto && !gpu.info.is_cpu;
+        let quality = if full { FULL } else { CHEAP };
+        let scenery = Scenery::new(network);
+        let Quality { shadow_side, shadow_taps, samples, .. } = quality;
+        let passes = Passes::new(&gpu, &scenery.vertices, shadow_side, shadow_taps, samples);
+        if let Some(reason) = gpu.failure() {
+            return Err(RenderError::Device { adapter: gpu.info.name.clone(), reason });
+        }
+        Ok(Self {
+            gpu,
+            passes,
+            quality,
+            scenery,
+            heads: network.light_heads.clone(),
+            light_groups: network.light_groups.len(),
+            cast: Cast::default(),
+            moving: Moving::default(),
+            blobs: Vec::new(),
+            targets: None,
+            shadowed: None,
+        })
     }
 
     /// Draws a snapshot and reads all planes back.
-    pub fn draw(&mut self, _scene: &SceneSnapshot, _camera: &Camera) -> Result<Frame, RenderError> {
-        todo!()
+    pub fn draw(&mut self, scene: &SceneSnapshot, camera: &Camera) -> Result<Frame, RenderError> {
+        self.check(scene, camera)?;
+        let view = View::new(camera, &scene.ego);
+        let light = Light::new(&scene.weather);
+        self.cast.pose(scene, &self.heads, &view, &mut self.moving);
+        self.blobs.clear();
+        if !self.quality.moving_shadows {
+            for (frame, size) in &self.moving.shadows {
+                blob::append(&mut self.blobs, frame, *size, light.sun);
+            }
+        }
+        let shadow = ShadowBox::ahead_of(view.eye, view.ahead, light.sun, self.quality.shadow_reach_m);
+        let stale = self.quality.moving_shadows || self.shadowed != Some(shadow);
+        let texel = 1.0 / self.quality.shadow_side as f32;
+        let draws = Draws {
+            uniform: SceneUniform::new(&view, scene, &light, shadow.matrix(), texel),
+            moving_vertices: &self.moving.vertices,
+            moving_indices: &self.moving.indices,
+            fixed_indices: self.scenery.visible(&view),
+            casters: stale.then(|| self.scenery.near_line(shadow.centre, light.sun, 1.42 * shadow.reach_m)),
+            moving_casts: self.quality.moving_shadows,
+            blobs: &self.blobs,
+        };
+        let (width, height) = (camera.width, camera.height);
+        let fits = |t: &Targets| t.width == width && t.height == height;
+        let targets = match self.targets.take() {
+            Some(targets) if fits(&targets) => targets,
+            _ => Targets::new(&self.gpu, width, height, self.quality.samples),
+        };
+        self.passes.submit(&self.gpu, &draws, &targets);
+        self.shadowed = Some(shadow);
+        self.targets.insert(targets).read(&self.gpu, scene.tick)
+    }
+
+    fn check(&self, scene: &SceneSnapshot, camera: &Camera) -> Result<(), RenderError> {
+        let limit = self.gpu.longest_side() / self.quality.samples;
+        let Camera { width, height, .. } = *camera;
+        if width == 0 || height == 0 || width.max(height) > limit {
+            return Err(RenderError::ImageSize { width, height, limit });
+        }
+        if scene.lights.len() != self.light_groups {
+            return Err(RenderError::OtherMap { expected: self.light_groups, got: scene.lights.len() });
+        }
+        Ok(())
     }
 
     /// The adapter it draws with.
     pub fn adapter(&self) -> &AdapterInfo {
-        todo!()
+        &self.gpu.info
     }
 }

@@ -1,0 +1,130 @@
+//! The moving world: actors, the ego car and signal heads, posed and merged for one frame.
+
+use std::collections::BTreeMap;
+
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+use kernel::map::LightHead;
+use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot};
+use kernel::signals::LightPhase;
+
+use crate::camera::EGO_MIDDLE_M;
+use crate::mesh::model::{self, Detail, Model};
+use crate::mesh::{CODE_BRAKE, CODE_LIT, FINISHES, Finish, Mesh, Vertex, signal};
+use crate::view::View;
+
+/// Instance of the ego car.
+pub const EGO_INSTANCE: u16 = u16::MAX;
+
+/// Actors smaller than this many pixels are left out.
+const SMALLEST_PX: f32 = 0.7;
+
+/// A coarse model serves when it differs by less than this many pixels.
+const COARSE_ERROR_PX: f32 = 0.5;
+
+/// All that moves, as one mesh, and what its shadows need.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Moving {
+    pub(crate) vertices: Vec<Vertex>,
+    pub(crate) indices: Vec<u32>,
+    /// Boxes of actors that throw a shadow: their frame and size.
+    pub(crate) shadows: Vec<(Affine3A, Vec3)>,
+}
+
+/// The models that have been needed so far.
+#[derive(Default)]
+pub(crate) struct Cast {
+    models: BTreeMap<(ActorKind, u32, Detail), Model>,
+    heads: BTreeMap<(LightPhase, Detail), Mesh>,
+}
+
+impl Cast {
+    /// Poses what a view sees, nearest first.
+    pub(crate) fn pose(&mut self, scene: &SceneSnapshot, heads: &[LightHead], view: &View, moving: &mut Moving) {
+        moving.vertices.clear();
+        moving.indices.clear();
+        moving.shadows.clear();
+        self.pose_ego(&scene.ego, view, moving);
+        let mut seen: Vec<(f32, &ActorScene)> =
+            scene.actors.iter().map(|a| (a.position.distance_squared(view.eye), a)).collect();
+        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, actor) in seen {
+            self.pose_actor(actor, view, moving);
+        }
+        for head in heads {
+            self.pose_head(head, scene.lights[head.group as usize], view, moving);
+        }
+    }
+
+    fn pose_ego(&mut self, ego: &EgoScene, view: &View, moving: &mut Moving) {
+        let frame =
+            Affine3A::from_rotation_translation(ego.rotation, ego.position + ego.rotation * Vec3::X * EGO_MIDDLE_M);
+        let size = ActorKind::Car.size_m();
+        moving.shadows.push((frame, size));
+        if view.sees(frame.translation.into(), size.length()) {
+            moving.append(model::ego(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, false);
+        }
+    }
+
+    fn pose_actor(&mut self, actor: &ActorScene, view: &View, moving: &mut Moving) {
+        let size = actor.kind.size_m();
+        let centre = actor.position + Vec3::Z * 0.5 * size.z;
+        // Limbs and bars may reach beyond the box.
+        let radius = 0.5 * size.length() + 0.4;
+        let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
+        let pixels = view.pixels(2.0 * radius, centre, radius);
+        if pixels > 4.0 && view.sees(centre, radius + 6.0) {
+            moving.shadows.push((frame, size));
+        }
+        if pixels < SMALLEST_PX || !view.sees(centre, radius) {
+            return;
+        }
+        let detail = detail(view, centre, radius);
+        let model = self
+            .models
+            .entry((actor.kind, actor.variant, detail))
+            .or_insert_with(|| model::actor(actor.kind, actor.variant, detail));
+        let instance = actor.id.min(u32::from(crate::scenery::FIRST_PARKED_INSTANCE) - 1) as u16;
+        moving.append(model, frame, [actor.phase_rad, actor.speed_mps], instance, actor.braking);
+    }
+
+    fn pose_head(&mut self, head: &LightHead, phase: LightPhase, view: &View, moving: &mut Moving) {
+        let centre = head.position + Vec3::Z * head.height_m;
+        if !view.sees(centre, 1.0) || view.pixels(1.0, centre, 0.0) < SMALLEST_PX {
+            return;
+        }
+        let detail = detail(view, centre, 1.0);
+        let mesh = self.heads.entry((phase, detail)).or_insert_with(|| signal::head(phase, detail));
+        let frame = Affine3A::from_rotation_translation(glam::Quat::from_rotation_z(head.facing_rad), centre);
+        moving.append_mesh(mesh, frame, 0, false);
+    }
+}
+
+fn detail(view: &View, centre: Vec3, radius: f32) -> Detail {
+    let error_px = view.pixels(Detail::Coarse.error_m(), centre, radius);
+    if error_px < COARSE_ERROR_PX { Detail::Coarse } else { Detail::Fine }
+}
+
+impl Moving {
+    fn append(&mut self, model: &Model, frame: Affine3A, [phase, speed]: [f32; 2], instance: u16, braking: bool) {
+        for (part, pose) in model.parts.iter().zip(model.pose(phase, speed)) {
+            self.append_mesh(&part.mesh, frame * pose, instance, braking);
+        }
+    }
+
+    fn append_mesh(&mut self, mesh: &Mesh, frame: Affine3A, instance: u16, braking: bool) {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(mesh.vertices.iter().map(|v| posed(v, &frame, instance, braking)));
+        let plain = &mesh.triangles[Finish::Plain as usize];
+        debug_assert!(mesh.triangles.iter().map(Vec::len).sum::<usize>() == plain.len() && FINISHES > 0);
+        self.indices.extend(plain.iter().flatten().map(|i| i + first));
+    }
+}
+
+fn posed(v: &Vertex, frame: &Affine3A, instance: u16, braking: bool) -> Vertex {
+    let position = frame.transform_point3a(Vec3A::from_array(v.position)).to_array();
+    let turn: Mat3A = frame.matrix3;
+    let n = (turn * Vec3A::from_array(v.normal.map(f32::from))).round();
+    let lit = braking && v.code == CODE_BRAKE;
+    let (code, colour) = if lit { (CODE_LIT, [255, 44, 36]) } else { (v.code, v.colour) };
+    Vertex { position, normal: [n.x as i8, n.y as i8, n.z as i8], instance, code, colour, ..*v }
+}

@@ -1,0 +1,102 @@
+//! Buffers that are written each frame.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
+use kernel::SceneSnapshot;
+use kernel::time::TICK_S;
+
+use super::Gpu;
+use crate::light::Light;
+use crate::view::View;
+use crate::wind;
+
+/// The uniform block of `scene.wgsl`.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SceneUniform {
+    eye: [f32; 3],
+    wind_phase: f32,
+    right: [f32; 3],
+    wind_m: f32,
+    up: [f32; 3],
+    cloudiness: f32,
+    ahead: [f32; 3],
+    exposure: f32,
+    sun: [f32; 3],
+    shadow_texel: f32,
+    sun_light: [f32; 3],
+    sky_drift_x: f32,
+    sky_light: [f32; 3],
+    sky_drift_y: f32,
+    ground_light: [f32; 3],
+    pad0: f32,
+    horizon: [f32; 3],
+    pad1: f32,
+    zenith: [f32; 3],
+    pad2: f32,
+    shadow: [[f32; 4]; 4],
+}
+
+/// Clouds drift by this share of their pattern a second in a storm.
+const DRIFT_PER_S: f32 = 0.05;
+
+impl SceneUniform {
+    pub(crate) fn new(view: &View, scene: &SceneSnapshot, light: &Light, shadow: Mat4, shadow_texel: f32) -> Self {
+        let weather = &scene.weather;
+        // The pattern repeats every 100 units (noise scales 0.05 and 0.21), so it may wrap there.
+        let drift = f64::from(DRIFT_PER_S * 0.01 * weather.wind_pct * TICK_S) * scene.tick as f64 % 100.0;
+        let drift = wind::DIRECTION * -(drift as f32);
+        Self {
+            eye: view.eye.to_array(),
+            wind_phase: wind::phase_rad(scene.tick),
+            right: (view.right / view.tan_x).to_array(),
+            wind_m: wind::strength_m(weather),
+            up: (view.up / view.tan_y).to_array(),
+            cloudiness: 0.01 * weather.cloudiness_pct,
+            ahead: view.ahead.to_array(),
+            exposure: light.exposure,
+            sun: light.sun.to_array(),
+            shadow_texel,
+            sun_light: light.sun_light.to_array(),
+            sky_drift_x: drift.x,
+            sky_light: light.sky_light.to_array(),
+            sky_drift_y: drift.y,
+            ground_light: light.ground_light.to_array(),
+            pad0: 0.0,
+            horizon: light.horizon.to_array(),
+            pad1: 0.0,
+            zenith: light.zenith.to_array(),
+            pad2: 0.0,
+            shadow: shadow.to_cols_array_2d(),
+        }
+    }
+}
+
+/// A buffer that is made anew, twice as large, when its content outgrows it.
+pub(crate) struct GrowingBuffer {
+    pub(crate) buffer: wgpu::Buffer,
+    usage: wgpu::BufferUsages,
+}
+
+impl GrowingBuffer {
+    pub(crate) fn new(gpu: &Gpu, usage: wgpu::BufferUsages) -> Self {
+        Self { buffer: make(gpu, usage, 1 << 16), usage }
+    }
+
+    pub(crate) fn write<T: Pod>(&mut self, gpu: &Gpu, content: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(content);
+        if bytes.len() as u64 > self.buffer.size() {
+            self.buffer = make(gpu, self.usage, (bytes.len() as u64).next_power_of_two());
+        }
+        gpu.queue.write_buffer(&self.buffer, 0, bytes);
+    }
+}
+
+fn make(gpu: &Gpu, usage: wgpu::BufferUsages, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}

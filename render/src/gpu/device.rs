@@ -1,0 +1,42 @@
+//! The device and what went wrong on it.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::{AdapterChoice, AdapterInfo, RenderError};
+
+/// An open device.
+pub(crate) struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) info: AdapterInfo,
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    pub(crate) fn open(choice: &AdapterChoice) -> Result<Self, RenderError> {
+        let (adapter, info) = choice.open()?;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("a-eye"),
+            required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| RenderError::Device { adapter: info.name.clone(), reason: e.to_string() })?;
+        let failure = Arc::new(Mutex::new(None));
+        let kept = failure.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            kept.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.to_string());
+        }));
+        Ok(Self { device, queue, info, failure })
+    }
+
+    /// The first error since the last call.
+    pub(crate) fn failure(&self) -> Option<String> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Longest side of an image, pixels.
+    pub(crate) fn longest_side(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+}

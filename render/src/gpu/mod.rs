@@ -1,0 +1,15 @@
+//! Everything that speaks to the graphics adapter.
+
+mod buffers;
+mod device;
+mod passes;
+mod pipelines;
+mod readback;
+mod shaders;
+mod targets;
+mod textures;
+
+pub(crate) use buffers::{GrowingBuffer, SceneUniform};
+pub(crate) use device::Gpu;
+pub(crate) use passes::{Draws, Passes};
+pub(crate) use targets::Targets;

@@ -1,0 +1,173 @@
+//! The commands of a frame.
+
+use std::ops::Range;
+
+use super::pipelines::{Layouts, Pipelines};
+use super::{Gpu, GrowingBuffer, SceneUniform, Targets, readback, textures};
+use crate::blob::BlobVertex;
+use crate::mesh::{FINISHES, Finish, Vertex};
+
+/// What a frame draws.
+pub(crate) struct Draws<'a> {
+    pub(crate) uniform: SceneUniform,
+    pub(crate) moving_vertices: &'a [Vertex],
+    pub(crate) moving_indices: &'a [u32],
+    /// Indices of the static world for each finish.
+    pub(crate) fixed_indices: [Vec<u32>; FINISHES],
+    /// Indices of the static world to draw the shadow map with; `None` keeps the map as it is.
+    pub(crate) casters: Option<Vec<u32>>,
+    /// Whether moving things are in the shadow map too.
+    pub(crate) moving_casts: bool,
+    pub(crate) blobs: &'a [BlobVertex],
+}
+
+/// Pipelines and the buffers they read.
+pub(crate) struct Passes {
+    pipelines: Pipelines,
+    uniform: wgpu::Buffer,
+    scene_group: wgpu::BindGroup,
+    shadow_view: wgpu::TextureView,
+    shadow_group: wgpu::BindGroup,
+    fixed: wgpu::Buffer,
+    moving: GrowingBuffer,
+    blobs: GrowingBuffer,
+    indices: GrowingBuffer,
+    resolve: Option<readback::Resolve>,
+}
+
+fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, r)| wgpu::BindGroupEntry { binding, resource: r.clone() }).collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+impl Passes {
+    pub(crate) fn new(gpu: &Gpu, fixed: &[Vertex], shadow_side: u32, shadow_taps: u32, samples: u32) -> Self {
+        use wgpu::{BindingResource as R, BufferUsages as U};
+        let layouts = Layouts::new(gpu);
+        let buffer = |size: usize, usage: U| {
+            let usage = usage | U::COPY_DST;
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: size as u64,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
+        let vertices = buffer(size_of_val(fixed).max(size_of::<Vertex>()), U::VERTEX);
+        gpu.queue.write_buffer(&vertices, 0, bytemuck::cast_slice(fixed));
+        let (noise, noise_sampler) = (textures::noise_view(gpu), textures::noise_sampler(gpu));
+        let (shadow_view, shadow_sampler) = (textures::shadow_view(gpu, shadow_side), textures::shadow_sampler(gpu));
+        let scene = [uniform.as_entire_binding(), R::TextureView(&noise), R::Sampler(&noise_sampler)];
+        Self {
+            pipelines: Pipelines::new(gpu, &layouts, shadow_taps),
+            scene_group: bind(gpu, &layouts.scene, &scene),
+            shadow_group: bind(gpu, &layouts.shadow, &[R::TextureView(&shadow_view), R::Sampler(&shadow_sampler)]),
+            uniform,
+            shadow_view,
+            fixed: vertices,
+            moving: GrowingBuffer::new(gpu, U::VERTEX),
+            blobs: GrowingBuffer::new(gpu, U::VERTEX),
+            indices: GrowingBuffer::new(gpu, U::INDEX),
+            resolve: (samples > 1).then(|| readback::Resolve::new(gpu)),
+        }
+    }
+
+    /// Draws a frame and copies its planes to the read-back buffer.
+    pub(crate) fn submit(&mut self, gpu: &Gpu, draws: &Draws<'_>, targets: &Targets) {
+        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&draws.uniform));
+        self.moving.write(gpu, draws.moving_vertices);
+        self.blobs.write(gpu, draws.blobs);
+        let ranges = self.write_indices(gpu, draws);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        if draws.casters.is_some() {
+            self.shadow_pass(&mut encoder, &ranges, draws.moving_casts);
+        }
+        self.main_pass(&mut encoder, &ranges, draws.blobs.len() as u32, targets);
+        match &self.resolve {
+            Some(resolve) => resolve.record(gpu, &mut encoder, targets),
+            None => readback::copy(&mut encoder, targets),
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn write_indices(&mut self, gpu: &Gpu, draws: &Draws<'_>) -> Ranges {
+        let mut all = draws.moving_indices.to_vec();
+        let mut push = |list: &[u32]| {
+            let start = all.len() as u32;
+            all.extend_from_slice(list);
+            start..all.len() as u32
+        };
+        let fixed = core::array::from_fn(|finish| push(&draws.fixed_indices[finish]));
+        let casters = push(draws.casters.as_deref().unwrap_or_default());
+        self.indices.write(gpu, &all);
+        Ranges { moving: 0..draws.moving_indices.len() as u32, fixed, casters }
+    }
+
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, moving_casts: bool) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow"),
+            depth_stencil_attachment: Some(depth_attachment(&self.shadow_view, 1.0)),
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipelines.shadow);
+        pass.set_bind_group(0, &self.scene_group, &[]);
+        self.draw_mesh(&mut pass, &self.fixed, &ranges.casters);
+        if moving_casts {
+            self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
+        }
+    }
+
+    fn main_pass(&self, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, blobs: u32, targets: &Targets) {
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+        let (colour, ids, depth) = (view(&targets.colour), view(&targets.ids), view(&targets.depth));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("main"),
+            color_attachments: &[Some(colour_attachment(&colour)), Some(colour_attachment(&ids))],
+            depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.scene_group, &[]);
+        pass.set_bind_group(1, &self.shadow_group, &[]);
+        // Nearest and most covering first: hidden fragments are cheap.
+        pass.set_pipeline(&self.pipelines.world[Finish::Plain as usize]);
+        self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
+        for finish in [Finish::Facade, Finish::Plain, Finish::Grainy] {
+            pass.set_pipeline(&self.pipelines.world[finish as usize]);
+            self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
+        }
+        if blobs > 0 {
+            pass.set_pipeline(&self.pipelines.blob);
+            pass.set_vertex_buffer(0, self.blobs.buffer.slice(..));
+            pass.draw(0..blobs, 0..1);
+        }
+        pass.set_pipeline(&self.pipelines.sky);
+        pass.draw(0..3, 0..1);
+    }
+
+    fn draw_mesh(&self, pass: &mut wgpu::RenderPass<'_>, vertices: &wgpu::Buffer, range: &Range<u32>) {
+        if !range.is_empty() {
+            pass.set_vertex_buffer(0, vertices.slice(..));
+            pass.set_index_buffer(self.indices.buffer.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(range.clone(), 0, 0..1);
+        }
+    }
+}
+
+/// Where each list lies in the index buffer.
+struct Ranges {
+    moving: Range<u32>,
+    fixed: [Range<u32>; FINISHES],
+    casters: Range<u32>,
+}
+
+fn colour_attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+}
+
+fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
+}

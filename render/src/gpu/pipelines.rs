@@ -1,0 +1,208 @@
+//! The pipelines of a frame.
+
+use super::targets::{COLOUR, DEPTH, IDS};
+use super::{Gpu, shaders};
+use crate::SemanticTag;
+use crate::mesh::{FINISHES, Vertex};
+
+/// Bind group layouts that the pipelines share.
+pub(super) struct Layouts {
+    /// Scene uniform, noise and its sampler.
+    pub(super) scene: wgpu::BindGroupLayout,
+    /// Shadow map and its sampler.
+    pub(super) shadow: wgpu::BindGroupLayout,
+}
+
+/// The pipelines of a frame.
+pub(super) struct Pipelines {
+    /// One for each [`crate::mesh::Finish`].
+    pub(super) world: [wgpu::RenderPipeline; FINISHES],
+    pub(super) sky: wgpu::RenderPipeline,
+    pub(super) blob: wgpu::RenderPipeline,
+    pub(super) shadow: wgpu::RenderPipeline,
+}
+
+impl Layouts {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        use wgpu::{BindingType as T, SamplerBindingType as S, TextureSampleType as K};
+        let uniform =
+            T::Buffer { ty: wgpu::BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
+        let texture = |sample_type| T::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let noise = texture(K::Float { filterable: true });
+        Self {
+            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering)]),
+            shadow: layout(gpu, &[texture(K::Depth), T::Sampler(S::Comparison)]),
+        }
+    }
+}
+
+fn layout(gpu: &Gpu, types: &[wgpu::BindingType]) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty,
+            count: None,
+        })
+        .collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+}
+
+/// What sets one pipeline apart from another.
+struct Recipe<'a> {
+    module: &'a wgpu::ShaderModule,
+    layout: &'a wgpu::PipelineLayout,
+    vertex: &'a str,
+    fragment: Option<&'a str>,
+    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    targets: &'a [Option<wgpu::ColorTargetState>],
+    constants: &'a [(&'a str, f64)],
+    cull: bool,
+    depth_write: bool,
+    depth_compare: wgpu::CompareFunction,
+    bias: wgpu::DepthBiasState,
+}
+
+impl Recipe<'_> {
+    fn make(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+        let compilation_options = wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
+        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.vertex),
+            layout: Some(self.layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some(self.vertex),
+                compilation_options: compilation_options.clone(),
+                buffers: self.buffers,
+            },
+            primitive: wgpu::PrimitiveState { cull_mode: self.cull.then_some(wgpu::Face::Back), ..Default::default() },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(self.depth_write),
+                depth_compare: Some(self.depth_compare),
+                stencil: Default::default(),
+                bias: self.bias,
+            }),
+            multisample: Default::default(),
+            fragment: self.fragment.map(|entry| wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(entry),
+                compilation_options,
+                targets: self.targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+impl Pipelines {
+    /// `shadow_taps`: samples of the shadow map along each axis.
+    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, shadow_taps: u32) -> Self {
+        let module = |name: &str| {
+            let text = shaders::source(name).unwrap_or_default();
+            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("shader"),
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            })
+        };
+        let layout = |groups: &[Option<&wgpu::BindGroupLayout>]| {
+            gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: None,
+                bind_group_layouts: groups,
+                immediate_size: 0,
+            })
+        };
+        let (scene_only, with_shadow) =
+            (layout(&[Some(&layouts.scene)]), layout(&[Some(&layouts.scene), Some(&layouts.shadow)]));
+        let (world, sky, blob, shadow) = (module("world"), module("sky"), module("blob"), module("shadow"));
+        let opaque = [Some(COLOUR.into()), Some(IDS.into())];
+        let base = Recipe {
+            module: &world,
+            layout: &with_shadow,
+            vertex: "vertex",
+            fragment: None,
+            buffers: &[Some(world_vertices())],
+            targets: &opaque,
+            constants: &[("SHADOW_TAPS", f64::from(shadow_taps))],
+            cull: true,
+            depth_write: true,
+            depth_compare: wgpu::CompareFunction::Greater,
+            bias: Default::default(),
+        };
+        let finishes =
+            [("vertex_plain", "fragment_plain"), ("vertex", "fragment_grainy"), ("vertex", "fragment_facade")];
+        Self {
+            world: finishes.map(|(vertex, fragment)| Recipe { vertex, fragment: Some(fragment), ..base }.make(gpu)),
+            sky: Recipe {
+                module: &sky,
+                layout: &scene_only,
+                fragment: Some("fragment"),
+                buffers: &[],
+                constants: &[("SKY_TAG", f64::from(SemanticTag::Sky as u8))],
+                depth_write: false,
+                depth_compare: wgpu::CompareFunction::Equal,
+                ..base
+            }
+            .make(gpu),
+            blob: Recipe {
+                module: &blob,
+                layout: &scene_only,
+                fragment: Some("fragment"),
+                buffers: &[Some(blob_vertices())],
+                targets: &[Some(darkening()), Some(untouched())],
+                constants: &[],
+                cull: false,
+                depth_write: false,
+                ..base
+            }
+            .make(gpu),
+            shadow: Recipe {
+                module: &shadow,
+                layout: &scene_only,
+                targets: &[],
+                constants: &[],
+                cull: false,
+                depth_compare: wgpu::CompareFunction::Less,
+                bias: wgpu::DepthBiasState { constant: 1, slope_scale: 2.0, clamp: 0.0 },
+                ..base
+            }
+            .make(gpu),
+        }
+    }
+}
+
+fn world_vertices() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 5] =
+        wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm8x4, 2 => Unorm8x4, 3 => Uint32, 4 => Float32x2];
+    wgpu::VertexBufferLayout {
+        array_stride: size_of::<Vertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &ATTRIBUTES,
+    }
+}
+
+fn blob_vertices() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32];
+    wgpu::VertexBufferLayout { array_stride: 16, step_mode: wgpu::VertexStepMode::Vertex, attributes: &ATTRIBUTES }
+}
+
+/// What is there, times one minus alpha.
+fn darkening() -> wgpu::ColorTargetState {
+    let component = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::Zero,
+        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let blend = Some(wgpu::BlendState { color: component, alpha: component });
+    wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::COLOR }
+}
+
+fn untouched() -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState { format: IDS, blend: None, write_mask: wgpu::ColorWrites::empty() }
+}

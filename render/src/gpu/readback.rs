@@ -1,0 +1,135 @@
+//! From targets to a [`Frame`].
+
+use kernel::time::Tick;
+
+use super::{Gpu, Targets, shaders};
+use crate::{Frame, RenderError, SemanticTag};
+
+/// Distance at which depth is 1, metres; as in `scene.wgsl`.
+const NEAR_M: f32 = 0.1;
+
+/// Copies the targets as they are.
+pub(super) fn copy(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
+    for (plane, texture) in (0..).zip([&targets.colour, &targets.ids, &targets.depth]) {
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: plane * targets.plane_bytes(),
+            bytes_per_row: Some(targets.stride_bytes()),
+            rows_per_image: None,
+        };
+        let buffer = wgpu::TexelCopyBufferInfo { buffer: &targets.readback, layout };
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), buffer, texture.size());
+    }
+}
+
+/// Brings several samples a pixel down to one.
+pub(super) struct Resolve {
+    module: wgpu::ShaderModule,
+}
+
+impl Resolve {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let text = shaders::source("resolve").unwrap_or_default();
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("resolve"),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
+        });
+        Self { module }
+    }
+
+    pub(super) fn record(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
+        let constants = [("STRIDE", f64::from(targets.stride_bytes() / 4))];
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("resolve"),
+            layout: None,
+            module: &self.module,
+            entry_point: Some("resolve"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            cache: None,
+        });
+        let planes = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("planes"),
+            size: 3 * targets.plane_bytes(),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let views = [&targets.colour, &targets.ids, &targets.depth].map(|t| t.create_view(&Default::default()));
+        let size = std::num::NonZeroU64::new(targets.plane_bytes());
+        let entries: Vec<_> = (0u32..6)
+            .map(|binding| {
+                let resource = if binding < 3 {
+                    wgpu::BindingResource::TextureView(&views[binding as usize])
+                } else {
+                    let offset = u64::from(binding - 3) * targets.plane_bytes();
+                    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &planes, offset, size })
+                };
+                wgpu::BindGroupEntry { binding, resource }
+            })
+            .collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(targets.width.div_ceil(8), targets.height.div_ceil(8), 1);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(&planes, 0, &targets.readback, 0, 3 * targets.plane_bytes());
+    }
+}
+
+impl Targets {
+    /// Waits for the frame that was submitted last and reads it.
+    pub(crate) fn read(&self, gpu: &Gpu, tick: Tick) -> Result<Frame, RenderError> {
+        let failed = |reason: String| RenderError::Readback { tick, reason };
+        self.readback.map_async(wgpu::MapMode::Read, .., |_| ());
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| failed(e.to_string()))?;
+        if let Some(reason) = gpu.failure() {
+            return Err(failed(reason));
+        }
+        let bytes = self.readback.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
+        let frame = self.frame(tick, &bytes);
+        drop(bytes);
+        self.readback.unmap();
+        Ok(frame)
+    }
+
+    fn frame(&self, tick: Tick, bytes: &[u8]) -> Frame {
+        let pixels = (self.width * self.height) as usize;
+        let mut frame = Frame { tick, width: self.width, height: self.height, ..Default::default() };
+        frame.rgb.reserve_exact(3 * pixels);
+        frame.class_ids.reserve_exact(pixels);
+        frame.fine_ids.reserve_exact(pixels);
+        frame.instance_ids.reserve_exact(pixels);
+        frame.depth_m.reserve_exact(pixels);
+        let coarse = coarse_table();
+        for row in self.rows(bytes, 0) {
+            frame.rgb.extend(row.as_chunks::<4>().0.iter().flat_map(|&[r, g, b, _]| [r, g, b]));
+        }
+        for row in self.rows(bytes, 1) {
+            let ids = row.as_chunks::<4>().0;
+            frame.fine_ids.extend(ids.iter().map(|&[tag, ..]| tag));
+            frame.class_ids.extend(ids.iter().map(|&[tag, ..]| coarse[tag as usize]));
+            frame.instance_ids.extend(ids.iter().map(|&[_, _, low, high]| u16::from_le_bytes([low, high])));
+        }
+        for row in self.rows(bytes, 2) {
+            frame.depth_m.extend(row.as_chunks::<4>().0.iter().map(|&depth| NEAR_M / f32::from_le_bytes(depth)));
+        }
+        frame
+    }
+
+    fn rows<'a>(&self, bytes: &'a [u8], plane: usize) -> impl Iterator<Item = &'a [u8]> {
+        let (size, width) = (self.plane_bytes() as usize, 4 * self.width as usize);
+        bytes[plane * size..][..size].chunks_exact(self.stride_bytes() as usize).map(move |row| &row[..width])
+    }
+}
+
+/// CARLA's tag for each fine tag.
+fn coarse_table() -> [u8; 256] {
+    let mut table = [0; 256];
+    for &tag in SemanticTag::ALL {
+        table[tag as usize] = tag.coarse() as u8;
+    }
+    table
+}

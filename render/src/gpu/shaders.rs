@@ -1,0 +1,41 @@
+//! The shader sources.
+
+/// Declarations that all shaders of a frame start with.
+const SCENE: &str = include_str!("../shaders/scene.wgsl");
+
+/// The shaders with their names, without the common start.
+const SOURCES: [(&str, &str); 4] = [
+    ("world", include_str!("../shaders/world.wgsl")),
+    ("sky", include_str!("../shaders/sky.wgsl")),
+    ("shadow", include_str!("../shaders/shadow.wgsl")),
+    ("blob", include_str!("../shaders/blob.wgsl")),
+];
+
+/// The only shader that does not need the scene.
+const RESOLVE: &str = include_str!("../shaders/resolve.wgsl");
+
+/// The whole text of a shader; `None` for a name that is none.
+pub(super) fn source(name: &str) -> Option<String> {
+    if name == "resolve" {
+        return Some(RESOLVE.into());
+    }
+    let (_, own) = SOURCES.iter().find(|(n, _)| *n == name)?;
+    Some(format!("{SCENE}{own}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+    use super::*;
+
+    #[test]
+    fn every_shader_is_valid() {
+        for name in SOURCES.iter().map(|(name, _)| *name).chain(["resolve"]) {
+            let text = source(name).unwrap();
+            let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&text)));
+            let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+            validator.validate(&module).unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&text)));
+        }
+    }
+}

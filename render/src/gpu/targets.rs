@@ -1,0 +1,66 @@
+//! The textures a frame is drawn to and the buffer it is read back from, for one image size.
+
+use super::Gpu;
+
+/// Formats of the colour, id and depth targets.
+pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub(super) const IDS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Targets of one image size. All three planes take four bytes a pixel.
+pub(crate) struct Targets {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// Samples a pixel along each axis.
+    pub(super) samples: u32,
+    pub(super) colour: wgpu::Texture,
+    pub(super) ids: wgpu::Texture,
+    pub(super) depth: wgpu::Texture,
+    /// Three planes, one after the other, that the processor can read.
+    pub(super) readback: wgpu::Buffer,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32, samples: u32) -> Self {
+        let texture = |format: wgpu::TextureFormat| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width: width * samples, height: height * samples, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::COPY_SRC
+                    | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+        };
+        let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("readback"),
+            size: 3 * plane_bytes(width, height),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let (colour, ids, depth) = (texture(COLOUR), texture(IDS), texture(DEPTH));
+        Self { width, height, samples, colour, ids, depth, readback }
+    }
+
+    /// Bytes a row takes in the read-back buffer.
+    pub(super) fn stride_bytes(&self) -> u32 {
+        stride_bytes(self.width)
+    }
+
+    /// Bytes a plane takes in the read-back buffer.
+    pub(super) fn plane_bytes(&self) -> u64 {
+        plane_bytes(self.width, self.height)
+    }
+}
+
+fn stride_bytes(width: u32) -> u32 {
+    (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+}
+
+fn plane_bytes(width: u32, height: u32) -> u64 {
+    u64::from(stride_bytes(width)) * u64::from(height)
+}

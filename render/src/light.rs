@@ -1,0 +1,105 @@
+//! Sun and sky from the weather, and the matrix that the shadow map is drawn with.
+
+use glam::{Mat4, Vec3};
+use kernel::ops;
+use kernel::scene::Weather;
+
+/// Light of a scene, linear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Light {
+    /// Towards the sun.
+    pub(crate) sun: Vec3,
+    pub(crate) sun_light: Vec3,
+    pub(crate) sky_light: Vec3,
+    pub(crate) ground_light: Vec3,
+    pub(crate) horizon: Vec3,
+    pub(crate) zenith: Vec3,
+    pub(crate) exposure: f32,
+}
+
+impl Light {
+    pub(crate) fn new(weather: &Weather) -> Self {
+        let (altitude, azimuth) = (weather.sun_altitude_deg.to_radians(), weather.sun_azimuth_deg.to_radians());
+        let flat = ops::cos(altitude);
+        let sun = Vec3::new(flat * ops::cos(azimuth), flat * ops::sin(azimuth), ops::sin(altitude));
+        let day = smooth(-0.12, 0.25, sun.z);
+        let warm = 1.0 - smooth(0.05, 0.55, sun.z);
+        let clouds = 0.01 * weather.cloudiness_pct;
+        let white = Vec3::new(1.0, 0.95, 0.87).lerp(Vec3::new(1.0, 0.68, 0.4), warm);
+        let grey = Vec3::new(0.62, 0.66, 0.72);
+        let zenith = Vec3::new(0.14, 0.32, 0.72).lerp(grey, 0.35 * clouds) * day + Vec3::new(0.006, 0.008, 0.018);
+        let haze = Vec3::new(0.62, 0.78, 0.98).lerp(Vec3::new(0.95, 0.72, 0.5), 0.6 * warm);
+        Self {
+            sun,
+            sun_light: white * (2.5 * smooth(-0.02, 0.2, sun.z) * (1.0 - 0.45 * clouds)),
+            sky_light: Vec3::new(0.5, 0.6, 0.78).lerp(grey, 0.5 * clouds) * (day * (0.95 + 0.3 * clouds))
+                + Vec3::splat(0.02),
+            ground_light: Vec3::new(0.36, 0.34, 0.31) * day + Vec3::splat(0.015),
+            horizon: haze.lerp(grey, 0.3 * clouds) * (0.95 * day) + Vec3::splat(0.015),
+            zenith,
+            exposure: 0.62,
+        }
+    }
+}
+
+fn smooth(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The square of the world that a shadow map covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ShadowBox {
+    pub(crate) centre: Vec3,
+    pub(crate) sun: Vec3,
+    pub(crate) reach_m: f32,
+}
+
+/// Depth of the shadow map before and behind its centre, metres.
+const SHADOW_DEPTH_M: f32 = 400.0;
+
+impl ShadowBox {
+    /// A box ahead of a camera, on a grid so that it seldom changes.
+    pub(crate) fn ahead_of(eye: Vec3, ahead: Vec3, sun: Vec3, reach_m: f32) -> Self {
+        let step = 0.25 * reach_m;
+        let flat = Vec3::new(ahead.x, ahead.y, 0.0).normalize_or_zero();
+        let wanted = (eye + flat * (0.7 * reach_m)) / step;
+        let centre = Vec3::new(ops::round(wanted.x), ops::round(wanted.y), ops::round(wanted.z)) * step;
+        Self { centre, sun, reach_m }
+    }
+
+    /// From the world to uv (v down) and depth (0 nearest to the sun) of the map.
+    pub(crate) fn matrix(&self) -> Mat4 {
+        let side = if self.sun.z.abs() > 0.95 { Vec3::X } else { Vec3::Z };
+        let right = side.cross(self.sun).normalize();
+        let up = self.sun.cross(right);
+        let (u, v, w) = (right / (2.0 * self.reach_m), -up / (2.0 * self.reach_m), -self.sun / (2.0 * SHADOW_DEPTH_M));
+        let rows = Mat4::from_cols(u.extend(0.0), v.extend(0.0), w.extend(0.0), Vec3::ZERO.extend(1.0)).transpose();
+        Mat4::from_translation(Vec3::splat(0.5)) * rows * Mat4::from_translation(-self.centre)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sun_stands_where_the_weather_says() {
+        let weather = Weather { cloudiness_pct: 0.0, wind_pct: 0.0, sun_altitude_deg: 30.0, sun_azimuth_deg: 90.0 };
+        let light = Light::new(&weather);
+        assert!((light.sun - Vec3::new(0.0, 0.866, 0.5)).length() < 1e-3);
+        let night = Light::new(&Weather { sun_altitude_deg: -30.0, ..weather });
+        assert!(night.sun_light.length() < 1e-6 && night.sky_light.length() < 0.1);
+    }
+
+    #[test]
+    fn the_shadow_map_has_its_centre_in_the_middle_and_the_sun_side_first() {
+        for sun in [Vec3::new(0.0, 0.6, 0.8), Vec3::Z] {
+            let shadow = ShadowBox { centre: Vec3::new(10.0, 20.0, 0.0), sun, reach_m: 50.0 };
+            let at = |p: Vec3| shadow.matrix().project_point3(p);
+            assert!((at(shadow.centre) - 0.5).length() < 1e-6);
+            assert!(at(shadow.centre + sun * 10.0).z < 0.5);
+            assert!((at(shadow.centre + sun * 10.0) - at(shadow.centre)).truncate().length() < 1e-6);
+        }
+    }
+}

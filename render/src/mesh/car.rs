@@ -1,0 +1,223 @@
+//! Passenger cars of several shapes.
+
+use glam::Vec3;
+
+use super::model::Detail;
+use super::variety::Variety;
+use super::{CODE_BRAKE, Mesh, Paint};
+use crate::SemanticTag;
+
+const LACQUERS: [[u8; 3]; 12] = [
+    [232, 232, 230],
+    [38, 38, 42],
+    [128, 132, 138],
+    [178, 182, 186],
+    [40, 68, 128],
+    [150, 28, 30],
+    [66, 92, 74],
+    [205, 196, 172],
+    [24, 46, 72],
+    [198, 120, 34],
+    [90, 22, 34],
+    [110, 160, 190],
+];
+
+pub(super) const GLASS: [u8; 3] = [30, 38, 46];
+pub(super) const RUBBER: [u8; 3] = [26, 26, 28];
+pub(super) const RIM: [u8; 3] = [150, 152, 156];
+
+/// Side view of a car: points (x, z) in metres, the origin below its middle, all at rest height.
+struct Shape {
+    half_width: f32,
+    /// Upper edge of the body from the front bumper to the rear bumper.
+    belt: &'static [(f32, f32)],
+    /// Cabin: foot and top of the windscreen, top and foot of the rear window.
+    cabin: [(f32, f32); 4],
+    /// Axles' x.
+    axles: [f32; 2],
+    wheel_radius: f32,
+}
+
+const SHAPES: [Shape; 4] = [
+    // Hatchback.
+    Shape {
+        half_width: 0.88,
+        belt: &[(2.08, 0.48), (2.1, 0.62), (1.9, 0.78), (0.95, 0.95), (-1.7, 1.0), (-2.0, 0.92), (-2.05, 0.5)],
+        cabin: [(1.0, 0.94), (0.3, 1.44), (-1.45, 1.46), (-1.92, 0.98)],
+        axles: [1.3, -1.28],
+        wheel_radius: 0.31,
+    },
+    // Saloon.
+    Shape {
+        half_width: 0.9,
+        belt: &[
+            (2.22, 0.46),
+            (2.25, 0.62),
+            (2.05, 0.76),
+            (0.9, 0.94),
+            (-1.35, 0.98),
+            (-2.1, 0.95),
+            (-2.25, 0.82),
+            (-2.24, 0.5),
+        ],
+        cabin: [(0.95, 0.93), (0.2, 1.4), (-0.95, 1.42), (-1.65, 0.98)],
+        axles: [1.38, -1.36],
+        wheel_radius: 0.32,
+    },
+    // Estate.
+    Shape {
+        half_width: 0.9,
+        belt: &[(2.22, 0.46), (2.25, 0.64), (2.05, 0.78), (0.95, 0.96), (-2.0, 1.0), (-2.22, 0.9), (-2.24, 0.5)],
+        cabin: [(1.0, 0.95), (0.3, 1.44), (-1.75, 1.46), (-2.12, 1.0)],
+        axles: [1.38, -1.36],
+        wheel_radius: 0.32,
+    },
+    // Sport utility.
+    Shape {
+        half_width: 0.92,
+        belt: &[(2.16, 0.52), (2.2, 0.74), (2.05, 0.94), (0.95, 1.06), (-1.95, 1.1), (-2.18, 1.0), (-2.2, 0.56)],
+        cabin: [(0.98, 1.05), (0.42, 1.58), (-1.7, 1.6), (-2.05, 1.08)],
+        axles: [1.32, -1.32],
+        wheel_radius: 0.36,
+    },
+];
+
+/// Gap between the body and the ground.
+const CLEARANCE_M: f32 = 0.22;
+
+/// A car of class Vehicles.
+pub fn car(variant: u32, detail: Detail) -> Mesh {
+    let mut variety = Variety::of(variant);
+    let shape = &SHAPES[variety.bits() as usize % SHAPES.len()];
+    let lacquer = Paint::plain(SemanticTag::Vehicles, variety.colour(&LACQUERS)).glossy(110);
+    let mut mesh = Mesh::default();
+    body(&mut mesh, lacquer, shape);
+    cabin(&mut mesh, lacquer, shape, detail);
+    for x in shape.axles {
+        for side in [-1.0, 1.0] {
+            let hub = Vec3::new(x, side * (shape.half_width - 0.1), shape.wheel_radius);
+            wheel(&mut mesh, lacquer.tag, hub, side, shape.wheel_radius, detail);
+        }
+    }
+    lights(&mut mesh, shape);
+    if detail == Detail::Fine {
+        trim(&mut mesh, lacquer, shape);
+    }
+    mesh
+}
+
+/// Flanks, bonnet, boot and underside, with the upper edges bevelled.
+fn body(mesh: &mut Mesh, paint: Paint, shape: &Shape) {
+    let w = shape.half_width;
+    let inset = |z: f32| w - 0.10 * ((z - 0.6) / 0.4).clamp(0.0, 1.0);
+    let low = |x: f32, side: f32| Vec3::new(x, side * (w - 0.04), CLEARANCE_M);
+    let edge = |(x, z): (f32, f32), side: f32| Vec3::new(x, side * inset(z), z);
+    let waist = |(x, z): (f32, f32), side: f32| Vec3::new(x, side * w, (0.5 * (z + CLEARANCE_M)).min(0.6));
+    for pair in shape.belt.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        mesh.polygon(paint, &[edge(a, 1.0), edge(b, 1.0), edge(b, -1.0), edge(a, -1.0)]);
+        for (p, q, side) in [(a, b, 1.0), (b, a, -1.0)] {
+            mesh.polygon(paint, &[waist(p, side), waist(q, side), edge(q, side), edge(p, side)]);
+            mesh.polygon(paint.shaded(0.8), &[low(p.0, side), low(q.0, side), waist(q, side), waist(p, side)]);
+        }
+    }
+    let (front, rear) = (shape.belt[0], shape.belt[shape.belt.len() - 1]);
+    let dark = paint.shaded(0.45);
+    mesh.polygon(dark, &[low(front.0, -1.0), low(front.0, 1.0), edge(front, 1.0), edge(front, -1.0)]);
+    mesh.polygon(dark, &[low(rear.0, 1.0), low(rear.0, -1.0), edge(rear, -1.0), edge(rear, 1.0)]);
+    let shade = Paint::plain(paint.tag, [18, 18, 18]);
+    mesh.polygon(shade, &[low(rear.0, 1.0), low(front.0, 1.0), low(front.0, -1.0), low(rear.0, -1.0)]);
+}
+
+/// Windows all round, roof, and the pillars between.
+fn cabin(mesh: &mut Mesh, paint: Paint, shape: &Shape, detail: Detail) {
+    let (foot, top) = (shape.half_width - 0.1, shape.half_width - 0.26);
+    let glass = Paint::plain(paint.tag, GLASS).glossy(230);
+    let [a, b, c, d] = shape.cabin;
+    let low = |(x, z): (f32, f32), side: f32| Vec3::new(x, side * foot, z);
+    let high = |(x, z): (f32, f32), side: f32| Vec3::new(x, side * top, z);
+    mesh.polygon(glass, &[low(a, -1.0), low(a, 1.0), high(b, 1.0), high(b, -1.0)]);
+    mesh.polygon(glass, &[low(d, 1.0), low(d, -1.0), high(c, -1.0), high(c, 1.0)]);
+    mesh.polygon(paint, &[high(b, 1.0), high(c, 1.0), high(c, -1.0), high(b, -1.0)]);
+    mesh.polygon(glass, &[low(a, 1.0), low(d, 1.0), high(c, 1.0), high(b, 1.0)]);
+    mesh.polygon(glass, &[low(d, -1.0), low(a, -1.0), high(b, -1.0), high(c, -1.0)]);
+    if detail == Detail::Fine {
+        for side in [-1.0, 1.0] {
+            pillars(mesh, paint, shape, side);
+        }
+    }
+}
+
+/// Painted strips over the side glass: along the windscreen, behind the doors, along the roof.
+fn pillars(mesh: &mut Mesh, paint: Paint, shape: &Shape, side: f32) {
+    let (foot, top) = (shape.half_width - 0.1, shape.half_width - 0.26);
+    let [a, b, c, d] = shape.cabin;
+    let point = |(x, z): (f32, f32), up: f32, (x1, z1): (f32, f32)| {
+        Vec3::new(x + (x1 - x) * up, side * (foot + (top - foot) * up + 0.012), z + (z1 - z) * up)
+    };
+    let shift = |p: (f32, f32), dx: f32| (p.0 + dx, p.1);
+    let middle = ((a.0 + d.0) * 0.5 - 0.15, (a.1 + d.1) * 0.5);
+    let above = ((b.0 + c.0) * 0.5 - 0.1, (b.1 + c.1) * 0.5);
+    let mut strip = |p: (f32, f32), q: (f32, f32), width: f32| {
+        let (p1, q1) = (shift(p, -width), shift(q, -width));
+        let mut ring = [point(p, 0.0, q), point(p1, 0.0, q1), point(p1, 1.0, q1), point(p, 1.0, q)];
+        if side < 0.0 {
+            ring.reverse();
+        }
+        mesh.polygon(paint, &ring);
+    };
+    strip(shift(a, 0.02), shift(b, 0.02), 0.1);
+    strip(middle, above, 0.09);
+    strip(shift(d, 0.14), shift(c, 0.14), 0.16);
+}
+
+/// A wheel whose face looks to `side` (the sign of y).
+pub(super) fn wheel(mesh: &mut Mesh, tag: SemanticTag, hub: Vec3, side: f32, radius: f32, detail: Detail) {
+    let sides = if detail == Detail::Fine { 14 } else { 8 };
+    let tyre = Paint::plain(tag, RUBBER);
+    let out = Vec3::Y * side;
+    let (inner, outer) = (hub - out * 0.1, hub + out * 0.11);
+    mesh.tube(tyre, inner, outer, radius, radius, sides);
+    mesh.disc(tyre, outer, out, radius, sides);
+    if detail == Detail::Fine {
+        mesh.disc(tyre.colour(RIM).glossy(80), outer + out * 0.006, out, radius * 0.66, 10);
+        mesh.disc(tyre.colour([70, 72, 76]), outer + out * 0.01, out, radius * 0.22, 6);
+    }
+}
+
+/// Head lamps, brake lamps and number plates.
+fn lights(mesh: &mut Mesh, shape: &Shape) {
+    let tag = SemanticTag::Vehicles;
+    let (front, rear) = (shape.belt[1], shape.belt[shape.belt.len() - 1]);
+    let w = shape.half_width - 0.08;
+    let lamp = Paint::plain(tag, [236, 238, 228]).glossy(200);
+    let brake = Paint::plain(tag, [150, 14, 16]).coded(CODE_BRAKE);
+    for side in [-1.0f32, 1.0] {
+        let (y0, y1) = (side * w, side * (w - 0.36));
+        facing(mesh, lamp, front.0 + 0.015, [y0, y1], [front.1 - 0.02, front.1 + 0.13]);
+        facing(mesh, brake, -(rear.0.abs() + 0.02), [y0, side * (w - 0.28)], [0.68, 0.86]);
+    }
+    let plate = Paint::plain(tag, [226, 226, 220]);
+    facing(mesh, plate, shape.belt[0].0 + 0.03, [-0.26, 0.26], [0.38, 0.49]);
+    facing(mesh, plate, -(rear.0.abs() + 0.02), [-0.26, 0.26], [0.44, 0.55]);
+}
+
+/// A small board across the car that looks forward at positive x and backward at negative x.
+pub(super) fn facing(mesh: &mut Mesh, paint: Paint, x: f32, y: [f32; 2], z: [f32; 2]) {
+    let (lo, hi) = (y[0].min(y[1]), y[0].max(y[1]));
+    let (a, b) = if x > 0.0 { (lo, hi) } else { (hi, lo) };
+    mesh.polygon(paint, &[Vec3::new(x, a, z[0]), Vec3::new(x, b, z[0]), Vec3::new(x, b, z[1]), Vec3::new(x, a, z[1])]);
+}
+
+/// Mirrors, grille and door lines.
+fn trim(mesh: &mut Mesh, paint: Paint, shape: &Shape) {
+    let (x, z) = shape.cabin[0];
+    let w = shape.half_width;
+    for side in [-1.0f32, 1.0] {
+        let centre = Vec3::new(x - 0.3, side * (w + 0.07), z + 0.1);
+        mesh.cuboid(paint.shaded(0.9), centre - Vec3::new(0.05, 0.1, 0.07), centre + Vec3::new(0.05, 0.1, 0.07));
+    }
+    let front = shape.belt[0];
+    let grille = Paint::plain(paint.tag, [24, 24, 26]);
+    facing(mesh, grille, front.0 + 0.012, [-0.5, 0.5], [0.3, front.1 - 0.01]);
+}

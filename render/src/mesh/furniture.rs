@@ -1,0 +1,164 @@
+//! Street lamps, traffic signs and street furniture.
+
+use core::f32::consts::TAU;
+
+use glam::{Vec2, Vec3};
+use kernel::map::{SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
+use kernel::ops;
+
+use super::model::Detail;
+use super::variety::Variety;
+use super::{Mesh, Paint};
+use crate::SemanticTag;
+
+const STEEL: Paint = Paint::plain(SemanticTag::Pole, [132, 136, 138]).glossy(30);
+
+/// A street lamp `height_m` high whose arm reaches along its x axis.
+pub fn lamp(height_m: f32, detail: Detail) -> Mesh {
+    let sides = if detail == Detail::Fine { 8 } else { 4 };
+    let mut mesh = Mesh::default();
+    let (elbow, tip) = (Vec3::Z * (height_m - 0.35), Vec3::new(1.5, 0.0, height_m - 0.05));
+    mesh.tube(STEEL.shaded(0.85), Vec3::ZERO, Vec3::Z * 0.9, 0.13, 0.13, sides);
+    mesh.tube(STEEL, Vec3::Z * 0.9, elbow, 0.085, 0.06, sides);
+    mesh.tube(STEEL, elbow, tip, 0.055, 0.045, sides);
+    let glass = Paint::plain(SemanticTag::Pole, [226, 224, 206]).glossy(120);
+    let (low, high) = (tip - Vec3::new(0.2, 0.15, 0.07), tip + Vec3::new(0.55, 0.15, 0.07));
+    mesh.cuboid(STEEL.shaded(0.8), low, high);
+    mesh.cuboid(glass, low + Vec3::new(0.1, 0.03, -0.03), Vec3::new(high.x - 0.1, high.y - 0.03, low.z));
+    mesh
+}
+
+const RED: [u8; 3] = [196, 28, 32];
+const WHITE: [u8; 3] = [236, 236, 232];
+const BLACK: [u8; 3] = [22, 22, 24];
+
+/// A sign on its post, `height_m` high, whose face looks along its x axis.
+pub fn sign(variant: u32, height_m: f32, detail: Detail) -> Mesh {
+    let mut mesh = Mesh::default();
+    let sides = if detail == Detail::Fine { 6 } else { 4 };
+    mesh.tube(STEEL, Vec3::ZERO, Vec3::Z * height_m, 0.04, 0.04, sides);
+    let centre = Vec3::new(0.06, 0.0, height_m - 0.42);
+    match variant {
+        SIGN_STOP => stop_face(&mut mesh, centre),
+        SIGN_YIELD => yield_face(&mut mesh, centre),
+        limit if limit >= SIGN_LIMIT => limit_face(&mut mesh, centre, limit - SIGN_LIMIT),
+        _ => board(&mut mesh, centre, [40, 84, 160], 4, 0.34, TAU / 8.0),
+    }
+    mesh
+}
+
+fn face(colour: [u8; 3]) -> Paint {
+    Paint::plain(SemanticTag::TrafficSign, colour)
+}
+
+fn rim(centre: Vec3, sides: u32, radius: f32, turn: f32) -> Vec<Vec3> {
+    let corner = |i: u32| {
+        let angle = turn + TAU * i as f32 / sides as f32;
+        centre + Vec3::new(0.0, radius * ops::cos(angle), radius * ops::sin(angle))
+    };
+    (0..sides).map(corner).collect()
+}
+
+/// A regular plate with a grey back.
+fn board(mesh: &mut Mesh, centre: Vec3, colour: [u8; 3], sides: u32, radius: f32, turn: f32) {
+    let front = rim(centre, sides, radius, turn);
+    let mut back: Vec<Vec3> = front.iter().map(|&p| p - Vec3::X * 0.02).collect();
+    mesh.polygon(face(colour), &front);
+    back.reverse();
+    mesh.polygon(face([120, 122, 124]), &back);
+}
+
+/// A layer of paint on a plate.
+fn layer(mesh: &mut Mesh, centre: Vec3, colour: [u8; 3], sides: u32, radius: f32, turn: f32, lift: f32) {
+    mesh.polygon(face(colour), &rim(centre + Vec3::X * lift, sides, radius, turn));
+}
+
+fn stop_face(mesh: &mut Mesh, centre: Vec3) {
+    let turn = TAU / 16.0;
+    board(mesh, centre, WHITE, 8, 0.42, turn);
+    layer(mesh, centre, RED, 8, 0.39, turn, 0.006);
+    for (letter, y) in [(LETTER_S, 0.21), (LETTER_T, 0.07), (LETTER_O, -0.07), (LETTER_P, -0.21)] {
+        glyph(mesh, WHITE, centre + Vec3::new(0.012, y, 0.0), letter, Vec2::new(0.1, 0.22));
+    }
+}
+
+fn yield_face(mesh: &mut Mesh, centre: Vec3) {
+    let turn = -0.25 * TAU;
+    board(mesh, centre, RED, 3, 0.5, turn);
+    layer(mesh, centre, WHITE, 3, 0.32, turn, 0.006);
+}
+
+fn limit_face(mesh: &mut Mesh, centre: Vec3, limit_kmh: u32) {
+    board(mesh, centre, RED, 20, 0.38, 0.0);
+    layer(mesh, centre, WHITE, 20, 0.29, 0.0, 0.006);
+    let digits: Vec<u32> = limit_kmh.to_string().bytes().map(|b| u32::from(b - b'0')).collect();
+    let (width, gap) = if digits.len() > 2 { (0.12, 0.155) } else { (0.16, 0.21) };
+    for (i, &digit) in digits.iter().enumerate() {
+        let y = (0.5 * (digits.len() as f32 - 1.0) - i as f32) * gap;
+        glyph(mesh, BLACK, centre + Vec3::new(0.012, y, 0.0), DIGITS[digit as usize], Vec2::new(width, 0.28));
+    }
+}
+
+/// Segments of a seven-segment glyph: top, upper right, lower right, bottom, lower left, upper left,
+/// middle; bit 7 is a stem in the middle.
+const DIGITS: [u8; 10] = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f];
+const LETTER_S: u8 = 0x6d;
+const LETTER_T: u8 = 0x81;
+const LETTER_O: u8 = 0x3f;
+const LETTER_P: u8 = 0x73;
+
+/// A glyph of strokes in a box of a size, seen from positive x, where y grows to the right... of
+/// the wearer: to the reader's left is positive y.
+fn glyph(mesh: &mut Mesh, colour: [u8; 3], centre: Vec3, segments: u8, size: Vec2) {
+    let (w, h, t) = (0.5 * size.x, 0.5 * size.y, 0.11 * size.y);
+    // Strokes as (right, up) from the middle, in the reader's directions.
+    let strokes = [
+        [-w, h - t, w, h],
+        [w - t, 0.0, w, h],
+        [w - t, -h, w, 0.0],
+        [-w, -h, w, -h + t],
+        [-w, -h, -w + t, 0.0],
+        [-w, 0.0, -w + t, h],
+        [-w, -0.5 * t, w, 0.5 * t],
+        [-0.5 * t, -h, 0.5 * t, h],
+    ];
+    for (bit, [x0, z0, x1, z1]) in strokes.into_iter().enumerate() {
+        if segments >> bit & 1 == 1 {
+            let at = |x: f32, z: f32| centre + Vec3::new(0.0, x, z);
+            mesh.polygon(face(colour), &[at(x0, z0), at(x1, z0), at(x1, z1), at(x0, z1)]);
+        }
+    }
+}
+
+/// A bin, bench, cabinet or bollard of class Static in a box of `size` metres.
+pub fn furniture(variant: u32, size: Vec3) -> Mesh {
+    let tag = SemanticTag::Static;
+    let mut mesh = Mesh::default();
+    let half = Vec3::new(0.5 * size.x, 0.5 * size.y, 0.0);
+    if size.x > 2.0 * size.z {
+        bench(&mut mesh, half, size.z);
+    } else if size.x.max(size.y) < 0.35 * size.z {
+        mesh.tube(Paint::plain(tag, [58, 60, 64]), Vec3::ZERO, Vec3::Z * size.z, half.x, half.x, 8);
+        mesh.disc(Paint::plain(tag, [200, 200, 196]), Vec3::Z * size.z, Vec3::Z, half.x, 8);
+    } else {
+        let mut variety = Variety::of(variant);
+        let colour = variety.colour(&[[72, 92, 74], [104, 108, 110], [66, 70, 82], [168, 150, 60], [126, 52, 44]]);
+        let shell = Paint::plain(tag, colour).glossy(40);
+        mesh.cuboid(shell, -half, half + Vec3::Z * 0.9 * size.z);
+        let lid = half + Vec3::new(0.03, 0.03, 0.0);
+        mesh.cuboid(shell.shaded(0.65), -lid + Vec3::Z * 0.9 * size.z, lid + Vec3::Z * size.z);
+    }
+    mesh
+}
+
+fn bench(mesh: &mut Mesh, half: Vec3, height_m: f32) {
+    let wood = Paint::plain(SemanticTag::Static, [140, 100, 64]);
+    let iron = Paint::plain(SemanticTag::Static, [52, 54, 58]);
+    let seat = 0.52 * height_m;
+    for x in [-0.8 * half.x, 0.8 * half.x] {
+        mesh.cuboid(iron, Vec3::new(x - 0.04, -half.y, 0.0), Vec3::new(x + 0.04, half.y, seat));
+    }
+    mesh.cuboid(wood, Vec3::new(-half.x, -half.y, seat), Vec3::new(half.x, half.y, seat + 0.06));
+    let back = Vec3::new(-half.x, half.y - 0.06, seat + 0.15);
+    mesh.cuboid(wood, back, Vec3::new(half.x, half.y, height_m));
+}

@@ -1,0 +1,181 @@
+//! Everything that can be seen, as triangles made in code.
+//!
+//! A mesh is plain data: positions, normals, paint and class. How meshes get into the world is told
+//! by [`model`], so that another renderer can pose them on its own.
+
+pub mod barrier;
+pub mod building;
+pub mod car;
+pub mod furniture;
+pub mod heavy;
+pub mod model;
+pub mod person;
+pub mod prop;
+pub mod shape;
+pub mod signal;
+pub mod surface;
+pub mod tree;
+pub mod two_wheeler;
+pub mod variety;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3};
+
+use crate::SemanticTag;
+
+/// Which fragment shader paints a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// One colour; [`Vertex::param`] is its gloss.
+    Plain = 0,
+    /// Colour with grain; [`Vertex::param`] is the grain's strength, uv are metres.
+    Grainy = 1,
+    /// House front; uv are window columns and storeys, [`Vertex::code`] is its style.
+    Facade = 2,
+}
+
+/// Number of variants of [`Finish`].
+pub const FINISHES: usize = 3;
+
+/// [`Vertex::code`] of a lamp that shines.
+pub const CODE_LIT: u8 = 255;
+/// [`Vertex::code`] of a brake lamp, which shines while its car brakes.
+pub const CODE_BRAKE: u8 = 254;
+/// [`Vertex::code`] of a surface with the joints of slabs.
+pub const CODE_SLABS: u8 = 1;
+/// [`Vertex::code`] of grass.
+pub const CODE_GRASS: u8 = 2;
+
+/// A vertex as the GPU reads it, 32 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Vertex {
+    /// Position, metres.
+    pub position: [f32; 3],
+    /// Unit normal in 127ths.
+    pub normal: [i8; 3],
+    /// How far wind moves it, in 127ths of [`crate::wind::REACH_M`].
+    pub sway: i8,
+    /// Red, green and blue (sRGB).
+    pub colour: [u8; 3],
+    /// What it means depends on the [`Finish`].
+    pub param: u8,
+    /// Class: id of a [`SemanticTag`].
+    pub tag: u8,
+    /// One of the `CODE_*` constants, or the style of a house front.
+    pub code: u8,
+    /// Instance, as in [`crate::Frame::instance_ids`].
+    pub instance: u16,
+    /// Coordinates on the surface; their unit depends on the [`Finish`].
+    pub uv: [f32; 2],
+}
+
+/// How a surface is painted and classed.
+#[derive(Clone, Copy, Debug)]
+pub struct Paint {
+    /// Class.
+    pub tag: SemanticTag,
+    /// Red, green and blue (sRGB).
+    pub colour: [u8; 3],
+    /// Shader.
+    pub finish: Finish,
+    /// See [`Vertex::param`].
+    pub param: u8,
+    /// See [`Vertex::code`].
+    pub code: u8,
+}
+
+impl Paint {
+    /// One dull colour.
+    pub const fn plain(tag: SemanticTag, colour: [u8; 3]) -> Self {
+        Self { tag, colour, finish: Finish::Plain, param: 0, code: 0 }
+    }
+
+    /// Glossy like lacquer (about 100) or glass (255).
+    pub const fn glossy(self, gloss: u8) -> Self {
+        Self { param: gloss, ..self }
+    }
+
+    /// With grain of a strength from 0 to 255.
+    pub const fn grainy(self, strength: u8) -> Self {
+        Self { finish: Finish::Grainy, param: strength, ..self }
+    }
+
+    /// With a code.
+    pub const fn coded(self, code: u8) -> Self {
+        Self { code, ..self }
+    }
+
+    /// In another colour.
+    pub const fn colour(self, colour: [u8; 3]) -> Self {
+        Self { colour, ..self }
+    }
+
+    /// Brighter (above 1) or darker.
+    pub fn shaded(self, factor: f32) -> Self {
+        Self { colour: self.colour.map(|c| (f32::from(c) * factor).clamp(0.0, 255.0) as u8), ..self }
+    }
+}
+
+/// Triangles, sorted by finish. The vertices of a triangle share their tag, code and instance.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertices.
+    pub vertices: Vec<Vertex>,
+    /// Corners of the triangles of each [`Finish`], counter-clockwise seen from outside.
+    pub triangles: [Vec<[u32; 3]>; FINISHES],
+}
+
+impl Mesh {
+    /// Appends a vertex and gives its index.
+    pub fn vertex(&mut self, paint: Paint, position: Vec3, normal: Vec3, uv: Vec2) -> u32 {
+        let n = (normal * 127.0).round();
+        self.vertices.push(Vertex {
+            position: position.to_array(),
+            normal: [n.x as i8, n.y as i8, n.z as i8],
+            sway: 0,
+            colour: paint.colour,
+            param: paint.param,
+            tag: paint.tag as u8,
+            code: paint.code,
+            instance: 0,
+            uv: uv.to_array(),
+        });
+        self.vertices.len() as u32 - 1
+    }
+
+    /// Appends a triangle over existing vertices.
+    pub fn triangle(&mut self, finish: Finish, corners: [u32; 3]) {
+        self.triangles[finish as usize].push(corners);
+    }
+
+    /// Appends another mesh, moved.
+    pub fn append(&mut self, other: &Mesh, offset: Vec3) {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(other.vertices.iter().map(|v| {
+            let position = (Vec3::from_array(v.position) + offset).to_array();
+            Vertex { position, ..*v }
+        }));
+        for (mine, theirs) in self.triangles.iter_mut().zip(&other.triangles) {
+            mine.extend(theirs.iter().map(|t| t.map(|i| i + first)));
+        }
+    }
+
+    /// Lets wind move what lies above `still_m`, fully at `full_m` and above.
+    pub fn sway_between(&mut self, still_m: f32, full_m: f32) {
+        for v in &mut self.vertices {
+            let share = ((v.position[2] - still_m) / (full_m - still_m)).clamp(0.0, 1.0);
+            v.sway = (share * share * 127.0) as i8;
+        }
+    }
+
+    /// Triangles of all finishes.
+    pub fn all_triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.triangles.iter().flatten().copied()
+    }
+
+    /// Whether there is nothing in it.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.iter().all(Vec::is_empty)
+    }
+}

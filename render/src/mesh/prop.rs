@@ -1,0 +1,36 @@
+//! The mesh of each kind of static object.
+
+use glam::{Quat, Vec3};
+use kernel::map::{Prop, PropKind};
+
+use super::model::Detail;
+use super::{Mesh, barrier, building, car, furniture, signal, tree};
+
+/// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
+/// footprint on the ground, z up.
+pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
+    let Prop { variant, size, .. } = *prop;
+    match prop.kind {
+        PropKind::Building => building::building(variant, size, detail),
+        PropKind::Tree => tree::tree(variant, size.x, size.z, detail),
+        PropKind::Hedge => tree::hedge(variant, size),
+        PropKind::Lamp => furniture::lamp(size.z, detail),
+        PropKind::Sign => furniture::sign(variant, size.z, detail),
+        PropKind::SignalPole => signal::pole(size.z, detail),
+        PropKind::ParkedCar => car::car(variant, detail),
+        PropKind::Fence => barrier::fence(variant, size, detail),
+        PropKind::Wall => barrier::wall(variant, size),
+        PropKind::GuardRail => barrier::guard_rail(size, detail),
+        PropKind::Furniture => furniture::furniture(variant, size),
+    }
+}
+
+/// Moves a mesh from the frame of an object standing at `position` with a heading into the world.
+pub fn place(mesh: &mut Mesh, position: Vec3, heading_rad: f32) {
+    let turn = Quat::from_rotation_z(heading_rad);
+    for v in &mut mesh.vertices {
+        v.position = (position + turn * Vec3::from_array(v.position)).to_array();
+        let n = (turn * Vec3::from_array(v.normal.map(f32::from))).round();
+        v.normal = [n.x as i8, n.y as i8, n.z as i8];
+    }
+}

@@ -1,0 +1,64 @@
+// What all shaders of a frame share.
+
+struct Scene {
+    eye: vec3f,
+    wind_phase: f32,
+    // Scaled so that clip space follows by dot products.
+    right: vec3f,
+    wind_m: f32,
+    up: vec3f,
+    cloudiness: f32,
+    ahead: vec3f,
+    exposure: f32,
+    // Towards the sun.
+    sun: vec3f,
+    shadow_texel: f32,
+    sun_light: vec3f,
+    sky_drift_x: f32,
+    sky_light: vec3f,
+    sky_drift_y: f32,
+    ground_light: vec3f,
+    pad0: f32,
+    horizon: vec3f,
+    pad1: f32,
+    zenith: vec3f,
+    pad2: f32,
+    // World to the shadow map's uv and depth.
+    shadow: mat4x4f,
+}
+
+@group(0) @binding(0) var<uniform> scene: Scene;
+@group(0) @binding(1) var noise: texture_2d<f32>;
+@group(0) @binding(2) var noise_sampler: sampler;
+
+const NEAR_M = 0.1;
+
+// Colours are lighted as squares of their bytes, close to sRGB and cheap.
+fn to_linear(c: vec3f) -> vec3f { return c * c; }
+
+// Exposure, a shoulder for bright parts, and back to bytes.
+fn to_screen(c: vec3f) -> vec4f {
+    let lit = c * scene.exposure;
+    return vec4f(sqrt(lit / (lit + 0.55) * 1.42), 1.0);
+}
+
+// Reversed depth with the far plane at infinity: depth = NEAR_M / distance.
+fn project(world: vec3f) -> vec4f {
+    let rel = world - scene.eye;
+    return vec4f(dot(rel, scene.right), dot(rel, scene.up), NEAR_M, dot(rel, scene.ahead));
+}
+
+const WIND_DIRECTION = vec2f(0.8, 0.6);
+const WIND_WAVE = vec2f(0.11, 0.07);
+
+fn swayed(position: vec3f, sway: f32) -> vec3f {
+    let swing = sin(scene.wind_phase + dot(WIND_WAVE, position.xy));
+    return position + vec3f(WIND_DIRECTION * (sway * scene.wind_m * (0.35 + 0.65 * swing)), 0.0);
+}
+
+// The clear sky's colour in a direction.
+fn sky_colour(direction: vec3f) -> vec3f {
+    let up = max(direction.z, 0.0);
+    let fade = 1.0 - up;
+    return mix(scene.zenith, scene.horizon, fade * fade * fade);
+}

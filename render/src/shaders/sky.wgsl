@@ -1,0 +1,49 @@
+// The sky behind everything: gradient, sun, clouds.
+
+struct SkyOut {
+    @builtin(position) clip: vec4f,
+    @location(0) direction: vec3f,
+}
+
+struct Pixel {
+    @location(0) colour: vec4f,
+    @location(1) ids: u32,
+}
+
+override SKY_TAG: u32;
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> SkyOut {
+    let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u)) * 2.0 - 1.0;
+    // right and up are divided by the tangents of the view, so their squares undo it.
+    let across = scene.right / dot(scene.right, scene.right) * corner.x;
+    let upward = scene.up / dot(scene.up, scene.up) * corner.y;
+    // Depth 0 is the far plane.
+    return SkyOut(vec4f(corner, 0.0, 1.0), scene.ahead + across + upward);
+}
+
+fn cloud(at: vec2f) -> f32 {
+    let big = textureSampleLevel(noise, noise_sampler, at * 0.05, 0.0).g;
+    let small = textureSampleLevel(noise, noise_sampler, at * 0.21 + 0.37, 0.0).g;
+    return 0.72 * big + 0.28 * small;
+}
+
+@fragment
+fn fragment(in: SkyOut) -> Pixel {
+    let direction = normalize(in.direction);
+    var colour = sky_colour(direction);
+    let towards = max(dot(direction, scene.sun), 0.0);
+    let glow = towards * towards * towards * towards;
+    colour += scene.sun_light * (0.05 * glow * glow + 0.16 * pow(towards, 90.0) + 6.0 * smoothstep(0.9993, 0.9997, towards));
+
+    let height = max(direction.z, 0.0) + 0.06;
+    let at = direction.xy / height + vec2f(scene.sky_drift_x, scene.sky_drift_y);
+    let density = cloud(at);
+    let bound = 0.74 - 0.42 * scene.cloudiness;
+    let cover = smoothstep(bound, bound + 0.16, density) * smoothstep(0.0, 0.12, direction.z);
+    // The side turned to the sun is brighter.
+    let lit = clamp(0.75 + 2.2 * (density - cloud(at + scene.sun.xy * 0.35)), 0.35, 1.15);
+    let white = scene.sun_light * 0.27 * lit + scene.sky_light * 0.62;
+    colour = mix(colour, white, cover * 0.92);
+    return Pixel(to_screen(colour), SKY_TAG);
+}
