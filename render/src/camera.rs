@@ -33,7 +33,7 @@ pub struct Camera {
 
 /// From [`EgoScene::position`] (below the rear axle) to the middle of the ego car's footprint, metres
 /// forward.
-pub const EGO_MIDDLE_M: f32 = 1.3;
+pub const EGO_MIDDLE_M: f32 = kernel::ego::CENTRE_M.x;
 
 impl Camera {
     /// The camera both drivers see through: on the ego car, 1.2 m forward of its middle, 1.5 m high,

@@ -1,1 +1,3 @@
 //! Scenes shared by the integration tests and the benchmarks.
+
+pub mod street;

@@ -11,8 +11,6 @@ pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(crate) struct Targets {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// Samples a pixel along each axis.
-    pub(super) samples: u32,
     pub(super) colour: wgpu::Texture,
     pub(super) ids: wgpu::Texture,
     pub(super) depth: wgpu::Texture,
@@ -43,7 +41,7 @@ impl Targets {
             mapped_at_creation: false,
         });
         let (colour, ids, depth) = (texture(COLOUR), texture(IDS), texture(DEPTH));
-        Self { width, height, samples, colour, ids, depth, readback }
+        Self { width, height, colour, ids, depth, readback }
     }
 
     /// Bytes a row takes in the read-back buffer.

@@ -77,7 +77,7 @@ fn stop_face(mesh: &mut Mesh, centre: Vec3) {
     let turn = TAU / 16.0;
     board(mesh, centre, WHITE, 8, 0.42, turn);
     layer(mesh, centre, RED, 8, 0.39, turn, 0.006);
-    for (letter, y) in [(LETTER_S, 0.21), (LETTER_T, 0.07), (LETTER_O, -0.07), (LETTER_P, -0.21)] {
+    for (letter, y) in [(LETTER_S, -0.21), (LETTER_T, -0.07), (LETTER_O, 0.07), (LETTER_P, 0.21)] {
         glyph(mesh, WHITE, centre + Vec3::new(0.012, y, 0.0), letter, Vec2::new(0.1, 0.22));
     }
 }
@@ -94,7 +94,7 @@ fn limit_face(mesh: &mut Mesh, centre: Vec3, limit_kmh: u32) {
     let digits: Vec<u32> = limit_kmh.to_string().bytes().map(|b| u32::from(b - b'0')).collect();
     let (width, gap) = if digits.len() > 2 { (0.12, 0.155) } else { (0.16, 0.21) };
     for (i, &digit) in digits.iter().enumerate() {
-        let y = (0.5 * (digits.len() as f32 - 1.0) - i as f32) * gap;
+        let y = (i as f32 - 0.5 * (digits.len() as f32 - 1.0)) * gap;
         glyph(mesh, BLACK, centre + Vec3::new(0.012, y, 0.0), DIGITS[digit as usize], Vec2::new(width, 0.28));
     }
 }
@@ -107,8 +107,7 @@ const LETTER_T: u8 = 0x81;
 const LETTER_O: u8 = 0x3f;
 const LETTER_P: u8 = 0x73;
 
-/// A glyph of strokes in a box of a size, seen from positive x, where y grows to the right... of
-/// the wearer: to the reader's left is positive y.
+/// A glyph of strokes in a box of a size, read from positive x: the reader's right is positive y.
 fn glyph(mesh: &mut Mesh, colour: [u8; 3], centre: Vec3, segments: u8, size: Vec2) {
     let (w, h, t) = (0.5 * size.x, 0.5 * size.y, 0.11 * size.y);
     // Strokes as (right, up) from the middle, in the reader's directions.

@@ -4,12 +4,16 @@ use glam::{Quat, Vec3};
 use kernel::map::{Prop, PropKind};
 
 use super::model::Detail;
+use super::variety::Variety;
 use super::{Mesh, barrier, building, car, furniture, signal, tree};
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
 /// footprint on the ground, z up.
 pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
-    let Prop { variant, size, .. } = *prop;
+    let Prop { size, .. } = *prop;
+    // Maps have few variants; where a thing stands tells it apart from its neighbours.
+    let place = prop.position.x.to_bits().rotate_left(16) ^ prop.position.y.to_bits();
+    let variant = if prop.kind == PropKind::Sign { prop.variant } else { prop.variant ^ Variety::of(place).bits() };
     match prop.kind {
         PropKind::Building => building::building(variant, size, detail),
         PropKind::Tree => tree::tree(variant, size.x, size.z, detail),

@@ -11,17 +11,6 @@ use crate::SemanticTag;
 /// Side of the square cells that surfaces are cut into, metres.
 const CELL_M: f32 = 24.0;
 
-/// By how much a surface lies above where the map has it, metres, so that paint is on asphalt and
-/// asphalt on soil.
-fn lift_m(kind: SurfaceKind) -> f32 {
-    match kind {
-        SurfaceKind::RoadLine => 0.012,
-        SurfaceKind::Road | SurfaceKind::Sidewalk => 0.0,
-        SurfaceKind::Ground => -0.01,
-        SurfaceKind::Terrain => -0.03,
-    }
-}
-
 fn paint(kind: SurfaceKind) -> Paint {
     match kind {
         SurfaceKind::Road => Paint::plain(SemanticTag::Road, [98, 98, 100]).grainy(90),
@@ -75,12 +64,12 @@ fn cell(surface: &Surface, triangles: &[[u32; 3]]) -> Mesh {
             *normals.entry((i, steep(normal))).or_default() += normal;
         }
     }
-    let (paint, lift) = (paint(surface.kind), Vec3::Z * lift_m(surface.kind));
+    let paint = paint(surface.kind);
     let mut mesh = Mesh::default();
     let index: BTreeMap<(u32, bool), u32> = normals
         .iter()
         .map(|(&key, normal)| {
-            let p = at(key.0) + lift;
+            let p = at(key.0);
             // Kerb stones are lighter than slabs and have no joints.
             let paint =
                 if key.1 && surface.kind == SurfaceKind::Sidewalk { paint.shaded(1.08).coded(0) } else { paint };
