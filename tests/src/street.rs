@@ -28,6 +28,7 @@ pub fn network() -> RoadNetwork {
         surfaces: surfaces(),
         props: props(),
         statics: Default::default(),
+        lookups: Default::default(),
         bounds: [Vec3::new(-HALF_M, -60.0, 0.0), Vec3::new(HALF_M, 60.0, 12.0)],
     }
 }
