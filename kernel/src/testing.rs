@@ -23,5 +23,6 @@ pub fn plain() -> RoadNetwork {
         props: vec![],
         bounds: [corner(-1.0, -1.0), corner(1.0, 1.0)],
         statics: Default::default(),
+        lookups: crate::traffic::Lookups::default(),
     }
 }
