@@ -1,12 +1,18 @@
 //! The application `aeye`: drivers and sessions, and the offline lab.
 
 pub mod cli;
+pub mod clock;
 pub mod commands;
+pub mod crew;
 pub mod drivers;
 pub mod exit;
 pub mod lab;
+pub mod maps;
 pub mod output;
 pub mod progress;
+pub mod session;
+pub mod simulate;
+pub mod vision;
 
 use cli::{Cli, Command, DatasetCommand};
 use exit::Verdict;

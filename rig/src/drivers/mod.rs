@@ -1,5 +1,6 @@
 //! Who sits in the seats. People and bots share one path: controls each tick.
 
+pub mod safety;
 pub mod semantic;
 
 use kernel::Controls;

@@ -1,0 +1,145 @@
+//! Where everyone will be in the next seconds if nobody changes his mind.
+
+use glam::Vec2;
+use kernel::map::{LaneKind, Prop, RoadNetwork};
+use kernel::scene::{ActorKind, ActorScene, EgoScene};
+use kernel::{World, ego, ops};
+
+/// Room kept around the ego car on each side, metres.
+const MARGIN_M: f32 = 0.15;
+/// An actor belongs to a lane whose middle is nearer than this, metres.
+const ON_LANE_M: f32 = 1.5;
+
+/// A footprint on the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Middle, metres.
+    pub centre: Vec2,
+    /// Unit vector to the front.
+    pub forward: Vec2,
+    /// Half of length and width, metres.
+    pub half: Vec2,
+}
+
+impl Footprint {
+    /// Whether two footprints share ground (separating axes).
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let between = other.centre - self.centre;
+        let axes = [self.forward, self.forward.perp(), other.forward, other.forward.perp()];
+        axes.iter().all(|&axis| between.dot(axis).abs() <= self.reach(axis) + other.reach(axis))
+    }
+
+    fn reach(&self, axis: Vec2) -> f32 {
+        self.half.x * self.forward.dot(axis).abs() + self.half.y * self.forward.perp().dot(axis).abs()
+    }
+
+    /// That of an actor as it is now.
+    pub fn of_actor(actor: &ActorScene) -> Self {
+        let forward = (actor.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
+        Self { centre: actor.position.truncate(), forward, half: 0.5 * actor.kind.size_m().truncate() }
+    }
+
+    /// That of a parked car.
+    pub fn of_prop(prop: &Prop) -> Self {
+        let forward = Vec2::new(ops::cos(prop.heading_rad), ops::sin(prop.heading_rad));
+        Self { centre: prop.position.truncate(), forward, half: 0.5 * prop.size.truncate() }
+    }
+}
+
+/// The ego car's way along its route, beside the middle of it as far as it is now.
+pub struct EgoWay {
+    points: Vec<Vec2>,
+    /// Metres to the left of the route.
+    pub left_m: f32,
+    speed_mps: f32,
+    acceleration_mps2: f32,
+}
+
+impl EgoWay {
+    /// From the present; a braking car goes on braking, any other keeps its speed.
+    pub fn new(world: &World, car: &EgoScene, acceleration_mps2: f32) -> Self {
+        let points: Vec<Vec2> = world.route_ahead(60.0).iter().map(|p| p.truncate()).collect();
+        let middle = middle(car);
+        let left_m = match points[..] {
+            [first, second, ..] => (second - first).normalize_or(Vec2::X).perp_dot(middle - first),
+            _ => 0.0,
+        };
+        Self { points, left_m, speed_mps: car.speed_mps.max(0.0), acceleration_mps2: acceleration_mps2.min(0.0) }
+    }
+
+    /// Metres driven in `t_s` seconds.
+    pub fn driven_m(&self, t_s: f32) -> f32 {
+        if self.acceleration_mps2 > -0.1 {
+            return self.speed_mps * t_s;
+        }
+        let t_s = t_s.min(-self.speed_mps / self.acceleration_mps2);
+        self.speed_mps * t_s + 0.5 * self.acceleration_mps2 * t_s * t_s
+    }
+
+    /// Footprint in `t_s` seconds; `None` beyond the known route.
+    pub fn at(&self, t_s: f32) -> Option<Footprint> {
+        let driven_m = self.driven_m(t_s);
+        let index = driven_m as usize;
+        let (from, to) = (*self.points.get(index)?, *self.points.get(index + 1)?);
+        let forward = (to - from).normalize_or(Vec2::X);
+        let centre = from.lerp(to, driven_m - index as f32) + self.left_m * forward.perp();
+        Some(Footprint { centre, forward, half: 0.5 * ego::SIZE_M.truncate() + MARGIN_M })
+    }
+}
+
+/// Middle of the ego car, seen from above.
+pub fn middle(car: &EgoScene) -> Vec2 {
+    car.position.truncate() + ego::CENTRE_M.x * forward(car)
+}
+
+/// Direction of the ego car, seen from above.
+pub fn forward(car: &EgoScene) -> Vec2 {
+    (car.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X)
+}
+
+/// Footprint of another actor in `t_s` seconds: vehicles keep their lane, people their direction.
+pub fn actor_at(network: &RoadNetwork, actor: &ActorScene, t_s: f32) -> Footprint {
+    let now = Footprint::of_actor(actor);
+    let straight = || Footprint { centre: now.centre + actor.speed_mps * t_s * now.forward, ..now };
+    if actor.kind == ActorKind::Pedestrian || actor.speed_mps < 0.5 {
+        return straight();
+    }
+    let heading = ops::atan2(now.forward.y, now.forward.x);
+    match network.nearest_lane(actor.position, LaneKind::Driving, Some(heading), ON_LANE_M) {
+        Some(place) => along_lane(network, place.lane, place.s_m + actor.speed_mps * t_s, place.lateral_m, now),
+        None => straight(),
+    }
+}
+
+/// At a distance along a lane and the only way on from it; straight on where ways part.
+fn along_lane(network: &RoadNetwork, lane: u32, s_m: f32, lateral_m: f32, now: Footprint) -> Footprint {
+    let (mut lane, mut s_m) = (lane, s_m);
+    while let [next] = network.lanes[lane as usize].successors[..]
+        && s_m > network.lanes[lane as usize].length_m
+    {
+        s_m -= network.lanes[lane as usize].length_m;
+        lane = next;
+    }
+    let beyond_m = (s_m - network.lanes[lane as usize].length_m).max(0.0);
+    let point = network.lane_point(lane, s_m);
+    let forward = Vec2::new(ops::cos(point.heading_rad), ops::sin(point.heading_rad));
+    Footprint { centre: point.position.truncate() + beyond_m * forward + lateral_m * forward.perp(), forward, ..now }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn footprints_overlap_as_boxes_do() {
+        let car = |x, y, heading: f32| Footprint {
+            centre: Vec2::new(x, y),
+            forward: Vec2::from_angle(heading),
+            half: Vec2::new(2.25, 0.9),
+        };
+        assert!(car(0.0, 0.0, 0.0).overlaps(&car(4.0, 0.0, 0.0)));
+        assert!(!car(0.0, 0.0, 0.0).overlaps(&car(0.0, 1.9, 0.0)));
+        assert!(car(0.0, 0.0, 0.0).overlaps(&car(0.0, 2.5, 1.57)));
+        assert!(!car(0.0, 0.0, 0.0).overlaps(&car(3.0, 3.0, -0.785)));
+    }
+}

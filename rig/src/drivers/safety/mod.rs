@@ -1,0 +1,145 @@
+//! The simulated safety driver: sees the truth and reacts with a human delay.
+
+mod forecast;
+mod hazard;
+
+use glam::Vec2;
+use kernel::rng::{self, Stream};
+use kernel::time::{TICK_HZ, Tick, seconds};
+use kernel::{Controls, World, ego, ops};
+
+use super::Driver;
+pub use hazard::{Hazard, label_of};
+
+/// Ticks between two looks at the road.
+const LOOK_TICKS: Tick = 6;
+/// Reaction times are log-normal with this mean (Dixit et al. 2016), seconds, and spread.
+const REACTION_MEAN_S: f32 = 0.83;
+const REACTION_SIGMA: f32 = 0.35;
+/// Shortest and longest reaction, seconds.
+const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
+/// A hazard that is gone for this long is over.
+const FORGET_TICKS: Tick = 12;
+/// Standing without a red light ahead gets boring after this time.
+const BORING_TICKS: Tick = seconds(60);
+/// Deceleration of the full brake is asked for at once.
+const BRAKE: f32 = 1.0;
+/// How far ahead on the route the car is steered to, metres.
+const STEER_TO_M: usize = 8;
+
+/// Sees the truth, and takes over when it gets dangerous.
+#[derive(Clone, Debug, Default)]
+pub struct SafetyBot {
+    /// Speeds at the last looks, newest last, m/s.
+    speeds_mps: [f32; 4],
+    /// When the present hazard was first and last seen.
+    feared: Option<Feared>,
+    /// Why it took over.
+    reason: Option<Hazard>,
+    /// Since when the car stands with nothing to wait for.
+    stands_since: Option<Tick>,
+}
+
+#[derive(Clone, Debug)]
+struct Feared {
+    since: Tick,
+    last: Tick,
+}
+
+impl SafetyBot {
+    /// Why it took over, once it has.
+    pub fn reason(&self) -> Option<&Hazard> {
+        self.reason.as_ref()
+    }
+
+    fn look(&mut self, world: &World) {
+        let scene = world.scene();
+        self.speeds_mps.rotate_left(1);
+        self.speeds_mps[3] = scene.ego.speed_mps;
+        let per_look_s = LOOK_TICKS as f32 / TICK_HZ as f32;
+        let acceleration = (self.speeds_mps[3] - self.speeds_mps[1]) / (2.0 * per_look_s);
+        match hazard::find(world, &scene, acceleration) {
+            Some(hazard) => self.fear(hazard, world),
+            None => self.calm(world.tick()),
+        }
+        if self.is_bored(world) && self.reason.is_none() {
+            let comment = "nothing moves".into();
+            self.reason = Some(Hazard { label: replay::Label::Boredom, comment, steer: false });
+        }
+    }
+
+    /// Acts once a hazard has lasted for the reaction time.
+    fn fear(&mut self, hazard: Hazard, world: &World) {
+        let tick = world.tick();
+        let since = self.feared.as_ref().map_or(tick, |f| f.since);
+        if tick >= since + reaction_ticks(world.scenario().seed, since) {
+            self.reason = Some(hazard);
+        }
+        self.feared = Some(Feared { since, last: tick });
+    }
+
+    fn calm(&mut self, tick: Tick) {
+        if self.feared.as_ref().is_some_and(|f| tick >= f.last + FORGET_TICKS) {
+            self.feared = None;
+        }
+    }
+
+    fn is_bored(&mut self, world: &World) -> bool {
+        let hud = world.hud();
+        let waits = hud.light.is_some_and(|light| light != kernel::signals::LightPhase::Green);
+        if hud.speed_mps > 0.3 || waits {
+            self.stands_since = None;
+            return false;
+        }
+        world.tick() >= *self.stands_since.get_or_insert(world.tick()) + BORING_TICKS
+    }
+}
+
+impl Driver<World> for SafetyBot {
+    fn controls(&mut self, world: &World) -> Controls {
+        if world.tick().is_multiple_of(LOOK_TICKS) && self.reason.is_none() {
+            self.look(world);
+        }
+        match &self.reason {
+            None => Controls::default(),
+            Some(hazard) => {
+                let steer = if hazard.steer { steer_back(world) } else { 0.0 };
+                Controls::from_fractions(steer, 0.0, BRAKE)
+            }
+        }
+    }
+}
+
+/// Log-normal reaction time to a hazard that began at a tick.
+fn reaction_ticks(seed: u64, since: Tick) -> Tick {
+    // Box and Muller 1958; 1 - u is never 0.
+    let draw = |entity| rng::unit(seed, Stream::Driver, entity, since);
+    let normal = (-2.0 * ops::ln(1.0 - draw(0))).sqrt() * ops::cos(core::f32::consts::TAU * draw(1));
+    let median_s = REACTION_MEAN_S * ops::exp(-0.5 * REACTION_SIGMA * REACTION_SIGMA);
+    let [least, most] = REACTION_RANGE_S;
+    let reaction_s = (median_s * ops::exp(REACTION_SIGMA * normal)).clamp(least, most);
+    (reaction_s * TICK_HZ as f32) as Tick
+}
+
+/// Steering back to the route (pure pursuit), [-1, 1].
+fn steer_back(world: &World) -> f32 {
+    let car = world.scene().ego;
+    let route = world.route_ahead(STEER_TO_M as f32 + 1.0);
+    let Some(target) = route.get(STEER_TO_M).or(route.last()) else { return 0.0 };
+    let to = target.truncate() - car.position.truncate();
+    let left_m = forecast::forward(&car).perp_dot(to);
+    let curvature = 2.0 * left_m / Vec2::length_squared(to).max(1.0);
+    (-ops::atan2(ego::WHEELBASE_M * curvature, 1.0) / ego::MAX_WHEEL_ANGLE_RAD).clamp(-1.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reactions_are_human() {
+        let mean = (0..2000).map(|i| reaction_ticks(7, i) as f32).sum::<f32>() / 2000.0 / TICK_HZ as f32;
+        assert!((mean - REACTION_MEAN_S).abs() < 0.04, "{mean}");
+        assert_eq!(reaction_ticks(7, 3), reaction_ticks(7, 3));
+    }
+}

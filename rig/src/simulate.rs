@@ -1,0 +1,105 @@
+//! One simulated run from start to end: driven, recorded, and its cause found.
+
+use std::io::Write;
+
+use kernel::arbiter::{Outcome, Phase};
+use kernel::time::{CLIP_TICKS, Tick, seconds};
+use kernel::{Keyframe, Scenario, World};
+use replay::{Annotation, Manifest, Provenance};
+
+use crate::crew::Crew;
+use crate::maps::Map;
+use crate::session::{Session, SessionState};
+use crate::vision::{Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
+
+/// A fork starts at least this long before the intervention, so that nothing is decided yet.
+const FORK_BEFORE_TICKS: Tick = CLIP_TICKS;
+/// A fork that is still going this long after the intervention did not need it.
+const FORK_AFTER_TICKS: Tick = seconds(5);
+
+/// The manifest of a simulated run: bots in both seats, what the semantic one sees, and when.
+pub fn manifest(scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
+    let (width, height) = eye.size();
+    let entries = [
+        ("semantic", "bot".to_owned()),
+        ("safety", "bot".to_owned()),
+        ("checkpoint", eye.name().to_owned()),
+        ("checkpoint_digest", eye.digest()),
+        ("camera", format!("driver {width}x{height}")),
+        ("frame_ticks", FRAME_TICKS.to_string()),
+        ("latency_ticks", LATENCY_TICKS.to_string()),
+    ];
+    let provenance: Provenance = entries.into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
+    Manifest::new(scenario, &map.network, map.foreign.clone(), provenance)
+}
+
+/// Drives a run until it ends, `keep_on` says no, or something fails, and records it. Gives the
+/// stream back, and the vision for the next run on the same map.
+pub fn drive<W: Write>(
+    scenario: &Scenario,
+    map: &Map,
+    vision: Vision,
+    out: W,
+    mut keep_on: impl FnMut(&World) -> bool,
+) -> anyhow::Result<(W, Vision)> {
+    let world = World::new(scenario, &map.network)?;
+    let mut keyframes = vec![world.initial_keyframe()];
+    let mut session = Session::new(world, &manifest(scenario, map, vision.eye()), out)?;
+    let mut crew = Crew::new(vision);
+    let mut ended = false;
+    while !ended && keep_on(session.world()) {
+        let (input, shown) = crew.act(session.world())?;
+        session.mask_shown(shown);
+        let (state, output) = session.tick(&input)?;
+        keyframes.extend(output.keyframe);
+        ended = state != SessionState::Driving;
+    }
+    let (annotation, vision) = explain(session.world(), crew, &keyframes)?;
+    if let Some(annotation) = annotation {
+        session.annotate(annotation);
+    }
+    Ok((session.finish()?, vision))
+}
+
+/// Label, comment and share of the perception in what ended a run, if something did.
+fn explain(world: &World, crew: Crew, keyframes: &[Keyframe]) -> anyhow::Result<(Option<Annotation>, Vision)> {
+    let arbiter = world.arbiter();
+    let at = match arbiter.outcome {
+        Some(Outcome::Intervened) => arbiter.intervention.map(|i| i.tick),
+        Some(Outcome::Missed) => arbiter.ended_at,
+        Some(Outcome::Censored) | None => None,
+    };
+    let cause = crew.cause(world);
+    let vision = crew.into_vision();
+    let (Some(at), Some((label, comment))) = (at, cause) else { return Ok((None, vision)) };
+    let eye = vision.eye().clone();
+    let (needed, vision) = needed_with_truth(world, keyframes, at, vision)?;
+    let perception_caused = Some(!matches!(eye, Eye::Truth) && !needed);
+    Ok((Some(Annotation { label, comment, perception_caused }), vision.with_eye(eye)))
+}
+
+/// Drives again from the last keyframe before the intervention with true masks: does the run need
+/// one as well?
+fn needed_with_truth(
+    world: &World,
+    keyframes: &[Keyframe],
+    at: Tick,
+    vision: Vision,
+) -> anyhow::Result<(bool, Vision)> {
+    if matches!(vision.eye(), Eye::Truth) {
+        return Ok((true, vision));
+    }
+    let early = |k: &&Keyframe| k.tick + FORK_BEFORE_TICKS <= at;
+    let Some(start) = keyframes.iter().rev().find(early) else { return Ok((true, vision)) };
+    let mut fork = World::resume(world.scenario(), world.network(), start)?;
+    let mut crew = Crew::new(vision.with_eye(Eye::Truth));
+    while fork.tick() < at + FORK_AFTER_TICKS && matches!(fork.arbiter().phase, Phase::Arming | Phase::Driving) {
+        let (input, _) = crew.act(&fork)?;
+        fork.step(&input);
+    }
+    let needed = match fork.arbiter().outcome {
+        Some(Outcome::Censored) => false,
+        outcome => outcome.is_some() || fork.arbiter().intervention.is_some(),
+    };
+    Ok((needed, crew.into_vision()))
+}

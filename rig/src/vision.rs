@@ -1,0 +1,146 @@
+//! What the semantic driver sees in a simulated drive: in lockstep with the ticks, with a declared
+//! latency, so that the same run gives the same masks on a fast and on a slow machine.
+
+use anyhow::Context;
+use kernel::World;
+use kernel::time::{CLIP_STRIDE_TICKS, Tick};
+use perception::{Checkpoint, Mask, RgbView, Segmenter};
+use render::{Camera, Frame, Renderer};
+use replay::MaskShown;
+
+use crate::cli::CheckpointChoice;
+use crate::drivers::MaskView;
+
+/// Ticks from one frame to the next: 10 frames a second.
+pub const FRAME_TICKS: Tick = CLIP_STRIDE_TICKS;
+/// Ticks from a frame to its mask on the screen: 100 ms for rendering, inference and display.
+pub const LATENCY_TICKS: Tick = 6;
+/// Size of the pictures for checkpoints that take any, pixels.
+pub const DEFAULT_SIZE: (u32, u32) = (256, 128);
+
+/// What turns a frame into a mask.
+#[derive(Clone)]
+pub enum Eye {
+    /// The renderer's class ids.
+    Truth,
+    /// A network.
+    Network {
+        /// Its file.
+        checkpoint: Checkpoint,
+        /// Itself, ready for its size.
+        segmenter: Box<Segmenter>,
+    },
+}
+
+impl Eye {
+    /// Opens a checkpoint at the size it takes.
+    pub fn open(choice: &CheckpointChoice) -> anyhow::Result<Self> {
+        let CheckpointChoice::File(path) = choice else { return Ok(Self::Truth) };
+        let checkpoint = Checkpoint::load(path)?;
+        let (width, height) = checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
+        let segmenter = Box::new(Segmenter::new(&checkpoint, width, height)?);
+        Ok(Self::Network { checkpoint, segmenter })
+    }
+
+    /// `truth`, or the name of the checkpoint's file without its ending.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Truth => "truth",
+            Self::Network { checkpoint, .. } => checkpoint.name(),
+        }
+    }
+
+    /// `truth`, or the digest of the checkpoint in hexadecimal digits.
+    pub fn digest(&self) -> String {
+        match self {
+            Self::Truth => "truth".into(),
+            Self::Network { checkpoint, .. } => checkpoint.digest().to_hex().to_string(),
+        }
+    }
+
+    /// Width and height of the pictures it looks at, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Truth => DEFAULT_SIZE,
+            Self::Network { segmenter, .. } => (segmenter.size().0 as u32, segmenter.size().1 as u32),
+        }
+    }
+
+    /// The mask of a frame, as tag ids.
+    pub fn see(&mut self, frame: Frame) -> anyhow::Result<Mask> {
+        let (width, height) = (frame.width as usize, frame.height as usize);
+        match self {
+            Self::Truth => Ok(Mask::new(width, height, frame.class_ids)?),
+            Self::Network { segmenter, .. } => Ok(segmenter.run(RgbView::new(width, height, &frame.rgb)?)?),
+        }
+    }
+}
+
+/// A mask on its way to the screen, or on it.
+struct Picture {
+    shown: MaskShown,
+    mask: Mask,
+}
+
+/// The driver's camera, the eye behind it, and the screen.
+pub struct Vision {
+    renderer: Renderer,
+    eye: Eye,
+    camera: Camera,
+    on_screen: Option<Picture>,
+    coming: Option<Picture>,
+}
+
+const _: () = assert!(LATENCY_TICKS <= FRAME_TICKS, "only one mask may be on its way");
+
+impl Vision {
+    /// Looks at the renderer's map through an eye.
+    pub fn new(renderer: Renderer, eye: Eye) -> Self {
+        let (width, height) = eye.size();
+        Self { renderer, eye, camera: Camera::driver(width, height), on_screen: None, coming: None }
+    }
+
+    /// What looks.
+    pub fn eye(&self) -> &Eye {
+        &self.eye
+    }
+
+    /// The same renderer with another eye and a dark screen.
+    pub fn with_eye(self, eye: Eye) -> Self {
+        Self::new(self.renderer, eye)
+    }
+
+    /// Hands the renderer back.
+    pub fn into_renderer(self) -> Renderer {
+        self.renderer
+    }
+
+    /// The mask on the screen at the world's tick. The first one of a drive comes without delay, so
+    /// that the screen is never dark.
+    pub fn look(&mut self, world: &World) -> anyhow::Result<(MaskView<'_>, MaskShown)> {
+        let tick = world.tick();
+        if self.coming.as_ref().is_some_and(|c| c.shown.tick_shown <= tick) {
+            self.on_screen = self.coming.take();
+        }
+        if self.on_screen.is_none() {
+            self.on_screen = Some(self.picture(world, tick)?);
+        } else if tick.is_multiple_of(FRAME_TICKS) {
+            let coming = self.picture(world, tick + LATENCY_TICKS)?;
+            self.coming = Some(coming);
+        }
+        let picture = self.on_screen.as_ref().context("a mask on the screen")?;
+        let mask = MaskView { width: picture.mask.width, height: picture.mask.height, ids: &picture.mask.ids };
+        Ok((mask, picture.shown))
+    }
+
+    fn picture(&mut self, world: &World, tick_shown: Tick) -> anyhow::Result<Picture> {
+        let frame = self.renderer.draw(&world.scene(), &self.camera)?;
+        let tick_of_frame = frame.tick;
+        let mask = self.eye.see(frame)?;
+        let hash = blake3::hash(&mask.ids);
+        let digest = hash.as_bytes().iter().take(8).rev().fold(0, |value, byte| value << 8 | u64::from(*byte));
+        // The controls of the next tick are the first that are given with this mask in view.
+        let shown = MaskShown { tick_shown, tick_of_frame, camera: 0, digest, times: None };
+        Ok(Picture { shown, mask })
+    }
+}
