@@ -27,6 +27,8 @@ pub enum Stream {
     Driver = 8,
     /// Weather and counts of a default scenario.
     Scenario = 9,
+    /// What stands beside the roads of a map.
+    Dressing = 10,
 }
 
 fn mix(z: u64) -> u64 {

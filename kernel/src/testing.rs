@@ -11,18 +11,8 @@ pub fn plain() -> RoadNetwork {
     let road = Surface { kind: SurfaceKind::Road, positions, triangles: vec![[0, 1, 2], [0, 2, 3]] };
     RoadNetwork {
         name: String::from("plain"),
-        digest: 0,
-        lanes: vec![],
-        junctions: vec![],
-        light_groups: vec![],
-        light_heads: vec![],
-        crosswalks: vec![],
-        walk_nodes: vec![],
-        walk_edges: vec![],
         surfaces: vec![road],
-        props: vec![],
         bounds: [corner(-1.0, -1.0), corner(1.0, 1.0)],
-        statics: Default::default(),
-        lookups: crate::traffic::Lookups::default(),
+        ..RoadNetwork::default()
     }
 }

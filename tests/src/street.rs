@@ -18,18 +18,13 @@ pub fn network() -> RoadNetwork {
     RoadNetwork {
         name: "street".into(),
         digest: 1,
-        lanes: Vec::new(),
         junctions: vec![Junction { light_groups: vec![0], ..Default::default() }],
         light_groups: vec![LightGroup { junction: 0, place: 0 }],
         light_heads: vec![head(Vec3::new(22.0, -4.6, 0.125)), head(Vec3::new(22.0, 4.6, 0.125))],
-        crosswalks: Vec::new(),
-        walk_nodes: Vec::new(),
-        walk_edges: Vec::new(),
         surfaces: surfaces(),
         props: props(),
-        statics: Default::default(),
-        lookups: Default::default(),
         bounds: [Vec3::new(-HALF_M, -60.0, 0.0), Vec3::new(HALF_M, 60.0, 12.0)],
+        ..Default::default()
     }
 }
 

@@ -275,7 +275,7 @@ pub const SIGN_YIELD: u32 = 1;
 pub const SIGN_LIMIT: u32 = 1000;
 
 /// Everything about a map, as plain data.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RoadNetwork {
     /// Name of a bundled map, or the file's stem.
     pub name: String,
@@ -305,12 +305,25 @@ pub struct RoadNetwork {
     pub statics: Statics,
     /// What traffic looks up in it, built on first use; start with `Lookups::default()`.
     pub lookups: Lookups,
+    /// Grids for questions about places, built on first use; start with `Index::default()`.
+    pub index: Index,
 }
 
 mod bake;
 mod bundled;
+mod crosswalks;
+mod digest;
+mod dressing;
+mod grid;
+mod junctions;
+mod lanes;
+mod lights;
+mod props;
 mod query;
+mod surfaces;
+mod terrain;
+mod walk;
 
 pub use bake::{BakeError, bake};
 pub use bundled::{BUNDLED, bundled};
-pub use query::{Ground, Projection};
+pub use query::{Ground, Index, Projection};

@@ -1,0 +1,12 @@
+#!/usr/bin/env python3
+"""Writes the bundled maps `city.xodr` and `rural.xodr` beside this file.
+
+    python3 kernel/maps/author.py
+"""
+
+from city import city
+from opendrive import write
+
+if __name__ == "__main__":
+    for build in (city,):
+        write(build())

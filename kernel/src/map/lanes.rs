@@ -1,0 +1,234 @@
+//! Lanes in their direction of travel, and how they follow and border each other.
+
+use glam::Vec3;
+
+use super::bake::{BakeError, Origin, Source, point, snap};
+use super::{Lane, LaneId, LaneKind, LanePoint, RoadNetwork, Turn};
+use crate::ops;
+
+/// Vertices of a centre line are at most this far apart.
+const MAX_STEP_M: f32 = 2.0;
+/// Vertices nearer to each other than this are one.
+const MIN_STEP_M: f32 = 0.05;
+/// A strip narrower than this everywhere is no lane.
+const MIN_WIDTH_M: f32 = 0.1;
+/// A lane that starts farther from the end of another does not follow it, whatever the file says.
+const MAX_GAP_M: f32 = 1.5;
+/// Limit where the file gives none, on roads of no or an urban type: 50 km/h.
+const URBAN_MPS: f32 = 50.0 / 3.6;
+/// The same outside towns: 100 km/h.
+const RURAL_MPS: f32 = 100.0 / 3.6;
+/// The same on motorways, and where the file says that there is none: 130 km/h.
+const MOTORWAY_MPS: f32 = 130.0 / 3.6;
+
+pub(super) fn bake(source: &mut Source, map: &mut RoadNetwork) -> Result<(), BakeError> {
+    let Source { net, origins, ids, .. } = source;
+    for lane in net.lanes().iter().filter(|l| l.layer == xodr::Layer::Permanent) {
+        let Some(at) = net.road_lane(lane.id) else { continue };
+        let forward = lane.direction != xodr::Direction::Backward;
+        let points = centre_line(lane, forward);
+        if points.len() < 2 || points.iter().all(|p| p.half_width_m * 2.0 < MIN_WIDTH_M) {
+            continue;
+        }
+        let road = net.road(at.road).map_or("", |r| r.od_id());
+        ids.insert(lane.id.0, map.lanes.len() as LaneId);
+        origins.push(Origin { lane: lane.id, road: at.road.0, section: at.section, od_id: at.od_id, forward });
+        map.lanes.push(Lane {
+            kind: kind(lane.kind),
+            name: format!("{road}/{}", at.od_id),
+            length_m: points.last().map_or(0.0, |p| p.s_m),
+            speed_limit_mps: speed_limit(net, lane),
+            points,
+            ..Lane::default()
+        });
+    }
+    if !map.lanes.iter().any(|l| l.kind == LaneKind::Driving) {
+        return Err(BakeError {
+            place: "the whole file".to_owned(),
+            reason: "expected at least one lane of type driving with a width".to_owned(),
+        });
+    }
+    link(source, map);
+    Ok(())
+}
+
+fn kind(kind: xodr::LaneType) -> LaneKind {
+    use xodr::LaneType as T;
+    match kind {
+        k if k.is_drivable() => LaneKind::Driving,
+        T::Biking => LaneKind::Biking,
+        T::Sidewalk => LaneKind::Sidewalk,
+        T::Shoulder | T::Stop | T::Border => LaneKind::Shoulder,
+        T::Parking => LaneKind::Parking,
+        _ => LaneKind::Other,
+    }
+}
+
+fn centre_line(lane: &xodr::Lane, forward: bool) -> Vec<LanePoint> {
+    let centre = &lane.center;
+    let n = centre.points().len();
+    let mut line: Vec<LanePoint> = Vec::with_capacity(n);
+    for k in 0..n {
+        let i = if forward { k } else { n - 1 - k };
+        let position = point(centre.points()[i]);
+        let t = centre.tangents()[i];
+        let sign = if forward { 1.0 } else { -1.0 };
+        let width = lane.widths.get(i).or(lane.widths.last()).copied().unwrap_or(lane.width);
+        let heading_rad = snap_angle(ops::atan2(sign * t.y, sign * t.x));
+        append(&mut line, LanePoint { position, heading_rad, half_width_m: snap(width / 2.0), s_m: 0.0 }, k + 1 == n);
+    }
+    measure(&mut line);
+    line
+}
+
+/// Adds a vertex: not when it is too near, unless it is the end; with others between when too far.
+fn append(line: &mut Vec<LanePoint>, next: LanePoint, is_end: bool) {
+    if let Some(&last) = line.last() {
+        let gap = last.position.distance(next.position);
+        if gap < MIN_STEP_M {
+            if is_end && line.len() > 1 {
+                line.pop();
+                line.push(next);
+            }
+            return;
+        }
+        let parts = ops::floor(gap / MAX_STEP_M - 1e-3) as u32 + 1;
+        for k in 1..parts.min(100_000) {
+            let mut between = blend(&last, &next, k as f32 / parts as f32);
+            between.position = super::bake::snap3(between.position);
+            line.push(between);
+        }
+    }
+    line.push(next);
+}
+
+fn measure(line: &mut [LanePoint]) {
+    let mut s = 0.0;
+    for k in 1..line.len() {
+        s = snap(s + line[k].position.distance(line[k - 1].position));
+        line[k].s_m = s;
+    }
+}
+
+/// Rounds to 2^-14 rad.
+fn snap_angle(angle_rad: f32) -> f32 {
+    ops::floor(angle_rad * 16384.0 + 0.5) / 16384.0
+}
+
+/// The point at `share` of the way from `a` to `b`.
+pub(super) fn blend(a: &LanePoint, b: &LanePoint, share: f32) -> LanePoint {
+    let lerp = |x: f32, y: f32| x + (y - x) * share;
+    let turn = ops::wrap_angle(b.heading_rad - a.heading_rad);
+    LanePoint {
+        position: a.position + (b.position - a.position) * share,
+        heading_rad: ops::wrap_angle(a.heading_rad + turn * share),
+        half_width_m: lerp(a.half_width_m, b.half_width_m),
+        s_m: lerp(a.s_m, b.s_m),
+    }
+}
+
+fn speed_limit(net: &xodr::RoadNetwork, lane: &xodr::Lane) -> f32 {
+    use xodr::RoadType as R;
+    let middle = lane.center.length() / 2.0;
+    match net.speed_limit_at(lane.id, middle) {
+        Some(xodr::SpeedLimit::Max(mps)) if mps > 0.5 => mps.min(MOTORWAY_MPS),
+        Some(xodr::SpeedLimit::Unlimited) => MOTORWAY_MPS,
+        _ => match net.road_type_at(lane.id, middle) {
+            Some(R::Motorway) => MOTORWAY_MPS,
+            Some(R::Rural) => RURAL_MPS,
+            _ => URBAN_MPS,
+        },
+    }
+}
+
+fn link(source: &Source, map: &mut RoadNetwork) {
+    for id in 0..map.lanes.len() {
+        let Some(from) = source.net.lane(source.origins[id].lane) else { continue };
+        let mut next: Vec<LaneId> = from.successors.iter().filter_map(|l| source.ids.get(&l.0).copied()).collect();
+        next.retain(|&to| follows(&map.lanes[id], &map.lanes[to as usize]));
+        next.sort_unstable();
+        next.dedup();
+        for &to in &next {
+            map.lanes[to as usize].predecessors.push(id as LaneId);
+        }
+        map.lanes[id].successors = next;
+        map.lanes[id].left = beside(source, from, &source.origins[id], true);
+        map.lanes[id].right = beside(source, from, &source.origins[id], false);
+    }
+}
+
+fn follows(from: &Lane, to: &Lane) -> bool {
+    let end = from.points[from.points.len() - 1].position;
+    from.kind == to.kind && end.distance(to.points[0].position) < MAX_GAP_M
+}
+
+fn beside(source: &Source, lane: &xodr::Lane, origin: &Origin, left: bool) -> Option<LaneId> {
+    let outward = if left == origin.forward { 1 } else { -1 };
+    let wanted = match origin.od_id + outward {
+        0 => outward,
+        id => id,
+    };
+    let middle = lane.center.points()[lane.center.points().len() / 2];
+    let road_s = source.net.road_position_on(xodr::RoadId(origin.road), middle)?.s;
+    let here = xodr::LanePosition { lane: lane.id, s: road_s, offset: 0.0 };
+    let may = if left { source.net.may_change_left(here) } else { source.net.may_change_right(here) };
+    let neighbour = lane.neighbors.iter().find(|n| source.net.road_lane(**n).is_some_and(|at| at.od_id == wanted))?;
+    (may != Some(false)).then(|| source.ids.get(&neighbour.0).copied()).flatten()
+}
+
+impl Default for Lane {
+    /// A lane of nothing, to be filled in.
+    fn default() -> Self {
+        Self {
+            kind: LaneKind::Other,
+            name: String::new(),
+            points: Vec::new(),
+            length_m: 0.0,
+            successors: Vec::new(),
+            predecessors: Vec::new(),
+            left: None,
+            right: None,
+            speed_limit_mps: URBAN_MPS,
+            junction: None,
+            turn: Turn::Straight,
+            stop: None,
+            conflicts: Vec::new(),
+        }
+    }
+}
+
+impl Lane {
+    /// Its last vertex.
+    pub fn end(&self) -> &LanePoint {
+        &self.points[self.points.len() - 1]
+    }
+
+    /// Its first vertex.
+    pub fn start(&self) -> &LanePoint {
+        &self.points[0]
+    }
+
+    /// The point `s_m` from its start, interpolated; `s_m` is clamped to the lane.
+    pub fn at(&self, s_m: f32) -> LanePoint {
+        let k = self.points.partition_point(|p| p.s_m <= s_m).clamp(1, self.points.len() - 1);
+        let (a, b) = (&self.points[k - 1], &self.points[k]);
+        blend(a, b, ((s_m - a.s_m) / (b.s_m - a.s_m)).clamp(0.0, 1.0))
+    }
+
+    /// The nearest place of its centre line seen from above: (s, offset to the left, distance).
+    pub fn project(&self, position: Vec3) -> (f32, f32, f32) {
+        let p = position.truncate();
+        let mut best = (0.0, 0.0, f32::MAX);
+        for pair in self.points.windows(2) {
+            let (a, along) = (pair[0].position.truncate(), (pair[1].position - pair[0].position).truncate());
+            let share = ((p - a).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
+            let off = p - (a + along * share);
+            let squared = off.length_squared();
+            if squared < best.2 {
+                let s = pair[0].s_m + (pair[1].s_m - pair[0].s_m) * share;
+                best = (s, along.perp_dot(off) / along.length().max(1e-6), squared);
+            }
+        }
+        (best.0, best.1, ops::sqrt(best.2))
+    }
+}

@@ -1,0 +1,206 @@
+//! The road surface: asphalt, pavements with kerbs, verges, and paint.
+
+use glam::{Vec2, Vec3};
+
+use super::bake::{Source, direction, point, snap, snap3};
+use super::{LaneId, LaneKind, LanePoint, RoadNetwork, StopKind, Surface, SurfaceKind, crosswalks};
+
+/// Height of a pavement above the road where the file gives none, metres.
+const KERB_M: f32 = 0.125;
+/// How far a kerb reaches below the pavement, metres.
+const KERB_FACE_M: f32 = 0.4;
+/// Height of paint above the surface: enough for a depth buffer at 100 m, too little to see.
+const PAINT_M: f32 = 16.0 / 1024.0;
+/// How far the floor of a junction lies below its lanes, metres.
+const FLOOR_M: f32 = 20.0 / 1024.0;
+/// Mouths farther apart than this share no paved floor.
+const FLOOR_REACH_M: f32 = 60.0;
+/// Depth of a stop line along the road, metres.
+const STOP_LINE_M: f32 = 0.4;
+
+/// Triangles of each material, collected.
+pub(super) struct Meshes(Vec<Surface>);
+
+impl Meshes {
+    fn new() -> Self {
+        use SurfaceKind as K;
+        let kinds = [K::Road, K::RoadLine, K::Sidewalk, K::Terrain, K::Ground];
+        Self(kinds.map(|kind| Surface { kind, positions: Vec::new(), triangles: Vec::new() }).to_vec())
+    }
+
+    fn of(&mut self, kind: SurfaceKind) -> &mut Surface {
+        &mut self.0[kind as usize]
+    }
+
+    fn finish(self) -> impl Iterator<Item = Surface> {
+        self.0.into_iter().filter(|s| !s.triangles.is_empty())
+    }
+}
+
+impl Surface {
+    /// Adds corners in counter-clockwise order as a fan; slivers are left out.
+    pub(super) fn fan(&mut self, corners: &[Vec3]) {
+        let first = self.positions.len() as u32;
+        self.positions.extend(corners.iter().map(|&c| snap3(c)));
+        for k in 1..corners.len().saturating_sub(1) as u32 {
+            self.triangle([first, first + k, first + k + 1]);
+        }
+    }
+
+    fn triangle(&mut self, t: [u32; 3]) {
+        let [a, b, c] = t.map(|v| self.positions[v as usize]);
+        if (b - a).cross(c - a).length_squared() > 1e-8 {
+            self.triangles.push(t);
+        }
+    }
+}
+
+pub(super) fn bake(source: &Source, map: &mut RoadNetwork) {
+    let mut meshes = Meshes::new();
+    pave(source, map, &mut meshes);
+    for junction in 0..map.junctions.len() {
+        let corners = floor(map, junction);
+        meshes.of(SurfaceKind::Road).fan(&corners);
+    }
+    paint(source, map, &mut meshes);
+    map.surfaces.extend(meshes.finish());
+}
+
+/// How far a lane stands above the road: pavements do, unless the file raises them itself.
+pub(super) fn rise(source: &Source, lane: LaneId) -> f32 {
+    let origin = source.origins[lane as usize];
+    let told = source.provenance.lanes.iter().find(|p| p.lane == origin.lane);
+    let is_raised = told.is_some_and(|p| p.heights.iter().any(|h| h.inner > 0.02 || h.outer > 0.02));
+    if is_raised { 0.0 } else { KERB_M }
+}
+
+fn material(kind: xodr::LaneType) -> SurfaceKind {
+    use xodr::LaneType as T;
+    match kind {
+        T::Sidewalk | T::Curb => SurfaceKind::Sidewalk,
+        T::None | T::Median | T::Unknown => SurfaceKind::Terrain,
+        T::Rail | T::Tram => SurfaceKind::Ground,
+        _ => SurfaceKind::Road,
+    }
+}
+
+fn pave(source: &Source, map: &RoadNetwork, meshes: &mut Meshes) {
+    let mesh = source.net.surface_mesh();
+    for span in &mesh.lanes {
+        let (Some(lane), Some(&id)) = (source.net.lane(span.lane), source.ids.get(&span.lane.0)) else { continue };
+        let kind = material(lane.kind);
+        // Unnamed strips of connecting roads lie across each other's lanes.
+        if kind == SurfaceKind::Terrain && map.lanes[id as usize].junction.is_some() {
+            continue;
+        }
+        let lift = if kind == SurfaceKind::Sidewalk { Vec3::Z * rise(source, id) } else { Vec3::ZERO };
+        let ribs: Vec<Vec3> = mesh.vertices[span.vertices.start as usize..span.vertices.end as usize]
+            .iter()
+            .map(|&p| snap3(point(p) + lift))
+            .collect();
+        let surface = meshes.of(kind);
+        let first = surface.positions.len() as u32;
+        surface.positions.extend_from_slice(&ribs);
+        for t in mesh.indices[span.indices.start as usize..span.indices.end as usize].chunks_exact(3) {
+            surface.triangle([t[0], t[1], t[2]].map(|v| v - span.vertices.start + first));
+        }
+        if kind == SurfaceKind::Sidewalk {
+            kerbs(surface, &ribs);
+        }
+    }
+}
+
+/// Faces down from both edges and both ends of a strip of (left, right) ribs.
+fn kerbs(surface: &mut Surface, ribs: &[Vec3]) {
+    let down = Vec3::Z * KERB_FACE_M;
+    let mut face = |a: Vec3, b: Vec3| surface.fan(&[a, b, b - down, a - down]);
+    for pair in ribs.chunks_exact(2).collect::<Vec<_>>().windows(2) {
+        face(pair[0][0], pair[1][0]);
+        face(pair[1][1], pair[0][1]);
+    }
+    if let [left, right, .., end_left, end_right] = ribs {
+        face(*right, *left);
+        face(*end_left, *end_right);
+    }
+}
+
+/// The paved floor of a junction: the hull of the mouths of its roads, just below its lanes.
+fn floor(map: &RoadNetwork, junction: usize) -> Vec<Vec3> {
+    let lanes = &map.junctions[junction].lanes;
+    let ends = lanes.iter().flat_map(|&l| [*map.lanes[l as usize].start(), *map.lanes[l as usize].end()]);
+    let mut corners: Vec<Vec3> = ends.flat_map(|p| edges(&p)).map(|p| p - Vec3::Z * FLOOR_M).collect();
+    let far = |a: &Vec3| corners.iter().any(|b| a.distance(*b) > FLOOR_REACH_M);
+    if lanes.len() < 3 || corners.iter().any(far) {
+        return Vec::new();
+    }
+    hull(&mut corners)
+}
+
+/// The right and left edge of a lane at a point of its centre line.
+fn edges(p: &LanePoint) -> [Vec3; 2] {
+    let left = (direction(p.heading_rad).perp() * p.half_width_m).extend(0.0);
+    [p.position - left, p.position + left]
+}
+
+/// The convex hull seen from above, counter-clockwise (Andrew's monotone chain).
+fn hull(points: &mut [Vec3]) -> Vec<Vec3> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let chain = |points: &mut dyn Iterator<Item = Vec3>| {
+        let mut chain: Vec<Vec3> = Vec::new();
+        for p in points {
+            while let [.., a, b] = chain[..] {
+                let turn: f32 = (b - a).truncate().perp_dot((p - b).truncate());
+                if turn > 0.01 {
+                    break;
+                }
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut lower = chain(&mut points.iter().copied());
+    lower.extend(chain(&mut points.iter().rev().copied()));
+    lower
+}
+
+fn paint(source: &Source, map: &RoadNetwork, meshes: &mut Meshes) {
+    let surface = meshes.of(SurfaceKind::RoadLine);
+    let up = Vec3::Z * PAINT_M;
+    for piece in source.net.road_marks().iter().flat_map(|m| &m.lines).flat_map(|l| &l.pieces) {
+        surface.fan(&piece.map(|p| point(p) + up));
+    }
+    for stripe in map.crosswalks.iter().flat_map(crosswalks::stripes) {
+        surface.fan(&stripe.map(|p| p + up));
+    }
+    for lane in map.lanes.iter().filter(|l| l.kind == LaneKind::Driving) {
+        if let Some(stop) = lane.stop {
+            let (from, to) = (lane.at(stop.s_m), lane.at(stop.s_m + STOP_LINE_M));
+            stop_line(surface, &from, &to, stop.kind, up);
+        }
+    }
+}
+
+/// A bar, or a row of blocks where one only has to give way.
+fn stop_line(surface: &mut Surface, from: &LanePoint, to: &LanePoint, kind: StopKind, up: Vec3) {
+    let blocks = if kind == StopKind::Yield { 5 } else { 1 };
+    let ahead = (to.position - from.position).truncate();
+    if ahead.length() < STOP_LINE_M / 2.0 {
+        return;
+    }
+    let left: Vec2 = ahead.perp().normalize();
+    let width = 2.0 * from.half_width_m - 0.2;
+    let pitch = snap(width / blocks as f32);
+    let block = if blocks > 1 { 0.6 * pitch } else { pitch };
+    for k in 0..blocks {
+        let right_edge = -width / 2.0 + pitch * k as f32;
+        let side = |p: &LanePoint, offset: f32| p.position + up + (left * offset).extend(0.0);
+        surface.fan(&[
+            side(from, right_edge),
+            side(to, right_edge),
+            side(to, right_edge + block),
+            side(from, right_edge + block),
+        ]);
+    }
+}
