@@ -1,7 +1,11 @@
 //! The offline lab: pictures, datasets, checkpoints and reports made from recordings.
 
+pub mod cityscapes;
 pub mod demo;
 pub mod eval;
+pub mod expert;
 pub mod natural;
+pub mod png;
 pub mod rerender;
+mod spread;
 pub mod train;

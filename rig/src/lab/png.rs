@@ -1,0 +1,73 @@
+//! Pictures as PNG files: colour, class ids with the tags' palette, plain ids.
+
+use anyhow::Context;
+use render::tags;
+
+fn encode(
+    (width, height): (u32, u32),
+    color: png::ColorType,
+    depth: png::BitDepth,
+    palette: Option<Vec<u8>>,
+    bytes: &[u8],
+) -> anyhow::Result<Vec<u8>> {
+    let mut out = Vec::new();
+    let mut encoder = png::Encoder::new(&mut out, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(png::Compression::Balanced);
+    if let Some(palette) = palette {
+        encoder.set_palette(palette);
+    }
+    let mut writer = encoder.write_header().context("PNG header")?;
+    writer.write_image_data(bytes).context("PNG data")?;
+    writer.finish().context("PNG end")?;
+    Ok(out)
+}
+
+/// Colour, 3 bytes a pixel.
+pub fn rgb(size: (u32, u32), bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
+    encode(size, png::ColorType::Rgb, png::BitDepth::Eight, None, bytes)
+}
+
+/// Tag ids: the values are exact for tools, the palette shows the tags' colours.
+pub fn tags(size: (u32, u32), ids: &[u8]) -> anyhow::Result<Vec<u8>> {
+    let palette = (0..tags::TAG_COUNT as u8).flat_map(tags::colour).collect();
+    encode(size, png::ColorType::Indexed, png::BitDepth::Eight, Some(palette), ids)
+}
+
+/// One byte a pixel, as Cityscapes stores label ids.
+pub fn grey(size: (u32, u32), ids: &[u8]) -> anyhow::Result<Vec<u8>> {
+    encode(size, png::ColorType::Grayscale, png::BitDepth::Eight, None, ids)
+}
+
+/// Two bytes a pixel, as Cityscapes stores instance ids.
+pub fn grey16(size: (u32, u32), ids: &[u16]) -> anyhow::Result<Vec<u8>> {
+    let bytes: Vec<u8> = ids.iter().flat_map(|id| id.to_be_bytes()).collect();
+    encode(size, png::ColorType::Grayscale, png::BitDepth::Sixteen, None, &bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decode(file: &[u8]) -> (Vec<u8>, png::ColorType) {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a PNG");
+        let mut bytes = vec![0; reader.output_buffer_size().expect("small")];
+        let info = reader.next_frame(&mut bytes).expect("pixels");
+        (bytes[..info.buffer_size()].to_vec(), info.color_type)
+    }
+
+    #[test]
+    fn ids_are_exact_and_coloured() {
+        let file = tags((2, 2), &[7, 4, 13, 22]).expect("encodes");
+        assert_eq!(decode(&file), (vec![7, 4, 13, 22], png::ColorType::Indexed));
+        assert_eq!(file, tags((2, 2), &[7, 4, 13, 22]).expect("encodes"), "the same bytes each time");
+        assert!(tags((2, 2), &[7]).is_err());
+    }
+
+    #[test]
+    fn sixteen_bits_are_kept() {
+        let file = grey16((2, 1), &[4001, 10]).expect("encodes");
+        assert_eq!(decode(&file).0, [0x0f, 0xa1, 0, 10]);
+    }
+}

@@ -1,0 +1,62 @@
+//! Work that is spread over threads; what it gives does not depend on how.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+/// Calls `work` once for each index below `count` on `jobs` threads, each with a state of its own.
+/// After the first error no further index is started; that error is returned.
+pub fn spread<S>(
+    jobs: usize,
+    count: usize,
+    state: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, usize) -> anyhow::Result<()> + Sync,
+) -> anyhow::Result<()> {
+    let next = AtomicUsize::new(0);
+    let failed = Mutex::new(None);
+    let run = || {
+        let mut state = state();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return;
+            }
+            if let Err(error) = work(&mut state, index) {
+                next.store(count, Ordering::Relaxed);
+                failed.lock().unwrap_or_else(|e| e.into_inner()).get_or_insert(error);
+                return;
+            }
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..jobs.clamp(1, count.max(1)) {
+            scope.spawn(run);
+        }
+    });
+    failed.into_inner().unwrap_or_else(|e| e.into_inner()).map_or(Ok(()), Err)
+}
+
+/// The number of threads to use: what was asked for, or one a core.
+pub fn jobs(asked: Option<u16>) -> usize {
+    asked.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_index_comes_once_and_an_error_ends_it() {
+        let seen = Mutex::new(Vec::new());
+        let note = |_: &mut (), i: usize| {
+            seen.lock().expect("no panic").push(i);
+            Ok(())
+        };
+        spread(3, 20, || (), note).expect("no error");
+        let mut all = seen.into_inner().expect("no panic");
+        all.sort_unstable();
+        assert_eq!(all, (0..20).collect::<Vec<_>>());
+        let failing = |_: &mut (), i: usize| if i == 5 { anyhow::bail!("five") } else { Ok(()) };
+        assert_eq!(spread(2, 1000, || (), failing).expect_err("fails").to_string(), "five");
+    }
+}
