@@ -4,33 +4,42 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
-use kernel::time::Tick;
+use kernel::arbiter::{Outcome, TAKEOVER_TICKS};
+use kernel::time::{CLIP_FRAMES, CLIP_STRIDE_TICKS, Tick};
 use kernel::{RoadNetwork, SceneSnapshot};
 
-use crate::{CaseInfo, Error, Log, Recording};
+use crate::{CaseInfo, Error, Log, Mark, Recording, Replayer, RunSummary};
 
 /// A self-contained cut of a recording: the keyframe before its window, the inputs from there to after
 /// the outcome, and the scene of every clip frame of the window. It verifies as a recording does.
 #[derive(Clone, Debug)]
 pub struct Case {
     log: Log,
+    info: CaseInfo,
 }
 
 impl Case {
     /// The window that a recording's intervention (or the collision nobody prevented) asks for: the
-    /// last three seconds up to it. `None` when nothing of the kind happened.
-    pub fn window(_log: &Log) -> Option<RangeInclusive<Tick>> {
-        todo!()
+    /// ticks of the 30 clip frames up to it, first to last. `None` when nothing of the kind happened.
+    pub fn window(log: &Log) -> Option<RangeInclusive<Tick>> {
+        let missed = log.summary.as_ref().filter(|s| s.outcome == Some(Outcome::Missed)).map(|s| s.ticks);
+        let to = log.intervention.map(|i| i.tick).or(missed)?;
+        let from = to.checked_sub(Tick::from(CLIP_FRAMES - 1) * CLIP_STRIDE_TICKS)?;
+        Some(from..=to)
     }
 
-    /// Cuts a window out of a recording by replaying it; every tick is compared on the way. The last
-    /// clip frame is the window's last tick, the others are `CLIP_STRIDE_TICKS` apart before it.
-    pub fn cut(
-        _recording: &Recording,
-        _network: &Arc<RoadNetwork>,
-        _window: RangeInclusive<Tick>,
-    ) -> Result<Self, Error> {
-        todo!()
+    /// Cuts a window out of a recording by replaying it; every tick is compared on the way. The
+    /// scenes kept are those of the window's first tick and of every `CLIP_STRIDE_TICKS` after it.
+    pub fn cut(recording: &Recording, network: &Arc<RoadNetwork>, window: RangeInclusive<Tick>) -> Result<Self, Error> {
+        let log = recording.log();
+        let (from, to) = (*window.start(), *window.end());
+        let mut replayer = Replayer::new(log, network.clone())?;
+        replayer.seek(from)?;
+        let end = log.last_tick().min(to + TAKEOVER_TICKS);
+        let scenes = scenes(&mut replayer, window)?;
+        replayer.seek(end)?;
+        let info = CaseInfo { source: recording.digest(), from, to };
+        Ok(Self { log: cut_log(&replayer, &info, scenes), info })
     }
 
     /// Reads a case's file; a recording that is no case is refused.
@@ -50,7 +59,7 @@ impl Case {
 
     /// Where it was cut from.
     pub fn info(&self) -> &CaseInfo {
-        todo!()
+        &self.info
     }
 
     /// The scenes of its clip, by ascending tick.
@@ -59,10 +68,49 @@ impl Case {
     }
 }
 
+fn scenes(replayer: &mut Replayer<'_>, window: RangeInclusive<Tick>) -> Result<Vec<SceneSnapshot>, Error> {
+    let ticks = window.step_by(CLIP_STRIDE_TICKS as usize);
+    ticks.map(|tick| replayer.seek(tick).map(|()| replayer.world().scene())).collect()
+}
+
+/// The log from the keyframe before the window to where the replayer stands.
+fn cut_log(replayer: &Replayer<'_>, info: &CaseInfo, scenes: Vec<SceneSnapshot>) -> Log {
+    let (log, world) = (replayer.log(), replayer.world());
+    let end = world.tick();
+    let start = log.keyframes.iter().map(|k| k.tick).rfind(|t| *t <= info.from).unwrap_or(log.first_tick());
+    let inside = |tick: Tick| start < tick && tick <= end;
+    let rows = (start - log.first_tick()) as usize..(end - log.first_tick()) as usize;
+    let mark = Mark { tick: end, hash: world.hash(), parts: world.part_hashes(), odometer_mm: world.odometer_mm() };
+    let (arbiter, mut manifest) = (world.arbiter(), log.manifest.clone());
+    manifest.case = Some(info.clone());
+    Log {
+        manifest,
+        keyframes: log.keyframes.iter().filter(|k| k.tick == start || inside(k.tick)).cloned().collect(),
+        inputs: log.inputs[rows.clone()].to_vec(),
+        hashes: log.hashes[rows].to_vec(),
+        marks: log.marks.iter().filter(|m| inside(m.tick) && m.tick < end).copied().chain([mark]).collect(),
+        events: log.events.iter().filter(|(tick, _)| inside(*tick)).copied().collect(),
+        intervention: log.intervention.filter(|i| inside(i.tick)),
+        masks: log.masks.iter().filter(|m| inside(m.tick_shown)).copied().collect(),
+        annotation: log.annotation.clone(),
+        summary: Some(RunSummary {
+            ticks: end,
+            odometer_mm: world.odometer_mm(),
+            intervention: arbiter.intervention,
+            outcome: arbiter.outcome,
+        }),
+        scenes,
+    }
+}
+
 impl TryFrom<Recording> for Case {
     type Error = Error;
 
-    fn try_from(_recording: Recording) -> Result<Self, Error> {
-        todo!()
+    fn try_from(recording: Recording) -> Result<Self, Error> {
+        let log = recording.into_log();
+        match log.manifest.case.clone() {
+            Some(info) => Ok(Self { log, info }),
+            None => Err(Error::Unsuited("a recording, not a corner case".into())),
+        }
     }
 }

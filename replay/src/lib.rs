@@ -7,15 +7,24 @@
 //!
 //! Files are MCAP; `layout.rs` describes every channel.
 
+mod block;
 mod case;
+mod columns;
+mod container;
+mod divergence;
+mod encode;
 mod error;
+mod layout;
 mod log;
 mod recorder;
 mod recording;
 mod replayer;
+mod scan;
 mod verify;
+mod wire;
 
 pub use case::Case;
+pub use divergence::Divergence;
 pub use error::Error;
 pub use log::{
     Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Provenance,
@@ -23,5 +32,5 @@ pub use log::{
 };
 pub use recorder::Recorder;
 pub use recording::Recording;
-pub use replayer::{Divergence, Replayer};
+pub use replayer::Replayer;
 pub use verify::{Report, against, resumes, rewind, verify};

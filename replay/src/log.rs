@@ -226,13 +226,19 @@ impl Log {
         self.hashes.get(self.index(tick)?).copied()
     }
 
-    fn index(&self, tick: Tick) -> Option<usize> {
-        usize::try_from(tick.checked_sub(self.first_tick() + 1)?).ok()
+    /// The keyframe of a tick, if there is one.
+    pub fn keyframe(&self, tick: Tick) -> Option<&Keyframe> {
+        let at = self.keyframes.binary_search_by_key(&tick, |k| k.tick).ok()?;
+        Some(&self.keyframes[at])
     }
 
-    /// The file with this content, byte for byte what a [`crate::Recorder`] writes. Nothing of the
-    /// content is checked against a simulation: that is what verifying is for.
-    pub fn encode(&self) -> Result<Vec<u8>, Error> {
-        todo!()
+    /// The mark at a tick, if there is one.
+    pub fn mark(&self, tick: Tick) -> Option<&Mark> {
+        let at = self.marks.binary_search_by_key(&tick, |m| m.tick).ok()?;
+        Some(&self.marks[at])
+    }
+
+    fn index(&self, tick: Tick) -> Option<usize> {
+        usize::try_from(tick.checked_sub(self.first_tick() + 1)?).ok()
     }
 }

@@ -1,47 +1,12 @@
 //! Simulates a log again.
 
-use std::fmt;
 use std::sync::Arc;
 
+use kernel::state::first_difference;
 use kernel::time::Tick;
-use kernel::{RoadNetwork, TickOutput, World};
+use kernel::{Keyframe, RoadNetwork, TickOutput, World};
 
-use crate::{Error, Log};
-
-/// Where a replay first differs from what was recorded.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Divergence {
-    /// The first tick that differs.
-    pub tick: Tick,
-    /// One of [`kernel::world::PARTS`], or `"state"` when it cannot be told apart.
-    pub part: String,
-    /// Id of the actor, if the field belongs to one.
-    pub actor: Option<u32>,
-    /// Name of the field; `"hash"` when only hashes are known.
-    pub field: String,
-    /// What the log says.
-    pub expected: String,
-    /// What the simulation gives.
-    pub got: String,
-    /// The tick at which field and values were read: `tick` itself, or the next keyframe's.
-    pub seen_at: Tick,
-}
-
-impl fmt::Display for Divergence {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "diverges at tick {}: {}", self.tick, self.part)?;
-        if let Some(actor) = self.actor {
-            write!(f, ", actor {actor}")?;
-        }
-        write!(f, ", {}: expected {}, got {}", self.field, self.expected, self.got)?;
-        if self.seen_at != self.tick {
-            write!(f, " (at tick {})", self.seen_at)?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for Divergence {}
+use crate::{Divergence, Error, KERNEL_VERSION, Log, Mark};
 
 /// Steps through a log, comparing every tick with what was recorded.
 pub struct Replayer<'a> {
@@ -52,23 +17,120 @@ pub struct Replayer<'a> {
 
 impl<'a> Replayer<'a> {
     /// Stands at the first tick of the log.
-    pub fn new(_log: &'a Log, _network: Arc<RoadNetwork>) -> Result<Self, Error> {
-        todo!()
+    pub fn new(log: &'a Log, network: Arc<RoadNetwork>) -> Result<Self, Error> {
+        let (manifest, start) = (&log.manifest, log.keyframes.first());
+        if manifest.kernel != KERNEL_VERSION {
+            let made = &manifest.kernel;
+            let reason =
+                format!("made by kernel {made}; only that version can drive it again, this is {KERNEL_VERSION}");
+            return Err(Error::Unsuited(reason));
+        }
+        manifest.check_map(&network)?;
+        let start = start.ok_or_else(|| Error::Unsuited("the log has no keyframe to start from".into()))?;
+        let world = World::resume(&manifest.scenario, &network, start)?;
+        Ok(Self { log, network, world })
     }
 
-    /// Goes to a tick: resumes from the nearest keyframe before it, and steps from there.
-    pub fn seek(&mut self, _tick: Tick) -> Result<(), Error> {
-        todo!()
+    /// Goes to a tick: resumes from the nearest keyframe before it unless the world stands between
+    /// the two, and steps from there.
+    pub fn seek(&mut self, tick: Tick) -> Result<(), Error> {
+        let (first, last) = (self.log.first_tick(), self.log.last_tick());
+        let before = self.log.keyframes.iter().rev().find(|k| k.tick <= tick);
+        let Some(keyframe) = before.filter(|_| tick <= last) else {
+            return Err(Error::Unsuited(format!("the log has ticks {first} to {last}, not {tick}")));
+        };
+        if !(keyframe.tick..=tick).contains(&self.world.tick()) {
+            self.resume(keyframe)?;
+        }
+        while self.world.tick() < tick {
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// Stands at a keyframe of the log.
+    pub(crate) fn resume(&mut self, keyframe: &Keyframe) -> Result<(), Error> {
+        self.world = World::resume(&self.log.manifest.scenario, &self.network, keyframe)?;
+        Ok(())
     }
 
     /// Advances by one tick; `None` at the end of the log. A tick that differs from the log is an
-    /// error ([`Error::Diverged`]).
+    /// error ([`Error::Diverged`]), after which the world is no longer that of the log.
     pub fn step(&mut self) -> Result<Option<TickOutput>, Error> {
-        todo!()
+        let Some(output) = self.advance() else { return Ok(None) };
+        match self.compare(&output)? {
+            Some(divergence) => Err(Error::Diverged(Box::new(divergence))),
+            None => Ok(Some(output)),
+        }
+    }
+
+    /// Advances by one tick without comparing.
+    pub(crate) fn advance(&mut self) -> Option<TickOutput> {
+        let input = self.log.input(self.world.tick() + 1)?;
+        Some(self.world.step(input))
     }
 
     /// The world at the current tick.
     pub fn world(&self) -> &World {
         &self.world
+    }
+
+    /// The log.
+    pub fn log(&self) -> &'a Log {
+        self.log
+    }
+
+    /// What differs between the tick just simulated and the log.
+    pub(crate) fn compare(&self, output: &TickOutput) -> Result<Option<Divergence>, Error> {
+        let keyframe = self.compare_keyframe(output)?;
+        if keyframe.is_some() {
+            return Ok(keyframe);
+        }
+        let (tick, got) = (output.tick, output.hash.0 as u32);
+        if let Some(expected) = self.log.hash(tick).filter(|h| *h != got) {
+            return Ok(Some(Divergence::of_hash(tick, format!("{expected:08x}"), format!("{got:08x}"))));
+        }
+        Ok(self.compare_mark(output).or_else(|| self.compare_happenings(output)))
+    }
+
+    /// Differences in the keyframe of a tick, which name actor, field and both values.
+    pub(crate) fn compare_keyframe(&self, output: &TickOutput) -> Result<Option<Divergence>, Error> {
+        let tick = output.tick;
+        match (self.log.keyframe(tick), &output.keyframe) {
+            (Some(recorded), Some(computed)) if recorded != computed => {
+                let found = recorded.difference(computed)?;
+                Ok(Some(found.map_or_else(
+                    || Divergence::of_hash(tick, "other bytes in the keyframe".into(), "the computed ones".into()),
+                    |field| Divergence::of_field(tick, field, tick),
+                )))
+            }
+            (Some(_), None) => Ok(Some(Divergence::at(tick, "state", "keyframe", "present", "absent"))),
+            (None, Some(_)) => Ok(Some(Divergence::at(tick, "state", "keyframe", "absent", "present"))),
+            _ => Ok(None),
+        }
+    }
+
+    /// Differences at a mark: the full hash, and the parts of the state.
+    pub(crate) fn compare_mark(&self, output: &TickOutput) -> Option<Divergence> {
+        let mark = self.log.mark(output.tick)?;
+        let parts = self.world.part_hashes();
+        let computed = Mark { tick: output.tick, hash: output.hash, parts, odometer_mm: output.odometer_mm };
+        mark.difference(&computed)
+    }
+
+    /// Differences in what follows from the state: events and intervention.
+    fn compare_happenings(&self, output: &TickOutput) -> Option<Divergence> {
+        let (tick, log) = (output.tick, self.log);
+        let start = log.events.partition_point(|(t, _)| *t < tick);
+        let recorded: Vec<_> = log.events[start..].iter().take_while(|(t, _)| *t == tick).map(|(_, e)| *e).collect();
+        if let Some((field, expected, got)) = first_difference(&recorded, &output.events) {
+            return Some(Divergence::at(tick, "output", &format!("events{field}"), &expected, &got));
+        }
+        let recorded = log.intervention.filter(|i| i.tick == tick);
+        if recorded == output.intervention {
+            return None;
+        }
+        let (field, expected, got) = first_difference(&recorded, &output.intervention)?;
+        Some(Divergence::at(tick, "output", &format!("intervention{field}"), &expected, &got))
     }
 }

@@ -1,0 +1,100 @@
+//! Writes messages into an MCAP file that only ever grows.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use kernel::time::Tick;
+use mcap::records::MessageHeader;
+use mcap::write::NoSeek;
+use mcap::{Compression, McapError, WriteOptions, Writer};
+
+use crate::Error;
+use crate::layout::{CHANNELS, Channel, MESSAGE_ENCODING, SCHEMA_ENCODING, nanoseconds};
+
+/// Every option is set here, so that neither the machine nor a new default can change a file.
+fn options() -> WriteOptions {
+    WriteOptions::new()
+        .profile("")
+        .library(concat!("aeye ", env!("CARGO_PKG_VERSION")))
+        .compression(Some(Compression::Zstd))
+        .compression_level(9)
+        .compression_threads(0)
+        .use_chunks(true)
+        // A chunk ends when it is flushed, and is written at once: the file is append-only.
+        .chunk_size(None)
+        .disable_seeking(true)
+        .emit_summary_records(true)
+        .emit_summary_offsets(true)
+        .emit_message_indexes(true)
+        .calculate_chunk_crcs(true)
+        .calculate_data_section_crc(true)
+        .calculate_summary_section_crc(true)
+        .calculate_attachment_crcs(true)
+}
+
+/// An MCAP file being written.
+pub(crate) struct Container<W: Write> {
+    writer: Option<Writer<NoSeek<W>>>,
+    messages: u32,
+}
+
+impl<W: Write> Container<W> {
+    /// Starts the file and declares all channels.
+    pub fn new(out: W) -> Result<Self, Error> {
+        let mut writer = Writer::with_options(NoSeek::new(out), options()).map_err(io_error)?;
+        for layout in &CHANNELS {
+            let id = layout.channel as u16;
+            writer
+                .add_schema_with_id(id, layout.schema, SCHEMA_ENCODING, layout.text.as_bytes())
+                .and_then(|s| writer.add_channel_with_id(id, s, layout.topic, MESSAGE_ENCODING, &BTreeMap::new()))
+                .map_err(io_error)?;
+        }
+        Ok(Self { writer: Some(writer), messages: 0 })
+    }
+
+    /// Appends a message that was complete at `tick`; it is in the file after the next flush.
+    pub fn put(&mut self, channel: Channel, tick: Tick, payload: &[u8]) -> Result<(), Error> {
+        let time = nanoseconds(tick);
+        let header =
+            MessageHeader { channel_id: channel as u16, sequence: self.messages, log_time: time, publish_time: time };
+        self.messages = self.messages.wrapping_add(1);
+        self.writer()?.write_to_known_channel(&header, payload).map_err(io_error)
+    }
+
+    /// Ends the chunk and hands everything to the operating system.
+    pub fn flush(&mut self) -> Result<(), Error> {
+        self.writer()?.flush().map_err(io_error)
+    }
+
+    /// Writes index and footer.
+    pub fn finish(mut self) -> Result<W, Error> {
+        self.writer()?.finish().map_err(io_error)?;
+        let writer = self.writer.take().ok_or_else(closed)?;
+        Ok(writer.into_inner().into_inner())
+    }
+
+    fn writer(&mut self) -> Result<&mut Writer<NoSeek<W>>, Error> {
+        self.writer.as_mut().ok_or_else(closed)
+    }
+}
+
+impl<W: Write> Drop for Container<W> {
+    /// Leaves the file as a killed process would: without a footer, which the reader reports. The
+    /// MCAP writer on its own would add one and hide that the end is missing.
+    fn drop(&mut self) {
+        if let Some(writer) = self.writer.take() {
+            drop(writer.into_inner());
+        }
+    }
+}
+
+fn closed() -> Error {
+    Error::Io(io::Error::other("the file is closed"))
+}
+
+fn io_error(error: McapError) -> Error {
+    match error {
+        McapError::Io(e) => Error::Io(e),
+        other => Error::Io(io::Error::other(other)),
+    }
+}

@@ -1,0 +1,251 @@
+//! The payloads of messages as bytes. The only file that names bincode; what it declares is the wire
+//! layout that `layout.rs` describes.
+
+use std::collections::BTreeMap;
+
+use bincode::config::{Configuration, Limit, LittleEndian, Varint};
+use bincode::{Decode, Encode};
+use kernel::events::Event;
+use kernel::state::State;
+use kernel::time::Tick;
+use kernel::world::PARTS;
+use kernel::{Keyframe, Scenario, SceneSnapshot, StateHash, TickInput};
+
+use crate::block::{BLOCK_TICKS, Block, Happenings};
+use crate::columns::{self, ControlColumns};
+use crate::{Annotation, CaseInfo, FORMAT_VERSION, Label, LiveTimes, Manifest, Mark, MaskShown, RunSummary};
+
+/// Most bytes that a payload may claim; keeps damaged lengths from asking for memory.
+const LIMIT: usize = 256 << 20;
+
+/// Why a payload is not what its channel says.
+pub(crate) type Wrong = String;
+
+fn config() -> Configuration<LittleEndian, Varint, Limit<LIMIT>> {
+    bincode::config::standard().with_limit::<LIMIT>()
+}
+
+fn encode(value: impl Encode) -> Vec<u8> {
+    bincode::encode_to_vec(value, config()).expect("plain data within the limit can be encoded")
+}
+
+fn decode<T: Decode<()>>(bytes: &[u8]) -> Result<T, Wrong> {
+    let (value, read) = bincode::decode_from_slice(bytes, config()).map_err(|e| e.to_string())?;
+    if read == bytes.len() { Ok(value) } else { Err(format!("{} bytes are left over", bytes.len() - read)) }
+}
+
+fn state<T: State>(what: &str, bytes: &[u8]) -> Result<T, Wrong> {
+    T::from_bytes(bytes).map_err(|e| format!("{what}: {e}"))
+}
+
+#[derive(Encode, Decode)]
+struct ManifestWire {
+    format: u16,
+    kernel: String,
+    scenario: String,
+    map_digest: [u8; 16],
+    foreign_map: Option<String>,
+    provenance: BTreeMap<String, String>,
+    case: Option<([u8; 32], Tick, Tick)>,
+}
+
+pub(crate) fn manifest_bytes(manifest: &Manifest) -> Vec<u8> {
+    encode(ManifestWire {
+        format: manifest.format,
+        kernel: manifest.kernel.clone(),
+        scenario: manifest.scenario.to_toml(),
+        map_digest: manifest.map_digest.to_le_bytes(),
+        foreign_map: manifest.foreign_map.clone(),
+        provenance: manifest.provenance.clone(),
+        case: manifest.case.as_ref().map(|c| (c.source, c.from, c.to)),
+    })
+}
+
+pub(crate) fn manifest(bytes: &[u8]) -> Result<Manifest, Wrong> {
+    let (format, _) = bincode::decode_from_slice::<u16, _>(bytes, config()).map_err(|e| e.to_string())?;
+    if format != FORMAT_VERSION {
+        return Err(format!("layout version {format}; this program reads version {FORMAT_VERSION}"));
+    }
+    let wire: ManifestWire = decode(bytes)?;
+    Ok(Manifest {
+        format,
+        kernel: wire.kernel,
+        scenario: Scenario::from_toml(&wire.scenario).map_err(|e| format!("scenario: {e}"))?,
+        map_digest: u128::from_le_bytes(wire.map_digest),
+        foreign_map: wire.foreign_map,
+        provenance: wire.provenance,
+        case: wire.case.map(|(source, from, to)| CaseInfo { source, from, to }),
+    })
+}
+
+pub(crate) fn keyframe_bytes(keyframe: &Keyframe) -> Vec<u8> {
+    encode((keyframe.tick, &keyframe.bytes))
+}
+
+pub(crate) fn keyframe(bytes: &[u8]) -> Result<Keyframe, Wrong> {
+    decode(bytes).map(|(tick, bytes)| Keyframe { tick, bytes })
+}
+
+#[derive(Encode, Decode)]
+struct BlockWire {
+    first: Tick,
+    semantic: ControlColumns,
+    safety: ControlColumns,
+    hashes: Vec<u8>,
+    hash: [u8; 16],
+    parts: [[u8; 8]; PARTS.len()],
+    odometer_mm: u64,
+}
+
+pub(crate) fn block_bytes(block: &Block) -> Vec<u8> {
+    encode(BlockWire {
+        first: block.first,
+        semantic: columns::split_controls(block.inputs.iter().map(|i| &i.semantic)),
+        safety: columns::split_controls(block.inputs.iter().map(|i| &i.safety)),
+        hashes: block.hashes.iter().flat_map(|h| h.to_le_bytes()).collect(),
+        hash: block.mark.hash.0.to_le_bytes(),
+        parts: block.mark.parts.map(u64::to_le_bytes),
+        odometer_mm: block.mark.odometer_mm,
+    })
+}
+
+/// A block without its events, masks and keyframes, which have messages of their own.
+pub(crate) fn block(bytes: &[u8]) -> Result<Block, Wrong> {
+    let wire: BlockWire = decode(bytes)?;
+    let (hashes, rest) = wire.hashes.as_chunks::<4>();
+    let ticks = hashes.len();
+    if ticks == 0 || ticks as Tick > BLOCK_TICKS || !rest.is_empty() {
+        return Err(format!("{} bytes of hashes, expected 4 for each of 1 to {BLOCK_TICKS} ticks", wire.hashes.len()));
+    }
+    let semantic = columns::join_controls(&wire.semantic, ticks)?;
+    let safety = columns::join_controls(&wire.safety, ticks)?;
+    let last = wire.first.checked_add(ticks as Tick - 1).filter(|_| wire.first > 0);
+    let last = last.ok_or_else(|| format!("first tick {}", wire.first))?;
+    Ok(Block {
+        first: wire.first,
+        inputs: semantic.into_iter().zip(safety).map(|(semantic, safety)| TickInput { semantic, safety }).collect(),
+        hashes: hashes.iter().map(|h| u32::from_le_bytes(*h)).collect(),
+        mark: Mark {
+            tick: last,
+            hash: StateHash(u128::from_le_bytes(wire.hash)),
+            parts: wire.parts.map(u64::from_le_bytes),
+            odometer_mm: wire.odometer_mm,
+        },
+        ..Block::starting_at(wire.first)
+    })
+}
+
+#[derive(Encode, Decode)]
+struct EventsWire {
+    ticks: Vec<i64>,
+    events: Vec<u8>,
+    intervention: Option<Vec<u8>>,
+}
+
+pub(crate) fn happenings_bytes(happenings: &Happenings) -> Vec<u8> {
+    let (ticks, events): (Vec<Tick>, Vec<Event>) = happenings.events.iter().copied().unzip();
+    encode(EventsWire {
+        ticks: columns::differences(ticks.into_iter()),
+        events: events.to_bytes(),
+        intervention: happenings.intervention.map(|i| i.to_bytes()),
+    })
+}
+
+pub(crate) fn happenings(bytes: &[u8]) -> Result<Happenings, Wrong> {
+    let wire: EventsWire = decode(bytes)?;
+    let events: Vec<Event> = state("events", &wire.events)?;
+    if events.len() != wire.ticks.len() {
+        return Err(format!("{} ticks for {} events", wire.ticks.len(), events.len()));
+    }
+    Ok(Happenings {
+        events: columns::sums(&wire.ticks).zip(events).collect(),
+        intervention: wire.intervention.map(|b| state("intervention", &b)).transpose()?,
+    })
+}
+
+#[derive(Encode, Decode)]
+struct MasksWire {
+    shown: Vec<i64>,
+    age: Vec<i64>,
+    camera: Vec<u8>,
+    digests: Vec<[u8; 8]>,
+    /// Capture (differences), inference after capture, present after inference.
+    times: Vec<Option<(i64, i64, i64)>>,
+}
+
+pub(crate) fn masks_bytes(masks: &[MaskShown]) -> Vec<u8> {
+    let mut before_us = 0;
+    let mut times = |t: LiveTimes| {
+        let since = |later: u64, earlier: u64| later.wrapping_sub(earlier) as i64;
+        let capture = since(t.capture_us, std::mem::replace(&mut before_us, t.capture_us));
+        (capture, since(t.inference_us, t.capture_us), since(t.present_us, t.inference_us))
+    };
+    encode(MasksWire {
+        shown: columns::differences(masks.iter().map(|m| m.tick_shown)),
+        age: masks.iter().map(|m| m.tick_shown.wrapping_sub(m.tick_of_frame) as i64).collect(),
+        camera: masks.iter().map(|m| m.camera).collect(),
+        digests: masks.iter().map(|m| m.digest.to_le_bytes()).collect(),
+        times: masks.iter().map(|m| m.times.map(&mut times)).collect(),
+    })
+}
+
+pub(crate) fn masks(bytes: &[u8]) -> Result<Vec<MaskShown>, Wrong> {
+    let wire: MasksWire = decode(bytes)?;
+    let rows = wire.shown.len();
+    if [wire.age.len(), wire.camera.len(), wire.digests.len(), wire.times.len()].iter().any(|n| *n != rows) {
+        return Err(format!("columns of different lengths for {rows} masks"));
+    }
+    let mut capture_us = 0u64;
+    let mut times = |(capture, inference, present): (i64, i64, i64)| {
+        capture_us = capture_us.wrapping_add(capture as u64);
+        let inference_us = capture_us.wrapping_add(inference as u64);
+        LiveTimes { capture_us, inference_us, present_us: inference_us.wrapping_add(present as u64) }
+    };
+    let shown = columns::sums(&wire.shown).enumerate();
+    Ok(shown
+        .map(|(i, tick_shown)| MaskShown {
+            tick_shown,
+            tick_of_frame: tick_shown.wrapping_sub(wire.age[i] as u64),
+            camera: wire.camera[i],
+            digest: u64::from_le_bytes(wire.digests[i]),
+            times: wire.times[i].map(&mut times),
+        })
+        .collect())
+}
+
+#[derive(Encode, Decode)]
+struct EndWire {
+    annotation: Option<(u8, String, Option<bool>)>,
+    summary: Option<(Tick, u64, Vec<u8>, Vec<u8>)>,
+}
+
+pub(crate) fn end_bytes(annotation: Option<&Annotation>, summary: Option<&RunSummary>) -> Vec<u8> {
+    encode(EndWire {
+        annotation: annotation.map(|a| (a.label as u8, a.comment.clone(), a.perception_caused)),
+        summary: summary.map(|s| (s.ticks, s.odometer_mm, s.intervention.to_bytes(), s.outcome.to_bytes())),
+    })
+}
+
+pub(crate) fn end(bytes: &[u8]) -> Result<(Option<Annotation>, Option<RunSummary>), Wrong> {
+    let wire: EndWire = decode(bytes)?;
+    let annotation = wire.annotation.map(|(code, comment, perception_caused)| {
+        let label = Label::ALL.into_iter().find(|l| *l as u8 == code).ok_or(format!("unknown label {code}"))?;
+        Ok::<_, Wrong>(Annotation { label, comment, perception_caused })
+    });
+    let summary = wire.summary.map(|(ticks, odometer_mm, intervention, outcome)| {
+        let (intervention, outcome) = (state("intervention", &intervention)?, state("outcome", &outcome)?);
+        Ok::<_, Wrong>(RunSummary { ticks, odometer_mm, intervention, outcome })
+    });
+    Ok((annotation.transpose()?, summary.transpose()?))
+}
+
+pub(crate) fn scenes_bytes(scenes: &[SceneSnapshot]) -> Vec<u8> {
+    let rows: Vec<Vec<u8>> = scenes.iter().map(State::to_bytes).collect();
+    let lengths: Vec<usize> = rows.iter().map(Vec::len).collect();
+    encode((lengths, columns::stack(&rows)))
+}
+
+pub(crate) fn scenes(bytes: &[u8]) -> Result<Vec<SceneSnapshot>, Wrong> {
+    let (lengths, stacked): (Vec<usize>, Vec<u8>) = decode(bytes)?;
+    columns::unstack(&lengths, &stacked)?.iter().map(|row| state("scene", row)).collect()
+}
