@@ -6,7 +6,8 @@
 
 from city import city
 from opendrive import write
+from rural import rural
 
 if __name__ == "__main__":
-    for build in (city,):
+    for build in (city, rural):
         write(build())

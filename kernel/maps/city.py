@@ -87,7 +87,7 @@ def streets(m):
                 path = Path2(mouth(a, heading), heading).to(mouth(b, heading + math.pi), heading)
                 road = m.road(path, profile(a, b))
                 if road.profile.parking:
-                    road.sections = [(0.0, "shoulder", True), (18.0, "parking", True), (path.length - 18.0, "shoulder", True)]
+                    road.sections = [(0.0, "shoulder"), (18.0, "parking"), (path.length - 18.0, "shoulder")]
                 roads[a, b] = road
     return roads
 
@@ -116,7 +116,8 @@ def crossing(m, node, roads):
     through = [arm.road for arm in around if any(math.isclose(abs(arm.heading - o.heading), math.pi) for o in around)]
     level = [r for r in through if roads_level(r, roads)]
     major = level if len(level) == 2 else through[:2]
-    zebras = [arm.road for arm in around] if node in LIGHTS else major[:1]
+    minor = [arm.road for arm in around if arm.road not in major]
+    zebras = [arm.road for arm in around] if node in LIGHTS else major[:1] + minor[:1]
     control = "lights" if node in LIGHTS else "stop" if node in STOPS else "yield"
     if (node[0] + 2 * node[1]) % 7 == 3 and node not in LIGHTS and node not in STOPS:
         control, major = "none", []

@@ -159,11 +159,11 @@ class Road:
     path: Path2
     profile: Profile
     ends: dict = field(default_factory=dict)  # "start"/"end" -> ("road"/"junction", id, contact)
+    walk_on: dict = field(default_factory=dict)  # whether the road linked at an end has sidewalks too
     elevation: list = field(default_factory=list)  # (s, a, b, c, d)
     objects: list = field(default_factory=list)
     signals: list = field(default_factory=list)
-    sections: list = None  # (s, edge type, sidewalk?) where they change
-    speeds: list = None  # (s, kind, km/h)
+    sections: list = None  # (s, edge type) where it changes
 
     @property
     def length(self):
@@ -237,6 +237,12 @@ class Map:
         self.roads.append(Road(self.id(), path, profile, **more))
         return self.roads[-1]
 
+    def join(self, a, b):
+        """Lets road `b` follow road `a`."""
+        a.ends["end"], b.ends["start"] = ("road", b.id, "start"), ("road", a.id, "end")
+        both = bool(a.profile.sidewalk and b.profile.sidewalk)
+        a.walk_on["end"] = b.walk_on["start"] = both
+
     def junction(self, arms, control, major=(), z=0.0, zebras=()):
         j = Junction(self.id(), sorted(arms, key=lambda a: wrap(a.heading)), control, {r.id for r in major}, z)
         for arm in j.arms:
@@ -304,6 +310,16 @@ def signal(sid, arm, kind, before, z):
     )
 
 
+def speed_sign(sid, road, s, kmh, forward):
+    p = road.profile
+    right = p.kerb + p.sidewalk + 0.5
+    t, orientation = (-right, "+") if forward else (right, "-")
+    return (
+        f'<signal id="{sid}" name="" s="{num(s)}" t="{num(t)}" zOffset="2" orientation="{orientation}" dynamic="no" '
+        f'country="DE" type="274" subtype="{kmh}" value="{kmh}" unit="km/h" height="0.6" width="0.6"/>'
+    )
+
+
 def zebra(oid, s, kerb, half=2.0):
     corners = [(s - half, -kerb), (s + half, -kerb), (s + half, kerb), (s - half, kerb)]
     points = "".join(
@@ -343,36 +359,31 @@ def eased(w0, w1, length):
     return f'<width sOffset="0" a="{num(w0)}" b="0" c="{num(3 * d / length**2)}" d="{num(-2 * d / length**3)}"/>'
 
 
-def side_lanes(road, sign, edge, sidewalk, link):
+def side_lanes(road, sign, edge, link):
     p, out = road.profile, []
     for n, kind in p.ids():
-        if kind == "sidewalk" and not sidewalk:
-            kind, m = "none", mark("none")
-        elif kind == "driving":
+        if kind == "driving":
             m = mark("broken", "both") if n < p.lanes else mark("solid")
         else:
-            m = mark("curb") if kind == "edge" and sidewalk else mark("none")
-        width = p.width_of("sidewalk" if kind == "none" else kind)
-        out.append(lane(sign * n, edge if kind == "edge" else kind, constant(width), m, link(sign * n)))
+            m = mark("curb") if kind == "edge" and p.sidewalk else ""
+        out.append(lane(sign * n, edge if kind == "edge" else kind, constant(p.width_of(kind)), m, link(sign * n)))
     return out
 
 
 def road_sections(road):
     text = ""
-    sections = road.sections or [(0.0, "shoulder", True)]
-    for k, (s, edge, sidewalk) in enumerate(sections):
+    sections = road.sections or [(0.0, "shoulder")]
+    for k, (s, edge) in enumerate(sections):
 
         def link(lid):
-            out = ""
-            if k > 0 or road.ends.get("start", ("junction",))[0] == "road":
-                out += f'<predecessor id="{lid if k > 0 else other(road, "start", lid)}"/>'
-            if k + 1 < len(sections) or road.ends.get("end", ("junction",))[0] == "road":
-                out += f'<successor id="{lid if k + 1 < len(sections) else other(road, "end", lid)}"/>'
-            return out
+            before = lid if k > 0 else other(road, "start", lid)
+            after = lid if k + 1 < len(sections) else other(road, "end", lid)
+            out = "" if before is None else f'<predecessor id="{before}"/>'
+            return out + ("" if after is None else f'<successor id="{after}"/>')
 
-        left = "".join(reversed(side_lanes(road, 1, edge, sidewalk, link)))
-        right = "".join(side_lanes(road, -1, edge, sidewalk, link))
-        middle = mark("broken", "both", 0.12) if road.profile.lanes == 1 else mark("solid solid", "none")
+        left = "".join(reversed(side_lanes(road, 1, edge, link)))
+        right = "".join(side_lanes(road, -1, edge, link))
+        middle = mark("broken", "both") if road.profile.lanes == 1 else mark("solid solid")
         text += (
             f'<laneSection s="{num(s)}"><left>{left}</left><center>{lane(0, "none", "", middle)}</center>'
             f"<right>{right}</right></laneSection>"
@@ -381,8 +392,12 @@ def road_sections(road):
 
 
 def other(road, end, lid):
-    """The lane that continues `lid` on the road linked at `end`."""
-    return lid if road.ends[end][2] != end else -lid
+    """The lane that continues `lid` on the road linked at `end`, if there is one."""
+    kind, _, contact = road.ends.get(end, ("junction", None, None))
+    is_walk = abs(lid) == road.profile.lanes + 2
+    if kind == "junction" or (is_walk and not road.walk_on.get(end, True)):
+        return None
+    return lid if contact != end else -lid
 
 
 def link_text(ends):
@@ -417,8 +432,7 @@ def elevation(records):
 
 def road_text(road):
     p = road.profile
-    speeds = road.speeds or [(0.0, p.kind, p.kmh)]
-    types = "".join(f'<type s="{num(s)}" type="{kind}"><speed max="{kmh}" unit="km/h"/></type>' for s, kind, kmh in speeds)
+    types = f'<type s="0" type="{p.kind}"><speed max="{p.kmh}" unit="km/h"/></type>'
     return (
         f'<road length="{num(road.length)}" id="{road.id}" junction="-1">{link_text(road.ends)}{types}'
         f"{plan(road.path)}{elevation(road.elevation or [(0, 0, 0, 0, 0)])}"

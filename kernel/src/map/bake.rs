@@ -60,9 +60,10 @@ pub fn bake(name: &str, xodr: &str) -> Result<RoadNetwork, BakeError> {
     junctions::bake(&source, &mut map);
     crosswalks::bake(&source, &mut map);
     lights::bake(&source, &mut map);
-    junctions::rank(&source, &mut map);
     walk::bake(&source, &mut map);
     surfaces::bake(&source, &mut map);
+    // After the paint: who waits without a sign has no line on the road.
+    junctions::rank(&source, &mut map);
     map.bounds = bounds(&map);
     terrain::bake(&mut map);
     props::bake(&source, &mut map);

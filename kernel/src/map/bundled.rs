@@ -5,10 +5,10 @@ use std::sync::{Arc, OnceLock};
 use super::{RoadNetwork, bake};
 
 /// Names of the bundled maps.
-pub const BUNDLED: [&str; 1] = ["city"];
+pub const BUNDLED: [&str; 2] = ["city", "rural"];
 
 /// What they are baked from; `kernel/maps/author.py` writes these.
-const TEXTS: [&str; BUNDLED.len()] = [include_str!("../../maps/city.xodr")];
+const TEXTS: [&str; BUNDLED.len()] = [include_str!("../../maps/city.xodr"), include_str!("../../maps/rural.xodr")];
 
 /// A bundled map by name, baked on first use.
 pub fn bundled(name: &str) -> Option<Arc<RoadNetwork>> {

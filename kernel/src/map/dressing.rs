@@ -13,7 +13,7 @@ const CLEAR_M: f32 = 0.35;
 const LAMP_PITCH_M: f32 = 28.0;
 /// Roads that bend more tightly than this get guard rails on the outside, metres.
 const RAIL_RADIUS_M: f32 = 160.0;
-/// Length of one piece of guard rail or fence, metres.
+/// Length of one piece of guard rail, metres.
 const PIECE_M: f32 = 4.0;
 
 pub(super) fn bake(source: &Source, map: &mut RoadNetwork) {
@@ -138,7 +138,7 @@ impl Verge {
             let bend = ops::wrap_angle(b.heading_rad - a.heading_rad) / PIECE_M;
             if bend * self.side < -1.0 / RAIL_RADIUS_M {
                 let (at, heading) = self.place(site.map, s + PIECE_M / 2.0, 0.9);
-                site.put(PropKind::GuardRail, at, heading, Vec3::new(PIECE_M + 0.1, 0.25, 0.8), 0);
+                site.put(PropKind::GuardRail, at, heading, Vec3::new(PIECE_M - 0.05, 0.25, 0.8), 0);
             }
             s += PIECE_M;
         }
@@ -158,7 +158,7 @@ impl Verge {
             match patch {
                 p if p < 0.45 => site.tree(at, height),
                 p if p < 0.6 => _ = site.put(PropKind::Hedge, near, heading, Vec3::new(5.6, 1.2, 1.5), 0),
-                p if p < 0.75 => _ = site.put(PropKind::Fence, near, heading, Vec3::new(6.0, 0.1, 1.1), 0),
+                p if p < 0.75 => _ = site.put(PropKind::Fence, near, heading, Vec3::new(5.9, 0.1, 1.1), 0),
                 _ => {}
             }
             s += 6.0;
