@@ -1,5 +1,7 @@
 //! Which graphics adapter draws.
 
+use std::sync::OnceLock;
+
 use crate::RenderError;
 
 /// Which graphics adapter to draw with.
@@ -34,16 +36,20 @@ pub fn adapters() -> Vec<AdapterInfo> {
     found().iter().map(|adapter| describe(&adapter.get_info())).collect()
 }
 
-/// The adapters of the native APIs; OpenGL's colours differ from Vulkan's, so it is left out.
-fn found() -> Vec<wgpu::Adapter> {
-    let backends = wgpu::Backends::PRIMARY;
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = backends;
-    descriptor.flags = wgpu::InstanceFlags::empty();
-    let instance = wgpu::Instance::new(descriptor);
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-    adapters
+/// The adapters of the native APIs, looked for once a process; OpenGL's colours differ from Vulkan's,
+/// so it is left out.
+fn found() -> &'static [wgpu::Adapter] {
+    static FOUND: OnceLock<Vec<wgpu::Adapter>> = OnceLock::new();
+    FOUND.get_or_init(|| {
+        let backends = wgpu::Backends::PRIMARY;
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = backends;
+        descriptor.flags = wgpu::InstanceFlags::empty();
+        let instance = wgpu::Instance::new(descriptor);
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+        adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+        adapters
+    })
 }
 
 fn rank(kind: wgpu::DeviceType) -> u8 {
@@ -85,7 +91,7 @@ impl AdapterChoice {
     }
 
     /// The best adapter of the wanted kind.
-    pub(crate) fn open(&self) -> Result<(wgpu::Adapter, AdapterInfo), RenderError> {
+    pub(crate) fn open(&self) -> Result<(&'static wgpu::Adapter, AdapterInfo), RenderError> {
         let mut names = Vec::new();
         for adapter in found() {
             let info = describe(&adapter.get_info());

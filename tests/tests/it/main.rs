@@ -1,3 +1,5 @@
 //! The integration tests, one binary. Each module tests one promise to the user.
 
+mod render_frame;
+mod render_oracle;
 mod tidy;

@@ -1,0 +1,102 @@
+//! A frame is the same bits whenever it is drawn, its planes belong together, and what cannot be
+//! drawn is refused with a sentence.
+
+use kernel::scene::ActorKind;
+use render::{AdapterChoice, Camera, Preset, RenderError, RenderOptions, Renderer, SemanticTag};
+use tests::street;
+
+fn renderer() -> Renderer {
+    Renderer::new(&street::network(), &RenderOptions { preset: Preset::Cheap, ..Default::default() }).unwrap()
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_frame_is_the_same_whatever_was_drawn_before() {
+    let camera = Camera::driver(256, 128);
+    let first = renderer().draw(&street::scene(3), &camera).unwrap();
+    let mut used = renderer();
+    for moment in [9, 14, 3] {
+        used.draw(&street::scene(moment), &Camera::chase(320, 200)).unwrap();
+        let again = used.draw(&street::scene(moment), &camera).unwrap();
+        assert_eq!(again, used.draw(&street::scene(moment), &camera).unwrap());
+        assert_eq!(again == first, moment == 3);
+    }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn both_presets_give_the_same_truth() {
+    let camera = Camera::driver(192, 96);
+    let mut cheap = renderer();
+    let mut full =
+        Renderer::new(&street::network(), &RenderOptions { preset: Preset::Full, ..Default::default() }).unwrap();
+    for moment in 0..4 {
+        let scene = street::scene(moment);
+        let (a, b) = (cheap.draw(&scene, &camera).unwrap(), full.draw(&scene, &camera).unwrap());
+        let differing = a.fine_ids.iter().zip(&b.fine_ids).filter(|(x, y)| x != y).count();
+        assert!(differing * 1000 < a.fine_ids.len(), "{differing} pixels differ at moment {moment}");
+        assert_ne!(a.rgb, b.rgb);
+    }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn planes_belong_together() {
+    let scene = street::scene(1);
+    let frame = renderer().draw(&scene, &Camera::driver(512, 256)).unwrap();
+    let pixels = 512 * 256;
+    assert_eq!((frame.tick, frame.width, frame.height), (scene.tick, 512, 256));
+    assert_eq!(frame.rgb.len(), 3 * pixels);
+    let mut people = 0;
+    for at in 0..pixels {
+        let fine = SemanticTag::from_id(frame.fine_ids[at]).expect("a tag in every pixel");
+        assert_eq!(frame.class_ids[at], fine.coarse() as u8);
+        assert_eq!(frame.depth_m[at].is_infinite(), fine == SemanticTag::Sky);
+        let actor = scene.actors.iter().find(|a| a.id == u32::from(frame.instance_ids[at]));
+        if let Some(actor) = actor {
+            let walks = actor.kind == ActorKind::Pedestrian;
+            assert_eq!(fine == SemanticTag::Pedestrian, walks, "instance {} is {fine:?}", actor.id);
+            people += u32::from(walks);
+        }
+    }
+    assert!(people > 200, "{people} pixels of people");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_lamp_shows_its_phase() {
+    let mut renderer = renderer();
+    let mut scene = street::scene(0);
+    scene.actors.clear();
+    let mut brightest = |phase| {
+        scene.lights = vec![phase];
+        let frame = renderer.draw(&scene, &Camera::driver(512, 256)).unwrap();
+        let lamps = (0..frame.class_ids.len()).filter(|&i| frame.class_ids[i] == SemanticTag::TrafficLight as u8);
+        let pixel = |i: usize| [frame.rgb[3 * i], frame.rgb[3 * i + 1], frame.rgb[3 * i + 2]];
+        lamps.map(pixel).max_by_key(|p| p.iter().max().unwrap() - p.iter().min().unwrap()).unwrap()
+    };
+    let [red, green] = [kernel::signals::LightPhase::Red, kernel::signals::LightPhase::Green].map(&mut brightest);
+    assert!(red[0] > 2 * red[1], "{red:?}");
+    assert!(u16::from(green[1]) > 3 * u16::from(green[0]) / 2, "{green:?}");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn what_cannot_be_drawn_is_refused() {
+    let mut renderer = renderer();
+    let scene = street::scene(0);
+    let refused = renderer.draw(&scene, &Camera::driver(0, 128)).unwrap_err();
+    assert!(matches!(refused, RenderError::ImageSize { width: 0, .. }), "{refused}");
+    let mut foreign = scene.clone();
+    foreign.lights.clear();
+    let refused = renderer.draw(&foreign, &Camera::driver(64, 32)).unwrap_err();
+    assert_eq!(refused, RenderError::OtherMap { expected: 1, got: 0 });
+    assert!(renderer.draw(&scene, &Camera::driver(64, 32)).is_ok());
+}
+
+#[test]
+fn an_unknown_adapter_is_refused_with_what_to_do() {
+    let options = RenderOptions { adapter: AdapterChoice::Named("no such adapter".into()), ..Default::default() };
+    let sentence = Renderer::new(&street::network(), &options).err().unwrap().to_string();
+    assert!(sentence.contains("no such adapter") && sentence.contains("mesa-vulkan-drivers"), "{sentence}");
+}

@@ -1,0 +1,129 @@
+//! From a snapshot to triangles in the world: only the meshes are the renderer's, every transform is
+//! computed here from their documentation.
+
+use glam::{DAffine3, DQuat, DVec3, Vec3};
+use kernel::map::{Prop, RoadNetwork};
+use kernel::scene::{SceneSnapshot, Weather};
+use render::mesh::model::{self, Detail, Model};
+use render::mesh::{Mesh, prop, signal, surface};
+
+use super::bvh::Triangle;
+
+fn wide(v: Vec3) -> DVec3 {
+    DVec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
+}
+
+fn turn(q: glam::Quat) -> DQuat {
+    DQuat::from_xyzw(f64::from(q.x), f64::from(q.y), f64::from(q.z), f64::from(q.w)).normalize()
+}
+
+fn upright(position: Vec3, heading_rad: f32) -> DAffine3 {
+    DAffine3::from_rotation_translation(DQuat::from_rotation_z(f64::from(heading_rad)), wide(position))
+}
+
+/// The class a mesh's tag has in CARLA 0.9.10: riders are pedestrians, all that is driven a vehicle.
+fn class_of(tag: u8) -> u8 {
+    match tag {
+        0..=22 => tag,
+        64 => 4,
+        65..=68 => 10,
+        _ => panic!("{tag} is no tag"),
+    }
+}
+
+/// Collects triangles under the wind of one moment.
+struct Collector {
+    triangles: Vec<Triangle>,
+    wind: f64,
+    gust_rad: f64,
+}
+
+impl Collector {
+    fn new(weather: &Weather, tick: u64) -> Self {
+        let gust_rad = f64::from(render::wind::SWING_RADPS) * tick as f64 / 60.0;
+        Self { triangles: Vec::new(), wind: f64::from(weather.wind_pct) / 100.0, gust_rad }
+    }
+
+    fn sway(&self, at: DVec3, weight: i8) -> DVec3 {
+        use render::wind::{BEND, DIRECTION, REACH_M, WAVE};
+        let phase = self.gust_rad + f64::from(WAVE.x) * at.x + f64::from(WAVE.y) * at.y;
+        let share = f64::from(BEND.x) + f64::from(BEND.y) * phase.sin();
+        let reach = f64::from(REACH_M) * self.wind * share * f64::from(weight) / 127.0;
+        DVec3::new(f64::from(DIRECTION.x), f64::from(DIRECTION.y), 0.0) * reach
+    }
+
+    fn add(&mut self, mesh: &Mesh, to_world: DAffine3) {
+        let corner = |i: u32| {
+            let v = &mesh.vertices[i as usize];
+            let at = to_world.transform_point3(wide(Vec3::from_array(v.position)));
+            at + self.sway(at, v.sway)
+        };
+        let class = |i: u32| class_of(mesh.vertices[i as usize].tag);
+        let triangles: Vec<Triangle> =
+            mesh.all_triangles().map(|t| Triangle { corners: t.map(corner), class: class(t[0]) }).collect();
+        self.triangles.extend(triangles);
+    }
+
+    fn add_model(&mut self, model: &Model, to_world: DAffine3, phase_rad: f32, speed_mps: f32) {
+        let mut frames: Vec<DAffine3> = Vec::new();
+        for part in &model.parts {
+            let angle = part.swing.map_or(0.0, |s| {
+                let full = f64::from(s.full_speed_mps);
+                let share = if full > 0.0 { (f64::from(speed_mps).abs() / full).min(1.0) } else { 1.0 };
+                let phase = f64::from(phase_rad) + f64::from(s.lead_rad);
+                f64::from(s.rest_rad) + f64::from(s.amplitude_rad) * phase.sin() * share
+            });
+            let axis = part.swing.map_or(DVec3::X, |s| wide(s.axis));
+            let parent = part.parent.map_or(to_world, |i| frames[i]);
+            let joint = DAffine3::from_rotation_translation(DQuat::from_axis_angle(axis, angle), wide(part.pivot));
+            let frame = parent * joint;
+            frames.push(frame);
+            self.add(&part.mesh, frame);
+        }
+    }
+}
+
+/// All triangles of a moment.
+pub fn triangles(network: &RoadNetwork, scene: &SceneSnapshot) -> Vec<Triangle> {
+    let mut all = Collector::new(&scene.weather, scene.tick);
+    for cell in surface::cells(network).iter().chain([&surface::plain(network)]) {
+        all.add(cell, DAffine3::IDENTITY);
+    }
+    for object in &network.props {
+        let Prop { position, heading_rad, .. } = *object;
+        all.add(&prop::mesh(object, Detail::Fine), upright(position, heading_rad));
+    }
+    for head in &network.light_heads {
+        let lamps = head.position + Vec3::Z * head.height_m;
+        let phase = scene.lights[head.group as usize];
+        all.add(&signal::head(phase, Detail::Fine), upright(lamps, head.facing_rad));
+    }
+    for actor in &scene.actors {
+        let model = model::actor(actor.kind, actor.variant, Detail::Fine);
+        let frame = DAffine3::from_rotation_translation(turn(actor.rotation), wide(actor.position));
+        all.add_model(&model, frame, actor.phase_rad, actor.speed_mps);
+    }
+    let ego = DAffine3::from_rotation_translation(turn(scene.ego.rotation), wide(scene.ego.position));
+    let middle = DAffine3::from_translation(DVec3::X * f64::from(kernel::ego::CENTRE_M.x));
+    all.add_model(model::ego(), ego * middle, 0.0, scene.ego.speed_mps);
+    all.triangles
+}
+
+/// The eye and the viewing directions of the pixels of the driver's camera, rows from above.
+///
+/// It is level, 1.2 m forward of the car's middle and 1.5 m high, and sees 90 degrees from side to
+/// side. Directions have length 1 along the view.
+pub fn rays(scene: &SceneSnapshot, width: u32, height: u32) -> (DVec3, Vec<DVec3>) {
+    let car = turn(scene.ego.rotation);
+    let mount = DVec3::new(f64::from(kernel::ego::CENTRE_M.x) + 1.2, 0.0, 1.5);
+    let eye = wide(scene.ego.position) + car * mount;
+    let half = 0.5 * f64::from(width);
+    let directions = (0..height).flat_map(|row| {
+        (0..width).map(move |column| {
+            let left = (half - f64::from(column) - 0.5) / half;
+            let up = (0.5 * f64::from(height) - f64::from(row) - 0.5) / half;
+            car * DVec3::new(1.0, left, up)
+        })
+    });
+    (eye, directions.collect())
+}
