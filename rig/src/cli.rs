@@ -197,6 +197,9 @@ pub struct NaturalArgs {
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
     #[arg(long, value_delimiter = ',', default_value = "all", value_name = "NAMES|all")]
     pub maps: Vec<String>,
+    /// People on foot in each scene, instead of as many as the map's default scenario has.
+    #[arg(long, value_name = "N")]
+    pub pedestrians: Option<u16>,
     /// Seed of the dataset.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,

@@ -14,7 +14,7 @@ use kernel::arbiter::Phase;
 use kernel::events::EventKind;
 use kernel::scene::Weather;
 use kernel::time::{DATASET_STRIDE_TICKS, Tick, seconds};
-use kernel::{TickInput, World};
+use kernel::{Scenario, TickInput, World};
 use perception::classes::TRAIN_CLASSES;
 use render::{Camera, Frame, RenderOptions, Renderer};
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,8 @@ struct Recipe {
     val_scenes: u32,
     frames: u32,
     size: (u32, u32),
+    /// People on foot, where not as many as in the map's default scenario.
+    pedestrians: Option<u16>,
     maps: Vec<MapUsed>,
 }
 
@@ -217,6 +219,7 @@ impl Recipe {
             val_scenes: args.val_scenes,
             frames: args.frames,
             size: args.size,
+            pedestrians: args.pedestrians,
             maps: maps.iter().map(used).collect(),
         })
     }
@@ -246,7 +249,9 @@ impl Studio<'_> {
         while taken < self.recipe.frames {
             let before = taken;
             let seed = scene.seed(self.recipe, leg);
-            let mut drive = Drive::new(map, seed)?;
+            let mut scenario = map.scenario(seed);
+            scenario.traffic.pedestrians = self.recipe.pedestrians.unwrap_or(scenario.traffic.pedestrians);
+            let mut drive = Drive::new(&scenario, map)?;
             while taken < self.recipe.frames && drive.next_frame() {
                 let frame = self.draw(&drive.world)?;
                 lines.push_str(&self.keep(scene, &drive.world, taken, leg, &frame)?);
@@ -306,9 +311,8 @@ struct Drive {
 }
 
 impl Drive {
-    fn new(map: &Map, seed: u64) -> anyhow::Result<Self> {
-        let scenario = map.scenario(seed);
-        let world = World::new(&scenario, &map.network)?;
+    fn new(scenario: &Scenario, map: &Map) -> anyhow::Result<Self> {
+        let world = World::new(scenario, &map.network)?;
         Ok(Self { world, expert: Expert, standing_frames: 0, stood: 0, collided: false })
     }
 
