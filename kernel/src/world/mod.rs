@@ -243,6 +243,11 @@ impl World {
         Keyframe { tick: self.tick(), bytes: self.bytes.clone() }
     }
 
+    /// Size of the canonical bytes of the state.
+    pub fn state_bytes(&self) -> usize {
+        self.bytes.len()
+    }
+
     /// Hash of the current state, of the last input and output: that of the last [`TickOutput`].
     pub fn hash(&self) -> StateHash {
         StateHash(xxh3_128(&self.bytes))
