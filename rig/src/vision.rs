@@ -35,9 +35,19 @@ pub enum Eye {
 impl Eye {
     /// Opens a checkpoint at the size it takes.
     pub fn open(choice: &CheckpointChoice) -> anyhow::Result<Self> {
+        Self::open_for(choice, None)
+    }
+
+    /// Opens a checkpoint for pictures of one size, which are resampled if it takes another.
+    pub fn open_at(choice: &CheckpointChoice, size: (u32, u32)) -> anyhow::Result<Self> {
+        Self::open_for(choice, Some((size.0 as usize, size.1 as usize)))
+    }
+
+    fn open_for(choice: &CheckpointChoice, size: Option<(usize, usize)>) -> anyhow::Result<Self> {
         let CheckpointChoice::File(path) = choice else { return Ok(Self::Truth) };
         let checkpoint = Checkpoint::load(path)?;
-        let (width, height) = checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
+        let own = || checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
+        let (width, height) = size.unwrap_or_else(own);
         let segmenter = Box::new(Segmenter::new(&checkpoint, width, height)?);
         Ok(Self::Network { checkpoint, segmenter })
     }
