@@ -32,7 +32,7 @@ pub fn input(world: &World) -> TickInput {
         3300..3420 => Controls::from_fractions(0.9, 0.8, 0.0),
         _ => Controls { flags: Controls::HAND_BRAKE, ..Controls::default() },
     };
-    let takes_over = (90..110).contains(&tick) || (1400..1410).contains(&tick);
+    let takes_over = (90..110).contains(&tick) || (200..210).contains(&tick);
     let mut safety = Controls::from_fractions(0.0, 0.0, if takes_over { 0.8 } else { 0.0 });
     if tick.is_multiple_of(400) {
         safety.flags |= Controls::SEEN;
