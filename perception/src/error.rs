@@ -75,4 +75,26 @@ pub enum PerceptionError {
         /// What the engine says.
         reason: String,
     },
+    /// A dataset folder is not what training and evaluation need.
+    #[error("{path}: {reason}")]
+    Dataset {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was found and what was expected.
+        reason: String,
+    },
+    /// What is asked of training contradicts itself.
+    #[error("cannot train with a {reason}")]
+    TrainOptions {
+        /// What was asked and what was expected.
+        reason: String,
+    },
+    /// An unfinished training cannot be continued.
+    #[error("{path}: this unfinished training cannot be continued: {reason}; remove it to start anew")]
+    Unfinished {
+        /// Its file.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
 }

@@ -17,6 +17,7 @@ mod segmenter;
 mod taps;
 #[cfg(test)]
 mod toy;
+pub mod training;
 
 pub use checkpoint::Checkpoint;
 pub use classes::ClassMap;

@@ -1,0 +1,208 @@
+//! Writes a trained network as ONNX in the form that runs fast: batch normalisation folded into the
+//! convolutions, pooling and resizing as products with constant matrices, logits at the network's
+//! stride (upsampling and argmax are left to [`crate::Segmenter`]). The same weights give the same
+//! bytes.
+
+use prost::Message;
+
+use super::network::{Graph, Kernel, Resample, Size, fast_scnn};
+use super::resample;
+use super::weights::{Parameter, Weights};
+use super::{kernels::norm, pictures};
+use crate::classes::TRAIN_CLASSES;
+use crate::metadata::{Layout, Metadata};
+use crate::onnx::pb::{self, tensor_proto::DataType};
+use crate::{ClassMap, PerceptionError};
+
+const OPSET: i64 = 13;
+const IR_VERSION: i64 = 8;
+
+/// The model's bytes, for pictures of `width` x `height` pixels. `recipe` is a JSON text that goes
+/// into the metadata.
+pub(super) fn onnx(weights: &Weights, width: usize, height: usize, recipe: &str) -> Result<Vec<u8>, PerceptionError> {
+    let image = Size { rows: height, cols: width, channels: 3 };
+    let mut writer = Writer { weights, parameter: 0, layer: 0, graph: pb::GraphProto::default() };
+    let input = Value { name: "image".into(), size: image };
+    let output = fast_scnn(&mut writer, &input, TRAIN_CLASSES.len());
+    writer.graph.name = "fast-scnn".into();
+    writer.graph.input = vec![value_info(&input)];
+    writer.graph.output = vec![value_info(&output)];
+    let opset = pb::OperatorSetIdProto { version: OPSET, ..Default::default() };
+    let model = pb::ModelProto {
+        ir_version: IR_VERSION,
+        opset_import: vec![opset],
+        producer_name: "aeye".into(),
+        graph: Some(writer.graph),
+        metadata_props: props(recipe)?,
+        ..Default::default()
+    };
+    Ok(model.encode_to_vec())
+}
+
+fn props(recipe: &str) -> Result<Vec<pb::StringStringEntryProto>, PerceptionError> {
+    let metadata = Metadata {
+        classes: ClassMap::from_names(&TRAIN_CLASSES.map(|c| c.name))?,
+        normalisation: Some(pictures::NORMALISATION),
+        layout: Some(Layout::Nchw),
+        align_corners: false,
+    };
+    let mut pairs = metadata.to_props();
+    pairs.insert("aeye.recipe".into(), recipe.into());
+    Ok(pairs.into_iter().map(|(key, value)| pb::StringStringEntryProto { key, value }).collect())
+}
+
+/// A feature map by the name it has in the graph.
+#[derive(Clone)]
+struct Value {
+    name: String,
+    size: Size,
+}
+
+fn value_info(value: &Value) -> pb::ValueInfoProto {
+    use pb::tensor_shape_proto::{Dimension, dimension};
+    let Size { rows, cols, channels } = value.size;
+    let dimension =
+        |n: usize| Dimension { value: Some(dimension::Value::DimValue(n as i64)), ..Default::default() };
+    let shape = pb::TensorShapeProto { dim: [1, channels, rows, cols].map(dimension).to_vec() };
+    let tensor = pb::type_proto::Tensor { elem_type: DataType::Float as i32, shape: Some(shape) };
+    let kind = pb::type_proto::Value::TensorType(tensor);
+    let r#type = Some(pb::TypeProto { value: Some(kind), ..Default::default() });
+    pb::ValueInfoProto { name: value.name.clone(), r#type, ..Default::default() }
+}
+
+fn ints(name: &str, values: &[usize]) -> pb::AttributeProto {
+    pb::AttributeProto {
+        name: name.into(),
+        r#type: pb::attribute_proto::AttributeType::Ints as i32,
+        ints: values.iter().map(|v| *v as i64).collect(),
+        ..Default::default()
+    }
+}
+
+fn int(name: &str, value: usize) -> pb::AttributeProto {
+    let r#type = pb::attribute_proto::AttributeType::Int as i32;
+    pb::AttributeProto { name: name.into(), r#type, i: value as i64, ..Default::default() }
+}
+
+/// Writes nodes on a walk over the network.
+struct Writer<'a> {
+    weights: &'a Weights,
+    /// Parameters and layers that the walk has passed.
+    parameter: usize,
+    layer: usize,
+    graph: pb::GraphProto,
+}
+
+impl Writer<'_> {
+    fn parameter(&mut self) -> &Parameter {
+        self.parameter += 1;
+        &self.weights.parameters[self.parameter - 1]
+    }
+
+    fn constant(&mut self, name: String, dims: &[usize], values: &[f32]) -> String {
+        self.graph.initializer.push(pb::TensorProto {
+            name: name.clone(),
+            dims: dims.iter().map(|d| *d as i64).collect(),
+            data_type: DataType::Float as i32,
+            raw_data: values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            ..Default::default()
+        });
+        name
+    }
+
+    fn node(&mut self, op: &str, inputs: &[&str], attribute: Vec<pb::AttributeProto>, size: Size) -> Value {
+        let name = format!("{}{}", op.to_lowercase(), self.graph.node.len());
+        self.graph.node.push(pb::NodeProto {
+            op_type: op.into(),
+            name: name.clone(),
+            input: inputs.iter().map(|i| (*i).to_owned()).collect(),
+            output: vec![name.clone()],
+            attribute,
+            ..Default::default()
+        });
+        Value { name, size }
+    }
+
+    /// A convolution with the weights as [`Kernel::weights`] lays them out.
+    fn convolution(&mut self, x: &Value, kernel: Kernel, weights: &[f32], bias: &[f32]) -> Value {
+        let (inputs, side, group, stride, dilation) = match kernel {
+            Kernel::Stem { .. } => (x.size.channels, 3, 1, 2, 1),
+            Kernel::Pointwise { .. } => (x.size.channels, 1, 1, 1, 1),
+            Kernel::Depthwise { stride, dilation } => (1, 3, x.size.channels, stride, dilation),
+        };
+        let at = self.graph.node.len();
+        let outputs = bias.len();
+        let dims = [outputs, inputs, side, side];
+        let weights = self.constant(format!("weights{at}"), &dims, &channels_first(weights, inputs, outputs));
+        let bias = self.constant(format!("bias{at}"), &[outputs], bias);
+        let padding = if side == 3 { dilation } else { 0 };
+        let attributes = vec![
+            ints("dilations", &[dilation; 2]),
+            int("group", group),
+            ints("kernel_shape", &[side; 2]),
+            ints("pads", &[padding; 4]),
+            ints("strides", &[stride; 2]),
+        ];
+        self.node("Conv", &[&x.name, &weights, &bias], attributes, kernel.output(x.size))
+    }
+}
+
+/// Weights of (tap, input, output) in ONNX's order (output, input, tap).
+fn channels_first(weights: &[f32], inputs: usize, outputs: usize) -> Vec<f32> {
+    let taps = weights.len() / (inputs * outputs);
+    let order = (0..outputs).flat_map(|o| (0..inputs).flat_map(move |i| (0..taps).map(move |t| (t, i, o))));
+    order.map(|(t, i, o)| weights[(t * inputs + i) * outputs + o]).collect()
+}
+
+impl Graph for Writer<'_> {
+    type Node = Value;
+
+    fn size(&self, x: &Value) -> Size {
+        x.size
+    }
+
+    fn layer(&mut self, x: &Value, kernel: Kernel, relu: bool) -> Value {
+        let weights = self.parameter().clone();
+        let (scale, shift) = (self.parameter().clone(), self.parameter().clone());
+        let (factor, summand) = norm::affine(&self.weights.moments[self.layer], &scale.values, &shift.values);
+        self.layer += 1;
+        let rows = weights.values.chunks_exact(weights.cols);
+        let folded: Vec<f32> = rows.flat_map(|row| row.iter().zip(&factor).map(|(w, f)| w * f)).collect();
+        let y = self.convolution(x, kernel, &folded, &summand);
+        if relu { self.relu(&y) } else { y }
+    }
+
+    fn logits(&mut self, x: &Value, classes: usize) -> Value {
+        let (weights, bias) = (self.parameter().clone(), self.parameter().clone());
+        self.convolution(x, Kernel::Pointwise { out: classes }, &weights.values, &bias.values)
+    }
+
+    fn resample(&mut self, x: &Value, rows: usize, cols: usize, how: Resample) -> Value {
+        let at = self.graph.node.len();
+        let from = x.size;
+        // The columns' matrix stands on the right, hence transposed.
+        let transposed = transpose(&resample::matrix(how, from.cols, cols), from.cols);
+        let across = self.constant(format!("columns{at}"), &[from.cols, cols], &transposed);
+        let down = self.constant(format!("rows{at}"), &[rows, from.rows], &resample::matrix(how, from.rows, rows));
+        let wide = self.node("MatMul", &[&x.name, &across], Vec::new(), Size { cols, ..from });
+        self.node("MatMul", &[&down, &wide.name], Vec::new(), Size { rows, cols, ..from })
+    }
+
+    fn add(&mut self, a: &Value, b: &Value) -> Value {
+        self.node("Add", &[&a.name, &b.name], Vec::new(), a.size)
+    }
+
+    fn relu(&mut self, x: &Value) -> Value {
+        self.node("Relu", &[&x.name], Vec::new(), x.size)
+    }
+
+    fn concat(&mut self, parts: &[Value]) -> Value {
+        let channels = parts.iter().map(|p| p.size.channels).sum();
+        let names: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
+        self.node("Concat", &names, vec![int("axis", 1)], Size { channels, ..parts[0].size })
+    }
+}
+
+fn transpose(matrix: &[f32], cols: usize) -> Vec<f32> {
+    (0..cols).flat_map(|c| matrix.iter().skip(c).step_by(cols).copied()).collect()
+}

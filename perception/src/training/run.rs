@@ -1,0 +1,209 @@
+//! The course of a training: epochs of steps, each epoch measured.
+
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use burn_flex::{Flex, FlexDevice};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::adam;
+use super::dataset::{Frame, Split};
+use super::kernels::loss::Target;
+use super::pictures::{augmented, class_weights};
+use super::random::Random;
+use super::state::State;
+use super::tape::{Lesson, learn};
+use super::weights::Moments;
+use super::{EpochReport, Progress, TrainOptions, Trained, export, network};
+use crate::classes::{TRAIN_CLASSES, tag_of_train_id};
+use crate::{Checkpoint, ConfusionMatrix, PerceptionError, RgbView, Segmenter};
+
+/// Names of the splits to learn from and to measure on.
+const SPLITS: [&str; 2] = ["train", "val"];
+
+/// A training in memory.
+pub(super) struct Run {
+    options: TrainOptions,
+    train: Split,
+    val: Split,
+    dataset: blake3::Hash,
+    class_weights: [f32; TRAIN_CLASSES.len()],
+    /// One thread for each replica: burn's operations stay on it, whatever the machine has.
+    replicas: Vec<ThreadPool>,
+    state: State,
+}
+
+type Watch<'a> = dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a;
+
+impl Run {
+    /// Reads the dataset and an unfinished training, if there is one.
+    pub(super) fn open(dataset: &Path, unfinished: &Path, options: &TrainOptions) -> Result<Self, PerceptionError> {
+        let read = |split| Split::read(dataset, split, options.width, options.height);
+        let [train, val] = [read(SPLITS[0])?, read(SPLITS[1])?];
+        if train.frames.len() < options.batch {
+            let reason = format!("{} frames to learn from; expected at least a batch of {}", train.frames.len(), options.batch);
+            return Err(PerceptionError::Dataset { path: dataset.to_owned(), reason });
+        }
+        let digest = blake3::hash(&[*train.digest.as_bytes(), *val.digest.as_bytes()].concat());
+        let thread = |_| ThreadPoolBuilder::new().num_threads(1).build().map_err(std::io::Error::other);
+        let replicas = (0..options.replicas).map(thread).collect::<Result<_, _>>();
+        Ok(Self {
+            class_weights: class_weights(&train.frames),
+            train,
+            val,
+            dataset: digest,
+            replicas: replicas.map_err(|source| PerceptionError::Io { path: dataset.to_owned(), source })?,
+            state: State::load(unfinished, options, digest)?.unwrap_or_else(|| State::new(options.seed)),
+            options: options.clone(),
+        })
+    }
+
+    /// Finished epochs.
+    pub(super) fn epochs(&self) -> u32 {
+        self.state.history.len() as u32
+    }
+
+    fn steps(&self) -> usize {
+        self.train.frames.len() / self.options.batch
+    }
+
+    pub(super) fn announce(&self, watch: &mut Watch<'_>) -> ControlFlow<()> {
+        watch(Progress::Loaded {
+            train: self.train.frames.len(),
+            val: self.val.frames.len(),
+            epochs: self.epochs(),
+            steps: self.steps(),
+        })
+    }
+
+    /// One pass over the training split, in an order of its own, and its measure.
+    pub(super) fn epoch(&mut self, watch: &mut Watch<'_>) -> Result<ControlFlow<()>, PerceptionError> {
+        let epoch = self.epochs() + 1;
+        let order = Random::new(&[self.options.seed, 1, u64::from(epoch)]).permutation(self.train.frames.len());
+        let mut sum = 0.0;
+        for (i, batch) in order.chunks_exact(self.options.batch).enumerate() {
+            let loss = self.step(batch);
+            sum += loss;
+            if watch(Progress::Step { step: i + 1, loss }).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        let scores = self.measure()?.scores();
+        self.state.history.push(EpochReport::new(epoch, sum / self.steps() as f64, &scores));
+        Ok(self.state.history.last().map_or(ControlFlow::Continue(()), |report| watch(Progress::Epoch(report))))
+    }
+
+    /// One step on the frames with these numbers; gives the loss.
+    fn step(&mut self, batch: &[usize]) -> f64 {
+        let shares: Vec<&[usize]> = batch.chunks_exact(batch.len() / self.replicas.len()).collect();
+        let run = &*self;
+        let lessons: Vec<Lesson> = std::thread::scope(|scope| {
+            let replicas = run.replicas.iter().zip(&shares).enumerate();
+            let running: Vec<_> = replicas
+                .map(|(i, (thread, share))| scope.spawn(move || thread.install(|| run.lesson(share, i as u64))))
+                .collect();
+            running.into_iter().filter_map(|r| r.join().ok()).collect()
+        });
+        let (loss, gradients, moments) = averaged(lessons);
+        let steps = self.steps() as u64 * u64::from(self.options.horizon);
+        let rate = adam::rate(self.options.rate, self.state.adam.steps, steps);
+        self.state.weights.follow(&moments);
+        self.state.adam.step(&mut self.state.weights, &gradients, rate);
+        loss
+    }
+
+    /// What one replica learns from its share.
+    fn lesson(&self, share: &[usize], replica: u64) -> Lesson {
+        let mut random = Random::new(&[self.options.seed, 2, self.state.adam.steps, replica]);
+        let frames = share.iter().map(|i| &self.train.frames[*i]);
+        let pictures = augmented(frames, self.options.width, &mut random);
+        let target = Target {
+            labels: &pictures.labels,
+            width: self.options.width,
+            height: self.options.height,
+            weights: &self.class_weights,
+        };
+        learn::<Flex>(&self.state.weights, pictures.values, target, &FlexDevice)
+    }
+
+    /// Runs the network as it will be shipped over the validation split.
+    fn measure(&self) -> Result<ConfusionMatrix, PerceptionError> {
+        let io = |source| PerceptionError::Io { path: std::env::temp_dir(), source };
+        let mut file = tempfile::Builder::new().suffix(".onnx").tempfile().map_err(io)?;
+        file.write_all(&self.onnx()?).map_err(io)?;
+        let segmenter =
+            Segmenter::new(&Checkpoint::load(file.path())?, self.options.width, self.options.height)?;
+        let share = self.val.frames.len().div_ceil(rayon::current_num_threads());
+        let matrices = self.val.frames.par_chunks(share).map(|frames| confusion(segmenter.clone(), frames, &self.options));
+        let matrices = matrices.collect::<Result<Vec<_>, _>>()?;
+        let mut sum = ConfusionMatrix::default();
+        matrices.iter().for_each(|matrix| sum.merge(matrix));
+        Ok(sum)
+    }
+
+    fn onnx(&self) -> Result<Vec<u8>, PerceptionError> {
+        let recipe = serde_json::json!({
+            "network": "Fast-SCNN",
+            "stride": network::STRIDE,
+            "options": self.options,
+            "epochs": self.epochs(),
+            "dataset": self.dataset.to_hex().as_str(),
+        });
+        export::onnx(&self.state.weights, self.options.width, self.options.height, &recipe.to_string())
+    }
+
+    pub(super) fn save(&mut self, path: &Path) -> Result<(), PerceptionError> {
+        self.state.save(path, &self.options, self.dataset)
+    }
+
+    pub(super) fn finish(self) -> Result<Trained, PerceptionError> {
+        Ok(Trained {
+            onnx: self.onnx()?,
+            dataset: self.dataset,
+            train_frames: self.train.frames.len(),
+            val_frames: self.val.frames.len(),
+            parameters: self.state.weights.count(),
+            history: self.state.history,
+        })
+    }
+}
+
+fn confusion(
+    mut segmenter: Segmenter,
+    frames: &[Frame],
+    options: &TrainOptions,
+) -> Result<ConfusionMatrix, PerceptionError> {
+    let mut matrix = ConfusionMatrix::default();
+    for frame in frames {
+        let mask = segmenter.run(RgbView::new(options.width, options.height, &frame.rgb)?)?;
+        let truth: Vec<u8> = frame.labels.iter().map(|id| tag_of_train_id(*id)).collect();
+        matrix.add(&truth, &mask.ids);
+    }
+    Ok(matrix)
+}
+
+/// Means over the replicas, summed in their order.
+fn averaged(lessons: Vec<Lesson>) -> (f64, Vec<Vec<f32>>, Vec<Moments>) {
+    let share = 1.0 / lessons.len() as f32;
+    let loss = lessons.iter().map(|l| l.loss).sum::<f64>() / lessons.len() as f64;
+    let mut lessons = lessons.into_iter();
+    let Some(Lesson { mut gradients, mut moments, .. }) = lessons.next() else { return (loss, Vec::new(), Vec::new()) };
+    for lesson in lessons {
+        for (sum, gradient) in gradients.iter_mut().zip(&lesson.gradients) {
+            add(sum, gradient);
+        }
+        for (sum, moments) in moments.iter_mut().zip(&lesson.moments) {
+            add(&mut sum.mean, &moments.mean);
+            add(&mut sum.variance, &moments.variance);
+        }
+    }
+    let vectors = moments.iter_mut().flat_map(|m| [&mut m.mean, &mut m.variance]);
+    gradients.iter_mut().chain(vectors).flatten().for_each(|v| *v *= share);
+    (loss, gradients, moments)
+}
+
+fn add(sum: &mut [f32], values: &[f32]) {
+    sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
+}

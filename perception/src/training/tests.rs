@@ -1,0 +1,1 @@
+//! The network as a whole: learning, and the agreement of what was trained with what is shipped.
