@@ -182,8 +182,8 @@ impl Graph for Writer<'_> {
         let from = x.size;
         // The columns' matrix stands on the right, hence transposed.
         let transposed = transpose(&resample::matrix(how, from.cols, cols), from.cols);
-        let across = self.constant(format!("columns{at}"), &[from.cols, cols], &transposed);
-        let down = self.constant(format!("rows{at}"), &[rows, from.rows], &resample::matrix(how, from.rows, rows));
+        let across = self.constant(format!("columns{at}"), &[1, 1, from.cols, cols], &transposed);
+        let down = self.constant(format!("rows{at}"), &[1, 1, rows, from.rows], &resample::matrix(how, from.rows, rows));
         let wide = self.node("MatMul", &[&x.name, &across], Vec::new(), Size { cols, ..from });
         self.node("MatMul", &[&down, &wide.name], Vec::new(), Size { rows, cols, ..from })
     }

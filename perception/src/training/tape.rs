@@ -10,7 +10,7 @@ use burn_autodiff::grads::Gradients;
 use burn_autodiff::ops::{Backward, Ops, OpsKind};
 use burn_backend::ops::{ActivationOps, FloatTensorOps};
 use burn_backend::tensor::{Device, FloatTensor};
-use burn_backend::{AutodiffBackend, Backend, Shape, TensorData};
+use burn_backend::{AutodiffBackend, Backend, Shape, TensorData, TensorMetadata};
 
 use super::kernels::depthwise::Geometry;
 use super::kernels::loss::Target;
@@ -70,6 +70,22 @@ pub(super) fn learn<B: Kernels>(weights: &Weights, images: Vec<f32>, target: Tar
     let (loss, scalar) = tape.loss(logits, target);
     let gradients = <Autodiff<B> as AutodiffBackend>::backward(scalar);
     Lesson { loss, gradients: tape.gradients(&gradients), moments: tape.moments }
+}
+
+/// The logits of `images`, position by position, under batch normalisation by their own moments,
+/// which come second.
+#[cfg(test)]
+pub(super) fn logits<B: Kernels>(
+    weights: &Weights,
+    images: Vec<f32>,
+    rows: usize,
+    cols: usize,
+    device: &Device<B>,
+) -> (Vec<f32>, Vec<Moments>) {
+    let mut tape = Tape::<B>::new(weights, device.clone());
+    let image = tape.image(images, Size { rows, cols, channels: 3 });
+    let logits = fast_scnn(&mut tape, &image, TRAIN_CLASSES.len());
+    (B::read(logits.tensor.primitive()), tape.moments)
 }
 
 type Tracked<B> = FloatTensor<Autodiff<B>>;

@@ -59,7 +59,7 @@ pub(in crate::training) fn backward(
     let (factor, summand) = affine(moments, scale, shift);
     let masked = relu.then(|| mask(x, &factor, &summand, dy));
     let dy = masked.as_deref().unwrap_or(dy);
-    let (sum_dy, sum_dy_x) = pair_sums(x, dy, channels);
+    let (sum_dy, sum_dy_x) = pair_sums(dy, x, channels);
 
     // With n = (x - mean) / deviation: dx = factor * (dy - mean(dy) - n * mean(dy * n)).
     let rows = (x.len() / channels) as f64;
