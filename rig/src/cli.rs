@@ -229,6 +229,19 @@ pub struct TrainArgs {
     /// Size at which the network is trained.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
+    /// Epochs after which the learning rate would be 0 (default: `--epochs`). A larger one makes a
+    /// training that is stopped early, and that can go on later.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub horizon: Option<u32>,
+    /// Frames a step.
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(2..))]
+    pub batch: u32,
+    /// Threads that share a batch; the result depends on their number, not on the machine's.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub replicas: u32,
+    /// First learning rate.
+    #[arg(long, default_value_t = 2e-3, value_parser = rate)]
+    pub rate: f32,
 }
 
 /// Arguments of `eval`.
@@ -266,6 +279,11 @@ fn duration(text: &str) -> Result<Tick, String> {
     let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
     let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (1.0..=1e9).contains(t));
     ticks.map(|t| t as Tick).ok_or_else(|| "expected a number of seconds, as in 3s".into())
+}
+
+fn rate(text: &str) -> Result<f32, String> {
+    let rate = text.parse::<f32>().ok().filter(|r| (1e-7..=1.0).contains(r));
+    rate.ok_or_else(|| "expected a number above 0 and up to 1, as in 0.002".into())
 }
 
 fn frame_rate(text: &str) -> Result<u32, String> {

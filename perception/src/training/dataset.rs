@@ -115,7 +115,10 @@ fn read_png(
     let found = (info.width as usize, info.height as usize, info.bits_per_pixel());
     if found != (width, height, 8 * samples) {
         let (w, h, bits) = found;
-        return Err(bad(path, format!("{w}x{h} with {bits} bits a pixel; expected {width}x{height} with {}", 8 * samples)));
+        return Err(bad(
+            path,
+            format!("{w}x{h} with {bits} bits a pixel; expected {width}x{height} with {}", 8 * samples),
+        ));
     }
     let mut bytes = vec![0; width * height * samples];
     reader.next_frame(&mut bytes).map_err(|e| bad(path, e.to_string()))?;

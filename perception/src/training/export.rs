@@ -61,8 +61,7 @@ struct Value {
 fn value_info(value: &Value) -> pb::ValueInfoProto {
     use pb::tensor_shape_proto::{Dimension, dimension};
     let Size { rows, cols, channels } = value.size;
-    let dimension =
-        |n: usize| Dimension { value: Some(dimension::Value::DimValue(n as i64)), ..Default::default() };
+    let dimension = |n: usize| Dimension { value: Some(dimension::Value::DimValue(n as i64)), ..Default::default() };
     let shape = pb::TensorShapeProto { dim: [1, channels, rows, cols].map(dimension).to_vec() };
     let tensor = pb::type_proto::Tensor { elem_type: DataType::Float as i32, shape: Some(shape) };
     let kind = pb::type_proto::Value::TensorType(tensor);
@@ -183,7 +182,8 @@ impl Graph for Writer<'_> {
         // The columns' matrix stands on the right, hence transposed.
         let transposed = transpose(&resample::matrix(how, from.cols, cols), from.cols);
         let across = self.constant(format!("columns{at}"), &[1, 1, from.cols, cols], &transposed);
-        let down = self.constant(format!("rows{at}"), &[1, 1, rows, from.rows], &resample::matrix(how, from.rows, rows));
+        let down =
+            self.constant(format!("rows{at}"), &[1, 1, rows, from.rows], &resample::matrix(how, from.rows, rows));
         let wide = self.node("MatMul", &[&x.name, &across], Vec::new(), Size { cols, ..from });
         self.node("MatMul", &[&down, &wide.name], Vec::new(), Size { rows, cols, ..from })
     }

@@ -58,19 +58,17 @@ impl Kernels for Flex {
         let cols = cols(&n.x);
         with(&n.x, |x| {
             let moments = norm::moments(x, cols);
-            let (factor, summand) = with(&n.scale, |scale| with(&n.shift, |shift| norm::affine(&moments, scale, shift)));
+            let (factor, summand) =
+                with(&n.scale, |scale| with(&n.shift, |shift| norm::affine(&moments, scale, shift)));
             (tensor(norm::apply(x, &factor, &summand, n.relu), cols), moments)
         })
     }
 
     fn norm_backward(n: &Norm<Self>, moments: &Moments, dy: &FloatTensor<Self>) -> [FloatTensor<Self>; 3] {
         let cols = cols(&n.x);
-        let run = |x: &[f32], scale: &[f32], shift: &[f32], dy: &[f32]| {
-            norm::backward(x, moments, scale, shift, dy, n.relu)
-        };
-        let d = with(&n.x, |x| {
-            with(&n.scale, |scale| with(&n.shift, |shift| with(dy, |dy| run(x, scale, shift, dy))))
-        });
+        let run =
+            |x: &[f32], scale: &[f32], shift: &[f32], dy: &[f32]| norm::backward(x, moments, scale, shift, dy, n.relu);
+        let d = with(&n.x, |x| with(&n.scale, |scale| with(&n.shift, |shift| with(dy, |dy| run(x, scale, shift, dy)))));
         [d.x, d.scale, d.shift].map(|values| tensor(values, cols))
     }
 

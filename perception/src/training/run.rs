@@ -43,7 +43,8 @@ impl Run {
         let read = |split| Split::read(dataset, split, options.width, options.height);
         let [train, val] = [read(SPLITS[0])?, read(SPLITS[1])?];
         if train.frames.len() < options.batch {
-            let reason = format!("{} frames to learn from; expected at least a batch of {}", train.frames.len(), options.batch);
+            let reason =
+                format!("{} frames to learn from; expected at least a batch of {}", train.frames.len(), options.batch);
             return Err(PerceptionError::Dataset { path: dataset.to_owned(), reason });
         }
         let digest = blake3::hash(&[*train.digest.as_bytes(), *val.digest.as_bytes()].concat());
@@ -133,10 +134,10 @@ impl Run {
         let io = |source| PerceptionError::Io { path: std::env::temp_dir(), source };
         let mut file = tempfile::Builder::new().suffix(".onnx").tempfile().map_err(io)?;
         file.write_all(&self.onnx()?).map_err(io)?;
-        let segmenter =
-            Segmenter::new(&Checkpoint::load(file.path())?, self.options.width, self.options.height)?;
+        let segmenter = Segmenter::new(&Checkpoint::load(file.path())?, self.options.width, self.options.height)?;
         let share = self.val.frames.len().div_ceil(rayon::current_num_threads());
-        let matrices = self.val.frames.par_chunks(share).map(|frames| confusion(segmenter.clone(), frames, &self.options));
+        let matrices =
+            self.val.frames.par_chunks(share).map(|frames| confusion(segmenter.clone(), frames, &self.options));
         let matrices = matrices.collect::<Result<Vec<_>, _>>()?;
         let mut sum = ConfusionMatrix::default();
         matrices.iter().for_each(|matrix| sum.merge(matrix));

@@ -258,8 +258,7 @@ struct Normalise;
 
 fn norm<B: Kernels>(x: Tracked<B>, scale: Tracked<B>, shift: Tracked<B>, relu: bool) -> (Tracked<B>, Moments) {
     let prepared = Backward::<B, 3>::prepare::<NoCheckpointing>(Normalise, [x.node(), scale.node(), shift.node()]);
-    let norm =
-        Norm { x: x.into_primitive(), scale: scale.into_primitive(), shift: shift.into_primitive(), relu };
+    let norm = Norm { x: x.into_primitive(), scale: scale.into_primitive(), shift: shift.into_primitive(), relu };
     let (y, moments) = B::norm(&norm);
     (finish(prepared.compute_bound().stateful(), (norm, moments.clone()), y), moments)
 }

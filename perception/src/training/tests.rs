@@ -1,6 +1,9 @@
 //! The network as a whole: what is shipped agrees with what was trained, it learns, and it goes on
 //! where it was interrupted.
 
+use std::fs::{self, File};
+use std::path::PathBuf;
+
 use burn_flex::{Flex, FlexDevice};
 
 use super::random::Random;
@@ -52,20 +55,91 @@ fn the_shipped_network_gives_the_logits_of_the_trained_one() {
     }
 }
 
-#[test]
-fn speed() {
-    let batch = 8;
-    let weights = Weights::new(1);
-    let mut random = Random::new(&[1]);
-    let values: Vec<f32> = (0..batch * 256 * 128 * 3).map(|_| random.normal()).collect();
-    let labels: Vec<u8> = (0..batch * 256 * 128).map(|_| (random.next_u64() % 16) as u8).collect();
-    let target = super::kernels::loss::Target { labels: &labels, width: 256, height: 128, weights: &[1.0; 16] };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    pool.install(|| {
-        for _ in 0..10 {
-            let t = std::time::Instant::now();
-            let lesson = super::tape::learn::<Flex>(&weights, values.clone(), target, &FlexDevice);
-            eprintln!("{} {:?}", lesson.loss, t.elapsed());
+/// A dataset of pictures that a child could tell apart: sky above, road below, and a walker that
+/// stands somewhere.
+fn dataset(dir: &Path, train: usize, val: usize) {
+    for (split, count) in [("train", train), ("val", val)] {
+        for i in 0..count {
+            let walker = 8 + (i * 37) % (WIDTH - 24);
+            let (mut rgb, mut labels) = (Vec::new(), Vec::new());
+            for (y, x) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (y, x))) {
+                let is_walker = (walker..walker + 16).contains(&x) && (16..48).contains(&y);
+                let (id, colour) = match (is_walker, y < HEIGHT / 2) {
+                    (true, _) => (2, [200, 30, 60]),
+                    (false, true) => (11, [90, 140, 220]),
+                    (false, false) => (5, [80, 80, 80]),
+                };
+                rgb.extend(colour);
+                labels.push(id);
+            }
+            let name = format!("scene/scene_{i:06}_000000");
+            let [image, truth] = ["leftImg8bit", "gtFine"].map(|part| dir.join(part).join(split));
+            let write = |path: PathBuf, colour, bytes: &[u8]| {
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                let file = File::create(path).unwrap();
+                let mut encoder = png::Encoder::new(file, WIDTH as u32, HEIGHT as u32);
+                encoder.set_color(colour);
+                encoder.write_header().unwrap().write_image_data(bytes).unwrap();
+            };
+            write(image.join(format!("{name}_leftImg8bit.png")), png::ColorType::Rgb, &rgb);
+            write(truth.join(format!("{name}_gtFine_labelTrainIds.png")), png::ColorType::Grayscale, &labels);
         }
+    }
+}
+
+fn options() -> TrainOptions {
+    TrainOptions { horizon: 12, width: WIDTH, height: HEIGHT, batch: 4, ..TrainOptions::default() }
+}
+
+fn go_on(_: Progress<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+#[test]
+fn it_learns_and_an_interrupted_training_ends_with_the_same_bytes() {
+    let dir = tempfile::tempdir().unwrap();
+    dataset(dir.path(), 24, 4);
+    let part = |name: &str| dir.path().join(name);
+    let train = |part: &Path, epochs, watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>| {
+        train(dir.path(), part, &options(), epochs, watch).unwrap()
+    };
+    let whole = train(&part("a"), 12, &mut go_on).unwrap();
+    let last = whole.history.last().unwrap();
+    assert!(last.loss < 0.5 * whole.history[0].loss, "{:?}", whole.history);
+    assert!(last.miou.unwrap() > 0.8, "{last:?}");
+
+    let mut steps = 0;
+    let interrupted = train(&part("b"), 12, &mut |progress| {
+        steps += usize::from(matches!(progress, Progress::Step { .. }));
+        if steps == 33 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
+    assert!(interrupted.is_none());
+    let mut found = 0;
+    let resumed = train(&part("b"), 12, &mut |progress| {
+        if let Progress::Loaded { epochs, .. } = progress {
+            found = epochs;
+        }
+        ControlFlow::Continue(())
+    });
+    assert_eq!(found, 5, "33 steps are five epochs of six steps, and some");
+    assert!(resumed.unwrap().onnx == whole.onnx, "the resumed network differs");
+}
+
+#[test]
+fn what_cannot_be_trained_is_refused_in_one_sentence() {
+    let dir = tempfile::tempdir().unwrap();
+    let said = |options: TrainOptions| {
+        let text = train(dir.path(), &dir.path().join("p"), &options, 1, &mut go_on).unwrap_err().to_string();
+        assert!(!text.contains('\n'));
+        text
+    };
+    assert!(said(TrainOptions { width: 100, ..options() }).contains("multiples of 32"));
+    assert!(said(TrainOptions { batch: 5, ..options() }).contains("replicas"));
+    assert!(said(options()).contains("No such file"));
+    dataset(dir.path(), 2, 1);
+    assert!(said(options()).contains("2 frames to learn from"));
+    assert!(said(TrainOptions { width: 64, ..options() }).contains("expected 64x64"));
+    let label = "gtFine/train/scene/scene_000000_000000_gtFine_labelTrainIds.png";
+    fs::remove_file(dir.path().join(label)).unwrap();
+    assert!(said(options()).contains(label));
 }

@@ -102,9 +102,7 @@ mod tests {
         let (Size { rows, cols, channels }, out) = (g.input, g.output());
         let mut y = Vec::new();
         for (n, r, c, k) in (0..x.len() / (rows * cols * channels)).flat_map(|n| {
-            (0..out.rows).flat_map(move |r| {
-                (0..out.cols).flat_map(move |c| (0..channels).map(move |k| (n, r, c, k)))
-            })
+            (0..out.rows).flat_map(move |r| (0..out.cols).flat_map(move |c| (0..channels).map(move |k| (n, r, c, k))))
         }) {
             let mut sum = 0.0;
             for (i, j) in (0..3i32).flat_map(|i| (0..3i32).map(move |j| (i, j))) {

@@ -133,9 +133,9 @@ fn exp(x: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::training::kernels::worst_derivative;
+    use crate::training::network::Resample;
     use crate::training::random::Random;
     use crate::training::resample::matrix;
-    use crate::training::network::Resample;
 
     #[test]
     fn the_exponential_is_accurate() {
