@@ -253,6 +253,9 @@ pub struct EvalArgs {
     /// Dataset folder.
     #[arg(long, value_name = "DIR")]
     pub dataset: PathBuf,
+    /// Which split.
+    #[arg(long, default_value = "val")]
+    pub split: String,
 }
 
 /// Arguments of `demo`.

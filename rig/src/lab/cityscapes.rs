@@ -6,7 +6,7 @@
 //! number for road users, else the tag) and `_gtFine_color.png` (the tags' colours).
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use perception::classes::TRAIN_ID_OF_TAG;
@@ -31,13 +31,7 @@ impl Place<'_> {
     /// Path of one of the frame's files below the dataset folder.
     pub fn path(&self, kind: Kind) -> String {
         let Self { split, city, scene, frame } = self;
-        let (top, ending) = match kind {
-            Kind::Image => ("leftImg8bit", "leftImg8bit"),
-            Kind::LabelIds => ("gtFine", "gtFine_labelIds"),
-            Kind::TrainIds => ("gtFine", "gtFine_labelTrainIds"),
-            Kind::InstanceIds => ("gtFine", "gtFine_instanceIds"),
-            Kind::Color => ("gtFine", "gtFine_color"),
-        };
+        let (top, ending) = kind.names();
         format!("{top}/{split}/{city}/{city}_{scene:06}_{frame:06}_{ending}.png")
     }
 }
@@ -55,6 +49,31 @@ pub enum Kind {
     InstanceIds,
     /// Tags in their colours.
     Color,
+}
+
+impl Kind {
+    /// The folder below the dataset's, and the end of the file's name.
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Image => ("leftImg8bit", "leftImg8bit"),
+            Self::LabelIds => ("gtFine", "gtFine_labelIds"),
+            Self::TrainIds => ("gtFine", "gtFine_labelTrainIds"),
+            Self::InstanceIds => ("gtFine", "gtFine_instanceIds"),
+            Self::Color => ("gtFine", "gtFine_color"),
+        }
+    }
+}
+
+/// Another file of the frame with this picture; `None` when the path is not that of a picture
+/// (`.../leftImg8bit/SPLIT/CITY/NAME_leftImg8bit.png`).
+pub fn sibling(image: &Path, kind: Kind) -> Option<PathBuf> {
+    let (top, ending) = kind.names();
+    let stem = image.file_name()?.to_str()?.strip_suffix("_leftImg8bit.png")?;
+    let city = image.parent()?;
+    let split = city.parent()?;
+    let dataset = split.parent()?.parent()?;
+    let folder = dataset.join(top).join(split.file_name()?).join(city.file_name()?);
+    Some(folder.join(format!("{stem}_{ending}.png")))
 }
 
 /// Writes all files of a frame below `dir`.
@@ -109,6 +128,8 @@ mod tests {
         assert_eq!(instances(&frame), [7, 4001, 4000, 10001]);
         let dir = tempfile::tempdir().expect("a folder");
         write(dir.path(), &place, &frame).expect("written");
+        let image = dir.path().join(place.path(Kind::Image));
+        assert_eq!(sibling(&image, Kind::TrainIds), Some(dir.path().join(place.path(Kind::TrainIds))));
         for kind in [Kind::Image, Kind::LabelIds, Kind::TrainIds, Kind::InstanceIds, Kind::Color] {
             assert!(dir.path().join(place.path(kind)).is_file(), "{kind:?}");
         }

@@ -1,6 +1,8 @@
 //! Pictures as PNG files: colour, class ids with the tags' palette, plain ids.
 
-use anyhow::Context;
+use std::path::Path;
+
+use anyhow::{Context, bail};
 use render::tags;
 
 fn encode(
@@ -46,28 +48,43 @@ pub fn grey16(size: (u32, u32), ids: &[u16]) -> anyhow::Result<Vec<u8>> {
     encode(size, png::ColorType::Grayscale, png::BitDepth::Sixteen, None, &bytes)
 }
 
+/// The samples of a file with `samples` bytes a pixel, palette indices as they are.
+pub fn read(path: &Path, samples: usize) -> anyhow::Result<((u32, u32), Vec<u8>)> {
+    let place = || path.display().to_string();
+    let file = std::fs::File::open(path).with_context(place)?;
+    let mut decoder = png::Decoder::new(std::io::BufReader::new(file));
+    decoder.set_transformations(png::Transformations::IDENTITY);
+    let mut reader = decoder.read_info().with_context(place)?;
+    let (width, height, bits) = (reader.info().width, reader.info().height, reader.info().bits_per_pixel());
+    if bits != 8 * samples {
+        bail!("{}: {bits} bits a pixel; expected {}", place(), 8 * samples);
+    }
+    let mut bytes = vec![0; width as usize * height as usize * samples];
+    reader.next_frame(&mut bytes).with_context(place)?;
+    Ok(((width, height), bytes))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn decode(file: &[u8]) -> (Vec<u8>, png::ColorType) {
-        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("a PNG");
-        let mut bytes = vec![0; reader.output_buffer_size().expect("small")];
-        let info = reader.next_frame(&mut bytes).expect("pixels");
-        (bytes[..info.buffer_size()].to_vec(), info.color_type)
-    }
-
     #[test]
     fn ids_are_exact_and_coloured() {
         let file = tags((2, 2), &[7, 4, 13, 22]).expect("encodes");
-        assert_eq!(decode(&file), (vec![7, 4, 13, 22], png::ColorType::Indexed));
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.png");
+        std::fs::write(&path, &file).expect("written");
+        assert_eq!(read(&path, 1).expect("reads"), ((2, 2), vec![7, 4, 13, 22]));
+        assert!(read(&path, 3).is_err());
         assert_eq!(file, tags((2, 2), &[7, 4, 13, 22]).expect("encodes"), "the same bytes each time");
         assert!(tags((2, 2), &[7]).is_err());
     }
 
     #[test]
     fn sixteen_bits_are_kept() {
-        let file = grey16((2, 1), &[4001, 10]).expect("encodes");
-        assert_eq!(decode(&file).0, [0x0f, 0xa1, 0, 10]);
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.png");
+        std::fs::write(&path, grey16((2, 1), &[4001, 10]).expect("encodes")).expect("written");
+        assert_eq!(read(&path, 2).expect("reads"), ((2, 1), vec![0x0f, 0xa1, 0, 10]));
     }
 }
