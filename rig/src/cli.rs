@@ -98,10 +98,11 @@ pub struct CampaignArgs {
     /// What the semantic driver sees: ONNX files, or `truth`; each drives the same runs.
     #[arg(long, required = true, num_args = 1.., value_name = "FILE.onnx|truth")]
     pub checkpoint: Vec<CheckpointChoice>,
-    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
-    #[arg(long, value_delimiter = ',', default_value = "all", value_name = "NAMES|all")]
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones (default: the scenario's
+    /// map, or all).
+    #[arg(long, value_delimiter = ',', value_name = "NAMES|all")]
     pub maps: Vec<String>,
-    /// A scenario file; its map and seed are replaced for each run.
+    /// A scenario file; its seed and length are replaced for each run.
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,
     /// Number of runs of each checkpoint.

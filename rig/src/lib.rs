@@ -1,5 +1,6 @@
 //! The application `aeye`: drivers and sessions, and the offline lab.
 
+pub mod campaign;
 pub mod cli;
 pub mod clock;
 pub mod commands;
@@ -12,6 +13,7 @@ pub mod output;
 pub mod progress;
 pub mod session;
 pub mod simulate;
+pub mod stats;
 pub mod vision;
 
 use cli::{Cli, Command, DatasetCommand};

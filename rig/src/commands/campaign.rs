@@ -1,9 +1,75 @@
 //! Simulated drives in parallel, resumable, and their figures.
 
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::fs;
+
+use anyhow::Context;
+
+use crate::campaign::{CampaignFigures, Plan, Until, drive_all, figures};
 use crate::cli::CampaignArgs;
-use crate::exit::Verdict;
+use crate::exit::{Usage, Verdict};
+use crate::maps::{Map, read_scenario};
+use crate::output;
+use crate::progress::Interrupt;
+use crate::vision::Eye;
 
 /// Runs `aeye campaign`.
-pub fn run(_args: &CampaignArgs, _json: bool) -> anyhow::Result<Verdict> {
-    todo!()
+pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
+    let figures = drive(args, &Interrupt::listen()?)?;
+    output::print(json, &figures, || text(&figures))?;
+    Ok(Verdict::Ok)
+}
+
+/// Drives a campaign, writes its files, and gives its figures.
+pub fn drive(args: &CampaignArgs, interrupt: &Interrupt) -> anyhow::Result<CampaignFigures> {
+    let plan = plan(args)?;
+    let eyes = args.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<String> = eyes.iter().map(|eye| eye.name().to_owned()).collect();
+    if names.iter().collect::<BTreeSet<_>>().len() < names.len() {
+        return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
+    }
+    fs::create_dir_all(&plan.out).with_context(|| plan.out.display().to_string())?;
+    let cores = || std::thread::available_parallelism().map_or(1, |n| n.get());
+    let jobs = args.jobs.map_or_else(cores, usize::from);
+    let mut runs = Vec::new();
+    for eye in &eyes {
+        runs.extend(drive_all(&plan, eye, jobs, interrupt)?);
+    }
+    let figures = figures(plan.seed, &names, runs);
+    output::write_file(&plan.out.join("campaign.json"), output::json_file(&figures)?.as_bytes())?;
+    Ok(figures)
+}
+
+fn plan(args: &CampaignArgs) -> anyhow::Result<Plan> {
+    let scenario = args.scenario.as_deref().map(read_scenario).transpose()?;
+    let maps = match &scenario {
+        Some((_, map)) if args.maps.is_empty() => vec![map.clone()],
+        _ if args.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
+        _ => Map::find_all(&args.maps)?,
+    };
+    let until = match (args.runs, args.km, args.cases) {
+        (Some(runs), None, None) => Until::Runs(runs),
+        (None, Some(km), None) if km > 0.0 && km.is_finite() => Until::Km(km),
+        (None, None, Some(cases)) => Until::Cases(cases),
+        _ => return Err(Usage("expected one of --runs, --km (more than 0) and --cases".into()).into()),
+    };
+    let scenario = scenario.map(|(scenario, _)| scenario);
+    Ok(Plan { maps, scenario, run_seconds: args.run_seconds, seed: args.seed, until, out: args.out.clone() })
+}
+
+fn text(figures: &CampaignFigures) -> String {
+    let mut text = String::from("checkpoint         km      min  cases  by perception  cases/km [95 %]");
+    for each in &figures.checkpoints {
+        let e = &each.exposure;
+        let (low, high) = e.cases_per_km_95;
+        let p = each.p_against_first.map(|p| format!("  p = {p:.3}")).unwrap_or_default();
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "\n{:<12} {:>8.2} {:>8.1} {:>6} {:>14}  {:.3} [{low:.3}, {high:.3}]{p}",
+            each.checkpoint, e.km, e.minutes, e.cases, e.perception_caused, e.cases_per_km
+        );
+    }
+    text
 }

@@ -1,9 +1,107 @@
 //! One run, recorded as it goes.
 
+use std::fs::File;
+
+use anyhow::Context;
+use kernel::World;
+use kernel::arbiter::Outcome;
+use render::{RenderOptions, Renderer};
+use replay::{Label, Recording};
+use serde::Serialize;
+
 use crate::cli::DriveArgs;
+use crate::clock::EverySecond;
 use crate::exit::Verdict;
+use crate::maps::{Map, read_scenario};
+use crate::output;
+use crate::progress::Interrupt;
+use crate::simulate;
+use crate::vision::{Eye, Vision};
+
+/// Map of a drive when none is named.
+const DEFAULT_MAP: &str = "city";
+
+/// What a drive came to, or what a recording holds of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunFigures {
+    /// Name of the map.
+    pub map: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Kilometres driven.
+    pub km: f64,
+    /// Simulated minutes.
+    pub minutes: f64,
+    /// `intervened`, `missed`, `censored`, or `stopped` when it was ended from outside.
+    pub outcome: &'static str,
+    /// What kind of corner case, if it is one.
+    pub label: Option<&'static str>,
+    /// What is to be seen in the corner case.
+    pub comment: Option<String>,
+    /// Whether true masks avoid the intervention; unknown without one.
+    pub perception_caused: Option<bool>,
+}
+
+impl RunFigures {
+    /// Those of a recording.
+    pub fn of(recording: &Recording) -> Self {
+        let log = recording.log();
+        let odometer_mm = log.summary.as_ref().map(|s| s.odometer_mm).or(log.marks.last().map(|m| m.odometer_mm));
+        let outcome = log.summary.as_ref().and_then(|s| s.outcome);
+        let annotation = log.annotation.as_ref();
+        Self {
+            map: log.manifest.scenario.map.clone(),
+            seed: log.manifest.scenario.seed,
+            km: odometer_mm.unwrap_or(0) as f64 / 1e6,
+            minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
+            outcome: outcome_name(outcome),
+            label: annotation.map(|a| Label::name(a.label)),
+            comment: annotation.map(|a| a.comment.clone()),
+            perception_caused: annotation.and_then(|a| a.perception_caused),
+        }
+    }
+}
+
+fn outcome_name(outcome: Option<Outcome>) -> &'static str {
+    match outcome {
+        Some(Outcome::Intervened) => "intervened",
+        Some(Outcome::Missed) => "missed",
+        Some(Outcome::Censored) => "censored",
+        None => "stopped",
+    }
+}
 
 /// Runs `aeye drive`.
-pub fn run(_args: &DriveArgs, _json: bool) -> anyhow::Result<Verdict> {
-    todo!()
+pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
+    let (mut scenario, map) = match &args.scenario {
+        Some(path) => read_scenario(path)?,
+        None => {
+            let map = Map::find(args.map.as_deref().unwrap_or(DEFAULT_MAP))?;
+            (map.scenario(args.seed.unwrap_or(1)), map)
+        }
+    };
+    scenario.seed = args.seed.unwrap_or(scenario.seed);
+    scenario.rules.max_seconds = args.seconds.unwrap_or(scenario.rules.max_seconds);
+    let eye = Eye::open(&args.checkpoint)?;
+    let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
+    World::new(&scenario, &map.network)?;
+
+    let path = &args.record;
+    let file = File::create(path).with_context(|| path.display().to_string())?;
+    let interrupt = Interrupt::listen()?;
+    let mut second = EverySecond::new();
+    let keep_on = |world: &World| {
+        if second.is_due() {
+            eprintln!("tick {}", world.tick());
+        }
+        !interrupt.is_raised()
+    };
+    simulate::drive(&scenario, &map, vision, file, keep_on)?;
+    let figures = RunFigures::of(&Recording::open(path)?);
+    output::print(json, &figures, || {
+        let label = figures.label.map(|l| format!(" ({l})")).unwrap_or_default();
+        let RunFigures { km, minutes, outcome, .. } = &figures;
+        format!("{}: {km:.3} km in {minutes:.1} min, {outcome}{label}", path.display())
+    })?;
+    Ok(Verdict::Ok)
 }

@@ -1,0 +1,88 @@
+//! Simulated drives in parallel. Run `i` follows from the campaign's seed and `i` alone, so that the
+//! results do not depend on how many worlds run at the same time, or on interruptions.
+
+mod figures;
+mod workers;
+
+use std::path::PathBuf;
+
+use kernel::Scenario;
+use kernel::rng::{self, Stream};
+
+pub use figures::{CampaignFigures, RunLine, figures};
+pub use workers::drive_all;
+
+use crate::maps::Map;
+
+/// When a campaign is over; counted for each checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Until {
+    /// So many runs.
+    Runs(u32),
+    /// So many kilometres.
+    Km(f64),
+    /// So many corner cases.
+    Cases(u32),
+}
+
+impl Until {
+    /// Whether these runs, the first of the campaign, are enough.
+    pub fn is_met(&self, runs: &[RunLine]) -> bool {
+        let (done, of) = self.progress(runs);
+        done >= of
+    }
+
+    /// How much of how much is done; kilometres count in metres.
+    pub fn progress(&self, runs: &[RunLine]) -> (u64, u64) {
+        match *self {
+            Self::Runs(n) => (runs.len() as u64, n.into()),
+            Self::Km(km) => ((1000.0 * runs.iter().map(|r| r.figures.km).sum::<f64>()) as u64, (1000.0 * km) as u64),
+            Self::Cases(n) => (runs.iter().filter(|r| r.case.is_some()).count() as u64, n.into()),
+        }
+    }
+}
+
+/// Everything that decides what a campaign's runs are.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Maps, in turn.
+    pub maps: Vec<Map>,
+    /// What every run has in common, if not the default of its map and seed.
+    pub scenario: Option<Scenario>,
+    /// Longest simulated time of a run, seconds.
+    pub run_seconds: u32,
+    /// Seed of the campaign.
+    pub seed: u64,
+    /// When it is over.
+    pub until: Until,
+    /// Where the files go.
+    pub out: PathBuf,
+}
+
+impl Plan {
+    /// Which of the maps a run is on.
+    pub fn map_index(&self, run: u32) -> usize {
+        run as usize % self.maps.len()
+    }
+
+    /// The scenario of a run.
+    pub fn scenario_of(&self, run: u32) -> Scenario {
+        let map = &self.maps[self.map_index(run)];
+        let seed = rng::bits(self.seed, Stream::Scenario, u64::from(run), 0) >> 32;
+        let mut scenario = self.scenario.clone().unwrap_or_else(|| map.scenario(seed));
+        scenario.map = map.network.name.clone();
+        scenario.seed = seed;
+        scenario.rules.max_seconds = self.run_seconds;
+        scenario
+    }
+
+    /// File of a run's recording.
+    pub fn recording_path(&self, checkpoint: &str, run: u32) -> PathBuf {
+        self.out.join(format!("{checkpoint}-{run:04}.mcap"))
+    }
+
+    /// File of a run's corner case.
+    pub fn case_path(&self, checkpoint: &str, run: u32) -> PathBuf {
+        self.out.join(format!("{checkpoint}-{run:04}.case.mcap"))
+    }
+}
