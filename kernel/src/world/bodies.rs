@@ -17,6 +17,8 @@ const LEAVE_M: f32 = 70.0;
 const REACH_M: f32 = 15.0;
 /// Gap below which a hit is certain, metres.
 const GAP_M: f32 = 0.03;
+/// Slower than this relative to the car, nothing is about to be hit, m/s.
+const LEAST_HIT_MPS: f32 = 0.1;
 /// Slower than this in m/s and rad/s, a loose body comes to rest.
 const REST_SPEED: f32 = 0.15;
 /// A loose body moves at least this long.
@@ -147,12 +149,16 @@ impl Bodies {
         physics.hold(body.id, body.kind, &loose.hold());
     }
 
-    /// Takes over what physics made of the loose bodies, and lets slow ones rest.
-    pub fn moved(&mut self, physics: &mut Physics) {
+    /// Takes over what physics made of the loose bodies, and lets slow ones rest, but none of those
+    /// that the car touches.
+    pub fn moved(&mut self, touching: &[u32], physics: &mut Physics) {
         for loose in self.loose.iter_mut().filter(|loose| !loose.resting) {
             let Some(motion) = physics.actor(loose.id) else { continue };
             loose.motion = motion;
-            loose.ticks += 1;
+            loose.ticks = loose.ticks.saturating_add(1);
+            if touching.binary_search(&loose.id).is_ok() {
+                continue;
+            }
             let slow = motion.velocity_mps.length().max(motion.spin_radps.length()) < REST_SPEED;
             if (slow && loose.ticks > LEAST_LOOSE_TICKS) || loose.ticks >= MOST_LOOSE_TICKS {
                 loose.rest();
@@ -188,6 +194,9 @@ fn before(body: &Body) -> Motion {
 /// Whether the boxes of the car and of a body overlap after a tick of straight motion, seen from
 /// above and in height (separating axes).
 fn will_touch(car: &Ego, other: &Motion, size_m: Vec3) -> bool {
+    if (car.motion.velocity_mps - other.velocity_mps).length() < LEAST_HIT_MPS {
+        return false;
+    }
     let forward = other.rotation * Vec3::X;
     let turned = heading(car.heading_rad()).conjugate();
     let gap = other.position + other.velocity_mps * TICK_S - (car.middle() + (car.motion.velocity_mps * TICK_S));

@@ -185,7 +185,7 @@ impl World {
         let forces = car.actuate(&self.parts.output.applied.controls);
         self.physics.step(&forces);
         car.moved(self.physics.ego());
-        bodies.moved(&mut self.physics);
+        bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
     }
 
     /// Finds what began in this tick, and whether it ends the run.
