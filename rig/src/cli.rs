@@ -42,6 +42,8 @@ pub enum Command {
     Train(TrainArgs),
     /// Measure a checkpoint on a dataset folder.
     Eval(EvalArgs),
+    /// One self-contained page about corner cases.
+    Report(ReportArgs),
     /// Drive until three corner cases, verify, render them again, and write a report.
     Demo(DemoArgs),
     /// Say what this machine has and how fast it is.
@@ -257,6 +259,23 @@ pub struct EvalArgs {
     /// Which split.
     #[arg(long, default_value = "val")]
     pub split: String,
+}
+
+/// Arguments of `report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Corner cases; the recordings beside them give route and kilometres.
+    #[arg(required = true, value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    #[arg(long, required = true, num_args = 1.., value_name = "FILE.onnx|truth")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Where the page goes.
+    #[arg(long, value_name = "FILE.html")]
+    pub out: PathBuf,
 }
 
 /// Arguments of `demo`.

@@ -31,6 +31,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
         Command::Train(args) => lab::train::run(args, json),
         Command::Eval(args) => lab::eval::run(args, json),
+        Command::Report(args) => lab::report::run(args, json),
         Command::Demo(args) => lab::demo::run(args, json),
         Command::Doctor => commands::doctor::run(json),
     }

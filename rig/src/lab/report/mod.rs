@@ -1,0 +1,100 @@
+//! One self-contained page about corner cases: what the camera saw, what was there, what each
+//! checkpoint made of it, and where it happened.
+
+mod map;
+mod page;
+mod story;
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use kernel::time::{CLIP_FPS, CLIP_TICKS};
+use perception::ConfusionMatrix;
+use replay::Recording;
+use serde::Serialize;
+
+use super::footage::Footage;
+use super::looks::{Studio, look, open_eyes};
+use crate::cli::{CheckpointChoice, ReportArgs};
+use crate::exit::Verdict;
+use crate::output;
+use crate::progress;
+
+use page::{CasePart, Page, Strip};
+use story::Story;
+
+/// What the command prints.
+#[derive(Serialize)]
+struct Summary {
+    report: String,
+    cases: usize,
+    bytes: usize,
+}
+
+/// Runs `aeye report`.
+pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
+    let html = render(&args.files, &args.checkpoint, args.size)?;
+    output::write_file(&args.out, html.as_bytes())?;
+    let summary = Summary { report: args.out.display().to_string(), cases: args.files.len(), bytes: html.len() };
+    output::print(json, &summary, || summary.report.clone())?;
+    Ok(Verdict::Ok)
+}
+
+/// The page about these corner cases, each drawn at `size` and looked at through each checkpoint.
+/// Kilometres and minutes are those of all recordings that lie beside the cases.
+pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<String> {
+    let mut eyes = open_eyes(choices, size)?;
+    let mut studio = Studio::new(size);
+    let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
+    let mut cases = Vec::new();
+    let bar = progress::bar("report", files.len() as u64);
+    for path in files {
+        let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
+        let mut strip = Strip::new(&eyes, footage.scenes.last().map_or(0, |scene| scene.tick));
+        for scene in &footage.scenes {
+            let frame = studio.draw(&footage.network, scene)?;
+            let masks = look(&mut eyes, &frame)?;
+            strip.add(&frame, &masks)?;
+        }
+        overall.iter_mut().zip(strip.matrices()).for_each(|(sum, matrix)| sum.merge(matrix));
+        let story = Story::of(path, &footage)?;
+        cases.push(CasePart::new(&footage.name, &story, strip));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Page::new(&eyes, &overall, &exposure(files)?, cases).render()
+}
+
+/// What was driven.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Exposure {
+    recordings: usize,
+    km: f64,
+    minutes: f64,
+}
+
+/// Sums over the recordings in the folders of the cases.
+fn exposure(cases: &[PathBuf]) -> anyhow::Result<Exposure> {
+    let here = Path::new(".");
+    let folder = |path: &PathBuf| path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(here).to_owned();
+    let mut sum = Exposure::default();
+    for folder in cases.iter().map(folder).collect::<BTreeSet<_>>() {
+        let entries = std::fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
+        let mut paths = entries.map(|e| e.map(|e| e.path())).collect::<Result<Vec<_>, _>>()?;
+        paths.sort();
+        for path in paths.iter().filter(|path| is_recording(path)) {
+            let recording = Recording::open(path)?;
+            let log = recording.log();
+            sum.recordings += 1;
+            sum.km += log.marks.last().map_or(0.0, |mark| mark.odometer_mm as f64 / 1e6);
+            sum.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
+        }
+    }
+    Ok(sum)
+}
+
+fn is_recording(path: &Path) -> bool {
+    let name = path.to_string_lossy();
+    name.ends_with(".mcap") && !name.ends_with(".case.mcap")
+}
