@@ -14,7 +14,7 @@ use crate::{ops, signals, state};
 pub const HORIZON_M: f32 = 250.0;
 /// How far from the edge of its lane the car may be until the route is planned anew, metres.
 const STRAY_M: f32 = 0.6;
-/// How far the car may be from its lane while it faces no other lane, metres.
+/// How far from the edge of its lane the car may be while the nearest one leads the other way, metres.
 const LOST_M: f32 = 8.0;
 /// Radius in which a new lane is looked for, metres.
 const SEARCH_M: f32 = 50.0;
@@ -75,12 +75,14 @@ impl Route {
         strayed
     }
 
+    /// Goes on from the nearest lane, unless that leads the other way and the car may come back.
     fn plan_anew(&mut self, network: &RoadNetwork, middle: Vec3, heading_rad: f32, stray_m: f32) -> bool {
-        let along = |lane: LaneId, s_m: f32| ops::cos(network.lane_point(lane, s_m).heading_rad - heading_rad) > 0.5;
-        let under = network.lanes_at(middle, LaneKind::Driving).into_iter().find(|p| along(p.lane, p.s_m));
-        let lost = || network.nearest_lane(middle, LaneKind::Driving, Some(heading_rad), SEARCH_M);
-        let place = under.or_else(|| (stray_m > LOST_M).then(lost).flatten());
-        let Some(place) = place.filter(|place| place.lane != self.lanes[0]) else { return false };
+        let nearest = network.nearest_lane(middle, LaneKind::Driving, Some(heading_rad), SEARCH_M);
+        let Some(place) = nearest.filter(|place| place.lane != self.lanes[0]) else { return false };
+        let direction = network.lane_point(place.lane, place.s_m).heading_rad;
+        if ops::cos(direction - heading_rad) < 0.5 && stray_m < LOST_M {
+            return false;
+        }
         self.lanes.clear();
         self.lanes.push(place.lane);
         self.s_m = place.s_m;

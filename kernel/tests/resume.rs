@@ -85,6 +85,25 @@ fn every_byte_of_a_keyframe_is_hashed_restored_and_named() {
 }
 
 #[test]
+fn a_forged_keyframe_never_panics() {
+    let (world, keyframe) = driven(2_500);
+    let input = TickInput { semantic: Controls::from_fractions(0.1, 0.9, 0.0), ..Default::default() };
+    for at in 0..keyframe.bytes.len() {
+        for bit in [1, 6, 7] {
+            let mut forged = keyframe.clone();
+            forged.bytes[at] ^= 1 << bit;
+            let Ok(mut other) = World::resume(world.scenario(), world.network(), &forged) else { continue };
+            for _ in 0..4 {
+                other.step(&input);
+            }
+            other.scene();
+            other.hud();
+            other.route_ahead(100.0);
+        }
+    }
+}
+
+#[test]
 fn a_truncated_or_mismatched_keyframe_is_refused_in_one_sentence() {
     let (world, keyframe) = driven(700);
     for length in 0..keyframe.bytes.len() {
