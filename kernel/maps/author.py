@@ -1,13 +1,20 @@
 #!/usr/bin/env python3
-"""Writes the bundled maps `city.xodr` and `rural.xodr` beside this file.
+"""Writes the bundled maps `city.xodr` and `rural.xodr` beside this file, and the small ones of the tests.
 
     python3 kernel/maps/author.py
 """
 
+from pathlib import Path
+
 from city import city
 from opendrive import write
 from rural import rural
+from small import SMALL
+
+HERE = Path(__file__).resolve().parent
 
 if __name__ == "__main__":
     for build in (city, rural):
-        write(build())
+        write(build(), HERE)
+    for build in SMALL:
+        write(build(), HERE.parent.parent / "tests" / "maps")

@@ -5,11 +5,8 @@ arms alone, so a map is described by little more than where its nodes are.
 """
 
 import math
+import re
 from dataclasses import dataclass, field
-from pathlib import Path
-
-HERE = Path(__file__).parent
-
 
 # --- geometry -----------------------------------------------------------------------------------
 
@@ -212,6 +209,7 @@ class Connection:
     kerbside: bool
     path: Path2
     z: float
+    signals: str = ""
 
 
 @dataclass
@@ -294,14 +292,30 @@ class Map:
             arm.road.signals.append(signal(sign, arm, "1000001", 0.6, 3.2))
             controller = self.id()
             j.controllers.append((controller, sign))
+        elif j.control == "references":
+            self._referenced_light(j, arm)
         elif j.control in ("stop", "yield") and minor:
             arm.road.signals.append(signal(self.id(), arm, {"stop": "206", "yield": "205"}[j.control], 6.5, 2.2))
 
 
+    def _referenced_light(self, j, arm):
+        """A light as other editors write it: for no lane itself, referred to by the lanes inside."""
+        sid = self.id()
+        own = signal(sid, arm, "1000001", 0.6, 3.2)
+        arm.road.signals.append(re.sub(r'fromLane="[^"]*" toLane="[^"]*"', 'fromLane="0" toLane="0"', own))
+        for c in j.connections:
+            if c.source is arm:
+                c.signals += (
+                    f'<signalReference id="{sid}" s="0" t="0" orientation="+">'
+                    f'<validity fromLane="-1" toLane="-1"/></signalReference>'
+                )
+
+
 def signal(sid, arm, kind, before, z):
     p = arm.profile
-    right = p.kerb + (0.35 if p.sidewalk else 0.9)
-    dynamic = "yes" if kind == "1000001" else "no"
+    is_light = kind == "1000001"
+    right = p.kerb + (0.35 if is_light and p.sidewalk else p.sidewalk + 0.8)
+    dynamic = "yes" if is_light else "no"
     lanes = sorted(arm.lane_in(n) for n in range(1, p.lanes + 1))
     return (
         f'<signal id="{sid}" name="" s="{num(arm.s(before))}" t="{num(arm.t(right))}" zOffset="{num(z)}" '
@@ -463,7 +477,7 @@ def connection_text(c, junction):
         f'<road length="{num(c.path.length)}" id="{c.id}" junction="{junction.id}">{link_text(ends)}'
         f"{plan(c.path)}{elevation([(0, c.z, 0, 0, 0)])}"
         f'<lanes><laneSection s="0"><center>{lane(0, "none", "", mark("none"))}</center><right>{lanes}</right>'
-        f"</laneSection></lanes></road>\n"
+        f"</laneSection></lanes>{c.signals and f'<signals>{c.signals}</signals>'}</road>\n"
     )
 
 
@@ -483,7 +497,7 @@ def junction_text(j):
     return f'<junction id="{j.id}" name="" type="default">{out}</junction>\n'
 
 
-def write(m):
+def write(m, folder):
     controllers = "".join(
         f'<controller id="{c}" name="" sequence="{n}"><control signalId="{s}" type="0"/></controller>\n'
         for j in m.junctions
@@ -498,5 +512,5 @@ def write(m):
         + "".join(junction_text(j) for j in m.junctions)
         + "</OpenDRIVE>\n"
     )
-    (HERE / f"{m.name}.xodr").write_text(text)
+    (folder / f"{m.name}.xodr").write_text(text)
     print(f"{m.name}: {len(m.roads)} roads, {len(m.junctions)} junctions, {len(text)} bytes")

@@ -110,9 +110,9 @@ fn measure(line: &mut [LanePoint]) {
     }
 }
 
-/// Rounds to 2^-14 rad.
+/// Rounds to 2^-14 rad, within (-pi, pi].
 fn snap_angle(angle_rad: f32) -> f32 {
-    ops::floor(angle_rad * 16384.0 + 0.5) / 16384.0
+    ops::wrap_angle(ops::floor(angle_rad * 16384.0 + 0.5) / 16384.0)
 }
 
 /// The point at `share` of the way from `a` to `b`.

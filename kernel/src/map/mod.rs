@@ -327,3 +327,6 @@ mod walk;
 pub use bake::{BakeError, bake};
 pub use bundled::{BUNDLED, bundled};
 pub use query::{Ground, Index, Projection};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! The maps that come with A-Eye.
+
+use super::*;
+
+/// What the bundled maps bake to; a change here changes every recording's map.
+const DIGESTS: [(&str, u128); BUNDLED.len()] = [("city", 0), ("rural", 0)];
+
+#[test]
+fn digests_are_golden() {
+    for (name, golden) in DIGESTS {
+        let digest = bundled(name).unwrap().digest;
+        assert_eq!(digest, golden, "{name} bakes to {digest:#034x}");
+    }
+}
+
+#[test]
+fn names_are_known() {
+    assert!(BUNDLED.iter().all(|name| bundled(name).is_some_and(|m| m.name == *name)));
+    assert!(bundled("atlantis").is_none());
+}
+
+#[test]
+fn maps_are_sound() {
+    for name in BUNDLED {
+        let map = bundled(name).unwrap();
+        check_sound(&map);
+        super::features::check_ground(&map);
+    }
+}
+
+#[test]
+fn no_road_ends() {
+    for name in BUNDLED {
+        let map = bundled(name).unwrap();
+        for lane in map.lanes.iter().filter(|l| l.kind == LaneKind::Driving) {
+            assert!(!lane.successors.is_empty() && !lane.predecessors.is_empty(), "{name}: {}", lane.name);
+            for &next in &lane.successors {
+                let gap = lane.end().position.distance(map.lanes[next as usize].start().position);
+                assert!(gap < 0.01, "{name}: {} ends {gap} m before its successor", lane.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn who_must_wait_has_a_stop_line() {
+    for name in BUNDLED {
+        let map = bundled(name).unwrap();
+        for lane in map.lanes.iter().filter(|l| l.kind == LaneKind::Driving && l.junction.is_none()) {
+            let enters = lane.successors.iter().filter_map(|&n| map.lanes[n as usize].junction);
+            let lights = enters.into_iter().any(|j| !map.junctions[j as usize].light_groups.is_empty());
+            let waits = |n: &LaneId| map.lanes[*n as usize].conflicts.iter().any(|c| c.other_first);
+            match lane.stop {
+                Some(stop) => assert!(lane.length_m - stop.s_m < 15.0, "{name}: {}", lane.name),
+                None => assert!(!lights && !lane.successors.iter().any(waits), "{name}: {}", lane.name),
+            }
+        }
+    }
+}
+
+#[test]
+fn people_can_walk_everywhere() {
+    for name in BUNDLED {
+        assert_eq!(walkable_parts(&bundled(name).unwrap()).len(), 1, "{name}");
+    }
+}
+
+#[test]
+fn the_city_has_what_a_city_has() {
+    let map = bundled("city").unwrap();
+    let stops =
+        |wanted: fn(StopKind) -> bool| map.lanes.iter().filter(|l| l.stop.is_some_and(|s| wanted(s.kind))).count();
+    assert!(stops(|k| matches!(k, StopKind::Light(_))) >= 20);
+    assert!(stops(|k| k == StopKind::Stop) >= 4 && stops(|k| k == StopKind::Yield) >= 10);
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::Building) > 300 && props(PropKind::ParkedCar) > 200 && props(PropKind::Tree) > 80);
+    let limits: Vec<f32> = map.lanes.iter().map(|l| (l.speed_limit_mps * 3.6).round()).collect();
+    assert!(limits.contains(&30.0) && limits.contains(&50.0));
+    assert!(map.lanes.iter().filter(|l| l.kind == LaneKind::Driving).map(|l| l.length_m).sum::<f32>() > 10_000.0);
+}
+
+#[test]
+fn the_countryside_has_hills_bends_and_rails() {
+    let map = bundled("rural").unwrap();
+    let heights = || map.lanes.iter().flat_map(|l| &l.points).map(|p| p.position.z);
+    assert!(heights().fold(0.0, f32::max) - heights().fold(0.0, f32::min) > 5.0);
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::GuardRail) > 40 && props(PropKind::Tree) > 200);
+    assert!(map.crosswalks.len() == 2 && map.light_groups.is_empty());
+    let fastest = map.lanes.iter().map(|l| l.speed_limit_mps).fold(0.0, f32::max);
+    assert!((fastest - 100.0 / 3.6).abs() < 0.01);
+}
