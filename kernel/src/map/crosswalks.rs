@@ -12,6 +12,8 @@ const HALF_WIDTH_M: f32 = 1.75;
 const SETBACK_M: f32 = 3.0;
 /// A crossing belongs to a junction that its lanes reach within this distance, metres.
 const REACH_M: f32 = 20.0;
+/// What claims to be larger is no crossing, metres.
+const LONGEST_M: f32 = 60.0;
 /// A rectangle this much longer than wide is crossed along its length, whatever lies below.
 const SLENDER: f32 = 1.8;
 
@@ -92,6 +94,9 @@ pub(super) fn least_rectangle(outline: &[Vec3]) -> Option<(Vec3, Vec2, Vec2)> {
 fn add(map: &mut RoadNetwork, ends: [Vec3; 2], half_width_m: f32) {
     let center = (ends[0] + ends[1]) / 2.0;
     let radius = ends[0].distance(ends[1]) / 2.0 + 1.0;
+    if !(1.0..LONGEST_M).contains(&radius) || half_width_m > LONGEST_M {
+        return;
+    }
     let near = map.lanes_around(center, LaneKind::Driving, radius);
     let lanes: Vec<(LaneId, f32)> =
         near.iter().filter_map(|p| crossing(&map.lanes[p.lane as usize], ends).map(|s| (p.lane, snap(s)))).collect();

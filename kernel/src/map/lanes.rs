@@ -168,11 +168,12 @@ fn beside(source: &Source, lane: &xodr::Lane, origin: &Origin, left: bool) -> Op
         0 => outward,
         id => id,
     };
+    let is_wanted = |n: &&xodr::LaneId| source.net.road_lane(**n).is_some_and(|at| at.od_id == wanted);
+    let neighbour = lane.neighbors.iter().find(is_wanted)?;
     let middle = lane.center.points()[lane.center.points().len() / 2];
-    let road_s = source.net.road_position_on(xodr::RoadId(origin.road), middle)?.s;
-    let here = xodr::LanePosition { lane: lane.id, s: road_s, offset: 0.0 };
+    let s = source.net.road_position_on(xodr::RoadId(origin.road), middle)?.s;
+    let here = xodr::LanePosition { lane: lane.id, s, offset: 0.0 };
     let may = if left { source.net.may_change_left(here) } else { source.net.may_change_right(here) };
-    let neighbour = lane.neighbors.iter().find(|n| source.net.road_lane(**n).is_some_and(|at| at.od_id == wanted))?;
     (may != Some(false)).then(|| source.ids.get(&neighbour.0).copied()).flatten()
 }
 
@@ -212,7 +213,7 @@ impl Lane {
     pub fn at(&self, s_m: f32) -> LanePoint {
         let k = self.points.partition_point(|p| p.s_m <= s_m).clamp(1, self.points.len() - 1);
         let (a, b) = (&self.points[k - 1], &self.points[k]);
-        blend(a, b, ((s_m - a.s_m) / (b.s_m - a.s_m)).clamp(0.0, 1.0))
+        blend(a, b, ((s_m - a.s_m) / (b.s_m - a.s_m).max(1e-6)).clamp(0.0, 1.0))
     }
 
     /// The nearest place of its centre line seen from above: (s, offset to the left, distance).

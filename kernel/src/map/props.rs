@@ -7,6 +7,9 @@ use super::lights::beside_lanes;
 use super::{LaneKind, Prop, PropKind, RoadNetwork, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
 use crate::ops;
 
+/// What claims to be larger is no object beside a road, metres.
+const LARGEST_M: f32 = 500.0;
+
 pub(super) fn bake(source: &Source, map: &mut RoadNetwork) {
     let poles: Vec<Prop> = map.light_heads.iter().map(|h| pole(h.position, h.facing_rad, h.height_m)).collect();
     map.props.extend(poles);
@@ -108,7 +111,7 @@ fn boxes(shape: &xodr::Shape, kind: PropKind, variant: u32) -> Vec<Prop> {
         }
         _ => Vec::new(),
     };
-    found.into_iter().filter(|p| p.size.x > 0.05 && p.size.z > 0.1).collect()
+    found.into_iter().filter(|p| p.size.x > 0.05 && p.size.z > 0.1 && p.size.max_element() < LARGEST_M).collect()
 }
 
 fn outline(corners: &[xodr::Corner], closed: bool, prop: &dyn Fn(Vec3, f32, Vec3) -> Prop) -> Vec<Prop> {

@@ -15,6 +15,10 @@ const PAINT_M: f32 = 16.0 / 1024.0;
 const FLOOR_M: f32 = 20.0 / 1024.0;
 /// Mouths farther apart than this share no paved floor.
 const FLOOR_REACH_M: f32 = 60.0;
+/// A strip of surface is cut at least this often, metres.
+const MAX_QUAD_M: f32 = 24.0;
+/// An edge that strays less than this from a line is straight, metres.
+const STRAIGHT_M: f32 = 0.003;
 /// Depth of a stop line along the road, metres.
 const STOP_LINE_M: f32 = 0.4;
 
@@ -44,6 +48,20 @@ impl Surface {
         self.positions.extend(corners.iter().map(|&c| snap3(c)));
         for k in 1..corners.len().saturating_sub(1) as u32 {
             self.triangle([first, first + k, first + k + 1]);
+        }
+    }
+
+    /// Adds a strip of (left, right) ribs; where it folds in a tight bend, without the fold.
+    fn strip(&mut self, ribs: &[[Vec3; 2]]) {
+        for pair in ribs.windows(2) {
+            let quad = [pair[0][1], pair[1][1], pair[1][0], pair[0][0]];
+            let faces_up = |a: usize, b: usize, c: usize| (quad[b] - quad[a]).cross(quad[c] - quad[a]).z > 0.0;
+            match (faces_up(0, 1, 2), faces_up(0, 2, 3)) {
+                (true, true) => self.fan(&quad),
+                (true, false) => self.fan(&quad[..3]),
+                (false, true) => self.fan(&[quad[0], quad[2], quad[3]]),
+                (false, false) => {}
+            }
         }
     }
 
@@ -94,31 +112,57 @@ fn pave(source: &Source, map: &RoadNetwork, meshes: &mut Meshes) {
             continue;
         }
         let lift = if kind == SurfaceKind::Sidewalk { Vec3::Z * rise(source, id) } else { Vec3::ZERO };
-        let ribs: Vec<Vec3> = mesh.vertices[span.vertices.start as usize..span.vertices.end as usize]
-            .iter()
-            .map(|&p| snap3(point(p) + lift))
+        let ribs: Vec<[Vec3; 2]> = mesh.vertices[span.vertices.start as usize..span.vertices.end as usize]
+            .chunks_exact(2)
+            .map(|rib| [snap3(point(rib[0]) + lift), snap3(point(rib[1]) + lift)])
             .collect();
+        let ribs = thinned(&ribs);
         let surface = meshes.of(kind);
-        let first = surface.positions.len() as u32;
-        surface.positions.extend_from_slice(&ribs);
-        for t in mesh.indices[span.indices.start as usize..span.indices.end as usize].chunks_exact(3) {
-            surface.triangle([t[0], t[1], t[2]].map(|v| v - span.vertices.start + first));
-        }
+        surface.strip(&ribs);
         if kind == SurfaceKind::Sidewalk {
             kerbs(surface, &ribs);
         }
     }
 }
 
+/// Leaves out ribs between which a strip is straight.
+fn thinned(ribs: &[[Vec3; 2]]) -> Vec<[Vec3; 2]> {
+    let mut kept: Vec<[Vec3; 2]> = Vec::new();
+    let mut from = 0;
+    for k in 0..ribs.len() {
+        let is_end = k == 0 || k + 1 == ribs.len();
+        if is_end || !is_straight(&ribs[from..=k + 1]) {
+            kept.push(ribs[k]);
+            from = k;
+        }
+    }
+    kept
+}
+
+/// Whether a strip without its inner ribs keeps its shape, and is not too long for its light and fog.
+fn is_straight(ribs: &[[Vec3; 2]]) -> bool {
+    let (first, last) = (ribs[0], ribs[ribs.len() - 1]);
+    let edge = |side: usize| {
+        let along = last[side] - first[side];
+        let squared = along.length_squared().max(1e-6);
+        squared < MAX_QUAD_M * MAX_QUAD_M
+            && ribs.iter().all(|rib| {
+                let off = rib[side] - first[side];
+                (off - along * (off.dot(along) / squared)).length_squared() < STRAIGHT_M * STRAIGHT_M
+            })
+    };
+    edge(0) && edge(1)
+}
+
 /// Faces down from both edges and both ends of a strip of (left, right) ribs.
-fn kerbs(surface: &mut Surface, ribs: &[Vec3]) {
+fn kerbs(surface: &mut Surface, ribs: &[[Vec3; 2]]) {
     let down = Vec3::Z * KERB_FACE_M;
     let mut face = |a: Vec3, b: Vec3| surface.fan(&[a, b, b - down, a - down]);
-    for pair in ribs.chunks_exact(2).collect::<Vec<_>>().windows(2) {
+    for pair in ribs.windows(2) {
         face(pair[0][0], pair[1][0]);
         face(pair[1][1], pair[0][1]);
     }
-    if let [left, right, .., end_left, end_right] = ribs {
+    if let [[left, right], .., [end_left, end_right]] = ribs {
         face(*right, *left);
         face(*end_left, *end_right);
     }
@@ -168,8 +212,10 @@ fn hull(points: &mut [Vec3]) -> Vec<Vec3> {
 fn paint(source: &Source, map: &RoadNetwork, meshes: &mut Meshes) {
     let surface = meshes.of(SurfaceKind::RoadLine);
     let up = Vec3::Z * PAINT_M;
-    for piece in source.net.road_marks().iter().flat_map(|m| &m.lines).flat_map(|l| &l.pieces) {
-        surface.fan(&piece.map(|p| point(p) + up));
+    for line in source.net.road_marks().iter().flat_map(|m| &m.lines) {
+        for dash in dashes(&line.pieces, up) {
+            surface.strip(&thinned(&dash));
+        }
     }
     for stripe in map.crosswalks.iter().flat_map(crosswalks::stripes) {
         surface.fan(&stripe.map(|p| p + up));
@@ -180,6 +226,19 @@ fn paint(source: &Source, map: &RoadNetwork, meshes: &mut Meshes) {
             stop_line(surface, &from, &to, stop.kind, up);
         }
     }
+}
+
+/// The ribs of each painted dash; xodr cuts a dash at every station of its lane.
+fn dashes(pieces: &[[xodr::Point; 4]], up: Vec3) -> Vec<Vec<[Vec3; 2]>> {
+    let mut dashes: Vec<Vec<[Vec3; 2]>> = Vec::new();
+    for piece in pieces {
+        let [right, end_right, end_left, left] = piece.map(|p| snap3(point(p) + up));
+        match dashes.last_mut() {
+            Some(dash) if dash.last() == Some(&[left, right]) => dash.push([end_left, end_right]),
+            _ => dashes.push(vec![[left, right], [end_left, end_right]]),
+        }
+    }
+    dashes
 }
 
 /// A bar, or a row of blocks where one only has to give way.

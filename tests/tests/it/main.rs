@@ -1,5 +1,6 @@
 //! The integration tests, one binary. Each module tests one promise to the user.
 
+mod real_maps;
 mod render_frame;
 mod render_oracle;
 mod tidy;
