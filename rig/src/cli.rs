@@ -237,7 +237,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub horizon: Option<u32>,
     /// Frames a step.
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(2..))]
     pub batch: u32,
     /// Threads that share a batch; the result depends on their number, not on the machine's.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=64))]

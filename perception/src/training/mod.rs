@@ -25,6 +25,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 pub use dataset::{Frame, Split};
+pub use pictures::CLASS_WEIGHT_OFFSET;
 
 use crate::{PerceptionError, Scores};
 
@@ -49,7 +50,7 @@ pub struct TrainOptions {
 
 impl Default for TrainOptions {
     fn default() -> Self {
-        Self { horizon: 30, seed: 1, width: 256, height: 128, batch: 16, replicas: 2, rate: 2e-3 }
+        Self { horizon: 30, seed: 1, width: 256, height: 128, batch: 12, replicas: 2, rate: 2e-3 }
     }
 }
 

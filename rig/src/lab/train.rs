@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use indicatif::ProgressBar;
 use perception::classes::TRAIN_CLASSES;
-use perception::training::{self, EpochReport, Progress, TrainOptions, Trained};
+use perception::training::{self, CLASS_WEIGHT_OFFSET, EpochReport, Progress, TrainOptions, Trained};
 
 use crate::cli::TrainArgs;
 use crate::exit::Verdict;
@@ -118,7 +118,7 @@ fn card(out: &Path, options: &TrainOptions, trained: &Trained) -> String {
          | seed | {seed} |\n\
          | optimiser | Adam, rate {rate}, polynomial decay of power 0.9 |\n\
          | batch | {batch} in {replicas} replicas |\n\
-         | loss | cross-entropy at full resolution, a class weighs 1 / ln(1.1 + its share of the pixels) |\n\
+         | loss | cross-entropy at full resolution, a class weighs 1 / ln({CLASS_WEIGHT_OFFSET} + its share of the pixels) |\n\
          | augmentation | horizontal flip; contrast, brightness and tint |\n\
          | digest | BLAKE3 `{}` |\n\n",
         trained.parameters,
