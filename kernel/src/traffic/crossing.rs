@@ -93,14 +93,14 @@ impl Gaps<'_> {
         lanes_clear && !self.free.iter().any(|h| heads_for(h, middle, reach_m, time_s))
     }
 
-    /// Whether a vehicle on `lane` or the lanes before it arrives at `s_m` too early.
+    /// Whether a vehicle on `lane` or the lanes before it is at `s_m`, or arrives there within `time_s`.
     fn arrives(&self, lane: LaneId, s_m: f32, half_width_m: f32, time_s: f32, depth: u32) -> bool {
         let early = self.lists.on(lane).iter().any(|entry| {
             let gap_m = s_m - half_width_m - entry.s_m - entry.half_m;
             let gone = entry.s_m - entry.half_m > s_m + half_width_m;
-            let standing_on_it = gap_m < 0.0 && !gone;
-            let comes = entry.speed_mps > CREEP_MPS && gap_m < entry.speed_mps * (time_s + SPARE_S);
-            !gone && (standing_on_it || (comes && gap_m < WATCH_M))
+            let on_it = gap_m < 0.0 && !gone;
+            let comes = entry.speed_mps > CREEP_MPS && time_s > 0.0 && gap_m < entry.speed_mps * (time_s + SPARE_S);
+            !gone && (on_it || (comes && gap_m < WATCH_M))
         });
         let before = &self.network.lanes[lane as usize].predecessors;
         let further = |p: &LaneId| {

@@ -159,6 +159,7 @@ pub(super) fn near_enough(vehicle: &Vehicle, line: &Line, spare_m: f32) -> bool 
 pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line) -> bool {
     let needed = braking_needed(vehicle.speed_mps, line.ahead_m);
     match signal {
+        _ if line.passed => false,
         Signal::Open => false,
         Signal::Closing => needed < YELLOW_BRAKE_MPS2,
         Signal::Closed => needed < 2.0 * YELLOW_BRAKE_MPS2,

@@ -130,7 +130,8 @@ impl Sight {
             let crosswalk = traffic.network.walk_edges[walker.edge as usize].crosswalk;
             let waits = walker.mode == WalkerMode::Wait;
             let claimed = if waits { self.wanted_zebra(traffic, walker) } else { crosswalk };
-            if !waits && (walker.mode == WalkerMode::Jaywalk || crosswalk.is_some()) {
+            let astray = walker.offset_m.abs() > traffic.network.walk_edges[walker.edge as usize].half_width_m + 0.3;
+            if crosswalk.is_some() || astray {
                 self.hazards.push(Hazard::of_body(body));
             }
             let (position, velocity) = (body.position.truncate(), body.velocity_mps.truncate());
@@ -212,8 +213,11 @@ impl Sight {
     fn add_ego(&self, traffic: &Traffic, around: &Surroundings<'_>, members: &mut Members) {
         let (network, ego) = (&traffic.network, &around.ego);
         let speed = ego.velocity_mps.truncate().length();
+        if speed < EGO_WAITS_MPS {
+            return;
+        }
         let place = network.nearest_lane(ego.position, LaneKind::Driving, Some(ego.heading_rad), 4.0);
-        let Some(place) = place.filter(|_| speed > EGO_WAITS_MPS) else { return };
+        let Some(place) = place else { return };
         let lane = &network.lanes[place.lane as usize];
         let half_m = ego.size_m.x * 0.5;
         let member =

@@ -31,6 +31,9 @@ pub(super) struct Line {
     pub junction: u32,
     /// From the vehicle's front to the line, metres; negative when it reaches over it.
     pub ahead_m: f32,
+    /// Whether the front is over the marked line already; the vehicle may still stop where the
+    /// junction begins.
+    pub passed: bool,
     /// The step whose lane ends at the junction.
     pub approach: usize,
     /// The steps inside the junction: from, and one past the last.
@@ -120,9 +123,9 @@ pub(super) fn plan(
 fn line(lane: &crate::map::Lane, junction: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
     let front_m = driver.size_m.x * 0.5;
     let marked = lane.stop.map(|stop| end_m - lane.length_m + stop.s_m - front_m);
-    // Whoever stands over the marked line may still stop where the junction begins.
-    let ahead_m = marked.filter(|m| *m > -1.0).unwrap_or(end_m - front_m);
-    Line { junction, ahead_m, approach: k, inside: (k + 1, k + 2) }
+    let passed = marked.is_some_and(|m| m < -1.0);
+    let ahead_m = marked.filter(|_| !passed).unwrap_or(end_m - front_m);
+    Line { junction, ahead_m, passed, approach: k, inside: (k + 1, k + 2) }
 }
 
 /// The nearest vehicle ahead on the planned way.

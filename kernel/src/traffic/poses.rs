@@ -16,7 +16,7 @@ use super::{Body, Surroundings, Traffic, Vehicle, Walker, WalkerMode};
 const TURN_RAD: f32 = core::f32::consts::TAU / 65536.0;
 /// Vehicles leave and enter the map no nearer to the ego car than this, metres.
 const UNSEEN_M: f32 = 2.0 * EGO_CLEARANCE_M;
-/// Free space where a vehicle enters the map, metres.
+/// Free stretch of a lane on which a vehicle enters the map, metres.
 const ENTRY_SPACE_M: f32 = 18.0;
 
 /// Rotation whose x axis is `forward` and whose y axis is level.
@@ -96,7 +96,7 @@ impl Traffic {
         let place = |v: &Vehicle| lane_place(&self.network.lanes[v.lane as usize], v.s_m).position;
         let entry = lane_place(&self.network.lanes[lane as usize], s_m).position;
         let unseen = |p: Vec3| p.distance(surroundings.ego.position) > UNSEEN_M;
-        let free = self.state.vehicles.iter().all(|other| place(other).distance(entry) > ENTRY_SPACE_M);
+        let free = self.state.vehicles.iter().all(|other| other.lane != lane || other.s_m > ENTRY_SPACE_M);
         if unseen(entry) && unseen(place(&vehicle)) && free {
             let kept = vehicle.flags & Vehicle::BRAKING;
             let hops = vehicle.hops.wrapping_add(1);

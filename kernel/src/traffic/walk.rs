@@ -33,6 +33,8 @@ const TURN_PER_TICK: i16 = 820;
 const EDGE_MARGIN_M: f32 = 0.35;
 /// Whoever has waited this long at a kerb goes another way.
 const GIVE_UP_TICKS: u16 = seconds(90) as u16;
+/// Whoever stands before a vehicle on the road for this long turns back.
+const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 
 /// The place on an edge at `s_m`; beyond its ends the edge goes straight on.
 pub(super) fn edge_place(edge: &WalkEdge, way: &EdgeWay, s_m: f32) -> Place {
@@ -147,13 +149,15 @@ impl Streets<'_> {
             let place = walker_place(self.network, self.ways, next);
             if self.blocked(index, place.forward.truncate() * direction) {
                 aim_mps = 0.0;
-                next.speed_mps = 0.0;
+                halt(next);
             }
         }
         approach_speed(next, aim_mps);
         let moved_m = next.speed_mps * TICK_S;
         next.s_m += direction * moved_m;
-        let drift = DRIFT * moved_m;
+        // Whoever comes back from the road goes straight for the way.
+        let astray = next.offset_m.abs() > edge.half_width_m;
+        let drift = if astray { moved_m } else { DRIFT * moved_m };
         next.offset_m += (aim_m - next.offset_m).clamp(-drift, drift);
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         if left_m <= 0.0 {
@@ -257,7 +261,7 @@ impl Streets<'_> {
         let blocked = self.blocked(index, place.left() * sign);
         let aim_mps = if blocked { 0.0 } else { jaywalk::pace(self.seed, next, &self.persons[index]) };
         if blocked {
-            next.speed_mps = 0.0;
+            halt(next);
         }
         approach_speed(next, aim_mps);
         next.offset_m += sign * next.speed_mps * TICK_S;
@@ -303,6 +307,16 @@ impl Streets<'_> {
 /// Radians as 2^-16 turns.
 pub(super) fn turns(angle_rad: f32) -> u16 {
     (ops::round(angle_rad * (65536.0 / core::f32::consts::TAU)) as i32) as u16
+}
+
+/// Stands before a vehicle, and turns back when it stays.
+fn halt(next: &mut Walker) {
+    next.speed_mps = 0.0;
+    next.wait_ticks += 1;
+    if next.wait_ticks > TURN_BACK_TICKS {
+        next.wait_ticks = 0;
+        next.forward = !next.forward;
+    }
 }
 
 fn approach_speed(next: &mut Walker, aim_mps: f32) {
