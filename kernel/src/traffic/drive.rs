@@ -1,25 +1,29 @@
 //! What a vehicle does in a tick.
 
-use crate::map::{RoadNetwork, StopKind};
+use crate::map::{LaneId, RoadNetwork, StopKind};
 use crate::signals::LightPhase;
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::Body;
 use super::crossing::{self, Claim};
 use super::hazard::{Hazard, Seeker, in_way};
-use super::junction::{self, Members, Signal};
-use super::lists::Lists;
+use super::junction::{self, Members, Signal, swept_half_m};
+use super::lists::{Entry, Lists};
 use super::plan::{self, Line, Plan, Step, next_lane, stopping_speed};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
-use super::ways::{Meeting, Ways, curve_speed, lane_place};
+use super::ways::{Encounter, Meeting, Ways, curve_speed, lane_place};
 
 /// Hardest braking, m/s².
 const EMERGENCY_MPS2: f32 = 8.0;
 /// Time in which a driver takes up a speed that the road asks for, s.
 const ADAPT_S: f32 = 0.4;
+/// The same before a line; short, so that it is not overrun.
+const STOP_S: f32 = 0.25;
 /// Distance kept from a line, metres.
-const LINE_MARGIN_M: f32 = 0.7;
+const LINE_MARGIN_M: f32 = 1.0;
+/// Vehicles look this far ahead for others in a junction, metres.
+const ENCOUNTER_M: f32 = 30.0;
 /// How long a vehicle stands at a stop sign.
 const HALT_TICKS: u16 = seconds(1) as u16;
 /// Braking at most for people at a crosswalk who are not in the way yet, m/s².
@@ -111,7 +115,7 @@ impl View<'_> {
         }
         self.encounters(index, plan, steps, next, &mut follow);
         let wall_m = self.wall(plan, steps, next, driver);
-        let stop = (stopping_speed(wall_m, driver.brake_mps2) - v) / ADAPT_S;
+        let stop = (stopping_speed(wall_m, driver.brake_mps2) - v) / STOP_S;
         accel.min(stop).max(-EMERGENCY_MPS2)
     }
 
@@ -172,37 +176,41 @@ impl View<'_> {
     /// Follows or lets pass those inside the junction whose lanes meet this vehicle's.
     fn encounters(&self, index: usize, plan: &Plan, steps: &[Step], next: &Vehicle, follow: &mut impl FnMut(f32, f32)) {
         let granted = next.flags & Vehicle::GRANTED != 0;
+        let end = plan.line.filter(|_| !granted).map_or(steps.len(), |line| line.inside.0);
         let half_m = self.drivers[index].size_m.x * 0.5;
-        let inside = |k: usize| plan.line.is_none_or(|line| granted || k < line.inside.0);
-        for (k, step) in steps.iter().enumerate().take_while(|(k, _)| inside(*k)) {
-            let lane = &self.network.lanes[step.lane as usize];
+        for (k, step) in steps[..end].iter().enumerate() {
             for encounter in &self.ways.lanes[step.lane as usize].encounters {
-                let ahead_m = step.start_m + encounter.here[0] - half_m;
-                if k > 0 && ahead_m > 30.0 {
+                let (from_m, to_m) = (step.start_m + encounter.here[0], step.start_m + encounter.here[1]);
+                if to_m < -half_m || (k > 0 && from_m - half_m > ENCOUNTER_M) {
                     continue;
                 }
-                for entry in self.lists.on(encounter.lane) {
-                    let overlaps =
-                        entry.s_m + entry.half_m > encounter.there[0] && entry.s_m - entry.half_m < encounter.there[1];
-                    if !overlaps || entry.vehicle as usize == index {
-                        continue;
-                    }
-                    let other_length_m = self.network.lanes[encounter.lane as usize].length_m;
-                    let between_m = match encounter.meeting {
-                        Meeting::Diverge => step.start_m + entry.s_m,
-                        Meeting::Merge => step.start_m + lane.length_m - (other_length_m - entry.s_m),
-                        Meeting::Cross if ahead_m > 0.0 => {
-                            follow(ahead_m, 0.0);
-                            continue;
-                        }
-                        Meeting::Cross => continue,
-                    };
-                    if between_m > 0.0 && step.start_m + encounter.here[1] > -half_m {
-                        follow(between_m - entry.half_m - half_m, entry.speed_mps);
+                let others = self.lists.on(encounter.lane).iter().filter(|e| e.vehicle as usize != index);
+                for entry in others {
+                    if let Some((gap_m, speed_mps)) = self.meet(step, encounter, entry, half_m) {
+                        follow(gap_m, speed_mps);
                     }
                 }
             }
         }
+    }
+
+    /// Gap to a vehicle on a lane that meets the lane of `step`, and its speed, if it is in the way.
+    fn meet(&self, step: &Step, encounter: &Encounter, entry: &Entry, half_m: f32) -> Option<(f32, f32)> {
+        let swept_m = swept_half_m(self.drivers[entry.vehicle as usize].size_m);
+        let [from_m, to_m] = encounter.there;
+        if entry.s_m + entry.half_m < from_m || entry.s_m - swept_m > to_m {
+            return None;
+        }
+        let length = |lane: LaneId| self.network.lanes[lane as usize].length_m;
+        let between_m = match encounter.meeting {
+            Meeting::Diverge => step.start_m + entry.s_m,
+            Meeting::Merge => step.start_m + length(step.lane) - (length(encounter.lane) - entry.s_m),
+            Meeting::Cross => {
+                let ahead_m = step.start_m + encounter.here[0] - half_m;
+                return (ahead_m > 0.0).then_some((ahead_m, 0.0));
+            }
+        };
+        (between_m > 0.0).then(|| (between_m - entry.half_m - half_m, entry.speed_mps))
     }
 
     fn advance(&self, index: usize, accel: f32, next: &mut Vehicle) {
@@ -230,7 +238,7 @@ impl View<'_> {
             if next.s_m < length_m {
                 break;
             }
-            let Some(lane) = next_lane(self.ways, self.seed, next.id, next.hops, next.lane) else {
+            let Some(lane) = next_lane(self.ways, self.seed, next, next.hops, next.lane) else {
                 next.s_m = length_m;
                 next.speed_mps = 0.0;
                 break;
@@ -245,7 +253,7 @@ impl View<'_> {
             }
         }
         let outside = self.network.lanes[next.lane as usize].junction.is_none();
-        if outside && next.s_m > driver.size_m.x * 0.5 {
+        if outside && next.s_m > swept_half_m(driver.size_m) {
             next.flags &= !Vehicle::CROSSING;
         }
     }

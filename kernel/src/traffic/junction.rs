@@ -5,6 +5,8 @@
 //! and when there is room to leave the junction again. Whoever asks and is not granted stops at the
 //! line, so a grant is safe whatever the others do, and the order below decides every pair one way.
 
+use glam::Vec3;
+
 use crate::map::{LaneId, RoadNetwork, StopKind};
 use crate::signals::LightPhase;
 use crate::time::Tick;
@@ -26,6 +28,9 @@ const ASK_M: f32 = 8.0;
 /// Vehicles slower than this may come to a stand where they are, m/s.
 const SLOW_MPS: f32 = 2.5;
 
+/// Half of the length up to which a vehicle turns within its lane, metres.
+const LONG_HALF_M: f32 = 2.5;
+
 /// Somebody in a junction, or before it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Member {
@@ -35,10 +40,18 @@ pub(super) struct Member {
     pub id: u16,
     /// Inside, or granted; otherwise asking.
     pub holds: bool,
+    /// [`swept_half_m`] of it.
     pub half_m: f32,
     pub wait_ticks: u16,
     /// Its lanes in this junction, a stretch of the list of [`Members`].
     pub lanes: (u32, u32),
+}
+
+/// Half of the length that a vehicle needs in a junction, metres: the tail of a long one swings out
+/// of its lane.
+pub(super) fn swept_half_m(size_m: Vec3) -> f32 {
+    let half_m = size_m.x * 0.5;
+    half_m + 0.9 * (half_m - LONG_HALF_M).max(0.0)
 }
 
 /// [`Member::vehicle`] of the ego car.
@@ -102,8 +115,10 @@ fn prevents(asking: &Member, other: &Member, encounter: &Encounter, there: &Step
         return false;
     }
     if other.holds {
+        // A long vehicle sweeps more than its lane: nobody passes close behind it, nor does it.
+        let long = other.half_m > LONG_HALF_M || asking.half_m > LONG_HALF_M;
         let rear_m = -there.start_m - other.half_m;
-        return rear_m < encounter.there[1];
+        return long || rear_m < encounter.there[1];
     }
     !goes_before(asking, other, encounter.precedence)
 }

@@ -10,7 +10,7 @@ use super::crossing::{Claim, Gaps};
 use super::drive::View;
 use super::hazard::Hazard;
 use super::jaywalk;
-use super::junction::{self, EGO, Member, Members, Signal};
+use super::junction::{self, EGO, Member, Members, Signal, swept_half_m};
 use super::lists::Lists;
 use super::plan::{self, Line, Plan, Step, next_lane};
 use super::walk::{EdgeLists, Streets, wanted_crosswalk};
@@ -47,7 +47,7 @@ impl Sight {
         let groups = 0..network.light_groups.len() as u32;
         self.lights.clear();
         self.lights.extend(groups.map(|g| signals::phase(network, traffic.seed, g, around.tick)));
-        let next = |v: &Vehicle| next_lane(&traffic.ways, traffic.seed, v.id, v.hops, v.lane);
+        let next = |v: &Vehicle| next_lane(&traffic.ways, traffic.seed, v, v.hops, v.lane);
         let vehicles = &traffic.state.vehicles;
         self.lists.rebuild(network, vehicles, &traffic.drivers, next, |id| !around.holds(id));
         self.edges.rebuild(&traffic.state.walkers);
@@ -166,7 +166,7 @@ impl Sight {
     }
 
     fn add_crossing(&self, traffic: &Traffic, i: usize, members: &mut Members) {
-        let (vehicle, half_m) = (&traffic.state.vehicles[i], traffic.drivers[i].size_m.x * 0.5);
+        let (vehicle, half_m) = (&traffic.state.vehicles[i], swept_half_m(traffic.drivers[i].size_m));
         if vehicle.flags & Vehicle::CROSSING == 0 {
             return;
         }
@@ -246,7 +246,7 @@ impl Sight {
 
 fn member(traffic: &Traffic, i: usize, junction: u32, holds: bool) -> Member {
     let vehicle = &traffic.state.vehicles[i];
-    let half_m = traffic.drivers[i].size_m.x * 0.5;
+    let half_m = swept_half_m(traffic.drivers[i].size_m);
     Member { junction, vehicle: i as u32, id: vehicle.id, holds, half_m, wait_ticks: vehicle.wait_ticks, lanes: (0, 0) }
 }
 

@@ -204,3 +204,6 @@ impl TrafficState {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 use crate::map::{LaneId, RoadNetwork};
 use crate::ops;
 use crate::rng::{self, Stream};
+use crate::scene::ActorKind;
 
 use super::lists::Lists;
 use super::traits::Driver;
@@ -61,12 +62,14 @@ pub(super) struct Plan {
 }
 
 /// The lane a vehicle takes after `lane`, when it has entered `hops` lanes.
-pub(super) fn next_lane(ways: &Ways, seed: u64, id: u16, hops: u16, lane: LaneId) -> Option<LaneId> {
-    match ways.lanes[lane as usize].onward.as_slice() {
+pub(super) fn next_lane(ways: &Ways, seed: u64, vehicle: &Vehicle, hops: u16, lane: LaneId) -> Option<LaneId> {
+    let way = &ways.lanes[lane as usize];
+    let long = matches!(vehicle.kind, ActorKind::Bus | ActorKind::Truck);
+    match if long { &way.onward_wide } else { &way.onward }.as_slice() {
         [] => None,
         [only] => Some(*only),
         many => {
-            let pick = rng::below(seed, Stream::Turn, u64::from(id), u64::from(hops), many.len() as u32);
+            let pick = rng::below(seed, Stream::Turn, u64::from(vehicle.id), u64::from(hops), many.len() as u32);
             Some(many[pick as usize])
         }
     }
@@ -95,7 +98,7 @@ pub(super) fn plan(
         out.push(step);
         let lane = &network.lanes[step.lane as usize];
         let end_m = step.start_m + lane.length_m;
-        let Some(next) = next_lane(ways, seed, vehicle.id, vehicle.hops.wrapping_add(k as u16), step.lane) else {
+        let Some(next) = next_lane(ways, seed, vehicle, vehicle.hops.wrapping_add(k as u16), step.lane) else {
             plan.dead_end_m = Some(end_m);
             break;
         };

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{Vec2, Vec3};
 
-use crate::map::{Conflict, Lane, LaneId, LaneKind, RoadNetwork, StopKind};
+use crate::map::{Conflict, Lane, LaneId, LaneKind, RoadNetwork, StopKind, Turn};
 use crate::{map::LightGroupId, ops};
 
 /// Sideways acceleration that drivers accept in curves, m/s² (comfort limit of road design).
@@ -76,6 +76,8 @@ pub(super) struct LaneWay {
     pub speed_mps: Vec<f32>,
     /// Successors that vehicles drive on.
     pub onward: Vec<LaneId>,
+    /// Those that long vehicles take: no right turns, where there is another way.
+    pub onward_wide: Vec<LaneId>,
     pub encounters: Vec<Encounter>,
     /// Crosswalks on it, in the direction of travel.
     pub zebras: Vec<Zebra>,
@@ -197,9 +199,12 @@ fn lane_way(network: &RoadNetwork, id: LaneId) -> LaneWay {
         speed_mps[i] = speed_mps[i].min(reachable);
     }
     let drivable = |next: &LaneId| network.lanes[*next as usize].kind == LaneKind::Driving;
-    let onward = lane.successors.iter().copied().filter(drivable).collect();
+    let onward: Vec<_> = lane.successors.iter().copied().filter(drivable).collect();
+    let wide = |next: &LaneId| network.lanes[*next as usize].turn != Turn::Right;
+    let onward_wide: Vec<_> = onward.iter().copied().filter(wide).collect();
+    let onward_wide = if onward_wide.is_empty() { onward.clone() } else { onward_wide };
     let encounters = lane.conflicts.iter().filter_map(|c| encounter(network, id, c)).collect();
-    LaneWay { speed_mps, onward, encounters, zebras: Vec::new() }
+    LaneWay { speed_mps, onward, onward_wide, encounters, zebras: Vec::new() }
 }
 
 /// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken

@@ -1,0 +1,279 @@
+//! Invariants of traffic, on a crossroads built in code and on the bundled maps.
+
+mod crossroads;
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::{Body, Obstacle, Surroundings, Traffic, TrafficState, Vehicle, WalkerMode};
+use crate::map::{RoadNetwork, StopKind, bundled};
+use crate::scenario::{EgoStart, Rules, Scenario, TrafficCounts};
+use crate::scene::Weather;
+use crate::signals::{LightPhase, phase};
+use crate::state::State;
+use crate::time::Tick;
+use crossroads::{Signs, crossroads};
+
+/// Ticks in a minute.
+const MINUTE: Tick = 3600;
+
+fn scenario(actors: u16, seed: u64) -> Scenario {
+    let share = |pct: u16| actors * pct / 100;
+    let (motorcycles, bicycles, pedestrians) = (share(5), share(10), share(40));
+    let cars = actors - motorcycles - bicycles - pedestrians;
+    Scenario {
+        map: "crossroads".into(),
+        seed,
+        traffic: TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min: 2.0 },
+        weather: Weather { cloudiness_pct: 0.0, wind_pct: 0.0, sun_altitude_deg: 45.0, sun_azimuth_deg: 0.0 },
+        ego: EgoStart { lane: None, s_m: 0.0 },
+        rules: Rules { max_speed_kmh: 50.0, max_seconds: 600, brake_threshold: 0.1, steer_threshold: 0.1 },
+    }
+}
+
+fn car_at(position: Vec3, heading_rad: f32) -> Obstacle {
+    Obstacle { id: 0, position, heading_rad, velocity_mps: Vec3::ZERO, size_m: Vec3::new(4.5, 1.9, 1.5) }
+}
+
+/// The ego car, parked far away.
+fn nowhere() -> Obstacle {
+    car_at(Vec3::new(1e4, 0.0, 0.0), 0.0)
+}
+
+fn start(network: &Arc<RoadNetwork>, actors: u16, seed: u64) -> Traffic {
+    Traffic::spawn(&scenario(actors, seed), network, nowhere().position)
+}
+
+fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut(&Traffic, Tick)) {
+    for tick in ticks {
+        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &[] });
+        each(traffic, tick);
+    }
+}
+
+/// Pairs of vehicles whose boxes overlap by more than 5 cm.
+fn overlaps(traffic: &Traffic) -> Vec<(u32, u32)> {
+    let bodies = &traffic.bodies[..traffic.state.vehicles.len()];
+    let mut found = Vec::new();
+    for (i, a) in bodies.iter().enumerate() {
+        let near = |b: &&Body| a.position.distance_squared(b.position) < 169.0 && boxes_meet(a, b);
+        found.extend(bodies[i + 1..].iter().filter(near).map(|b| (a.id, b.id)));
+    }
+    found
+}
+
+/// Separating axes of two boxes on the ground.
+fn boxes_meet(a: &Body, b: &Body) -> bool {
+    let axes = [a.rotation * Vec3::X, a.rotation * Vec3::Y, b.rotation * Vec3::X, b.rotation * Vec3::Y];
+    let half = |body: &Body, axis: Vec3| {
+        let size = body.kind.size_m() * 0.5 - 0.025;
+        size.x * (body.rotation * Vec3::X).dot(axis).abs() + size.y * (body.rotation * Vec3::Y).dot(axis).abs()
+    };
+    axes.iter().all(|axis| (b.position - a.position).dot(*axis).abs() < half(a, *axis) + half(b, *axis))
+}
+
+fn mean_speed(traffic: &Traffic) -> f32 {
+    let vehicles = &traffic.state.vehicles;
+    vehicles.iter().map(|v| v.speed_mps).sum::<f32>() / vehicles.len() as f32
+}
+
+fn on_crosswalks(traffic: &Traffic) -> usize {
+    let on = |edge: u32| traffic.network.walk_edges[edge as usize].crosswalk.is_some();
+    traffic.state.walkers.iter().filter(|w| on(w.edge)).count()
+}
+
+/// Nobody drives into anybody, nobody is stuck, and people get across.
+fn flows(network: &Arc<RoadNetwork>, actors: u16, minutes: Tick, least_mps: f32) {
+    let mut traffic = start(network, actors, 3);
+    let (mut crossing, mut jaywalking) = (0, 0);
+    for minute in 0..minutes {
+        let mut mean = 0.0;
+        run(&mut traffic, minute * MINUTE + 1..(minute + 1) * MINUTE + 1, |t, tick| {
+            mean += mean_speed(t) / MINUTE as f32;
+            crossing += on_crosswalks(t);
+            jaywalking += t.state.walkers.iter().filter(|w| w.mode == WalkerMode::Jaywalk).count();
+            if tick % 20 == 0 {
+                assert_eq!(overlaps(t), [], "tick {tick}");
+            }
+        });
+        assert!(mean > least_mps, "minute {minute}: mean speed {mean} m/s");
+    }
+    assert!(crossing > 0, "nobody used a crosswalk");
+    assert!(jaywalking > 0, "nobody jaywalked");
+}
+
+#[test]
+fn lights_keep_a_full_crossroads_flowing() {
+    flows(&crossroads(Signs::Lights), 50, 10, 1.5);
+}
+
+#[test]
+fn stop_signs_keep_a_full_crossroads_flowing() {
+    flows(&crossroads(Signs::StopOnTwo), 50, 10, 1.5);
+}
+
+#[test]
+fn right_before_left_keeps_a_full_crossroads_flowing() {
+    flows(&crossroads(Signs::Yield), 50, 10, 1.5);
+}
+
+#[test]
+fn city_flows_for_an_hour() {
+    flows(&bundled("city").expect("city is bundled"), 100, 60, 3.0);
+}
+
+#[test]
+fn rural_flows() {
+    flows(&bundled("rural").expect("rural is bundled"), 60, 20, 4.0);
+}
+
+#[test]
+fn most_actors_move() {
+    let network = bundled("city").expect("city is bundled");
+    let mut traffic = start(&network, 100, 5);
+    assert!(traffic.bodies().len() >= 98, "{} actors found room", traffic.bodies().len());
+    let mut moments = Vec::new();
+    run(&mut traffic, 1..10 * MINUTE, |t, tick| {
+        if tick % 300 == 0 {
+            moments.push(t.bodies().iter().filter(|b| b.velocity_mps.length() > 0.1).count());
+        }
+    });
+    moments.sort_unstable();
+    let typical = moments[moments.len() / 2];
+    assert!(typical >= 80, "{typical} of 100 move in the median");
+}
+
+#[test]
+fn nobody_passes_a_line_at_red() {
+    let network = crossroads(Signs::Lights);
+    let mut traffic = start(&network, 50, 1);
+    let mut passed = 0;
+    let mut before = traffic.state.clone();
+    run(&mut traffic, 1..10 * MINUTE, |t, tick| {
+        for (was, is) in before.vehicles.iter().zip(&t.state.vehicles) {
+            let Some(stop) = network.lanes[was.lane as usize].stop else { continue };
+            let StopKind::Light(group) = stop.kind else { continue };
+            let half_m = was.kind.size_m().x * 0.5;
+            let over = is.lane == was.lane && is.s_m + half_m > stop.s_m && was.s_m + half_m <= stop.s_m;
+            passed += u32::from(over);
+            let red = phase(&network, t.seed, group, tick).0 == LightPhase::Red;
+            assert!(!(over && red), "vehicle {} at tick {tick}", is.id);
+        }
+        before.clone_from(&t.state);
+    });
+    assert!(passed > 50, "only {passed} vehicles passed a line");
+}
+
+#[test]
+fn the_order_of_actors_does_not_matter() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = start(&network, 60, 2);
+    let mut state = traffic.state.clone();
+    state.vehicles.reverse();
+    state.walkers.rotate_left(7);
+    let scenario = scenario(60, 2);
+    let mut shuffled = Traffic::with(&scenario, &network, traffic.ways.clone(), state);
+    run(&mut traffic, 1..3 * MINUTE, |_, _| {});
+    run(&mut shuffled, 1..3 * MINUTE, |_, _| {});
+    shuffled.state.vehicles.sort_by_key(|v| v.id);
+    shuffled.state.walkers.sort_by_key(|w| w.id);
+    assert_eq!(traffic.state, shuffled.state);
+}
+
+#[test]
+fn state_is_small_and_resumes() {
+    let network = crossroads(Signs::StopOnTwo);
+    let mut traffic = start(&network, 60, 4);
+    run(&mut traffic, 1..MINUTE, |_, _| {});
+    let bytes = traffic.state.to_bytes();
+    assert!(bytes.len() <= 28 * traffic.bodies.len() + 8, "{} bytes", bytes.len());
+    let state = TrafficState::from_bytes(&bytes).expect("own bytes are read back");
+    let mut resumed = Traffic::resume(&scenario(60, 4), &network, state).expect("own state fits the map");
+    assert_eq!(traffic.bodies, resumed.bodies);
+    run(&mut traffic, MINUTE..2 * MINUTE, |_, _| {});
+    run(&mut resumed, MINUTE..2 * MINUTE, |_, _| {});
+    assert_eq!(traffic.state, resumed.state);
+}
+
+#[test]
+fn states_of_other_maps_are_refused() {
+    let network = crossroads(Signs::Yield);
+    let good = start(&network, 20, 4).state;
+    let refused = |change: &dyn Fn(&mut TrafficState)| {
+        let mut state = good.clone();
+        change(&mut state);
+        Traffic::resume(&scenario(20, 4), &network, state).is_err()
+    };
+    assert!(!refused(&|_| {}));
+    assert!(refused(&|s| s.vehicles[3].lane = 9999));
+    assert!(refused(&|s| s.vehicles[3].s_m = -1.0));
+    assert!(refused(&|s| s.vehicles.swap(0, 1)));
+    assert!(refused(&|s| s.walkers[0].edge = 9999));
+}
+
+#[test]
+fn everybody_starts_with_room() {
+    let network = bundled("city").expect("city is bundled");
+    let ego = network.lanes[0].points[0].position;
+    for seed in 0..20 {
+        let traffic = Traffic::spawn(&scenario(150, seed), &network, ego);
+        assert_eq!(overlaps(&traffic), []);
+        assert!(traffic.bodies.iter().all(|b| b.position.distance(ego) >= 20.0));
+        assert!(traffic.bodies.len() > 140, "seed {seed}: {} actors", traffic.bodies.len());
+    }
+}
+
+/// A car on an arm of the crossroads, 100 m before the junction, at 8 m/s.
+fn lone_car(network: &Arc<RoadNetwork>) -> Traffic {
+    let mut traffic = start(network, 4, 1);
+    let first = traffic.state.vehicles[0];
+    let vehicle = Vehicle { lane: 0, s_m: 80.0, speed_mps: 8.0, ..first };
+    traffic.state = TrafficState { vehicles: vec![vehicle], walkers: Vec::new() };
+    traffic.drivers.truncate(1);
+    traffic.persons.clear();
+    traffic.place_bodies();
+    traffic
+}
+
+#[test]
+fn vehicles_stop_behind_whatever_stands_in_their_lane() {
+    let network = crossroads(Signs::Yield);
+    let place = network.lanes[0].points[60].position;
+    for (name, aside_m, ego) in [("ego", 0.0, true), ("loose", 0.5, false), ("aslant", 1.2, true)] {
+        let mut traffic = lone_car(&network);
+        let there = Obstacle { id: 2, ..car_at(place + Vec3::Y * aside_m, 0.9) };
+        let loose = [there];
+        for tick in 1..1200 {
+            let (ego, loose) = if ego { (there, &loose[..0]) } else { (nowhere(), &loose[..]) };
+            traffic.step(&Surroundings { tick, ego, loose });
+        }
+        let vehicle = traffic.state.vehicles[0];
+        let gap_m = 120.0 - vehicle.s_m - 2.25;
+        assert!(vehicle.speed_mps == 0.0 && (3.0..7.0).contains(&gap_m), "{name}: {gap_m} m, {vehicle:?}");
+    }
+}
+
+#[test]
+fn vehicles_pass_what_stands_beside_their_lane() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = lone_car(&network);
+    let beside = network.lanes[0].points[60].position + Vec3::Y * 3.5;
+    for tick in 1..1200 {
+        traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[] });
+    }
+    assert!(traffic.state.vehicles[0].lane != 0, "{:?}", traffic.state.vehicles[0]);
+}
+
+#[test]
+fn loose_actors_keep_their_state() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = start(&network, 40, 6);
+    let (vehicle, walker) = (traffic.state.vehicles[2], traffic.state.walkers[2]);
+    let lie = |id: u16| Obstacle { id: u32::from(id), ..car_at(Vec3::new(0.0, 300.0, 0.0), 0.0) };
+    let loose = [lie(vehicle.id), lie(walker.id)];
+    for tick in 1..600 {
+        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &loose });
+    }
+    assert_eq!((traffic.state.vehicles[2], traffic.state.walkers[2]), (vehicle, walker));
+}
