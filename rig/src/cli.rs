@@ -284,7 +284,10 @@ pub struct DemoArgs {
     /// Seed of the campaign.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder of the results.
+    /// Folder with the bundled checkpoints `early.onnx` and `full.onnx`.
+    #[arg(long, default_value = "perception/checkpoints", value_name = "DIR")]
+    pub checkpoints: PathBuf,
+    /// Folder of the results; a demo that was interrupted goes on there.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

@@ -1,9 +1,104 @@
-//! The main job from end to end, with a report.
+//! The main job from end to end: drive through the early checkpoint until three corner cases have
+//! happened, verify every recording, draw the cases again through both checkpoints, and report.
 
-use crate::cli::DemoArgs;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use kernel::time::{CLIP_FPS, CLIP_TICKS};
+use serde::Serialize;
+
+use super::{report, rerender};
+use crate::campaign::CampaignFigures;
+use crate::cli::{CampaignArgs, CheckpointChoice, DemoArgs, RerenderArgs, VerifyArgs};
+use crate::commands::{campaign, verify};
 use crate::exit::Verdict;
+use crate::output;
+use crate::progress::Interrupt;
+
+/// Corner cases that the demo waits for.
+const CASES: u32 = 3;
+/// Longest simulated time of a run, seconds.
+const RUN_SECONDS: u32 = 180;
+/// Size of the pictures, the one that the bundled checkpoints take.
+const SIZE: (u32, u32) = (256, 128);
+
+/// What the command prints at the end.
+#[derive(Serialize)]
+struct Summary {
+    report: String,
+    runs: usize,
+    cases: usize,
+    km: f64,
+}
 
 /// Runs `aeye demo`.
-pub fn run(_args: &DemoArgs, _json: bool) -> anyhow::Result<Verdict> {
-    todo!()
+pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
+    let choice = |name: &str| CheckpointChoice::File(args.checkpoints.join(name));
+    let (early, full) = (choice("early.onnx"), choice("full.onnx"));
+    let drives = args.out.join("drives");
+    eprintln!("1/4 driving through the early checkpoint until {CASES} corner cases have happened");
+    let figures = campaign::drive(&campaign_args(args, early.clone(), &drives), &Interrupt::listen()?)?;
+    eprintln!("2/4 verifying every recording");
+    let files = files(&drives, &figures);
+    if verify::run(&VerifyArgs { files: files.all, rewind: None, against: None }, json)? != Verdict::Ok {
+        return Ok(Verdict::CheckFailed);
+    }
+    eprintln!("3/4 drawing the corner cases again through both checkpoints");
+    let both = vec![early, full];
+    let rerendered = rerender_args(args, &files.cases, &both)?;
+    if rerender::run(&rerendered, json)? != Verdict::Ok {
+        return Ok(Verdict::CheckFailed);
+    }
+    eprintln!("4/4 writing the report");
+    let path = args.out.join("report.html");
+    output::write_file(&path, report::render(&files.cases, &both, SIZE)?.as_bytes())?;
+    let path = fs::canonicalize(&path).with_context(|| path.display().to_string())?;
+    let summary = Summary {
+        report: path.display().to_string(),
+        runs: figures.runs.len(),
+        cases: files.cases.len(),
+        km: figures.exposure.km,
+    };
+    output::print(json, &summary, || summary.report.clone())?;
+    Ok(Verdict::Ok)
+}
+
+fn campaign_args(args: &DemoArgs, checkpoint: CheckpointChoice, out: &Path) -> CampaignArgs {
+    CampaignArgs {
+        checkpoint: vec![checkpoint],
+        maps: vec!["all".into()],
+        scenario: None,
+        runs: None,
+        km: None,
+        cases: Some(CASES),
+        run_seconds: RUN_SECONDS,
+        seed: args.seed,
+        jobs: None,
+        out: out.to_owned(),
+    }
+}
+
+/// The window of every case through every checkpoint; what an earlier demo drew makes room.
+fn rerender_args(args: &DemoArgs, cases: &[PathBuf], checkpoint: &[CheckpointChoice]) -> anyhow::Result<RerenderArgs> {
+    let out = args.out.join("rerendered");
+    if out.exists() {
+        fs::remove_dir_all(&out).with_context(|| out.display().to_string())?;
+    }
+    let (last, fps) = (CLIP_TICKS, CLIP_FPS);
+    Ok(RerenderArgs { files: cases.to_vec(), checkpoint: checkpoint.to_vec(), last, fps, size: SIZE, out })
+}
+
+/// The files of a campaign.
+struct Files {
+    /// Recordings and cases.
+    all: Vec<PathBuf>,
+    cases: Vec<PathBuf>,
+}
+
+fn files(folder: &Path, figures: &CampaignFigures) -> Files {
+    let recordings = figures.runs.iter().map(|run| folder.join(&run.file));
+    let cases: Vec<PathBuf> =
+        figures.runs.iter().filter_map(|run| run.case.as_ref()).map(|case| folder.join(case)).collect();
+    Files { all: recordings.chain(cases.iter().cloned()).collect(), cases }
 }
