@@ -4,6 +4,8 @@
 //! measured in the same run does not. A budget therefore compares a benchmark with real time at a
 //! large factor, or with a reference benchmark.
 
+pub mod scenes;
+
 use std::fmt;
 
 /// What a benchmark is held against.
@@ -83,6 +85,20 @@ pub fn check(budgets: &[Budget], seconds_of: impl Fn(&str) -> Option<f64>) -> Re
 pub fn mean_seconds(estimates: &str) -> Option<f64> {
     let json: serde_json::Value = serde_json::from_str(estimates).ok()?;
     Some(json["mean"]["point_estimate"].as_f64()? * 1e-9)
+}
+
+/// Multiplies two `n` x `n` matrices in the plainest loop that compilers vectorise, and gives the
+/// sum of the product: the yardstick for inference.
+pub fn matrix_product(n: usize) -> f32 {
+    let a: Vec<f32> = (0..n * n).map(|i| (i % 7) as f32).collect();
+    let b: Vec<f32> = (0..n * n).map(|i| (i % 5) as f32).collect();
+    let mut product = vec![0.0; n * n];
+    for (row, out) in a.chunks_exact(n).zip(product.chunks_exact_mut(n)) {
+        for (factor, line) in row.iter().zip(b.chunks_exact(n)) {
+            out.iter_mut().zip(line).for_each(|(sum, value)| *sum += factor * value);
+        }
+    }
+    product.iter().sum()
 }
 
 #[cfg(test)]

@@ -1,0 +1,106 @@
+//! What is measured. Every scene proves that it is the one the budgets were set for before a clock
+//! starts: its golden is compared first.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::PathBuf;
+
+use kernel::time::{TICK_HZ, Tick, seconds};
+use kernel::{SceneSnapshot, TickInput, World};
+use replay::{Log, Manifest, Provenance, Recorder, Recording};
+use ::tests::scenes::{Scene, busy_city, follow_route};
+
+/// Ticks of driving before measuring starts: traffic has spread by then.
+pub const WARM_UP_TICKS: Tick = seconds(20);
+/// Simulated seconds of one iteration of `kernel/step`; it holds two keyframes.
+pub const STEP_S: u32 = 20;
+
+/// A world in dense traffic, and the inputs that drive it on.
+pub struct BusyDrive {
+    /// Scenario and map.
+    pub scene: Scene,
+    /// The world after [`WARM_UP_TICKS`].
+    pub world: World,
+    /// Inputs of the next [`STEP_S`] seconds.
+    pub inputs: Vec<TickInput>,
+    /// The scene at their end.
+    pub snapshot: SceneSnapshot,
+}
+
+impl BusyDrive {
+    /// Drives the scene and compares it with its golden.
+    ///
+    /// # Errors
+    /// Says which value differs from `benches/golden.txt`.
+    pub fn prepare() -> Result<Self, String> {
+        let scene = busy_city();
+        let world = scene.world_after(WARM_UP_TICKS);
+        let mut end = world.clone();
+        let inputs = (0..STEP_S * TICK_HZ)
+            .map(|_| {
+                let input = follow_route(&end);
+                end.step(&input);
+                input
+            })
+            .collect();
+        let snapshot = end.scene();
+        compare_golden(&[
+            ("actors", snapshot.actors.len().to_string()),
+            ("moving", moving(&snapshot).to_string()),
+            ("near", near(&snapshot).to_string()),
+            ("state", format!("{:?}", end.hash())),
+        ])?;
+        Ok(Self { scene, world, inputs, snapshot })
+    }
+}
+
+/// The log of the first seconds of a scene, driven by [`follow_route`].
+///
+/// # Errors
+/// Says what could not be recorded or read back.
+pub fn recorded(scene: &Scene, drive_s: u32) -> Result<Log, String> {
+    let mut world = scene.world();
+    let manifest = Manifest::new(&scene.scenario, &scene.network, None, Provenance::new());
+    let file = Cursor::new(Vec::new());
+    let mut recorder = Recorder::new(file, &manifest, &world.initial_keyframe()).map_err(|e| e.to_string())?;
+    for _ in 0..drive_s * TICK_HZ {
+        let input = follow_route(&world);
+        let output = world.step(&input);
+        recorder.tick(&input, &output, &world.part_hashes()).map_err(|e| e.to_string())?;
+    }
+    let bytes = recorder.finish(None).map_err(|e| e.to_string())?.into_inner();
+    Ok(Recording::from_bytes(&bytes).map_err(|e| e.to_string())?.log().clone())
+}
+
+/// Actors that move at more than 0.1 m/s.
+pub fn moving(scene: &SceneSnapshot) -> usize {
+    scene.actors.iter().filter(|a| a.speed_mps.abs() > 0.1).count()
+}
+
+/// Actors within 60 m of the ego car.
+pub fn near(scene: &SceneSnapshot) -> usize {
+    scene.actors.iter().filter(|a| a.position.distance(scene.ego.position) < 60.0).count()
+}
+
+fn compare_golden(values: &[(&str, String)]) -> Result<(), String> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("golden.txt");
+    let text: String = values.iter().map(|(name, value)| format!("{name} {value}\n")).collect();
+    if std::env::var_os("AEYE_BLESS").is_some() {
+        return fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()));
+    }
+    let golden = fs::read_to_string(&path).map_err(|e| format!("{}: {e}; AEYE_BLESS=1 writes it", path.display()))?;
+    if golden == text { Ok(()) } else { Err(format!("the scene is not its golden: expected\n{golden}got\n{text}")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_busy_drive_is_its_golden_and_busy() {
+        let drive = BusyDrive::prepare().expect("the golden");
+        assert_eq!(drive.snapshot.actors.len(), 100);
+        assert!(moving(&drive.snapshot) >= 80, "{} move", moving(&drive.snapshot));
+        assert!(near(&drive.snapshot) >= 15, "{} near", near(&drive.snapshot));
+    }
+}
