@@ -20,6 +20,8 @@ mod recorder;
 mod recording;
 mod replayer;
 mod scan;
+#[cfg(test)]
+mod testing;
 mod verify;
 mod wire;
 

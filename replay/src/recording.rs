@@ -174,3 +174,128 @@ impl Log {
         Err(message.damaged(format!("tick {tick}, expected {least} to {}", self.last_tick())))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::sample;
+    use proptest::prelude::*;
+
+    fn read(bytes: &[u8]) -> Result<Recording, Error> {
+        Recording::from_bytes(bytes)
+    }
+
+    #[test]
+    fn what_was_written_is_read() {
+        for ticks in [1, 59, 60, 61, 200] {
+            let log = sample(ticks);
+            let bytes = log.encode().unwrap();
+            let recording = read(&bytes).unwrap();
+            assert!(recording.finished());
+            assert_eq!(recording.log(), &log);
+            assert_eq!(recording.log().encode().unwrap(), bytes, "the same content gives the same bytes");
+        }
+    }
+
+    #[test]
+    fn any_changed_byte_is_an_error_with_a_place() {
+        let mut bytes = sample(200).encode().unwrap();
+        for at in 0..bytes.len() {
+            for flip in [0x01, 0x80, 0xff, bytes[at]] {
+                bytes[at] ^= flip;
+                match read(&bytes) {
+                    Err(Error::Damaged { place, .. }) => assert!(place.contains("byte"), "{place}"),
+                    Err(other) => panic!("byte {at} ^ {flip:02x}: {other}"),
+                    Ok(_) => assert_eq!(flip, 0, "byte {at} ^ {flip:02x} went unnoticed"),
+                }
+                bytes[at] ^= flip;
+            }
+        }
+    }
+
+    #[test]
+    fn the_place_of_damage_in_the_data_is_its_record() {
+        let bytes = sample(200).encode().unwrap();
+        let mut places = std::collections::BTreeSet::new();
+        for at in 60..bytes.len() * 3 / 4 {
+            let mut bytes = bytes.clone();
+            bytes[at] ^= 0x10;
+            let place = read(&bytes).unwrap_err().to_string();
+            let start: usize = first_number(&place);
+            assert!(start <= at || place.contains("footer"), "byte {at}: {place}");
+            places.insert(start);
+        }
+        assert!(places.len() > 10, "{places:?}");
+    }
+
+    #[test]
+    fn a_file_that_was_cut_off_reads_up_to_its_last_whole_block() {
+        let log = sample(200);
+        let bytes = log.encode().unwrap();
+        let mut read_ticks = Vec::new();
+        for length in 0..bytes.len() {
+            match read(&bytes[..length]) {
+                Ok(recording) => {
+                    assert!(!recording.finished(), "{length} bytes");
+                    let (got, ticks) = (recording.log(), recording.log().inputs.len());
+                    assert_eq!(got.inputs, log.inputs[..ticks]);
+                    assert!(got.mark(got.last_tick()).is_some() || ticks == 0);
+                    read_ticks.push(ticks);
+                }
+                Err(e) => assert!(read_ticks.is_empty(), "{length} bytes: {e}"),
+            }
+        }
+        assert!(read_ticks.is_sorted());
+        assert_eq!(read_ticks.last(), Some(&200));
+        read_ticks.dedup();
+        assert_eq!(read_ticks, [0, 60, 101, 120, 180, 200]);
+    }
+
+    #[test]
+    fn damage_in_the_middle_of_an_unfinished_file_is_not_taken_for_its_end() {
+        let bytes = sample(400).encode().unwrap();
+        let end = bytes.len() / 2;
+        let whole = read(&bytes[..end]).unwrap().log().last_tick();
+        for at in 0..end {
+            let mut bytes = bytes[..end].to_vec();
+            bytes[at] ^= 0x40;
+            if let Ok(recording) = read(&bytes) {
+                // What is cut off at the end is not covered, and not read.
+                assert_eq!(recording.log().last_tick(), whole, "byte {at}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn foreign_bytes_are_errors(bytes in prop::collection::vec(any::<u8>(), 0..400), magic in any::<bool>()) {
+            let mut file = if magic { mcap_magic() } else { Vec::new() };
+            file.extend(bytes);
+            prop_assert!(read(&file).is_err());
+        }
+
+        #[test]
+        fn any_change_of_a_finished_file_is_noticed(
+            changes in prop::collection::vec((any::<prop::sample::Index>(), 1u8..), 1..6),
+        ) {
+            let whole = sample(130).encode().unwrap();
+            let mut bytes = whole.clone();
+            for (at, flip) in changes {
+                let at = at.index(bytes.len());
+                bytes[at] ^= flip;
+            }
+            prop_assume!(bytes != whole);
+            // Damage to the end magic and to what stands before it may look like a cut-off file.
+            prop_assert!(!read(&bytes).is_ok_and(|r| r.finished()));
+        }
+    }
+
+    fn first_number(text: &str) -> usize {
+        let digits = text.split(|c: char| !c.is_ascii_digit()).find(|s| !s.is_empty());
+        digits.and_then(|d| d.parse().ok()).expect("a place has a number")
+    }
+
+    fn mcap_magic() -> Vec<u8> {
+        sample(1).encode().unwrap()[..8].to_vec()
+    }
+}

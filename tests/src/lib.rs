@@ -1,4 +1,5 @@
 //! Scenes shared by the integration tests and the benchmarks.
 
+pub mod recordings;
 pub mod scenes;
 pub mod street;

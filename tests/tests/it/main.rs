@@ -3,4 +3,8 @@
 mod real_maps;
 mod render_frame;
 mod render_oracle;
+mod replay_budget;
+mod replay_case;
+mod replay_damage;
+mod replay_verify;
 mod tidy;

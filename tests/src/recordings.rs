@@ -1,0 +1,53 @@
+//! Recordings of the shared scenes.
+
+use kernel::arbiter::{Outcome, Phase};
+use kernel::time::Tick;
+use kernel::{Controls, TickInput, World};
+use replay::{Annotation, Label, Manifest, MaskShown, Provenance, Recorder};
+
+use crate::scenes::{Scene, follow_route};
+
+/// How a run is driven: the controls of the next tick.
+pub type Script = fn(&World) -> TickInput;
+
+/// The route is followed; there is no safety driver.
+pub const ALONE: Script = follow_route;
+
+/// As [`ALONE`], and the safety driver brakes at tick [`TAKEOVER`].
+pub const WITH_TAKEOVER: Script = |world| {
+    let braking = world.tick() + 1 >= TAKEOVER;
+    TickInput { safety: Controls::from_fractions(0.0, 0.0, f32::from(u8::from(braking))), ..follow_route(world) }
+};
+
+/// The tick of the intervention in [`WITH_TAKEOVER`].
+pub const TAKEOVER: Tick = 950;
+
+/// The file of a run of `ticks` ticks, or of fewer if it ends before.
+pub fn record(scene: &Scene, ticks: Tick, script: Script) -> Vec<u8> {
+    let mut world = scene.world();
+    let mut recorder = Recorder::new(Vec::new(), &manifest(scene), &world.initial_keyframe()).expect("a new log");
+    while world.tick() < ticks && world.arbiter().phase != Phase::Done {
+        recorder.mask_shown(mask_at(world.tick() + 1));
+        let input = script(&world);
+        let output = world.step(&input);
+        recorder.tick(&input, &output, &world.part_hashes()).expect("the log grows");
+    }
+    let outcome = world.arbiter().outcome;
+    if outcome == Some(Outcome::Intervened) {
+        let label = Label::Vehicle;
+        recorder.annotate(Annotation { label, comment: "as scripted".into(), perception_caused: None });
+    }
+    recorder.finish(outcome).expect("the log ends")
+}
+
+fn manifest(scene: &Scene) -> Manifest {
+    let provenance: Provenance = [("semantic".to_owned(), "script".to_owned())].into();
+    Manifest::new(&scene.scenario, &scene.network, None, provenance)
+}
+
+/// A new mask every sixth tick, one frame old.
+fn mask_at(tick: Tick) -> MaskShown {
+    let tick_of_frame = (tick / 6 * 6).saturating_sub(6);
+    let digest = (tick_of_frame + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    MaskShown { tick_shown: tick, tick_of_frame, camera: 0, digest, times: None }
+}
