@@ -83,14 +83,21 @@ impl Manifest {
     }
 }
 
+/// Ticks beyond this are damage: it is six hundred years.
+const MAX_TICK: Tick = 1 << 40;
+
 /// Puts the messages of a file together, in the only order in which a writer gives them.
 fn assemble(messages: &[Message], finished: bool) -> Result<Log, Error> {
     let [first, start, rest @ ..] = messages else {
         return Err(Error::damaged("the end of the file", "it holds no manifest and start"));
     };
+    let start_at = start.parse(Channel::Keyframe, wire::keyframe)?;
+    if start_at.tick > MAX_TICK {
+        return Err(start.damaged(format!("tick {}, expected at most {MAX_TICK}", start_at.tick)));
+    }
     let mut log = Log {
         manifest: first.parse(Channel::Manifest, wire::manifest)?,
-        keyframes: vec![start.parse(Channel::Keyframe, wire::keyframe)?],
+        keyframes: vec![start_at],
         inputs: Vec::new(),
         hashes: Vec::new(),
         marks: Vec::new(),
@@ -195,6 +202,25 @@ mod tests {
             assert_eq!(recording.log(), &log);
             assert_eq!(recording.log().encode().unwrap(), bytes, "the same content gives the same bytes");
         }
+    }
+
+    #[test]
+    fn standard_readers_find_every_message() {
+        let bytes = sample(200).encode().unwrap();
+        let summary = mcap::Summary::read(&bytes).unwrap().expect("an index");
+        let counted: u64 = summary.stats.expect("statistics").channel_message_counts.values().sum();
+        let messages: Vec<_> = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap).collect();
+        assert_eq!(messages.len() as u64, counted);
+        assert!(messages.iter().all(|m| m.channel.schema.as_ref().is_some_and(|s| !s.data.is_empty())));
+        assert_eq!(summary.chunk_indexes.len(), 1 + 5 + 1, "the start, a chunk a block, the end");
+        assert_eq!(messages.last().map(|m| m.log_time), Some(200 * 1_000_000_000 / 60));
+    }
+
+    #[test]
+    fn a_start_beyond_time_is_refused() {
+        let mut log = sample(1);
+        (log.keyframes[0].tick, log.marks[0].tick) = (1 << 50, (1 << 50) + 1);
+        assert!(matches!(read(&log.encode().unwrap()), Err(Error::Damaged { .. })));
     }
 
     #[test]
