@@ -10,7 +10,7 @@ use kernel::time::Tick;
 use crate::block::Block;
 use crate::layout::Channel;
 use crate::scan::{Message, scan};
-use crate::{Error, Log, Manifest, wire};
+use crate::{Error, KERNEL_VERSION, Log, Manifest, wire};
 
 /// A recording or case whose bytes have all been checked.
 #[derive(Clone, Debug)]
@@ -75,8 +75,18 @@ impl Manifest {
         Ok(network)
     }
 
+    /// Refuses a kernel or map that is not the run's.
+    pub(crate) fn check(&self, network: &RoadNetwork) -> Result<(), Error> {
+        if self.kernel == KERNEL_VERSION {
+            return self.check_map(network);
+        }
+        let made = &self.kernel;
+        let reason = format!("made by kernel {made}; only that version can drive it again, this is {KERNEL_VERSION}");
+        Err(Error::Unsuited(reason))
+    }
+
     /// Refuses a map that is not the run's.
-    pub(crate) fn check_map(&self, network: &RoadNetwork) -> Result<(), Error> {
+    fn check_map(&self, network: &RoadNetwork) -> Result<(), Error> {
         let (expected, got) = (self.map_digest, network.digest);
         let map = self.scenario.map.clone();
         if expected == got { Ok(()) } else { Err(Error::Map { map, expected, got }) }

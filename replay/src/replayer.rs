@@ -6,7 +6,7 @@ use kernel::state::first_difference;
 use kernel::time::Tick;
 use kernel::{Keyframe, RoadNetwork, TickOutput, World};
 
-use crate::{Divergence, Error, KERNEL_VERSION, Log, Mark};
+use crate::{Divergence, Error, Log, Mark};
 
 /// Steps through a log, comparing every tick with what was recorded.
 pub struct Replayer<'a> {
@@ -18,16 +18,10 @@ pub struct Replayer<'a> {
 impl<'a> Replayer<'a> {
     /// Stands at the first tick of the log.
     pub fn new(log: &'a Log, network: Arc<RoadNetwork>) -> Result<Self, Error> {
-        let (manifest, start) = (&log.manifest, log.keyframes.first());
-        if manifest.kernel != KERNEL_VERSION {
-            let made = &manifest.kernel;
-            let reason =
-                format!("made by kernel {made}; only that version can drive it again, this is {KERNEL_VERSION}");
-            return Err(Error::Unsuited(reason));
-        }
-        manifest.check_map(&network)?;
+        log.manifest.check(&network)?;
+        let start = log.keyframes.first();
         let start = start.ok_or_else(|| Error::Unsuited("the log has no keyframe to start from".into()))?;
-        let world = World::resume(&manifest.scenario, &network, start)?;
+        let world = World::resume(&log.manifest.scenario, &network, start)?;
         Ok(Self { log, network, world })
     }
 

@@ -23,8 +23,12 @@ pub struct Report {
 /// parts each second, the bytes of each keyframe, events, intervention and summary, and the scenes
 /// of a case. Masks, annotation and provenance do not follow from the run.
 pub fn verify(log: &Log, network: &Arc<RoadNetwork>) -> Result<Report, Error> {
-    let mut replayer = Replayer::new(log, network.clone())?;
+    log.manifest.check(network)?;
     let mut report = Report { keyframes: 1, divergence: compare_start(log, network)?, ..Report::default() };
+    if report.divergence.is_some() {
+        return Ok(report);
+    }
+    let mut replayer = Replayer::new(log, network.clone())?;
     while report.divergence.is_none() {
         report.divergence = compare_scene(&replayer);
         let Some(output) = replayer.advance() else { break };
