@@ -8,18 +8,19 @@ use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot};
 use kernel::signals::LightPhase;
 
 use crate::camera::EGO_MIDDLE_M;
+use crate::horizon::Horizon;
 use crate::mesh::model::{self, Detail, Model};
-use crate::mesh::{CODE_BRAKE, CODE_LIT, FINISHES, Finish, Mesh, Vertex, signal};
+use crate::mesh::{CODE_BRAKE, CODE_LIT, Finish, Mesh, Vertex, signal};
 use crate::view::View;
 
 /// Instance of the ego car.
 pub const EGO_INSTANCE: u16 = u16::MAX;
 
 /// Actors smaller than this many pixels are left out.
-const SMALLEST_PX: f32 = 0.7;
+const SMALLEST_PX: f32 = 1.2;
 
-/// A coarse model serves when it differs by less than this many pixels.
-const COARSE_ERROR_PX: f32 = 0.5;
+/// Shadows may reach this far into the picture from actors beside it, metres.
+const SHADOW_M: f32 = 6.0;
 
 /// All that moves, as one mesh, and what its shadows need.
 #[derive(Clone, Debug, Default)]
@@ -39,16 +40,29 @@ pub(crate) struct Cast {
 
 impl Cast {
     /// Poses what a view sees, nearest first.
-    pub(crate) fn pose(&mut self, scene: &SceneSnapshot, heads: &[LightHead], view: &View, moving: &mut Moving) {
+    pub(crate) fn pose(
+        &mut self,
+        scene: &SceneSnapshot,
+        heads: &[LightHead],
+        view: &View,
+        mut horizon: Horizon,
+        moving: &mut Moving,
+    ) {
         moving.vertices.clear();
         moving.indices.clear();
         moving.shadows.clear();
         self.pose_ego(&scene.ego, view, moving);
-        let mut seen: Vec<(f32, &ActorScene)> =
-            scene.actors.iter().map(|a| (a.position.distance_squared(view.eye), a)).collect();
+        let near = |a: &ActorScene| {
+            let (centre, radius) = sphere(a);
+            centre.truncate().distance(view.eye.truncate()) - radius - SHADOW_M
+        };
+        let mut seen: Vec<(f32, &ActorScene)> = scene.actors.iter().map(|a| (near(a), a)).collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, actor) in seen {
-            self.pose_actor(actor, view, moving);
+            let (centre, radius) = sphere(actor);
+            if !horizon.hides(centre, radius + SHADOW_M) {
+                self.pose_actor(actor, view, moving);
+            }
         }
         for head in heads {
             self.pose_head(head, scene.lights[head.group as usize], view, moving);
@@ -67,18 +81,16 @@ impl Cast {
 
     fn pose_actor(&mut self, actor: &ActorScene, view: &View, moving: &mut Moving) {
         let size = actor.kind.size_m();
-        let centre = actor.position + Vec3::Z * 0.5 * size.z;
-        // Limbs and bars may reach beyond the box.
-        let radius = 0.5 * size.length() + 0.4;
+        let (centre, radius) = sphere(actor);
         let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
         let pixels = view.pixels(2.0 * radius, centre, radius);
-        if pixels > 4.0 && view.sees(centre, radius + 6.0) {
+        if pixels > 4.0 && view.sees(centre, radius + SHADOW_M) {
             moving.shadows.push((frame, size));
         }
         if pixels < SMALLEST_PX || !view.sees(centre, radius) {
             return;
         }
-        let detail = detail(view, centre, radius);
+        let detail = view.detail(centre, radius);
         let model = self
             .models
             .entry((actor.kind, actor.variant, detail))
@@ -92,16 +104,17 @@ impl Cast {
         if !view.sees(centre, 1.0) || view.pixels(1.0, centre, 0.0) < SMALLEST_PX {
             return;
         }
-        let detail = detail(view, centre, 1.0);
+        let detail = view.detail(centre, 1.0);
         let mesh = self.heads.entry((phase, detail)).or_insert_with(|| signal::head(phase, detail));
         let frame = Affine3A::from_rotation_translation(glam::Quat::from_rotation_z(head.facing_rad), centre);
         moving.append_mesh(mesh, frame, 0, false);
     }
 }
 
-fn detail(view: &View, centre: Vec3, radius: f32) -> Detail {
-    let error_px = view.pixels(Detail::Coarse.error_m(), centre, radius);
-    if error_px < COARSE_ERROR_PX { Detail::Coarse } else { Detail::Fine }
+/// A sphere around an actor; limbs and handlebars may reach beyond its box.
+fn sphere(actor: &ActorScene) -> (Vec3, f32) {
+    let size = actor.kind.size_m();
+    (actor.position + Vec3::Z * 0.5 * size.z, 0.5 * size.length() + 0.4)
 }
 
 impl Moving {
@@ -115,7 +128,6 @@ impl Moving {
         let first = self.vertices.len() as u32;
         self.vertices.extend(mesh.vertices.iter().map(|v| posed(v, &frame, instance, braking)));
         let plain = &mesh.triangles[Finish::Plain as usize];
-        debug_assert!(mesh.triangles.iter().map(Vec::len).sum::<usize>() == plain.len() && FINISHES > 0);
         self.indices.extend(plain.iter().flatten().map(|i| i + first));
     }
 }

@@ -96,7 +96,8 @@ impl Renderer {
         self.check(scene, camera)?;
         let view = View::new(camera, &scene.ego);
         let light = Light::new(&scene.weather);
-        self.cast.pose(scene, &self.heads, &view, &mut self.moving);
+        let horizon = self.scenery.horizon(view.eye);
+        self.cast.pose(scene, &self.heads, &view, horizon, &mut self.moving);
         self.blobs.clear();
         if !self.quality.moving_shadows {
             for (frame, size) in &self.moving.shadows {

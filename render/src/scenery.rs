@@ -3,20 +3,25 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use kernel::map::{PropKind, RoadNetwork};
+use kernel::map::{Prop, PropKind, RoadNetwork};
 
+use crate::actors::EGO_INSTANCE;
+use crate::horizon::{Horizon, Occluder};
 use crate::mesh::model::Detail;
-use crate::mesh::{FINISHES, Mesh, Vertex, prop, surface};
+use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, surface};
 use crate::view::View;
 
 /// Instances of parked cars count from here.
 pub const FIRST_PARKED_INSTANCE: u16 = 32768;
 
 /// Pieces smaller than this many pixels are left out.
-const SMALLEST_PX: f32 = 0.7;
+const SMALLEST_PX: f32 = 2.0;
 
-/// A coarse mesh serves when it differs by less than this many pixels.
-const COARSE_ERROR_PX: f32 = 0.4;
+/// Houses up to this distance hide what is behind them, metres.
+const HOUSES_M: f32 = 160.0;
+
+/// Surfaces are simplified by as much as nobody sees, metres.
+const FLAT_M: f32 = 0.003;
 
 /// A piece of the static world at one level of detail.
 #[derive(Clone, Debug, Default)]
@@ -29,8 +34,8 @@ struct Level {
 struct Piece {
     centre: Vec3,
     radius_m: f32,
-    fine: Level,
-    coarse: Level,
+    /// In the order of [`Detail::ALL`].
+    levels: [Level; Detail::ALL.len()],
 }
 
 /// The static world of a map.
@@ -39,23 +44,36 @@ pub(crate) struct Scenery {
     pub(crate) vertices: Vec<Vertex>,
     indices: Vec<u32>,
     pieces: Vec<Piece>,
+    houses: Vec<Occluder>,
 }
 
 impl Scenery {
     pub(crate) fn new(network: &RoadNetwork) -> Self {
-        let mut scenery = Self::default();
-        for mesh in static_meshes(network, Detail::Fine).into_iter().zip(static_meshes(network, Detail::Coarse)) {
-            scenery.add(mesh);
+        let houses = network.props.iter().filter_map(Occluder::of).collect();
+        let mut scenery = Self { houses, ..Default::default() };
+        for mut cell in surface::cells(network).into_iter().chain([surface::plain(network)]) {
+            scenery.add(Detail::ALL.map(|detail| {
+                cell = simplify::simplified(&cell, detail.error_m().max(FLAT_M));
+                cell.clone()
+            }));
+        }
+        for (object, instance) in instances(network) {
+            scenery.add(Detail::ALL.map(|detail| placed(object, instance, detail)));
         }
         scenery
     }
 
-    fn add(&mut self, (fine, coarse): (Mesh, Mesh)) {
-        let (centre, radius_m) = bounding_sphere(&fine);
-        let same = fine == coarse;
-        let fine = self.store(&fine);
-        let coarse = if same { fine.clone() } else { self.store(&coarse) };
-        self.pieces.push(Piece { centre, radius_m, fine, coarse });
+    fn add(&mut self, meshes: [Mesh; Detail::ALL.len()]) {
+        if meshes[0].is_empty() {
+            return;
+        }
+        let (centre, radius_m) = bounding_sphere(&meshes[0]);
+        let mut levels: [Level; Detail::ALL.len()] = Default::default();
+        for i in 0..meshes.len() {
+            let same = i > 0 && meshes[i] == meshes[i - 1];
+            levels[i] = if same { levels[i - 1].clone() } else { self.store(&meshes[i]) };
+        }
+        self.pieces.push(Piece { centre, radius_m, levels });
     }
 
     fn store(&mut self, mesh: &Mesh) -> Level {
@@ -69,27 +87,32 @@ impl Scenery {
         Level { ranges }
     }
 
+    /// The skyline of the houses around an eye.
+    pub(crate) fn horizon(&self, eye: Vec3) -> Horizon {
+        Horizon::new(eye, &self.houses, HOUSES_M)
+    }
+
     /// Indices of what a view sees for each finish, front to back.
     pub(crate) fn visible(&self, view: &View) -> [Vec<u32>; FINISHES] {
-        let mut seen: Vec<(f32, &Level)> = Vec::new();
-        for piece in &self.pieces {
-            let Piece { centre, radius_m, .. } = *piece;
-            if view.sees(centre, radius_m) && view.pixels(2.0 * radius_m, centre, radius_m) > SMALLEST_PX {
-                let error_px = view.pixels(Detail::Coarse.error_m(), centre, radius_m);
-                let level = if error_px < COARSE_ERROR_PX { &piece.coarse } else { &piece.fine };
-                seen.push((centre.distance(view.eye) - radius_m, level));
-            }
-        }
+        let large = |p: &&Piece| view.pixels(2.0 * p.radius_m, p.centre, p.radius_m) > SMALLEST_PX;
+        let mut seen: Vec<(f32, &Piece)> = self
+            .pieces
+            .iter()
+            .filter(|p| view.sees(p.centre, p.radius_m))
+            .filter(large)
+            .map(|p| (p.centre.truncate().distance(view.eye.truncate()) - p.radius_m, p))
+            .collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.gather(seen.into_iter().map(|(_, level)| level))
+        let mut horizon = self.horizon(view.eye);
+        seen.retain(|(_, p)| !horizon.hides(p.centre, p.radius_m));
+        self.gather(seen.into_iter().map(|(_, p)| &p.levels[view.detail(p.centre, p.radius_m) as usize]))
     }
 
     /// Indices of all coarse pieces that come closer than `reach_m` to the line through `centre`
     /// along `direction`, all finishes together.
     pub(crate) fn near_line(&self, centre: Vec3, direction: Vec3, reach_m: f32) -> Vec<u32> {
-        let near =
-            self.pieces.iter().filter(|p| (p.centre - centre).reject_from(direction).length() < reach_m + p.radius_m);
-        self.gather(near.map(|p| &p.coarse)).concat()
+        let near = |p: &&Piece| (p.centre - centre).reject_from(direction).length() < reach_m + p.radius_m;
+        self.gather(self.pieces.iter().filter(near).map(|p| &p.levels[Detail::Coarse as usize])).concat()
     }
 
     fn gather<'a>(&self, levels: impl Iterator<Item = &'a Level>) -> [Vec<u32>; FINISHES] {
@@ -103,22 +126,25 @@ impl Scenery {
     }
 }
 
-/// The meshes of the static world in the world's frame: surfaces, props, and the plain around.
-pub fn static_meshes(network: &RoadNetwork, detail: Detail) -> Vec<Mesh> {
-    let mut meshes = surface::cells(network);
-    meshes.push(surface::plain(network));
-    let mut parked = FIRST_PARKED_INSTANCE;
-    for object in &network.props {
-        let mut mesh = prop::mesh(object, detail);
-        prop::place(&mut mesh, object.position, object.heading_rad);
-        if object.kind == PropKind::ParkedCar {
-            mesh.vertices.iter_mut().for_each(|v| v.instance = parked);
-            parked = parked.saturating_add(1).min(crate::actors::EGO_INSTANCE - 1);
+/// The static objects with their instances.
+fn instances(network: &RoadNetwork) -> impl Iterator<Item = (&Prop, u16)> {
+    let mut next = FIRST_PARKED_INSTANCE;
+    network.props.iter().map(move |object| {
+        if object.kind != PropKind::ParkedCar {
+            return (object, 0);
         }
-        meshes.push(mesh);
-    }
-    meshes.retain(|mesh| !mesh.is_empty());
-    meshes
+        let instance = next;
+        next = (next + 1).min(EGO_INSTANCE - 1);
+        (object, instance)
+    })
+}
+
+/// The mesh of an object in the world's frame.
+fn placed(object: &Prop, instance: u16, detail: Detail) -> Mesh {
+    let mut mesh = prop::mesh(object, detail);
+    prop::place(&mut mesh, object.position, object.heading_rad);
+    mesh.vertices.iter_mut().for_each(|v| v.instance = instance);
+    mesh
 }
 
 /// A sphere around a mesh's bounding box.

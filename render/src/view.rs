@@ -5,6 +5,7 @@ use kernel::ops;
 use kernel::scene::EgoScene;
 
 use crate::Camera;
+use crate::mesh::model::Detail;
 
 /// A camera's axes in the world.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +49,17 @@ impl View {
     pub(crate) fn pixels(&self, size_m: f32, centre: Vec3, radius_m: f32) -> f32 {
         let near = (centre.distance(self.eye) - radius_m).max(0.5);
         size_m * self.pixels_per_m / near
+    }
+}
+
+/// A level of detail serves when it differs from the finest by less than this many pixels.
+const ERROR_PX: f32 = 0.5;
+
+impl View {
+    /// The roughest level of detail that serves for what lies in a sphere.
+    pub(crate) fn detail(&self, centre: Vec3, radius_m: f32) -> Detail {
+        let serves = |d: &Detail| self.pixels(d.error_m(), centre, radius_m) < ERROR_PX;
+        Detail::ALL.into_iter().rev().find(serves).unwrap_or(Detail::Fine)
     }
 }
 

@@ -21,6 +21,10 @@ pub fn fence(variant: u32, size: Vec3, detail: Detail) -> Mesh {
     let wood = Paint::plain(SemanticTag::Fence, colour);
     let mut mesh = Mesh::default();
     let height = size.z.max(0.6);
+    if detail == Detail::Rough {
+        mesh.cuboid(wood.shaded(0.95), Vec3::new(-0.5 * size.x, -0.025, 0.0), Vec3::new(0.5 * size.x, 0.025, height));
+        return mesh;
+    }
     for [a, b] in pieces(size.x, 2.2) {
         mesh.cuboid(wood.shaded(0.8), Vec3::new(a - 0.05, -0.06, 0.0), Vec3::new(a + 0.05, 0.06, height + 0.08));
         if detail == Detail::Coarse {

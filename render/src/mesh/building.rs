@@ -57,7 +57,9 @@ pub fn building(variant: u32, size: Vec3, detail: Detail) -> Mesh {
     let front = Paint { tag: TAG, colour, finish: Finish::Facade, param: variety.bits() as u8, code };
     let mut mesh = Mesh::default();
     fronts(&mut mesh, front, size, eaves, floors);
-    plinth(&mut mesh, front, size);
+    if detail != Detail::Rough {
+        plinth(&mut mesh, front, size);
+    }
     let tiles = Paint::plain(TAG, variety.colour(&TILES)).grainy(120);
     match (pitched, variety.one_in(3)) {
         (false, _) => flat_roof(&mut mesh, front, size, eaves, &mut variety),

@@ -91,6 +91,10 @@ pub fn car(variant: u32, detail: Detail) -> Mesh {
     let shape = &SHAPES[variety.bits() as usize % SHAPES.len()];
     let lacquer = Paint::plain(SemanticTag::Vehicles, variety.colour(&LACQUERS)).glossy(110);
     let mut mesh = Mesh::default();
+    if detail == Detail::Rough {
+        silhouette(&mut mesh, lacquer, shape);
+        return mesh;
+    }
     body(&mut mesh, lacquer, shape);
     cabin(&mut mesh, lacquer, shape, detail);
     for x in shape.axles {
@@ -104,6 +108,21 @@ pub fn car(variant: u32, detail: Detail) -> Mesh {
         trim(&mut mesh, lacquer, shape);
     }
     mesh
+}
+
+/// Body and cabin as two solids on dark wheels, with both pairs of lamps.
+fn silhouette(mesh: &mut Mesh, paint: Paint, shape: &Shape) {
+    let (w, nose, tail) = (shape.half_width, shape.belt[1].0, shape.belt[shape.belt.len() - 1].0);
+    let ring = |front: f32, rear: f32, half: f32, z: f32| {
+        [(rear, -half), (front, -half), (front, half), (rear, half)].map(|(x, y)| Vec3::new(x, y, z))
+    };
+    let [a, b, c, d] = shape.cabin;
+    let dark = Paint::plain(paint.tag, RUBBER);
+    mesh.walls(dark, &ring(nose - 0.5, tail + 0.4, w - 0.1, 0.0), &ring(nose - 0.5, tail + 0.4, w - 0.1, CLEARANCE_M));
+    mesh.frustum(paint, &ring(nose, tail, w, CLEARANCE_M), &ring(nose - 0.1, tail, w - 0.06, a.1));
+    mesh.walls(dark.colour(GLASS).glossy(230), &ring(a.0, d.0, w - 0.1, a.1), &ring(b.0, c.0, w - 0.26, b.1));
+    mesh.polygon(paint, &ring(b.0, c.0, w - 0.26, b.1));
+    lights(mesh, shape);
 }
 
 /// Flanks, bonnet, boot and underside, with the upper edges bevelled.

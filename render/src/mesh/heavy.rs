@@ -116,7 +116,7 @@ pub fn bus(variant: u32, detail: Detail) -> Mesh {
 }
 
 fn bus_windows(mesh: &mut Mesh, glass: Paint, detail: Detail) {
-    if detail == Detail::Coarse {
+    if detail != Detail::Fine {
         return side_windows(mesh, glass, [-5.1, 5.2], 1.25, [1.2, 2.5]);
     }
     for i in 0..6 {

@@ -13,6 +13,7 @@ pub mod person;
 pub mod prop;
 pub mod shape;
 pub mod signal;
+pub mod simplify;
 pub mod surface;
 pub mod tree;
 pub mod two_wheeler;

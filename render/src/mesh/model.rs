@@ -75,6 +75,8 @@ pub enum Detail {
     Fine,
     /// For the middle distance.
     Coarse,
+    /// For what covers few pixels.
+    Rough,
 }
 
 impl Detail {
@@ -83,8 +85,12 @@ impl Detail {
         match self {
             Self::Fine => 0.0,
             Self::Coarse => 0.05,
+            Self::Rough => 0.2,
         }
     }
+
+    /// Every level, the finest first.
+    pub const ALL: [Self; 3] = [Self::Fine, Self::Coarse, Self::Rough];
 }
 
 impl Model {

@@ -54,7 +54,11 @@ impl Look {
             sleeves: !variety.one_in(3),
             skirt: variety.one_in(4),
             bag: variety.one_in(3),
-            sides: if detail == Detail::Fine { 8 } else { 5 },
+            sides: match detail {
+                Detail::Fine => 8,
+                Detail::Coarse => 5,
+                Detail::Rough => 3,
+            },
         }
     }
 
@@ -65,13 +69,18 @@ impl Look {
     /// A limb from `a` to `b` with round ends.
     fn limb(&self, mesh: &mut Mesh, colour: [u8; 3], a: Vec3, b: Vec3, radii: [f32; 2]) {
         mesh.tube(self.paint(colour), a, b, radii[0], radii[1], self.sides);
-        let axis = (b - a).normalize_or(Vec3::NEG_Z);
-        mesh.disc(self.paint(colour), b, axis, radii[1], self.sides);
+        if self.sides > 3 {
+            let axis = (b - a).normalize_or(Vec3::NEG_Z);
+            mesh.disc(self.paint(colour), b, axis, radii[1], self.sides);
+        }
     }
 
     /// Trunk and head around the hips' middle, upright.
     pub(super) fn trunk(&self, helmet: Option<[u8; 3]>) -> Mesh {
         let mut mesh = Mesh::default();
+        if self.sides == 3 {
+            return self.rough_trunk(helmet);
+        }
         let rings = if self.sides > 6 { 6 } else { 4 };
         let top = self.paint(self.top);
         mesh.ellipsoid(self.paint(self.legs), Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.13, 0.17, 0.15), rings, self.sides);
@@ -100,6 +109,17 @@ impl Look {
         mesh
     }
 
+    fn rough_trunk(&self, helmet: Option<[u8; 3]>) -> Mesh {
+        let mut mesh = Mesh::default();
+        mesh.ellipsoid(self.paint(self.top), Vec3::Z * 0.24, Vec3::new(0.14, 0.21, 0.36), 4, 5);
+        let head = self.paint(helmet.unwrap_or(self.hair));
+        mesh.ellipsoid(head, Vec3::new(0.0, 0.0, 0.72), Vec3::new(0.1, 0.09, 0.14), 3, 4);
+        if self.skirt && helmet.is_none() {
+            self.limb(&mut mesh, self.legs, Vec3::Z * 0.06, Vec3::Z * -0.4, [0.15, 0.23]);
+        }
+        mesh
+    }
+
     /// Upper arm around the shoulder, hanging.
     pub(super) fn upper_arm(&self) -> Mesh {
         let mut mesh = Mesh::default();
@@ -112,7 +132,15 @@ impl Look {
         let mut mesh = Mesh::default();
         let colour = if self.sleeves { self.top } else { self.skin };
         self.limb(&mut mesh, colour, Vec3::new(0.0, 0.0, 0.02), Vec3::new(0.0, 0.0, -0.24), [0.044, 0.034]);
-        mesh.ellipsoid(self.paint(self.skin), Vec3::new(0.0, 0.0, -0.28), Vec3::new(0.04, 0.03, 0.07), 4, self.sides);
+        if self.sides > 3 {
+            mesh.ellipsoid(
+                self.paint(self.skin),
+                Vec3::new(0.0, 0.0, -0.28),
+                Vec3::new(0.04, 0.03, 0.07),
+                4,
+                self.sides,
+            );
+        }
         mesh
     }
 
@@ -128,6 +156,9 @@ impl Look {
         let mut mesh = Mesh::default();
         let colour = if self.skirt { self.skin } else { self.legs };
         self.limb(&mut mesh, colour, Vec3::new(0.0, 0.0, 0.03), Vec3::new(0.0, 0.0, -0.38), [0.068, 0.046]);
+        if self.sides == 3 {
+            return mesh;
+        }
         let shoe = self.paint(self.shoes);
         mesh.cuboid(shoe, Vec3::new(-0.08, -0.045, -0.45), Vec3::new(0.18, 0.045, -0.36));
         mesh.polygon(

@@ -32,7 +32,11 @@ pub fn head(phase: LightPhase, detail: Detail) -> Mesh {
     mesh.polygon(shell.colour([28, 30, 30]), &board(0.084, 0.24, 0.59));
     back.reverse();
     mesh.polygon(shell, &back);
-    let sides = if detail == Detail::Fine { 12 } else { 6 };
+    let sides = match detail {
+        Detail::Fine => 12,
+        Detail::Coarse => 6,
+        Detail::Rough => 4,
+    };
     for (own, z, lit, dark) in [
         (LightPhase::Red, 0.32, [255, 40, 30], [66, 14, 14]),
         (LightPhase::Yellow, 0.0, [255, 190, 20], [64, 50, 12]),

@@ -49,13 +49,14 @@ fn broadleaf(
     let trunk = 0.05 + 0.022 * height_m;
     let (rings, sides) = if detail == Detail::Fine { (5, 8) } else { (4, 6) };
     mesh.tube(bark, Vec3::ZERO, middle, trunk, 0.5 * trunk, if detail == Detail::Fine { 7 } else { 4 });
-    let core = Vec3::new(0.78 * radius, 0.78 * radius, 0.46 * (height_m - foot));
+    let fullness = if detail == Detail::Rough { 0.92 } else { 0.78 };
+    let core = Vec3::new(fullness * radius, fullness * radius, 0.46 * (height_m - foot));
     mesh.lump(
         leaves,
         &Lump { centre: middle + Vec3::Z * 0.08 * core.z, radii: core, rings, sides, rough: 0.1 },
         variety,
     );
-    let lumps = 5;
+    let lumps = if detail == Detail::Rough { 0 } else { 5 };
     let turn = variety.between(0.0, TAU);
     for i in 0..lumps {
         let angle = turn + TAU * i as f32 / lumps as f32;

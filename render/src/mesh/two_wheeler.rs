@@ -33,7 +33,11 @@ fn ring(mesh: &mut Mesh, paint: Paint, hub: Vec3, radius: f32, thick: f32, sides
 }
 
 fn sides(detail: Detail) -> u32 {
-    if detail == Detail::Fine { 14 } else { 8 }
+    match detail {
+        Detail::Fine => 14,
+        Detail::Coarse => 8,
+        Detail::Rough => 5,
+    }
 }
 
 /// A motorcycle of class Motorcycle under a rider of class Rider.
