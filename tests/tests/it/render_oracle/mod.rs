@@ -4,9 +4,10 @@
 mod bvh;
 mod pose;
 
+use kernel::map::bundled;
 use kernel::{RoadNetwork, SceneSnapshot};
 use render::{Camera, Frame, RenderOptions, Renderer, SemanticTag};
-use tests::street;
+use tests::{scenes, street};
 
 use bvh::Bvh;
 
@@ -85,18 +86,42 @@ impl Tally {
     }
 }
 
+/// Draws moments of a map and compares them all.
+fn agree(network: &RoadNetwork, scenes: impl Iterator<Item = SceneSnapshot>) {
+    let mut renderer = Renderer::new(network, &RenderOptions::default()).unwrap();
+    let mut tally = Tally::new();
+    for scene in scenes {
+        let frame = renderer.draw(&scene, &Camera::driver(WIDTH, HEIGHT)).unwrap();
+        tally.add(&frame, &cast(network, &scene));
+    }
+    assert_eq!(tally.failures(), Vec::<String>::new());
+}
+
+/// Ten moments of drives through a bundled map, each of another seed, 2 to 20 s after the start.
+fn agree_on_drives(map: &str) {
+    let moment = |seed: u64| {
+        let ticks = 120 + seed * 7919 % 1080;
+        scenes::scene(&format!("map = \"{map}\"\nseed = {seed}\n")).world_after(ticks).scene()
+    };
+    agree(&bundled(map).unwrap(), (1..=10).map(moment));
+}
+
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn labels_agree_with_rays_cast_through_the_street() {
-    let network = street::network();
-    let mut renderer = Renderer::new(&network, &RenderOptions::default()).unwrap();
-    let mut tally = Tally::new();
-    for moment in 0..20 {
-        let scene = street::scene(moment);
-        let frame = renderer.draw(&scene, &Camera::driver(WIDTH, HEIGHT)).unwrap();
-        tally.add(&frame, &cast(&network, &scene));
-    }
-    assert_eq!(tally.failures(), Vec::<String>::new());
+    agree(&street::network(), (0..10).map(street::scene));
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn labels_agree_with_rays_cast_through_the_city() {
+    agree_on_drives("city");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn labels_agree_with_rays_cast_through_the_country() {
+    agree_on_drives("rural");
 }
 
 #[test]
