@@ -66,7 +66,7 @@ pub fn building(variant: u32, size: Vec3, detail: Detail) -> Mesh {
         (true, true) => hipped_roof(&mut mesh, tiles, size, eaves),
         (true, false) => gabled_roof(&mut mesh, tiles, front, size, eaves),
     }
-    if pitched && detail == Detail::Fine {
+    if pitched {
         chimney(&mut mesh, size, &mut variety);
     }
     mesh

@@ -28,52 +28,48 @@ pub fn tree(variant: u32, crown_m: f32, height_m: f32, detail: Detail) -> Mesh {
         conifer(&mut mesh, needles, bark, crown_m, height_m, detail);
     } else {
         let leaves = Paint::plain(TAG, variety.colour(&LEAVES)).grainy(220);
-        broadleaf(&mut mesh, leaves, bark, crown_m, height_m, detail, &mut variety);
+        let trunk = 0.05 + 0.022 * height_m;
+        let sides = if detail == Detail::Fine { 7 } else { 4 };
+        mesh.tube(bark, Vec3::ZERO, Vec3::Z * 0.65 * height_m, trunk, 0.5 * trunk, sides);
+        for (i, (lump, light)) in (0..).zip(crown(crown_m, height_m, detail, &mut variety)) {
+            // Dents have choices of their own, so that lumps lie alike at every level of detail.
+            mesh.lump(leaves.shaded(light), &lump, &mut Variety::of(variant ^ (i + 1) << 24));
+        }
     }
     mesh.sway_between(0.25 * height_m, height_m);
     mesh
 }
 
-/// A trunk and a crown of one large and several smaller lumps.
-fn broadleaf(
-    mesh: &mut Mesh,
-    leaves: Paint,
-    bark: Paint,
-    crown_m: f32,
-    height_m: f32,
-    detail: Detail,
-    variety: &mut Variety,
-) {
+/// One large and five smaller lumps of leaves, each with its brightness.
+fn crown(crown_m: f32, height_m: f32, detail: Detail, variety: &mut Variety) -> Vec<(Lump, f32)> {
     let (radius, foot) = (0.5 * crown_m, 0.3 * height_m);
     let middle = Vec3::new(0.0, 0.0, 0.5 * (foot + height_m));
-    let trunk = 0.05 + 0.022 * height_m;
-    let (rings, sides) = if detail == Detail::Fine { (5, 8) } else { (4, 6) };
-    mesh.tube(bark, Vec3::ZERO, middle, trunk, 0.5 * trunk, if detail == Detail::Fine { 7 } else { 4 });
-    let fullness = if detail == Detail::Rough { 0.92 } else { 0.78 };
-    let core = Vec3::new(fullness * radius, fullness * radius, 0.46 * (height_m - foot));
-    mesh.lump(
-        leaves,
-        &Lump { centre: middle + Vec3::Z * 0.08 * core.z, radii: core, rings, sides, rough: 0.1 },
-        variety,
-    );
-    let lumps = if detail == Detail::Rough { 0 } else { 5 };
+    let ([rings, sides], [small_rings, small_sides]) = match detail {
+        Detail::Fine => ([5, 8], [4, 6]),
+        Detail::Coarse => ([5, 7], [4, 6]),
+        Detail::Rough => ([4, 6], [3, 5]),
+    };
+    let core = Vec3::new(0.78 * radius, 0.78 * radius, 0.46 * (height_m - foot));
+    let lump = Lump { centre: middle + Vec3::Z * 0.08 * core.z, radii: core, rings, sides, rough: 0.1 };
+    let mut lumps = vec![(lump, 1.0)];
     let turn = variety.between(0.0, TAU);
-    for i in 0..lumps {
-        let angle = turn + TAU * i as f32 / lumps as f32;
+    for i in 0..5 {
+        let angle = turn + TAU * i as f32 / 5.0;
         let rise = variety.between(-0.55, 0.35) * core.z;
         let reach = variety.between(0.5, 0.6) * radius;
         let centre = middle + Vec3::new(reach * ops::cos(angle), reach * ops::sin(angle), rise);
         let size = variety.between(0.38, 0.48) * radius;
         let radii = Vec3::new(size, size, size * 0.9);
-        let paint = leaves.shaded(variety.between(0.86, 1.08));
-        mesh.lump(paint, &Lump { centre, radii, rings: 4, sides: 6, rough: 0.14 }, variety);
+        let lump = Lump { centre, radii, rings: small_rings, sides: small_sides, rough: 0.14 };
+        lumps.push((lump, variety.between(0.86, 1.08)));
     }
+    lumps
 }
 
 /// A trunk under a stack of cones.
 fn conifer(mesh: &mut Mesh, needles: Paint, bark: Paint, crown_m: f32, height_m: f32, detail: Detail) {
     mesh.tube(bark, Vec3::ZERO, Vec3::Z * 0.3 * height_m, 0.16, 0.12, 6);
-    let (layers, sides) = if detail == Detail::Fine { (5, 9) } else { (4, 6) };
+    let (layers, sides) = (5, if detail == Detail::Fine { 9 } else { 7 });
     for i in 0..layers {
         let up = i as f32 / layers as f32;
         let (z0, z1) = (height_m * (0.16 + 0.78 * up), height_m * (0.16 + 0.78 * up + 0.3).min(1.0));
