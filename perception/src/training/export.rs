@@ -92,8 +92,8 @@ struct Writer<'a> {
     graph: pb::GraphProto,
 }
 
-impl Writer<'_> {
-    fn parameter(&mut self) -> &Parameter {
+impl<'a> Writer<'a> {
+    fn parameter(&mut self) -> &'a Parameter {
         self.parameter += 1;
         &self.weights.parameters[self.parameter - 1]
     }
@@ -161,8 +161,7 @@ impl Graph for Writer<'_> {
     }
 
     fn layer(&mut self, x: &Value, kernel: Kernel, relu: bool) -> Value {
-        let weights = self.parameter().clone();
-        let (scale, shift) = (self.parameter().clone(), self.parameter().clone());
+        let (weights, scale, shift) = (self.parameter(), self.parameter(), self.parameter());
         let (factor, summand) = norm::affine(&self.weights.moments[self.layer], &scale.values, &shift.values);
         self.layer += 1;
         let rows = weights.values.chunks_exact(weights.cols);
@@ -171,9 +170,9 @@ impl Graph for Writer<'_> {
         if relu { self.relu(&y) } else { y }
     }
 
-    fn logits(&mut self, x: &Value, classes: usize) -> Value {
-        let (weights, bias) = (self.parameter().clone(), self.parameter().clone());
-        self.convolution(x, Kernel::Pointwise { out: classes }, &weights.values, &bias.values)
+    fn logits(&mut self, x: &Value, out: usize) -> Value {
+        let (weights, bias) = (self.parameter(), self.parameter());
+        self.convolution(x, Kernel::Pointwise { out }, &weights.values, &bias.values)
     }
 
     fn resample(&mut self, x: &Value, rows: usize, cols: usize, how: Resample) -> Value {
@@ -194,6 +193,10 @@ impl Graph for Writer<'_> {
 
     fn relu(&mut self, x: &Value) -> Value {
         self.node("Relu", &[&x.name], Vec::new(), x.size)
+    }
+
+    fn spread(&mut self, x: &Value, side: usize) -> Value {
+        self.node("DepthToSpace", &[&x.name], vec![int("blocksize", side)], x.size.spread(side))
     }
 
     fn concat(&mut self, parts: &[Value]) -> Value {

@@ -25,6 +25,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 pub use dataset::{Frame, Split};
+pub use network::LOGIT_STRIDE;
 pub use pictures::CLASS_WEIGHT_OFFSET;
 
 use crate::{PerceptionError, Scores};

@@ -2,8 +2,14 @@
 //! told once. Who reads it decides what it means: drawing first weights ([`super::weights`]),
 //! running it on a tape ([`super::tape`]), or writing ONNX ([`super::export`]).
 
+/// Pixels of the input along one side of a position of the classifier.
+const CLASSIFIER_STRIDE: usize = 8;
+/// Logits that each position of the classifier gives along one side (dense upsampling convolution,
+/// Wang et al., WACV 2018). The paper has one, for pictures 16 times as large; at 256x128 walkers
+/// and poles are narrower than a position.
+const SHARPNESS: usize = 4;
 /// Pixels of the input along one side of a logit.
-pub(super) const STRIDE: usize = 8;
+pub const LOGIT_STRIDE: usize = CLASSIFIER_STRIDE / SHARPNESS;
 /// The sides of the input must be multiples of this: the coarsest features have a 32nd of them.
 pub(super) const SIDE_MULTIPLE: usize = 32;
 
@@ -30,6 +36,11 @@ impl Size {
     /// Positions of the map.
     pub(super) fn area(self) -> usize {
         self.rows * self.cols
+    }
+
+    /// With positions split into `side` x `side`, which share the channels.
+    pub(super) fn spread(self, side: usize) -> Self {
+        Self { rows: self.rows * side, cols: self.cols * side, channels: self.channels / (side * side) }
     }
 
     /// After a 3x3 convolution whose padding equals its dilation.
@@ -88,22 +99,26 @@ pub(super) trait Graph {
     /// A convolution, batch normalisation and, if asked for, a rectifier.
     fn layer(&mut self, x: &Self::Node, kernel: Kernel, relu: bool) -> Self::Node;
     /// A 1x1 convolution with bias.
-    fn logits(&mut self, x: &Self::Node, classes: usize) -> Self::Node;
+    fn logits(&mut self, x: &Self::Node, out: usize) -> Self::Node;
     fn resample(&mut self, x: &Self::Node, rows: usize, cols: usize, how: Resample) -> Self::Node;
     fn add(&mut self, a: &Self::Node, b: &Self::Node) -> Self::Node;
     fn relu(&mut self, x: &Self::Node) -> Self::Node;
+    /// Lays the channels of a position out as `side` x `side` positions: channel
+    /// `(dy * side + dx) * n + c` of `side * side * n` becomes channel `c` at row `dy`, column `dx`.
+    fn spread(&mut self, x: &Self::Node, side: usize) -> Self::Node;
     /// Joins the channels.
     fn concat(&mut self, parts: &[Self::Node]) -> Self::Node;
 }
 
-/// The network from the normalised image to its logits at [`STRIDE`].
+/// The network from the normalised image to its logits at [`LOGIT_STRIDE`].
 pub(super) fn fast_scnn<G: Graph>(g: &mut G, image: &G::Node, classes: usize) -> G::Node {
     let fine = learning_to_downsample(g, image);
     let coarse = global_features(g, &fine);
     let fused = fusion(g, &fine, &coarse);
     let x = separable(g, &fused, FUSED, 1);
     let x = separable(g, &x, FUSED, 1);
-    g.logits(&x, classes)
+    let logits = g.logits(&x, SHARPNESS * SHARPNESS * classes);
+    g.spread(&logits, SHARPNESS)
 }
 
 fn learning_to_downsample<G: Graph>(g: &mut G, image: &G::Node) -> G::Node {

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::ops::ControlFlow;
+use std::panic::resume_unwind;
 use std::path::Path;
 
 use burn_flex::{Flex, FlexDevice};
@@ -15,7 +16,6 @@ use super::pictures::{augmented, class_weights};
 use super::random::Random;
 use super::state::State;
 use super::tape::{Lesson, learn};
-use super::weights::Moments;
 use super::{EpochReport, Progress, TrainOptions, Trained, export, network};
 use crate::classes::{TRAIN_CLASSES, tag_of_train_id};
 use crate::{Checkpoint, ConfusionMatrix, PerceptionError, RgbView, Segmenter};
@@ -105,9 +105,9 @@ impl Run {
             let running: Vec<_> = replicas
                 .map(|(i, (thread, share))| scope.spawn(move || thread.install(|| run.lesson(share, i as u64))))
                 .collect();
-            running.into_iter().filter_map(|r| r.join().ok()).collect()
+            running.into_iter().map(|r| r.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
         });
-        let (loss, gradients, moments) = averaged(lessons);
+        let Lesson { loss, gradients, moments } = mean(lessons);
         let steps = self.steps() as u64 * u64::from(self.options.horizon);
         let rate = adam::rate(self.options.rate, self.state.adam.steps, steps);
         self.state.weights.follow(&moments);
@@ -147,7 +147,7 @@ impl Run {
     fn onnx(&self) -> Result<Vec<u8>, PerceptionError> {
         let recipe = serde_json::json!({
             "network": "Fast-SCNN",
-            "stride": network::STRIDE,
+            "stride": network::LOGIT_STRIDE,
             "options": self.options,
             "epochs": self.epochs(),
             "dataset": self.dataset.to_hex().as_str(),
@@ -186,25 +186,17 @@ fn confusion(
 }
 
 /// Means over the replicas, summed in their order.
-fn averaged(lessons: Vec<Lesson>) -> (f64, Vec<Vec<f32>>, Vec<Moments>) {
-    let share = 1.0 / lessons.len() as f32;
-    let loss = lessons.iter().map(|l| l.loss).sum::<f64>() / lessons.len() as f64;
-    let mut lessons = lessons.into_iter();
-    let Some(Lesson { mut gradients, mut moments, .. }) = lessons.next() else { return (loss, Vec::new(), Vec::new()) };
-    for lesson in lessons {
-        for (sum, gradient) in gradients.iter_mut().zip(&lesson.gradients) {
-            add(sum, gradient);
+fn mean(lessons: Vec<Lesson>) -> Lesson {
+    let count = lessons.len();
+    let add = |mut sum: Lesson, mut lesson: Lesson| {
+        sum.loss += lesson.loss;
+        for (sum, values) in sum.vectors().zip(lesson.vectors()) {
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += *value);
         }
-        for (sum, moments) in moments.iter_mut().zip(&lesson.moments) {
-            add(&mut sum.mean, &moments.mean);
-            add(&mut sum.variance, &moments.variance);
-        }
-    }
-    let vectors = moments.iter_mut().flat_map(|m| [&mut m.mean, &mut m.variance]);
-    gradients.iter_mut().chain(vectors).flatten().for_each(|v| *v *= share);
-    (loss, gradients, moments)
-}
-
-fn add(sum: &mut [f32], values: &[f32]) {
-    sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
+        sum
+    };
+    let mut mean = lessons.into_iter().reduce(add).unwrap_or_default();
+    mean.loss /= count as f64;
+    mean.vectors().flatten().for_each(|value| *value *= 1.0 / count as f32);
+    mean
 }

@@ -52,12 +52,21 @@ pub(super) struct Norm<B: Backend> {
 }
 
 /// What one replica learns from its share of a batch.
+#[derive(Default)]
 pub(super) struct Lesson {
     pub(super) loss: f64,
     /// By every parameter.
     pub(super) gradients: Vec<Vec<f32>>,
     /// Of every layer.
     pub(super) moments: Vec<Moments>,
+}
+
+impl Lesson {
+    /// All derivatives and moments, in a fixed order.
+    pub(super) fn vectors(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
+        let moments = self.moments.iter_mut().flat_map(|m| [&mut m.mean, &mut m.variance]);
+        self.gradients.iter_mut().chain(moments)
+    }
 }
 
 /// Loss, derivatives and moments for `images` (row by row, red, green, blue, normalised) of the
@@ -177,10 +186,10 @@ impl<B: Kernels> Graph for Tape<B> {
         Map { tensor, size: kernel.output(x.size) }
     }
 
-    fn logits(&mut self, x: &Map<B>, classes: usize) -> Map<B> {
+    fn logits(&mut self, x: &Map<B>, out: usize) -> Map<B> {
         let (weights, bias) = (self.parameter(), self.parameter());
         let product = Autodiff::<B>::float_matmul(x.tensor.clone(), weights);
-        Map { tensor: Autodiff::<B>::float_add(product, bias), size: Size { channels: classes, ..x.size } }
+        Map { tensor: Autodiff::<B>::float_add(product, bias), size: Size { channels: out, ..x.size } }
     }
 
     fn resample(&mut self, x: &Map<B>, rows: usize, cols: usize, how: Resample) -> Map<B> {
@@ -203,6 +212,16 @@ impl<B: Kernels> Graph for Tape<B> {
 
     fn relu(&mut self, x: &Map<B>) -> Map<B> {
         Map { tensor: Autodiff::<B>::relu(x.tensor.clone()), size: x.size }
+    }
+
+    fn spread(&mut self, x: &Map<B>, side: usize) -> Map<B> {
+        let size = x.size.spread(side);
+        let lines = x.tensor.primitive().shape().num_elements() / (x.size.cols * x.size.channels);
+        let split = Shape::from([lines, x.size.cols, side, side * size.channels]);
+        let split = Autodiff::<B>::float_reshape(x.tensor.clone(), split);
+        let spread = Autodiff::<B>::float_swap_dims(split, 1, 2);
+        let rows = lines * side * size.cols;
+        Map { tensor: Autodiff::<B>::float_reshape(spread, Shape::from([rows, size.channels])), size }
     }
 
     fn concat(&mut self, parts: &[Map<B>]) -> Map<B> {

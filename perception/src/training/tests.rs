@@ -40,7 +40,7 @@ fn the_shipped_network_gives_the_logits_of_the_trained_one() {
     assert_eq!(bytes, export::onnx(&weights, WIDTH, HEIGHT, "{}").unwrap());
     let engine = Engine::new(&decode(&bytes).unwrap(), None, Element::Float, [1, 3, HEIGHT, WIDTH]).unwrap();
     let classes = TRAIN_CLASSES.len();
-    let positions = WIDTH / network::STRIDE * (HEIGHT / network::STRIDE);
+    let positions = WIDTH / LOGIT_STRIDE * (HEIGHT / LOGIT_STRIDE);
     let spread = trained.iter().fold(0.0f32, |m, v| m.max(v.abs()));
     assert!(spread > 0.5, "logits of at most {spread} would agree by chance");
     let images = pictures.chunks_exact(WIDTH * HEIGHT * 3).zip(trained.chunks_exact(positions * classes));

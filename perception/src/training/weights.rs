@@ -98,10 +98,10 @@ impl Graph for Draw {
         kernel.output(*x)
     }
 
-    fn logits(&mut self, x: &Size, classes: usize) -> Size {
-        self.matrix(x.channels, classes);
-        self.row(classes, 0.0);
-        Size { channels: classes, ..*x }
+    fn logits(&mut self, x: &Size, out: usize) -> Size {
+        self.matrix(x.channels, out);
+        self.row(out, 0.0);
+        Size { channels: out, ..*x }
     }
 
     fn resample(&mut self, x: &Size, rows: usize, cols: usize, _how: Resample) -> Size {
@@ -114,6 +114,10 @@ impl Graph for Draw {
 
     fn relu(&mut self, x: &Size) -> Size {
         *x
+    }
+
+    fn spread(&mut self, x: &Size, side: usize) -> Size {
+        x.spread(side)
     }
 
     fn concat(&mut self, parts: &[Size]) -> Size {

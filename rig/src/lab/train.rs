@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use indicatif::ProgressBar;
 use perception::classes::TRAIN_CLASSES;
-use perception::training::{self, CLASS_WEIGHT_OFFSET, EpochReport, Progress, TrainOptions, Trained};
+use perception::training::{self, CLASS_WEIGHT_OFFSET, EpochReport, LOGIT_STRIDE, Progress, TrainOptions, Trained};
 
 use crate::cli::TrainArgs;
 use crate::exit::Verdict;
@@ -37,7 +37,7 @@ pub fn run(args: &TrainArgs, json: bool) -> anyhow::Result<Verdict> {
         anyhow::bail!("interrupted; the same command goes on from {}", unfinished.display());
     };
     output::write_file(&args.out, &trained.onnx)?;
-    output::write_file(&beside(&args.out, "md"), card(&args.out, &options, &trained).as_bytes())?;
+    output::write_file(&beside(&args.out, "md"), card(args, &options, &trained).as_bytes())?;
     if trained.history.len() >= options.horizon as usize {
         fs::remove_file(&unfinished).with_context(|| unfinished.display().to_string())?;
     }
@@ -94,6 +94,16 @@ fn line(report: &EpochReport) -> String {
     format!("epoch {epoch:3}  loss {loss:.4}  mIoU {}  IoU Pedestrian {}", number(*miou), number(pedestrian))
 }
 
+/// What the folder says about how it was made.
+fn dataset_recipe(dataset: &Path) -> String {
+    let text = fs::read_to_string(dataset.join("dataset.json")).unwrap_or_default();
+    let about: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    match (&about["kind"], &about["recipe"]) {
+        (serde_json::Value::String(kind), recipe) if recipe.is_object() => format!("{kind}, recipe `{recipe}`"),
+        _ => "of unknown making".into(),
+    }
+}
+
 fn pedestrian() -> usize {
     TRAIN_CLASSES.iter().position(|c| c.name == "Pedestrian").unwrap_or_default()
 }
@@ -103,18 +113,18 @@ fn number(value: Option<f64>) -> String {
 }
 
 /// What the checkpoint is and how to make it again.
-fn card(out: &Path, options: &TrainOptions, trained: &Trained) -> String {
-    let name = out.file_stem().unwrap_or_default().to_string_lossy();
+fn card(args: &TrainArgs, options: &TrainOptions, trained: &Trained) -> String {
+    let name = args.out.file_stem().unwrap_or_default().to_string_lossy();
     let epochs = trained.history.len();
     let stopped = if epochs < options.horizon as usize { " (stopped on purpose)" } else { "" };
     let TrainOptions { horizon, seed, width, height, batch, replicas, rate } = options;
     let mut card = format!(
         "# {name}\n\n\
-         Fast-SCNN (Poudel et al. 2019), {} parameters, 16 classes, input {width}x{height}, logits at stride 8.\n\n\
+         Fast-SCNN (Poudel et al. 2019), {} parameters, 16 classes, input {width}x{height}, logits at stride {LOGIT_STRIDE}.\n\n\
          | recipe | |\n|---|---|\n\
          | epochs | {epochs} of a schedule of {horizon}{stopped} |\n\
          | frames | {} to learn from, {} to measure on (scenes of seeds of their own) |\n\
-         | dataset | BLAKE3 `{}` |\n\
+         | dataset | {}; BLAKE3 over its files `{}` |\n\
          | seed | {seed} |\n\
          | optimiser | Adam, rate {rate}, polynomial decay of power 0.9 |\n\
          | batch | {batch} in {replicas} replicas |\n\
@@ -124,6 +134,7 @@ fn card(out: &Path, options: &TrainOptions, trained: &Trained) -> String {
         trained.parameters,
         trained.train_frames,
         trained.val_frames,
+        dataset_recipe(&args.dataset),
         trained.dataset,
         blake3::hash(&trained.onnx).to_hex(),
     );
