@@ -221,7 +221,7 @@ impl<'a> Site<'a> {
         if prop.kind == PropKind::Tree {
             foot.size = Vec3::new(0.6, 0.6, prop.size.z);
         }
-        let hit = |p: Vec3, kind| self.map.lanes_around(p, kind, CLEAR_M).first().is_some();
+        let hit = |p: Vec3, kind| !self.map.lanes_around(p, kind, CLEAR_M).is_empty();
         let kinds = [K::Driving, K::Sidewalk, K::Parking, K::Shoulder, K::Biking, K::Other];
         !props::footprint(&foot, 2.0).iter().any(|&p| kinds.iter().any(|&k| hit(p, k)))
     }

@@ -46,6 +46,9 @@ struct Grids {
     triangles: Vec<(u32, u32)>,
 }
 
+/// Least and greatest corner of something seen from above.
+type Bounds = (Vec2, Vec2);
+
 /// Vertices of a lane that share a box in the grid.
 const STRETCH: usize = 8;
 const LANE_CELL_M: f32 = 10.0;
@@ -172,7 +175,7 @@ impl Grids {
     }
 }
 
-fn lane_boxes(map: &RoadNetwork) -> (Vec<(Vec2, Vec2)>, Vec<LaneId>) {
+fn lane_boxes(map: &RoadNetwork) -> (Vec<Bounds>, Vec<LaneId>) {
     let mut boxes = Vec::new();
     let mut owners = Vec::new();
     for (id, lane) in map.lanes.iter().enumerate() {
@@ -190,7 +193,7 @@ fn lane_boxes(map: &RoadNetwork) -> (Vec<(Vec2, Vec2)>, Vec<LaneId>) {
     (boxes, owners)
 }
 
-fn ground_boxes(map: &RoadNetwork) -> (Vec<(Vec2, Vec2)>, Vec<(u32, u32)>) {
+fn ground_boxes(map: &RoadNetwork) -> (Vec<Bounds>, Vec<(u32, u32)>) {
     let mut boxes = Vec::new();
     let mut owners = Vec::new();
     for (k, surface) in map.surfaces.iter().enumerate().filter(|(_, s)| s.kind != SurfaceKind::RoadLine) {
