@@ -12,7 +12,7 @@ use super::lists::{Entry, Lists};
 use super::plan::{self, Line, Plan, Step, next_lane, stopping_speed};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
-use super::ways::{Encounter, Meeting, Ways, curve_speed, lane_place};
+use super::ways::{Encounter, Meeting, Ways, curve_speed, half_width_m, lane_place};
 
 /// Hardest braking, m/s².
 const EMERGENCY_MPS2: f32 = 8.0;
@@ -259,8 +259,8 @@ impl View<'_> {
     }
 
     fn keep_side(&self, driver: &Driver, moved_m: f32, next: &mut Vehicle) {
-        let half_width_m = lane_place(&self.network.lanes[next.lane as usize], next.s_m).half_width_m;
-        let aim = driver.from_right_m.map_or(0.0, |m| (m - half_width_m).min(0.0));
+        let half_width = || half_width_m(&self.network.lanes[next.lane as usize], next.s_m);
+        let aim = driver.from_right_m.map_or(0.0, |m| (m - half_width()).min(0.0));
         let step = 0.08 * moved_m;
         next.offset_m += (aim - next.offset_m).clamp(-step, step);
     }

@@ -38,7 +38,8 @@ impl Traffic {
     }
 
     fn vehicle_body(&self, vehicle: &Vehicle, driver: &Driver) -> Body {
-        let place = lane_pose(&self.network.lanes[vehicle.lane as usize], vehicle.s_m);
+        let lane = vehicle.lane as usize;
+        let place = lane_pose(&self.network.lanes[lane], &self.ways.lanes[lane], vehicle.s_m);
         Body {
             id: u32::from(vehicle.id),
             kind: vehicle.kind,

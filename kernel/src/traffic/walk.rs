@@ -40,9 +40,9 @@ const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 pub(super) fn edge_place(edge: &WalkEdge, way: &EdgeWay, s_m: f32) -> Place {
     let last = edge.points.len() - 2;
     let i = way.s_m[1..=last].partition_point(|s| *s <= s_m);
-    let forward = (edge.points[i + 1] - edge.points[i]).normalize_or(glam::Vec3::X);
-    let flat = forward.truncate().length().max(1e-3);
-    Place { position: edge.points[i] + forward * ((s_m - way.s_m[i]) / flat), forward, half_width_m: edge.half_width_m }
+    let along = (s_m - way.s_m[i]) / (way.s_m[i + 1] - way.s_m[i]).max(1e-3);
+    let position = edge.points[i] + (edge.points[i + 1] - edge.points[i]) * along;
+    Place { position, forward: way.forward[i], half_width_m: edge.half_width_m }
 }
 
 /// Where a walker stands.

@@ -74,6 +74,8 @@ pub(super) struct Zebra {
 pub(super) struct LaneWay {
     /// Highest speed at each point: curves, and braking for those ahead on the lane. m/s.
     pub speed_mps: Vec<f32>,
+    /// Direction of travel from each point to the next.
+    pub forward: Vec<Vec3>,
     /// Successors that vehicles drive on.
     pub onward: Vec<LaneId>,
     /// Those that long vehicles take: no right turns, where there is another way.
@@ -87,6 +89,8 @@ pub(super) struct LaneWay {
 pub(super) struct EdgeWay {
     /// Distance of each point from the first, metres.
     pub s_m: Vec<f32>,
+    /// Direction from each point to the next.
+    pub forward: Vec<Vec3>,
     /// Sidewalks that may lie across the road.
     pub facing: Vec<u32>,
 }
@@ -167,20 +171,23 @@ pub(super) fn lane_place(lane: &Lane, s_m: f32) -> Place {
 }
 
 /// Like [`lane_place`], the direction turning smoothly between the points.
-pub(super) fn lane_pose(lane: &Lane, s_m: f32) -> Place {
+pub(super) fn lane_pose(lane: &Lane, way: &LaneWay, s_m: f32) -> Place {
     let (i, t) = segment(lane, s_m);
-    let place = lane_place(lane, s_m);
-    let direction = |k: usize| lane.points[k + 1].position - lane.points[k].position;
-    let last = lane.points.len() - 2;
-    let here = direction(i).normalize_or(Vec3::X);
+    let (a, here) = (&lane.points[i], way.forward[i]);
     let forward = if t < 0.5 && i > 0 {
-        direction(i - 1).normalize_or(here).lerp(here, (t + 0.5).max(0.0))
-    } else if t > 0.5 && i < last {
-        here.lerp(direction(i + 1).normalize_or(here), (t - 0.5).min(0.5))
+        way.forward[i - 1].lerp(here, (t + 0.5).max(0.0)).normalize_or(here)
+    } else if t > 0.5 && i + 1 < way.forward.len() {
+        here.lerp(way.forward[i + 1], (t - 0.5).min(0.5)).normalize_or(here)
     } else {
         here
     };
-    Place { forward: forward.normalize_or(here), ..place }
+    let position = a.position + (lane.points[i + 1].position - a.position) * t;
+    Place { position, forward, half_width_m: a.half_width_m }
+}
+
+/// Half of the lane's width at `s_m`, metres.
+pub(super) fn half_width_m(lane: &Lane, s_m: f32) -> f32 {
+    lane.points[segment(lane, s_m).0].half_width_m
 }
 
 /// The highest speed at `s_m`, interpolated between the points. m/s.
@@ -204,7 +211,8 @@ fn lane_way(network: &RoadNetwork, id: LaneId) -> LaneWay {
     let onward_wide: Vec<_> = onward.iter().copied().filter(wide).collect();
     let onward_wide = if onward_wide.is_empty() { onward.clone() } else { onward_wide };
     let encounters = lane.conflicts.iter().filter_map(|c| encounter(network, id, c)).collect();
-    LaneWay { speed_mps, onward, onward_wide, encounters, zebras: Vec::new() }
+    let forward = directions(lane.points.iter().map(|p| p.position));
+    LaneWay { speed_mps, forward, onward, onward_wide, encounters, zebras: Vec::new() }
 }
 
 /// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken
@@ -277,7 +285,11 @@ fn edge_way(network: &RoadNetwork, index: usize) -> EdgeWay {
         s_m.push(s_m[s_m.len() - 1] + pair[0].truncate().distance(pair[1].truncate()));
     }
     let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(network, index) } else { Vec::new() };
-    EdgeWay { s_m, facing }
+    EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing }
+}
+
+fn directions(points: impl Iterator<Item = Vec3> + Clone) -> Vec<Vec3> {
+    points.clone().zip(points.skip(1)).map(|(a, b)| (b - a).normalize_or(Vec3::X)).collect()
 }
 
 fn facing(network: &RoadNetwork, index: usize) -> Vec<u32> {

@@ -119,8 +119,8 @@ fn right_before_left_keeps_a_full_crossroads_flowing() {
 }
 
 #[test]
-fn city_flows_for_an_hour() {
-    flows(&bundled("city").expect("city is bundled"), 100, 60, 3.0);
+fn city_flows() {
+    flows(&bundled("city").expect("city is bundled"), 100, 30, 3.0);
 }
 
 #[test]
