@@ -63,7 +63,7 @@ state! {
     pub struct Hud {
         /// Speed of the ego car, m/s.
         pub speed_mps: f32,
-        /// Speed limit, m/s; at most 50 km/h.
+        /// Speed limit, m/s; at most [`Rules::max_speed_kmh`](crate::scenario::Rules).
         pub limit_mps: f32,
         /// Phase of the next traffic light within 50 m on the route.
         pub light: Option<LightPhase>,
