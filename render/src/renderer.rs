@@ -71,8 +71,8 @@ impl Renderer {
         let full = options.preset == Preset::Full || options.preset == Preset::Auto && !gpu.info.is_cpu;
         let quality = if full { FULL } else { CHEAP };
         let scenery = Scenery::new(network);
-        let Quality { shadow_side, shadow_taps, samples, .. } = quality;
-        let passes = Passes::new(&gpu, &scenery.vertices, shadow_side, shadow_taps, samples);
+        let Quality { shadow_side, shadow_taps, .. } = quality;
+        let passes = Passes::new(&gpu, &scenery.vertices, shadow_side, shadow_taps);
         if let Some(reason) = gpu.failure() {
             return Err(RenderError::Device { adapter: gpu.info.name.clone(), reason });
         }

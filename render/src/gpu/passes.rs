@@ -32,7 +32,6 @@ pub(crate) struct Passes {
     moving: GrowingBuffer,
     blobs: GrowingBuffer,
     indices: GrowingBuffer,
-    resolve: Option<readback::Resolve>,
 }
 
 fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
@@ -42,7 +41,7 @@ fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingRes
 }
 
 impl Passes {
-    pub(crate) fn new(gpu: &Gpu, fixed: &[Vertex], shadow_side: u32, shadow_taps: u32, samples: u32) -> Self {
+    pub(crate) fn new(gpu: &Gpu, fixed: &[Vertex], shadow_side: u32, shadow_taps: u32) -> Self {
         use wgpu::{BindingResource as R, BufferUsages as U};
         let layouts = Layouts::new(gpu);
         let buffer = |size: usize, usage: U| {
@@ -70,7 +69,6 @@ impl Passes {
             moving: GrowingBuffer::new(gpu, U::VERTEX),
             blobs: GrowingBuffer::new(gpu, U::VERTEX),
             indices: GrowingBuffer::new(gpu, U::INDEX),
-            resolve: (samples > 1).then(|| readback::Resolve::new(gpu)),
         }
     }
 
@@ -85,10 +83,7 @@ impl Passes {
             self.shadow_pass(&mut encoder, &ranges, draws.moving_casts);
         }
         self.main_pass(&mut encoder, &ranges, draws.blobs.len() as u32, targets);
-        match &self.resolve {
-            Some(resolve) => resolve.record(gpu, &mut encoder, targets),
-            None => readback::copy(&mut encoder, targets),
-        }
+        readback::record(&mut encoder, targets);
         gpu.queue.submit([encoder.finish()]);
     }
 

@@ -1,6 +1,7 @@
 //! The textures a frame is drawn to and the buffer it is read back from, for one image size.
 
 use super::Gpu;
+use super::readback::Resolve;
 
 /// Formats of the colour, id and depth targets.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -16,9 +17,12 @@ pub(crate) struct Targets {
     pub(super) depth: wgpu::Texture,
     /// Three planes, one after the other, that the processor can read.
     pub(super) readback: wgpu::Buffer,
+    /// Where a pixel has several samples.
+    pub(super) resolve: Option<Resolve>,
 }
 
 impl Targets {
+    /// `samples`: samples a pixel along each axis.
     pub(crate) fn new(gpu: &Gpu, width: u32, height: u32, samples: u32) -> Self {
         let texture = |format: wgpu::TextureFormat| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -41,7 +45,9 @@ impl Targets {
             mapped_at_creation: false,
         });
         let (colour, ids, depth) = (texture(COLOUR), texture(IDS), texture(DEPTH));
-        Self { width, height, colour, ids, depth, readback }
+        let (stride, plane) = (stride_bytes(width), plane_bytes(width, height));
+        let resolve = (samples > 1).then(|| Resolve::new(gpu, [&colour, &ids, &depth], stride, plane));
+        Self { width, height, colour, ids, depth, readback, resolve }
     }
 
     /// Bytes a row takes in the read-back buffer.

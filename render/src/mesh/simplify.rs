@@ -28,12 +28,20 @@ struct Welded {
     around: Vec<Vec<u32>>,
     /// How far the surface around each vertex has moved so far, metres.
     moved_m: Vec<f32>,
+    /// Vertices whose surroundings have changed since they were looked at.
+    waiting: Vec<bool>,
 }
 
 impl Welded {
     fn new(mesh: &Mesh, triangles: &[[u32; 3]]) -> Self {
         let mut index: BTreeMap<([u32; 3], [i8; 3], u8), u32> = BTreeMap::new();
-        let mut welded = Self { vertices: Vec::new(), triangles: Vec::new(), around: Vec::new(), moved_m: Vec::new() };
+        let mut welded = Self {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            around: Vec::new(),
+            moved_m: Vec::new(),
+            waiting: Vec::new(),
+        };
         for triangle in triangles {
             let corners = triangle.map(|i| {
                 let v = mesh.vertices[i as usize];
@@ -47,6 +55,7 @@ impl Welded {
         }
         welded.around = vec![Vec::new(); welded.vertices.len()];
         welded.moved_m = vec![0.0; welded.vertices.len()];
+        welded.waiting = vec![true; welded.vertices.len()];
         for (t, corners) in (0..).zip(&welded.triangles) {
             for &corner in corners {
                 welded.around[corner as usize].push(t);
@@ -63,8 +72,10 @@ impl Welded {
         let mut changed = true;
         while changed {
             changed = false;
-            for vertex in 0..self.vertices.len() as u32 {
-                changed |= self.collapse(vertex, error_m);
+            for vertex in 0..self.vertices.len() {
+                if std::mem::take(&mut self.waiting[vertex]) {
+                    changed |= self.collapse(vertex as u32, error_m);
+                }
             }
         }
     }
@@ -81,6 +92,9 @@ impl Welded {
         match best {
             Some((cost, to)) if self.moved_m[vertex as usize] + cost < error_m => {
                 self.draw_into(vertex, to, cost);
+                for neighbour in neighbours {
+                    self.waiting[neighbour as usize] = true;
+                }
                 true
             }
             _ => false,
