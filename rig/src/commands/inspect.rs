@@ -120,7 +120,9 @@ fn read(file: &Path) -> anyhow::Result<Contents> {
 fn text(c: &Contents) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let mut line = |name: &str, value: String| drop(writeln!(text, "{name:<12} {value}"));
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<12} {value}");
+    };
     let at = |tick: Tick| format!("tick {tick} ({:.2} s)", tick as f64 / f64::from(TICK_HZ));
     line("file", format!("{} ({}, {} bytes)", c.file, c.kind, c.bytes));
     line("map", format!("{}{}", c.figures.map, if c.embedded_map { " (embedded)" } else { "" }));

@@ -1,8 +1,8 @@
 //! The simulated semantic driver: a function of the mask, the HUD and its last steering.
 
-mod path;
-mod sight;
-mod speed;
+pub mod path;
+pub mod sight;
+pub mod speed;
 #[cfg(test)]
 mod tests;
 
