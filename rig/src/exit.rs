@@ -23,14 +23,19 @@ impl std::fmt::Display for Usage {
 
 impl std::error::Error for Usage {}
 
-/// The exit code: 0 ok, 1 error (unreadable, damaged), 2 usage, 3 a check failed.
-pub fn code(result: &anyhow::Result<Verdict>) -> ExitCode {
-    ExitCode::from(match result {
+/// The exit code as a number: 0 ok, 1 error (unreadable, damaged), 2 usage, 3 a check failed.
+pub fn number(result: &anyhow::Result<Verdict>) -> u8 {
+    match result {
         Ok(Verdict::Ok) => 0,
         Ok(Verdict::CheckFailed) => 3,
         Err(error) if error.is::<Usage>() => 2,
         Err(_) => 1,
-    })
+    }
+}
+
+/// The exit code for the system.
+pub fn code(result: &anyhow::Result<Verdict>) -> ExitCode {
+    ExitCode::from(number(result))
 }
 
 /// An error with its causes as one line.

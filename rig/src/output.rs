@@ -41,6 +41,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let folder = folder_of(path);
     let mut file = tempfile::NamedTempFile::new_in(&folder).with_context(|| folder.display().to_string())?;
     file.write_all(bytes).with_context(|| path.display().to_string())?;
+    make_readable(file.path(), 0o644)?;
     file.persist(path).with_context(|| path.display().to_string())?;
     Ok(())
 }
@@ -78,7 +79,7 @@ impl PendingFolder {
 
     /// Gives the folder its name.
     pub fn finish(self) -> anyhow::Result<()> {
-        make_readable(self.temporary.path())?;
+        make_readable(self.temporary.path(), 0o755)?;
         if self.path.exists() {
             fs::remove_dir(&self.path).with_context(|| self.path.display().to_string())?;
         }
@@ -89,12 +90,12 @@ impl PendingFolder {
     }
 }
 
-/// Temporary folders are private; results are not.
-fn make_readable(path: &Path) -> anyhow::Result<()> {
+/// What is temporary is private; results are not.
+fn make_readable(path: &Path, mode: u32) -> anyhow::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        fs::set_permissions(path, fs::Permissions::from_mode(0o755)).with_context(|| path.display().to_string())?;
+        fs::set_permissions(path, fs::Permissions::from_mode(mode)).with_context(|| path.display().to_string())?;
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Progress on stderr, and Ctrl-C.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -21,11 +21,17 @@ pub fn bar(what: &str, steps: u64) -> ProgressBar {
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Listens to Ctrl-C from now on. Once a process.
+    /// Listens to Ctrl-C from now on; everyone who listens shares the flag.
     pub fn listen() -> anyhow::Result<Self> {
+        static SHARED: Mutex<Option<Interrupt>> = Mutex::new(None);
+        let mut shared = SHARED.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(interrupt) = &*shared {
+            return Ok(interrupt.clone());
+        }
         let interrupt = Self::default();
         let flag = Arc::clone(&interrupt.0);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("listening to Ctrl-C")?;
+        *shared = Some(interrupt.clone());
         Ok(interrupt)
     }
 

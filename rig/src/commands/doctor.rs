@@ -1,8 +1,138 @@
 //! Says what this machine has and how fast it is.
 
+use std::fmt::Write;
+use std::path::Path;
+
+use gilrs::Gilrs;
+use kernel::{TickInput, World};
+use render::{Camera, RenderOptions, Renderer};
+use serde::Serialize;
+
+use crate::cli::CheckpointChoice;
+use crate::clock::seconds_of;
 use crate::exit::Verdict;
+use crate::maps::Map;
+use crate::output;
+use crate::vision::{DEFAULT_SIZE, Eye};
+
+/// Ticks, frames and inferences that are measured.
+const TICKS: u32 = 600;
+const FRAMES: u32 = 20;
+/// Where the bundled checkpoint lies in the repository.
+const BUNDLED_CHECKPOINT: &str = "perception/checkpoints/early.onnx";
+
+/// What this machine has.
+#[derive(Debug, Serialize)]
+struct Findings {
+    cores: usize,
+    adapters: Vec<Adapter>,
+    devices: Vec<String>,
+    budgets: Vec<Budget>,
+    /// What does not work, and what to do about it.
+    problems: Vec<String>,
+}
+
+/// A graphics adapter.
+#[derive(Debug, Serialize)]
+struct Adapter {
+    name: String,
+    backend: String,
+    driver: String,
+    is_cpu: bool,
+}
+
+/// A measured time.
+#[derive(Debug, Serialize)]
+struct Budget {
+    what: &'static str,
+    ms: f64,
+    /// How many of it fit into the time that a live drive gives it.
+    times_real_time: f64,
+}
 
 /// Runs `aeye doctor`.
-pub fn run(_json: bool) -> anyhow::Result<Verdict> {
-    todo!()
+pub fn run(json: bool) -> anyhow::Result<Verdict> {
+    let mut findings = Findings {
+        cores: std::thread::available_parallelism().map_or(1, |n| n.get()),
+        adapters: adapters(),
+        devices: Vec::new(),
+        budgets: Vec::new(),
+        problems: Vec::new(),
+    };
+    match devices() {
+        Ok(devices) => findings.devices = devices,
+        Err(reason) => findings.problems.push(reason),
+    }
+    if let Err(error) = measure(&mut findings.budgets) {
+        findings.problems.push(format!("{error:#}"));
+    }
+    output::print(json, &findings, || text(&findings))?;
+    Ok(if findings.problems.is_empty() { Verdict::Ok } else { Verdict::CheckFailed })
+}
+
+fn adapters() -> Vec<Adapter> {
+    let adapters = render::adapters().into_iter();
+    adapters.map(|a| Adapter { name: a.name, backend: a.backend, driver: a.driver, is_cpu: a.is_cpu }).collect()
+}
+
+/// Names of the wheels and gamepads that are plugged in.
+fn devices() -> Result<Vec<String>, String> {
+    match Gilrs::new() {
+        Ok(gilrs) => Ok(gilrs.gamepads().map(|(_, pad)| pad.os_name().to_owned()).collect()),
+        // A platform without gamepads is none with a fault.
+        Err(gilrs::Error::NotImplemented(_)) => Ok(Vec::new()),
+        Err(error) => Err(format!("game devices: {error}")),
+    }
+}
+
+/// World step, rendering and inference, as a drive needs them.
+fn measure(budgets: &mut Vec<Budget>) -> anyhow::Result<()> {
+    let mut each = |what, ms: f64, needed_ms: f64| budgets.push(Budget { what, ms, times_real_time: needed_ms / ms });
+    let map = Map::find(kernel::map::BUNDLED[0])?;
+    let mut world = World::new(&map.scenario(1), &map.network)?;
+    let ((), s) = seconds_of(|| (0..TICKS).for_each(|_| drop(world.step(&TickInput::default()))));
+    each("world step", 1e3 * s / f64::from(TICKS), 1e3 / f64::from(kernel::time::TICK_HZ));
+
+    let mut renderer = Renderer::new(&map.network, &RenderOptions::default())?;
+    let camera = Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1);
+    let frame = renderer.draw(&world.scene(), &camera)?;
+    let (drawn, s) = seconds_of(|| (0..FRAMES).try_for_each(|_| renderer.draw(&world.scene(), &camera).map(drop)));
+    drawn?;
+    each("frame 256x128", 1e3 * s / f64::from(FRAMES), 100.0);
+
+    if Path::new(BUNDLED_CHECKPOINT).exists() {
+        let mut eye = Eye::open(&CheckpointChoice::File(BUNDLED_CHECKPOINT.into()))?;
+        let (seen, s) = seconds_of(|| (0..FRAMES).try_for_each(|_| eye.see(frame.clone()).map(drop)));
+        seen?;
+        each("inference 256x128", 1e3 * s / f64::from(FRAMES), 100.0);
+    }
+    Ok(())
+}
+
+fn text(findings: &Findings) -> String {
+    let mut text = format!("cores     {}", findings.cores);
+    // Writing to a string cannot fail.
+    let mut line = |name: &str, value: String| {
+        let _ = write!(text, "\n{name:<9} {value}");
+    };
+    if findings.adapters.is_empty() {
+        line("adapter", "none: install a Vulkan driver (on Debian: apt install libvulkan1 mesa-vulkan-drivers)".into());
+    }
+    for a in &findings.adapters {
+        let kind = if a.is_cpu { "CPU" } else { "GPU" };
+        line("adapter", format!("{} ({kind}, {}, {})", a.name, a.backend, a.driver));
+    }
+    if findings.devices.is_empty() {
+        line("device", "none".into());
+    }
+    for device in &findings.devices {
+        line("device", device.clone());
+    }
+    for b in &findings.budgets {
+        line("measured", format!("{}: {:.3} ms, {:.1} times real time", b.what, b.ms, b.times_real_time));
+    }
+    for problem in &findings.problems {
+        line("problem", problem.clone());
+    }
+    text
 }

@@ -7,4 +7,7 @@ mod replay_budget;
 mod replay_case;
 mod replay_damage;
 mod replay_verify;
+mod rig_bots;
+mod rig_campaign;
+mod rig_cli;
 mod tidy;

@@ -1,5 +1,6 @@
-//! The simulated semantic driver: a function of the mask, the HUD and its last steering.
+//! The simulated semantic driver: a function of the mask, the HUD and the little it remembers of them.
 
+pub mod memory;
 pub mod path;
 pub mod sight;
 pub mod speed;
@@ -10,8 +11,9 @@ use kernel::time::TICK_S;
 use kernel::{Controls, ego, ops};
 
 use super::{Driver, SemanticView};
+use memory::{Moved, Tracks, Trail};
 use path::Arc;
-use sight::Sight;
+use sight::{Contact, Sight};
 use speed::Wish;
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
@@ -27,20 +29,46 @@ const SPEED_TIME_S: f32 = 0.7;
 pub struct SemanticBot {
     /// Steering of the last tick, [-1, 1], positive to the right.
     steer: f32,
+    trail: Trail,
+    tracks: Tracks,
+    /// The mask that was looked at last, and where others stood in it.
+    ids: Vec<u8>,
+    contacts: Vec<Contact>,
 }
 
 impl Driver<SemanticView<'_>> for SemanticBot {
     fn controls(&mut self, view: &SemanticView<'_>) -> Controls {
         let sight = Sight::new(view.mask);
-        let arc = path::choose(&sight, &view.hud.arrow);
-        let wish = speed::wish(&sight, arc, &view.hud);
+        let (arc, wish) = self.decide(&sight, view);
         self.steer = follow(self.steer, steer_for(arc));
         let (throttle, brake) = pedals(view.hud.speed_mps, &wish);
         Controls::from_fractions(self.steer, throttle, brake)
     }
 }
 
-/// Steering that drives an arc (kinematic single-track model).
+impl SemanticBot {
+    /// Takes in the view: where to steer, and how fast to go.
+    pub fn decide(&mut self, sight: &Sight<'_>, view: &SemanticView<'_>) -> (Arc, Wish) {
+        let moved = Moved::along(arc_of(self.steer), view.hud.speed_mps);
+        self.trail.extend(moved, path::arrow_point(&view.hud.arrow));
+        self.tracks.carry(moved);
+        if self.ids != view.mask.ids {
+            self.ids.clear();
+            self.ids.extend_from_slice(view.mask.ids);
+            self.contacts = sight.contacts();
+            self.tracks.look(&self.contacts);
+        }
+        let arc = path::choose(sight, &view.hud.arrow, &self.trail);
+        (arc, speed::wish(sight, arc, &view.hud, &self.contacts, &self.tracks))
+    }
+}
+
+/// The arc that a steering angle drives (kinematic single-track model).
+fn arc_of(steer: f32) -> Arc {
+    Arc { curvature: -ops::tan(steer * ego::MAX_WHEEL_ANGLE_RAD) / ego::WHEELBASE_M }
+}
+
+/// The steering angle that drives an arc.
 fn steer_for(arc: Arc) -> f32 {
     (-ops::atan2(ego::WHEELBASE_M * arc.curvature, 1.0) / ego::MAX_WHEEL_ANGLE_RAD).clamp(-1.0, 1.0)
 }

@@ -3,10 +3,15 @@
 use kernel::events::RouteArrow;
 use kernel::{ego, ops};
 
+use super::memory::{Point, Trail};
 use super::sight::{Ground, Sight};
 
 /// Distance of the point that the arrow of the HUD shows, metres from the middle of the car.
 pub const ARROW_M: f32 = 12.0;
+/// Distance to a junction within which lines and edges stop to lead, metres.
+const JUNCTION_M: u16 = 8;
+/// Distance of the point on the trail that is steered to in junctions, metres.
+const TURN_LOOK_M: f32 = 6.5;
 /// Sharpest arc that is tried, 1/m; about the car's turning circle.
 const SHARPEST: f32 = 0.2;
 /// From the rear axle to the middle of the car, metres.
@@ -99,17 +104,22 @@ impl Arc {
     }
 }
 
-/// The arc to steer.
-pub fn choose(sight: &Sight<'_>, arrow: &RouteArrow) -> Arc {
+/// The place that the arrow points to, in the car's frame.
+pub fn arrow_point(arrow: &RouteArrow) -> Point {
     let bearing_rad = -f32::from(arrow.bearing_deg).to_radians();
-    let by_arrow = Arc::to(MIDDLE_M + ARROW_M * ops::cos(bearing_rad), ARROW_M * ops::sin(bearing_rad));
-    let in_junction = arrow.distance_m < 8;
-    let shift_m = if in_junction { None } else { lane_shift_m(sight, by_arrow) };
-    let wanted = shift_m.map_or(by_arrow, |shift_m| {
-        let (x, y) = by_arrow.beside(MIDDLE_M + ARROW_M, shift_m);
-        Arc::to(x, y)
-    });
-    nearest_on_road(sight, wanted)
+    (MIDDLE_M + ARROW_M * ops::cos(bearing_rad), ARROW_M * ops::sin(bearing_rad))
+}
+
+/// The arc to steer: in junctions along the remembered arrows, elsewhere along the lane.
+pub fn choose(sight: &Sight<'_>, arrow: &RouteArrow, trail: &Trail) -> Arc {
+    let (x_m, y_m) = arrow_point(arrow);
+    let by_arrow = Arc::to(x_m, y_m);
+    if arrow.distance_m < JUNCTION_M {
+        let by_trail = trail.point_at(TURN_LOOK_M).map(|(x_m, y_m)| Arc::to(x_m, y_m));
+        return nearest_on_road(sight, by_trail.unwrap_or(by_arrow));
+    }
+    let shifted = lane_shift_m(sight, by_arrow).map(|shift_m| by_arrow.beside(MIDDLE_M + ARROW_M, shift_m));
+    nearest_on_road(sight, shifted.map_or(by_arrow, |(x_m, y_m)| Arc::to(x_m, y_m)))
 }
 
 /// How far to the left of the arc the middle of its lane lies, by lines and edges.

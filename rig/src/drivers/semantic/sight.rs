@@ -95,63 +95,46 @@ impl<'a> Sight<'a> {
         ground_of(self.tag(column as usize, row as usize))
     }
 
-    /// For each column, where the nearest person and the nearest vehicle stand. Blobs that are too
-    /// low for their distance are noise; so are single columns.
+    /// Where people and vehicles stand, column by column. Blobs that are too low for their distance
+    /// are noise; so are single columns.
     pub fn contacts(&self) -> Vec<Contact> {
-        let columns: Vec<[Option<Contact>; 2]> = (0..self.mask.width).map(|c| self.contacts_of_column(c)).collect();
-        let agrees = |a: Option<Contact>, b: Contact| a.is_some_and(|a| (a.x_m - b.x_m).abs() < 1.0 + 0.1 * b.x_m);
-        let mut contacts = Vec::new();
-        for (i, column) in columns.iter().enumerate() {
-            for (kind, contact) in column.iter().enumerate() {
-                let Some(contact) = *contact else { continue };
-                let left = i > 0 && agrees(columns[i - 1][kind], contact);
-                let right = columns.get(i + 1).is_some_and(|c| agrees(c[kind], contact));
-                if left || right {
-                    contacts.push(contact);
-                }
-            }
-        }
-        contacts
+        let columns: Vec<Vec<Contact>> = (0..self.mask.width).map(|c| self.contacts_of_column(c)).collect();
+        let agree = |a: &Contact, b: &Contact| (a.x_m - b.x_m).abs() < 1.0 + 0.15 * b.x_m;
+        let seen_beside = |column: usize, contact: &Contact| {
+            let beside = [column.checked_sub(1), Some(column + 1)];
+            beside.into_iter().flatten().filter_map(|c| columns.get(c)).flatten().any(|other| agree(other, contact))
+        };
+        let all = columns.iter().enumerate().flat_map(|(column, contacts)| contacts.iter().map(move |c| (column, c)));
+        all.filter(|(column, contact)| seen_beside(*column, contact)).map(|(_, contact)| *contact).collect()
     }
 
-    /// The nearest vehicle and the nearest person of a column.
-    fn contacts_of_column(&self, column: usize) -> [Option<Contact>; 2] {
-        let mut found = [None, None];
+    /// The blobs of a column, nearest first. A rider and his bicycle are one blob, and a person behind
+    /// a car is one with the car: what touches the ground counts.
+    fn contacts_of_column(&self, column: usize) -> Vec<Contact> {
+        let mut found = Vec::new();
         let mut row = self.mask.height;
-        while row > self.horizon() && found.iter().any(Option::is_none) {
-            let tag = self.tag(column, row - 1);
-            let top = self.run_top(column, row, tag);
-            if is_vehicle(tag) || is_person(tag) {
-                let kind = usize::from(is_person(tag));
-                if found[kind].is_none() && self.is_tall_enough(row - top, row - 1, is_person(tag)) {
-                    found[kind] = self.contact(column, row, is_person(tag));
-                }
+        while row > self.horizon() {
+            let hides = |r: &usize| ground_of(self.tag(column, *r)) == Ground::Hidden;
+            let rows = (0..row).rev().take_while(hides).count();
+            if rows > 0 {
+                found.extend(self.contact(column, row, rows));
             }
-            row = top;
+            row -= rows.max(1);
         }
         found
     }
 
-    /// The row above which the run of equal kind that ends above `row` stops.
-    fn run_top(&self, column: usize, row: usize, tag: u8) -> usize {
-        let same = |t: u8| t == tag || (is_vehicle(t) && is_vehicle(tag)) || (is_person(t) && is_person(tag));
-        (0..row - 1).rev().take_while(|&r| same(self.tag(column, r))).last().unwrap_or(row - 1)
-    }
-
-    fn is_tall_enough(&self, rows: usize, bottom_row: usize, is_person: bool) -> bool {
-        let height_m = if is_person { PERSON_HEIGHT_M } else { VEHICLE_HEIGHT_M };
-        let ahead_m = self.row_x_m(bottom_row) - self.camera.position.x;
-        rows >= LEAST_ROWS && rows as f32 >= LEAST_SHARE * height_m * self.focal_px / ahead_m
-    }
-
-    fn contact(&self, column: usize, row: usize, is_person: bool) -> Option<Contact> {
+    /// The contact of a blob of `rows` rows that ends above `row`.
+    fn contact(&self, column: usize, row: usize, rows: usize) -> Option<Contact> {
+        let is_person = is_person(self.tag(column, row - 1));
         let x_m = self.row_x_m(row - 1);
-        let below = (row < self.mask.height).then(|| self.tag(column, row));
-        // A person above a vehicle rides it or stands behind it: the vehicle's contact counts.
-        let rides = is_person && below.is_some_and(is_vehicle);
-        let on_road = below.is_none_or(|t| matches!(ground_of(t), Ground::Road | Ground::Line));
+        let height_m = if is_person { PERSON_HEIGHT_M } else { VEHICLE_HEIGHT_M };
+        let expected_rows = height_m * self.focal_px / (x_m - self.camera.position.x);
+        let is_tall_enough = rows >= LEAST_ROWS && rows as f32 >= LEAST_SHARE * expected_rows;
+        let below = (row < self.mask.height).then(|| ground_of(self.tag(column, row)));
+        let on_road = below.is_none_or(|ground| ground != Ground::Other);
         let y_m = self.column_y_m(column, x_m);
-        (x_m < FARTHEST_M && !rides).then_some(Contact { x_m, y_m, is_person, on_road })
+        (is_tall_enough && x_m < FARTHEST_M).then_some(Contact { x_m, y_m, is_person, on_road })
     }
 
     /// What borders the lane around a point of a row: metres to the left and to the right of

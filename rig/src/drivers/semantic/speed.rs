@@ -3,8 +3,10 @@
 use kernel::ego::{self, FRONT_M};
 use kernel::events::Hud;
 use kernel::map::Turn;
+use kernel::ops;
 use kernel::signals::LightPhase;
 
+use super::memory::{Track, Tracks};
 use super::path::Arc;
 use super::sight::{Contact, Sight};
 
@@ -26,6 +28,12 @@ const TURN_MPS: f32 = 5.5;
 const CROSSING_MPS: f32 = 7.0;
 /// Speed at which the end of the visible road is approached, m/s.
 const FEELING_MPS: f32 = 4.5;
+/// Distance to a junction within which others are given way, metres.
+const GIVE_WAY_M: u16 = 14;
+/// Quarters of a second that are looked ahead there.
+const GIVE_WAY_STEPS: u32 = 16;
+/// Distance at which two vehicles meet, metres.
+const MEET_M: f32 = 3.0;
 /// How far the road is looked at, metres.
 const REACH_M: f32 = 45.0;
 /// Side clearance to vehicles, to people beside the road, and to people on it, metres.
@@ -47,9 +55,9 @@ pub struct Wish {
     pub stop_in_m: Option<f32>,
 }
 
-/// The speed for an arc.
-pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud) -> Wish {
-    let stops = [obstacle_m(sight, arc), stop_line_m(hud)];
+/// The speed for an arc among contacts and moving vehicles.
+pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud, contacts: &[Contact], tracks: &Tracks) -> Wish {
+    let stops = [obstacle_m(contacts, arc), stop_line_m(hud), give_way_m(arc, hud, tracks)];
     let stop_in_m = stops.into_iter().flatten().reduce(f32::min);
     let bend_mps = (LATERAL_MPS2 / arc.curvature.abs().max(1e-3)).sqrt();
     let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M);
@@ -59,10 +67,10 @@ pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud) -> Wish {
 }
 
 /// Metres from the front of the car to where it must stand because of people and vehicles.
-fn obstacle_m(sight: &Sight<'_>, arc: Arc) -> Option<f32> {
-    let distances = sight.contacts().into_iter().filter_map(|contact| {
+fn obstacle_m(contacts: &[Contact], arc: Arc) -> Option<f32> {
+    let distances = contacts.iter().filter_map(|contact| {
         let (s_m, left_m) = arc.project(contact.x_m, contact.y_m);
-        let in_the_way = s_m < REACH_M && left_m.abs() < HALF_WIDTH_M + clearance_m(&contact);
+        let in_the_way = s_m < REACH_M && left_m.abs() < HALF_WIDTH_M + clearance_m(contact);
         in_the_way.then_some(s_m - FRONT_M - STANDOFF_M)
     });
     distances.reduce(f32::min)
@@ -74,6 +82,28 @@ fn clearance_m(contact: &Contact) -> f32 {
         (true, false) => BESIDE_WALKER_M,
         (true, true) => BESIDE_CROSSING_M,
     }
+}
+
+/// Metres from the front of the car to where it lets others pass at a junction without lights: where
+/// the car would meet a moving vehicle within the next seconds if both went on.
+fn give_way_m(arc: Arc, hud: &Hud, tracks: &Tracks) -> Option<f32> {
+    if hud.light.is_some() || hud.arrow.distance_m > GIVE_WAY_M {
+        return None;
+    }
+    let own_mps = hud.speed_mps.max(3.0);
+    let meets = |track: &Track| {
+        (1..=GIVE_WAY_STEPS).find_map(|step| {
+            let t_s = 0.25 * step as f32;
+            let (x, y, _) = arc.at(FRONT_M + own_mps * t_s);
+            let other = (track.at.0 + t_s * track.velocity_mps.0, track.at.1 + t_s * track.velocity_mps.1);
+            (ops::hypot(other.0 - x, other.1 - y) < MEET_M).then_some(own_mps * t_s)
+        })
+    };
+    let same_way = |track: &&Track| track.velocity_mps.0 > 2.0 * track.velocity_mps.1.abs();
+    let meeting_m = tracks.moving(1.5).filter(|t| !same_way(t)).filter_map(meets).reduce(f32::min)?;
+    // Before the junction it waits at its border, inside right before the other's way.
+    let border_m = f32::from(hud.arrow.distance_m) - 1.0;
+    Some(if border_m > 0.0 { border_m } else { meeting_m - MEET_M })
 }
 
 /// Metres from the front of the car to a stop line that has to be respected.

@@ -1,0 +1,187 @@
+//! What the driver remembers: where the arrow pointed before, and how vehicles moved.
+
+use kernel::ops;
+use kernel::time::TICK_S;
+
+use super::path::Arc;
+use super::sight::Contact;
+
+/// Distance between two remembered points of the route, metres.
+const TRAIL_STEP_M: f32 = 0.4;
+/// Half of the stretch of the trail that is averaged, metres; evens out the steps of the arrow.
+const TRAIL_AVERAGE_M: f32 = 1.6;
+/// Share of a new measurement in a velocity.
+const NEW_SHARE: f32 = 0.3;
+/// Gap that splits contacts into two vehicles, metres, and its growth with distance.
+const GAP_M: f32 = 1.2;
+const GAP_PER_M: f32 = 0.08;
+/// Looks after which the velocity of a vehicle is believed.
+const BELIEVED_AFTER: u32 = 4;
+
+/// A point in the car's frame, metres: x forward from the rear axle, y left.
+pub type Point = (f32, f32);
+
+/// How the car moved in a tick: metres forward, radians to the left.
+#[derive(Clone, Copy, Debug)]
+pub struct Moved {
+    /// Metres along the car's axis.
+    pub forward_m: f32,
+    /// Radians counter-clockwise.
+    pub turned_rad: f32,
+}
+
+impl Moved {
+    /// By driving an arc for a tick.
+    pub fn along(arc: Arc, speed_mps: f32) -> Self {
+        let forward_m = speed_mps * TICK_S;
+        Self { forward_m, turned_rad: arc.curvature * forward_m }
+    }
+
+    /// Where a fixed point is after the movement.
+    fn shift(&self, (x, y): Point) -> Point {
+        self.turn((x - self.forward_m, y))
+    }
+
+    fn turn(&self, (x, y): Point) -> Point {
+        let (sin, cos) = (ops::sin(self.turned_rad), ops::cos(self.turned_rad));
+        (x * cos + y * sin, y * cos - x * sin)
+    }
+}
+
+/// The places that the arrow pointed to, carried along while the car moves.
+#[derive(Clone, Debug, Default)]
+pub struct Trail {
+    points: Vec<Point>,
+    driven_m: f32,
+}
+
+impl Trail {
+    /// Carries the trail along and adds the place that the arrow points to now.
+    pub fn extend(&mut self, moved: Moved, arrow: Point) {
+        self.points.iter_mut().for_each(|p| *p = moved.shift(*p));
+        self.points.retain(|p| p.0 > 0.0);
+        self.driven_m += moved.forward_m;
+        if self.driven_m >= TRAIL_STEP_M || self.points.is_empty() {
+            self.driven_m = 0.0;
+            self.points.push(arrow);
+        }
+    }
+
+    /// The middle of the remembered places about `distance_m` away; `None` where there are none.
+    pub fn point_at(&self, distance_m: f32) -> Option<Point> {
+        let near = |p: &&Point| (ops::hypot(p.0, p.1) - distance_m).abs() < TRAIL_AVERAGE_M;
+        let near: Vec<&Point> = self.points.iter().filter(near).collect();
+        let n = near.len() as f32;
+        let sum = near.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
+        (n > 2.0).then(|| (sum.0 / n, sum.1 / n))
+    }
+}
+
+/// A vehicle that was seen more than once.
+#[derive(Clone, Copy, Debug)]
+pub struct Track {
+    /// Its nearest point.
+    pub at: Point,
+    /// Velocity over ground, m/s.
+    pub velocity_mps: Point,
+    looks: u32,
+}
+
+/// The vehicles in sight.
+#[derive(Clone, Debug, Default)]
+pub struct Tracks {
+    tracks: Vec<Track>,
+    since_look_s: f32,
+}
+
+impl Tracks {
+    /// Carries all tracks along while the car moves.
+    pub fn carry(&mut self, moved: Moved) {
+        self.since_look_s += TICK_S;
+        for track in &mut self.tracks {
+            track.at = moved.shift(track.at);
+            track.velocity_mps = moved.turn(track.velocity_mps);
+        }
+    }
+
+    /// Matches a new mask's contacts with what is known.
+    pub fn look(&mut self, contacts: &[Contact]) {
+        let dt_s = self.since_look_s.max(TICK_S);
+        self.since_look_s = 0.0;
+        let known = std::mem::take(&mut self.tracks);
+        for at in blobs(contacts) {
+            let expected = |t: &Track| (t.at.0 + dt_s * t.velocity_mps.0, t.at.1 + dt_s * t.velocity_mps.1);
+            let off = |t: &Track| ops::hypot(expected(t).0 - at.0, expected(t).1 - at.1);
+            let same = known.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|t| off(t) < 2.0 + 0.1 * at.0);
+            self.tracks.push(match same {
+                Some(t) => {
+                    let measured = ((at.0 - t.at.0) / dt_s, (at.1 - t.at.1) / dt_s);
+                    let mix = |old: f32, new: f32| old + NEW_SHARE * (new.clamp(-20.0, 20.0) - old);
+                    let velocity_mps = (mix(t.velocity_mps.0, measured.0), mix(t.velocity_mps.1, measured.1));
+                    Track { at, velocity_mps, looks: t.looks + 1 }
+                }
+                None => Track { at, velocity_mps: (0.0, 0.0), looks: 0 },
+            });
+        }
+    }
+
+    /// The vehicles whose movement is known and faster than `least_mps`.
+    pub fn moving(&self, least_mps: f32) -> impl Iterator<Item = &Track> {
+        let speed = |t: &Track| ops::hypot(t.velocity_mps.0, t.velocity_mps.1);
+        self.tracks.iter().filter(move |t| t.looks >= BELIEVED_AFTER && speed(t) > least_mps)
+    }
+}
+
+/// One place for each vehicle: its nearest distance, the middle of its width.
+fn blobs(contacts: &[Contact]) -> Vec<Point> {
+    let mut blobs: Vec<(Point, Contact, f32)> = Vec::new();
+    for contact in contacts.iter().filter(|c| !c.is_person) {
+        let gap_m = GAP_M + GAP_PER_M * contact.x_m;
+        let of =
+            |last: &Contact| (last.x_m - contact.x_m).abs() < 2.0 * gap_m && (last.y_m - contact.y_m).abs() < gap_m;
+        match blobs.iter_mut().find(|(_, last, _)| of(last)) {
+            Some((at, last, left_m)) => {
+                *at = (at.0.min(contact.x_m), 0.5 * (*left_m + contact.y_m));
+                *last = *contact;
+            }
+            None => blobs.push(((contact.x_m, contact.y_m), *contact, contact.y_m)),
+        }
+    }
+    blobs.into_iter().map(|(at, ..)| at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STILL: Moved = Moved { forward_m: 0.0, turned_rad: 0.0 };
+
+    #[test]
+    fn a_trail_stays_where_it_was_laid() {
+        let mut trail = Trail::default();
+        let forward = Moved { forward_m: 0.1, turned_rad: 0.0 };
+        (0..120).for_each(|_| trail.extend(forward, (12.0, 1.0)));
+        let (x, y) = trail.point_at(6.0).expect("laid");
+        assert!((x - 6.0).abs() < 0.6 && (y - 1.0).abs() < 1e-3, "{x} {y}");
+        assert_eq!(Trail::default().point_at(6.0), None);
+    }
+
+    #[test]
+    fn velocities_are_over_ground() {
+        let mut tracks = Tracks::default();
+        let moved = Moved { forward_m: 0.1, turned_rad: 0.0 };
+        // The car drives at 6 m/s; a vehicle crosses from the left at 4 m/s, another one stands.
+        for look in 0..30 {
+            let contact = |x_m: f32, y_m: f32| Contact { x_m, y_m, is_person: false, on_road: true };
+            let away = 40.0 - 0.6 * look as f32;
+            let crossing = 12.0 - 0.4 * look as f32;
+            tracks.look(&[contact(away, crossing + 0.5), contact(away, crossing), contact(away + 2.0, -9.0)]);
+            (0..6).for_each(|_| tracks.carry(moved));
+        }
+        let moving: Vec<_> = tracks.moving(1.5).collect();
+        assert_eq!(moving.len(), 1);
+        let (vx, vy) = moving[0].velocity_mps;
+        assert!(vx.abs() < 0.5 && (vy + 4.0).abs() < 0.5, "{vx} {vy}");
+        assert_eq!(STILL.shift((3.0, 4.0)), (3.0, 4.0));
+    }
+}

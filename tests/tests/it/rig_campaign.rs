@@ -1,0 +1,82 @@
+//! A campaign is a function of its arguments: not of the number of jobs, nor of interruptions. A drive
+//! that is killed leaves what it said.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::path::Path;
+
+use render::{RenderOptions, Renderer};
+use replay::Recording;
+use rig::campaign::{Plan, RunLine, Until, drive_all};
+use rig::maps::Map;
+use rig::progress::Interrupt;
+use rig::simulate;
+use rig::vision::{Eye, Vision};
+
+fn plan(out: &Path) -> Plan {
+    let maps = Map::find_all(&["all".to_owned()]).expect("bundled maps");
+    Plan { maps, scenario: None, run_seconds: 10, seed: 5, until: Until::Runs(2), out: out.to_owned() }
+}
+
+fn drive(out: &Path, jobs: usize) -> Vec<RunLine> {
+    drive_all(&plan(out), &Eye::Truth, jobs, &Interrupt::default()).expect("a campaign")
+}
+
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).expect("a readable folder").map(|e| e.expect("an entry"));
+    entries.map(|e| (e.file_name().to_string_lossy().into_owned(), fs::read(e.path()).expect("a file"))).collect()
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn jobs_and_interruptions_do_not_change_a_campaign() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (one, two) = (dir.path().join("one"), dir.path().join("two"));
+    fs::create_dir_all(&one).expect("writable");
+    fs::create_dir_all(&two).expect("writable");
+    let lines = drive(&one, 1);
+    assert_eq!(lines.len(), 2);
+    assert_eq!(lines, drive(&two, 2));
+    let whole = contents(&one);
+    assert!(whole.len() >= 2 && whole == contents(&two));
+
+    fs::remove_file(one.join(&lines[1].file)).expect("it was there");
+    assert_eq!(lines, drive(&one, 1));
+    assert_eq!(whole, contents(&one));
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn recordings_of_another_campaign_are_not_taken_for_this_one() {
+    let dir = tempfile::tempdir().expect("a folder");
+    drive(dir.path(), 1);
+    let other = Plan { seed: 6, ..plan(dir.path()) };
+    let error = drive_all(&other, &Eye::Truth, 1, &Interrupt::default()).expect_err("another seed");
+    assert!(error.to_string().contains("another campaign"), "{error}");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn at_any_moment_the_file_holds_all_but_the_last_second() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("run.mcap");
+    let map = Map::find("rural").expect("bundled");
+    let mut scenario = map.scenario(3);
+    scenario.rules.max_seconds = 8;
+    let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default()).expect("an adapter"), Eye::Truth);
+    let file = File::create(&path).expect("writable");
+    let mut looked = 0;
+    // What a process killed at this moment leaves is what the file system holds now.
+    let keep_on = |world: &kernel::World| {
+        if world.tick() % 37 == 36 {
+            let left = Recording::open(&path).expect("readable at any moment");
+            assert!(!left.finished() && left.log().last_tick() + 60 >= world.tick(), "tick {}", world.tick());
+            replay::verify(left.log(), &left.network().expect("its map")).expect("verifies");
+            looked += 1;
+        }
+        true
+    };
+    simulate::drive(&scenario, &map, vision, file, keep_on).expect("a drive");
+    assert!(looked > 5);
+    assert!(Recording::open(&path).expect("readable").finished());
+}
