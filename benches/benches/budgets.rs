@@ -101,8 +101,7 @@ impl Sight {
     fn open(network: &RoadNetwork) -> Result<Self, String> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../perception/checkpoints/early.onnx");
         let checkpoint = Checkpoint::load(&path).map_err(|e| e.to_string())?;
-        let segmenter =
-            Segmenter::new(&checkpoint, SIZE.0 as usize, SIZE.1 as usize).map_err(|e| e.to_string())?;
+        let segmenter = Segmenter::new(&checkpoint, SIZE.0 as usize, SIZE.1 as usize).map_err(|e| e.to_string())?;
         let renderer = Renderer::new(network, &RenderOptions::default()).map_err(|e| e.to_string())?;
         Ok(Self { renderer, segmenter, camera: Camera::driver(SIZE.0, SIZE.1) })
     }

@@ -5,10 +5,10 @@ use std::fs;
 use std::io::Cursor;
 use std::path::PathBuf;
 
+use ::tests::scenes::{Scene, busy_hamlet, follow_route};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{SceneSnapshot, TickInput, World};
 use replay::{Log, Manifest, Provenance, Recorder, Recording};
-use ::tests::scenes::{Scene, busy_city, follow_route};
 
 /// Ticks of driving before measuring starts: traffic has spread by then.
 pub const WARM_UP_TICKS: Tick = seconds(20);
@@ -33,7 +33,7 @@ impl BusyDrive {
     /// # Errors
     /// Says which value differs from `benches/golden.txt`.
     pub fn prepare() -> Result<Self, String> {
-        let scene = busy_city();
+        let scene = busy_hamlet();
         let world = scene.world_after(WARM_UP_TICKS);
         let mut end = world.clone();
         let inputs = (0..STEP_S * TICK_HZ)
@@ -68,7 +68,7 @@ pub fn recorded(scene: &Scene, drive_s: u32) -> Result<Log, String> {
         let output = world.step(&input);
         recorder.tick(&input, &output, &world.part_hashes()).map_err(|e| e.to_string())?;
     }
-    let bytes = recorder.finish(None).map_err(|e| e.to_string())?.into_inner();
+    let bytes = recorder.finish(world.arbiter().outcome).map_err(|e| e.to_string())?.into_inner();
     Ok(Recording::from_bytes(&bytes).map_err(|e| e.to_string())?.log().clone())
 }
 
