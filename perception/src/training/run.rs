@@ -119,7 +119,7 @@ impl Run {
     fn lesson(&self, share: &[usize], replica: u64) -> Lesson {
         let mut random = Random::new(&[self.options.seed, 2, self.state.adam.steps, replica]);
         let frames = share.iter().map(|i| &self.train.frames[*i]);
-        let pictures = augmented(frames, self.options.width, &mut random);
+        let pictures = augmented(frames, (self.options.width, self.options.height), &mut random);
         let target = Target {
             labels: &pictures.labels,
             width: self.options.width,

@@ -129,7 +129,7 @@ fn card(args: &TrainArgs, options: &TrainOptions, trained: &Trained) -> String {
          | optimiser | Adam, rate {rate}, polynomial decay of power 0.9 |\n\
          | batch | {batch} in {replicas} replicas |\n\
          | loss | cross-entropy at full resolution, a class weighs 1 / ln({CLASS_WEIGHT_OFFSET} + its share of the pixels) |\n\
-         | augmentation | horizontal flip; contrast, brightness and tint |\n\
+         | augmentation | horizontal flip; windows enlarged up to twice; contrast, brightness and tint |\n\
          | digest | BLAKE3 `{}` |\n\n",
         trained.parameters,
         trained.train_frames,
