@@ -120,7 +120,8 @@ fn card(args: &TrainArgs, options: &TrainOptions, trained: &Trained) -> String {
     let TrainOptions { horizon, seed, width, height, batch, replicas, rate } = options;
     let mut card = format!(
         "# {name}\n\n\
-         Fast-SCNN (Poudel et al. 2019), {} parameters, 16 classes, input {width}x{height}, logits at stride {LOGIT_STRIDE}.\n\n\
+         Fast-SCNN (Poudel et al. 2019) whose classifier gives 4x4 logits a position (dense upsampling, Wang et al. \
+         2018): {} parameters, 16 classes, input {width}x{height}, logits at stride {LOGIT_STRIDE}.\n\n\
          | recipe | |\n|---|---|\n\
          | epochs | {epochs} of a schedule of {horizon}{stopped} |\n\
          | frames | {} to learn from, {} to measure on (scenes of seeds of their own) |\n\
