@@ -72,7 +72,8 @@ struct Screen {
 impl Screen {
     fn show(&mut self, progress: Progress<'_>) {
         match progress {
-            Progress::Loaded { epochs, steps, .. } => {
+            Progress::Loaded { train, val, epochs, steps } => {
+                eprintln!("{train} frames to learn from, {val} to measure on; {epochs} epochs are done");
                 let left = u64::from(self.epochs.saturating_sub(epochs)) * steps as u64;
                 self.bar = progress::bar("train", left);
             }
