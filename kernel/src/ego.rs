@@ -164,7 +164,7 @@ impl Ego {
 fn engine_n(controls: &Controls, speed_mps: f32) -> f32 {
     let throttle = controls.throttle_fraction();
     if controls.has(Controls::REVERSE) {
-        let most = if speed_mps > GEAR_CHANGE_MPS || speed_mps < -MAX_REVERSE_MPS { 0.0 } else { MAX_REVERSE_N };
+        let most = if !(-MAX_REVERSE_MPS..=GEAR_CHANGE_MPS).contains(&speed_mps) { 0.0 } else { MAX_REVERSE_N };
         -throttle * most
     } else {
         let most = if speed_mps < -GEAR_CHANGE_MPS { 0.0 } else { MAX_DRIVE_N.min(MAX_POWER_W / speed_mps.max(1.0)) };

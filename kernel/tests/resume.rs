@@ -143,7 +143,7 @@ proptest! {
         let mut keyframe = (world.initial_keyframe(), 0);
         for (input, ticks) in drive {
             for _ in 0..ticks {
-                if log.len() % back == 0 {
+                if log.len().is_multiple_of(back) {
                     saved = Some((world.clone(), log.len()));
                 }
                 let output = world.step(&input);

@@ -107,7 +107,7 @@ impl Toy {
         let share = 1.0 / (s * s) as f32;
         let square = self.stride * self.stride;
         // From channel i to class c: only the class's own colour counts.
-        let weights = (0..9 * square).map(|i| if (i / square) % 4 == 0 { share } else { 0.0 }).collect();
+        let weights = (0..9 * square).map(|i| if (i / square).is_multiple_of(4) { share } else { 0.0 }).collect();
         let mut nodes = Vec::new();
         let mut image = "image";
         if self.element == DataType::Uint8 {

@@ -26,7 +26,7 @@ pub enum Eye {
     /// A network.
     Network {
         /// Its file.
-        checkpoint: Checkpoint,
+        checkpoint: Box<Checkpoint>,
         /// Itself, ready for its size.
         segmenter: Box<Segmenter>,
     },
@@ -45,7 +45,7 @@ impl Eye {
 
     fn open_for(choice: &CheckpointChoice, size: Option<(usize, usize)>) -> anyhow::Result<Self> {
         let CheckpointChoice::File(path) = choice else { return Ok(Self::Truth) };
-        let checkpoint = Checkpoint::load(path)?;
+        let checkpoint = Box::new(Checkpoint::load(path)?);
         let own = || checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
         let (width, height) = size.unwrap_or_else(own);
         let segmenter = Box::new(Segmenter::new(&checkpoint, width, height)?);

@@ -101,7 +101,7 @@ fn props() -> Vec<Prop> {
                     PropKind::ParkedCar,
                     x + 2.0,
                     side * 3.1,
-                    if side > 0.0 { 3.14 } else { 0.0 },
+                    if side > 0.0 { core::f32::consts::PI } else { 0.0 },
                     [4.5, 1.8, 1.5],
                     variant,
                 );
@@ -137,7 +137,7 @@ pub fn scene(moment: u32) -> SceneSnapshot {
             rotation: Quat::from_rotation_z(heading),
             speed_mps,
             phase_rad: (0.9 * t + id as f32) % core::f32::consts::TAU,
-            braking: id % 2 == 0,
+            braking: id.is_multiple_of(2),
         });
     };
     let back = core::f32::consts::PI;

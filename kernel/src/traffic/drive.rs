@@ -76,10 +76,10 @@ impl View<'_> {
             if junction::must_stop(signal, next, line) || !junction::near_enough(next, line, 6.0) {
                 next.flags &= !Vehicle::GRANTED;
             }
-        } else if let Some(asking) = self.members.asking(line.junction, index) {
-            if self.members.grants(self.ways, asking, &steps[line.inside.0..line.inside.1]) {
-                next.flags |= Vehicle::GRANTED;
-            }
+        } else if let Some(asking) = self.members.asking(line.junction, index)
+            && self.members.grants(self.ways, asking, &steps[line.inside.0..line.inside.1])
+        {
+            next.flags |= Vehicle::GRANTED;
         }
         self.wait(line, signal, steps, next);
     }
@@ -210,7 +210,7 @@ impl View<'_> {
                 return (ahead_m > 0.0).then_some((ahead_m, 0.0));
             }
         };
-        (between_m > 0.0).then(|| (between_m - entry.half_m - half_m, entry.speed_mps))
+        (between_m > 0.0).then_some((between_m - entry.half_m - half_m, entry.speed_mps))
     }
 
     fn advance(&self, index: usize, accel: f32, next: &mut Vehicle) {

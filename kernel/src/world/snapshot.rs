@@ -85,11 +85,14 @@ pub(super) struct Parts {
     pub output: OutputPart,
 }
 
+/// Appends the canonical bytes of one part.
+type Writer<'a> = &'a dyn Fn(&mut Vec<u8>);
+
 impl Parts {
     /// Appends the canonical bytes of the whole state; gives the end of each part.
     pub fn write(&self, traffic: &TrafficState, out: &mut Vec<u8>) -> [usize; PARTS.len()] {
         let mut ends = [0; PARTS.len()];
-        let parts: [&dyn Fn(&mut Vec<u8>); PARTS.len()] = [
+        let parts: [Writer<'_>; PARTS.len()] = [
             &|out| self.input.write(out),
             &|out| self.ego.write(out),
             &|out| traffic.vehicles.write(out),

@@ -4,7 +4,7 @@ use kernel::map::{Lane, LaneKind, RoadNetwork, StopKind, bake};
 
 /// The map of a file in the folder of real maps.
 fn load(name: &str) -> RoadNetwork {
-    let folder = option_env!("AEYE_REAL_MAPS").expect("the folder of real maps");
+    let Some(folder) = option_env!("AEYE_REAL_MAPS") else { panic!("the folder of real maps is missing") };
     let text = std::fs::read_to_string(format!("{folder}/{name}.xodr")).expect("a readable map");
     bake(name, &text).expect("a map")
 }

@@ -72,8 +72,7 @@ fn a_map_with_any_stretch_missing_bakes_or_is_refused() {
 fn elements_left_out_one_by_one_do_not_panic() {
     for tag in ["<signal ", "<object ", "<laneLink ", "<connection ", "<link>", "<width ", "<geometry ", "<control "] {
         let renamed = CROSS.replace(tag, &tag.replace('<', "<x"));
-        let closed =
-            renamed.replace(&tag.replace('<', "</").trim().to_owned(), &tag.replace('<', "</x").trim().to_owned());
+        let closed = renamed.replace(&tag.replace('<', "</").trim().to_owned(), tag.replace('<', "</x").trim());
         if let Ok(map) = bake("without", &closed) {
             check_sound(&map);
         }

@@ -25,7 +25,7 @@ fn inside(map: &RoadNetwork) -> impl Iterator<Item = &Lane> {
 
 /// Whether `a` runs east or west where it starts.
 fn is_level(a: &Lane) -> bool {
-    a.start().heading_rad.cos().abs() > 0.7
+    crate::ops::cos(a.start().heading_rad).abs() > 0.7
 }
 
 #[test]

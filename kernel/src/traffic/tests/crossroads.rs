@@ -84,7 +84,7 @@ fn overlap(lane: &Lane, other: &Lane) -> Option<(f32, f32)> {
     let near = |p: &&LanePoint| other.points.iter().any(|q| q.position.distance(p.position) < LANE_M * 0.8);
     let mut inside = lane.points.iter().filter(near).map(|p| p.s_m);
     let first = inside.next()?;
-    Some((first, inside.last().unwrap_or(first)))
+    Some((first, inside.next_back().unwrap_or(first)))
 }
 
 /// The crossroads with the given signs.

@@ -127,7 +127,7 @@ fn labels_agree_with_rays_cast_through_the_country() {
 #[test]
 fn the_comparison_finds_a_shifted_picture() {
     let truth: Vec<(u8, f64)> =
-        (0..WIDTH * HEIGHT).map(|i| (if i % WIDTH / 16 % 2 == 0 { 7 } else { 10 }, 5.0)).collect();
+        (0..WIDTH * HEIGHT).map(|i| (if (i % WIDTH / 16).is_multiple_of(2) { 7 } else { 10 }, 5.0)).collect();
     let draw = |shift: u32| Frame {
         class_ids: (0..WIDTH * HEIGHT).map(|i| truth[((i + shift) % (WIDTH * HEIGHT)) as usize].0).collect(),
         depth_m: vec![5.0; truth.len()],
