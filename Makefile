@@ -2,8 +2,6 @@
 
 PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
-# Mesa's choice of a device by window system complains on stderr where there is no desktop.
-export NODEVICE_SELECT := 1
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
 .PHONY: demo test bench setup build

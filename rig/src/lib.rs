@@ -11,6 +11,7 @@ pub mod lab;
 pub mod maps;
 pub mod output;
 pub mod progress;
+pub mod quiet;
 pub mod session;
 pub mod simulate;
 pub mod stats;

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
+    rig::quiet::start_over_without_complaints();
     let cli = rig::cli::Cli::parse();
     let result = rig::run(&cli);
     if let Err(error) = &result {
