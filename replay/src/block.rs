@@ -58,12 +58,19 @@ impl Block {
         self.happenings.intervention = self.happenings.intervention.or(output.intervention);
     }
 
-    /// Writes the block and the masks shown in it as one chunk.
-    pub fn write<W: Write>(&self, masks: &[MaskShown], out: &mut Container<W>) -> Result<(), Error> {
+    /// Writes the block and the masks shown in it as one chunk. `state` is the last keyframe before
+    /// it, and becomes the last one in it.
+    pub fn write<W: Write>(
+        &self,
+        masks: &[MaskShown],
+        state: &mut Vec<u8>,
+        out: &mut Container<W>,
+    ) -> Result<(), Error> {
         let last = self.mark.tick;
         out.put(Channel::Block, last, &wire::block_bytes(self))?;
         for keyframe in &self.keyframes {
-            out.put(Channel::Keyframe, keyframe.tick, &wire::keyframe_bytes(keyframe))?;
+            out.put(Channel::Keyframe, keyframe.tick, &wire::keyframe_bytes(keyframe, state))?;
+            state.clone_from(&keyframe.bytes);
         }
         if self.happenings != Happenings::default() {
             out.put(Channel::Events, last, &wire::happenings_bytes(&self.happenings))?;

@@ -11,19 +11,23 @@ use crate::layout::Channel;
 use crate::{Annotation, Error, Log, Manifest, Mark, MaskShown, RunSummary, wire};
 
 /// A log's file being written.
-pub(crate) struct LogFile<W: Write>(Container<W>);
+pub(crate) struct LogFile<W: Write> {
+    file: Container<W>,
+    /// Bytes of the last keyframe written.
+    state: Vec<u8>,
+}
 
 impl<W: Write> LogFile<W> {
     pub fn new(out: W, manifest: &Manifest, start: &Keyframe) -> Result<Self, Error> {
         let mut file = Container::new(out)?;
         file.put(Channel::Manifest, start.tick, &wire::manifest_bytes(manifest))?;
-        file.put(Channel::Keyframe, start.tick, &wire::keyframe_bytes(start))?;
+        file.put(Channel::Keyframe, start.tick, &wire::keyframe_bytes(start, &[]))?;
         file.flush()?;
-        Ok(Self(file))
+        Ok(Self { file, state: start.bytes.clone() })
     }
 
     pub fn block(&mut self, block: &Block, masks: &[MaskShown]) -> Result<(), Error> {
-        block.write(masks, &mut self.0)
+        block.write(masks, &mut self.state, &mut self.file)
     }
 
     pub fn finish(
@@ -34,10 +38,10 @@ impl<W: Write> LogFile<W> {
         summary: Option<&RunSummary>,
     ) -> Result<W, Error> {
         if !masks.is_empty() {
-            self.0.put(Channel::Masks, tick, &wire::masks_bytes(masks))?;
+            self.file.put(Channel::Masks, tick, &wire::masks_bytes(masks))?;
         }
-        self.0.put(Channel::End, tick, &wire::end_bytes(annotation, summary))?;
-        self.0.finish()
+        self.file.put(Channel::End, tick, &wire::end_bytes(annotation, summary))?;
+        self.file.finish()
     }
 }
 
@@ -59,7 +63,7 @@ impl Log {
             return Err(Error::Unsuited(format!("a log needs a mark at its last tick {}", self.last_tick())));
         }
         if !self.scenes.is_empty() {
-            file.0.put(Channel::Scenes, self.last_tick(), &wire::scenes_bytes(&self.scenes))?;
+            file.file.put(Channel::Scenes, self.last_tick(), &wire::scenes_bytes(&self.scenes))?;
         }
         file.finish(masks, self.last_tick(), self.annotation.as_ref(), self.summary.as_ref())
     }

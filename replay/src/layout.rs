@@ -49,7 +49,8 @@ pub(crate) const CHANNELS: [Layout; 7] = [
         channel: Channel::Keyframe,
         topic: "/keyframes",
         schema: "aeye.Keyframe.1",
-        text: "tick u64, state bytes of the whole world. The first one is where the log starts.",
+        text: "tick u64, length, state bytes of the whole world as a zstd frame whose dictionary is the state before. \
+               The first one is where the log starts and has no dictionary.",
     },
     Layout {
         channel: Channel::Block,

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use kernel::RoadNetwork;
 use kernel::map::{bake, bundled};
 use kernel::time::Tick;
+use kernel::{Keyframe, RoadNetwork};
 
 use crate::block::Block;
 use crate::layout::Channel;
@@ -101,7 +101,7 @@ fn assemble(messages: &[Message], finished: bool) -> Result<Log, Error> {
     let [first, start, rest @ ..] = messages else {
         return Err(Error::damaged("the end of the file", "it holds no manifest and start"));
     };
-    let start_at = start.parse(Channel::Keyframe, wire::keyframe)?;
+    let start_at = start.parse(Channel::Keyframe, |bytes| wire::keyframe(bytes, &[]))?;
     if start_at.tick > MAX_TICK {
         return Err(start.damaged(format!("tick {}, expected at most {MAX_TICK}", start_at.tick)));
     }
@@ -151,9 +151,9 @@ impl Log {
             Channel::Manifest => return Err(message.damaged("expected one manifest only")),
             Channel::Block => self.add_block(message.parse(Channel::Block, wire::block)?, message)?,
             Channel::Keyframe => {
-                let keyframe = message.parse(Channel::Keyframe, wire::keyframe)?;
-                let before = self.keyframes.last().map_or(0, |k| k.tick);
-                self.within_last_block(keyframe.tick, before + 1, message)?;
+                let Keyframe { tick, bytes } = &self.keyframes[self.keyframes.len() - 1];
+                let keyframe = message.parse(Channel::Keyframe, |payload| wire::keyframe(payload, bytes))?;
+                self.within_last_block(keyframe.tick, tick + 1, message)?;
                 self.keyframes.push(keyframe);
             }
             Channel::Events => {
@@ -323,6 +323,20 @@ mod tests {
             prop_assume!(bytes != whole);
             // Damage to the end magic and to what stands before it may look like a cut-off file.
             prop_assert!(!read(&bytes).is_ok_and(|r| r.finished()));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn messages_in_another_order_are_no_panic(order in prop::collection::vec(any::<prop::sample::Index>(), 0..30)) {
+            let messages = scan(&sample(200).encode().unwrap()).unwrap().messages;
+            let copy = |m: &Message| Message { channel: m.channel, payload: m.payload.clone(), place: m.place.clone() };
+            let picked: Vec<Message> =
+                messages[..2].iter().chain(order.iter().map(|i| i.get(&messages))).map(copy).collect();
+            if let Ok(log) = assemble(&picked, false) {
+                prop_assert_eq!(log.inputs.len(), log.hashes.len());
+                prop_assert!(log.keyframes.is_sorted_by_key(|k| k.tick));
+            }
         }
     }
 
