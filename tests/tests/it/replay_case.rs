@@ -43,8 +43,8 @@ fn its_window_is_the_last_three_seconds_up_to_the_intervention() {
 
 #[test]
 fn its_scenes_are_those_of_the_live_run() {
+    let mut world = CITY.world();
     for scene in cut().scenes() {
-        let mut world = CITY.world();
         while world.tick() < scene.tick {
             world.step(RECORDING.log().input(world.tick() + 1).expect("a tick of the log"));
         }
