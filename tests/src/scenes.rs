@@ -20,6 +20,11 @@ pub fn busy_city() -> Scene {
     scene(text)
 }
 
+/// The bundled rural road with its usual traffic.
+pub fn country_road() -> Scene {
+    scene("map = \"rural\"\nseed = 7\n")
+}
+
 /// The hamlet of the bundled rural map with 100 road users, a quarter of them near the ego car after
 /// 20 s: 35 cars, 5 motorcycles, 10 bicycles, 50 pedestrians.
 pub fn busy_hamlet() -> Scene {
