@@ -87,6 +87,13 @@ pub struct Track {
     looks: u32,
 }
 
+impl Track {
+    /// Where it will be if it goes on like this.
+    pub fn after(&self, t_s: f32) -> Point {
+        (self.at.0 + t_s * self.velocity_mps.0, self.at.1 + t_s * self.velocity_mps.1)
+    }
+}
+
 /// The vehicles in sight.
 #[derive(Clone, Debug, Default)]
 pub struct Tracks {
@@ -110,8 +117,7 @@ impl Tracks {
         self.since_look_s = 0.0;
         let known = std::mem::take(&mut self.tracks);
         for at in blobs(contacts) {
-            let expected = |t: &Track| (t.at.0 + dt_s * t.velocity_mps.0, t.at.1 + dt_s * t.velocity_mps.1);
-            let off = |t: &Track| ops::hypot(expected(t).0 - at.0, expected(t).1 - at.1);
+            let off = |t: &Track| ops::hypot(t.after(dt_s).0 - at.0, t.after(dt_s).1 - at.1);
             let same = known.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|t| off(t) < 2.0 + 0.1 * at.0);
             self.tracks.push(match same {
                 Some(t) => {

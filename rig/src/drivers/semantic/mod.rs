@@ -14,7 +14,7 @@ use super::{Driver, SemanticView};
 use memory::{Moved, Tracks, Trail};
 use path::Arc;
 use sight::{Contact, Sight};
-use speed::Wish;
+use speed::{Scene, Wish};
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
@@ -31,6 +31,7 @@ pub struct SemanticBot {
     steer: f32,
     trail: Trail,
     tracks: Tracks,
+    has_lights: bool,
     /// The mask that was looked at last, and where others stood in it.
     ids: Vec<u8>,
     contacts: Vec<Contact>,
@@ -59,7 +60,10 @@ impl SemanticBot {
             self.tracks.look(&self.contacts);
         }
         let arc = path::choose(sight, &view.hud.arrow, &self.trail);
-        (arc, speed::wish(sight, arc, &view.hud, &self.contacts, &self.tracks))
+        // A light leaves the HUD once its line is passed, but the junction still has it.
+        self.has_lights = view.hud.light.is_some() || (self.has_lights && view.hud.arrow.distance_m < 10);
+        let scene = Scene { contacts: &self.contacts, tracks: &self.tracks, has_lights: self.has_lights };
+        (arc, speed::wish(sight, arc, &view.hud, scene))
     }
 }
 

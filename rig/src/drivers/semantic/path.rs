@@ -11,7 +11,7 @@ pub const ARROW_M: f32 = 12.0;
 /// Distance to a junction within which lines and edges stop to lead, metres.
 const JUNCTION_M: u16 = 8;
 /// Distance of the point on the trail that is steered to in junctions, metres.
-const TURN_LOOK_M: f32 = 6.5;
+const TURN_LOOK_M: f32 = 7.5;
 /// Sharpest arc that is tried, 1/m; about the car's turning circle.
 const SHARPEST: f32 = 0.2;
 /// From the rear axle to the middle of the car, metres.

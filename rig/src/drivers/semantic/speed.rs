@@ -34,6 +34,9 @@ const GIVE_WAY_M: u16 = 14;
 const GIVE_WAY_STEPS: u32 = 16;
 /// Distance at which two vehicles meet, metres.
 const MEET_M: f32 = 3.0;
+/// Curvature of usual turns, 1/m.
+const LEFT_BEND: f32 = 0.09;
+const RIGHT_BEND: f32 = 0.14;
 /// How far the road is looked at, metres.
 const REACH_M: f32 = 45.0;
 /// Side clearance to vehicles, to people beside the road, and to people on it, metres.
@@ -55,13 +58,25 @@ pub struct Wish {
     pub stop_in_m: Option<f32>,
 }
 
-/// The speed for an arc among contacts and moving vehicles.
-pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud, contacts: &[Contact], tracks: &Tracks) -> Wish {
-    let stops = [obstacle_m(contacts, arc), stop_line_m(hud), give_way_m(arc, hud, tracks)];
+/// Others on the road, and whether the junction ahead or around has lights.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// Where people and vehicles stand in the mask.
+    pub contacts: &'a [Contact],
+    /// How vehicles move.
+    pub tracks: &'a Tracks,
+    /// The HUD shows a light, or showed the one of this junction.
+    pub has_lights: bool,
+}
+
+/// The speed for an arc.
+pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud, scene: Scene<'_>) -> Wish {
+    let give_way_m = if scene.has_lights { None } else { give_way_m(arc, hud, scene.tracks) };
+    let stops = [obstacle_m(scene.contacts, arc), stop_line_m(hud), give_way_m];
     let stop_in_m = stops.into_iter().flatten().reduce(f32::min);
     let bend_mps = (LATERAL_MPS2 / arc.curvature.abs().max(1e-3)).sqrt();
     let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M);
-    let speed_mps = hud.limit_mps.min(bend_mps).min(road_mps).min(junction_mps(hud));
+    let speed_mps = hud.limit_mps.min(bend_mps).min(road_mps).min(junction_mps(hud, scene.has_lights));
     let speed_mps = stop_in_m.map_or(speed_mps, |d| speed_mps.min(braking_from(0.0, d)));
     Wish { speed_mps, stop_in_m }
 }
@@ -87,16 +102,16 @@ fn clearance_m(contact: &Contact) -> f32 {
 /// Metres from the front of the car to where it lets others pass at a junction without lights: where
 /// the car would meet a moving vehicle within the next seconds if both went on.
 fn give_way_m(arc: Arc, hud: &Hud, tracks: &Tracks) -> Option<f32> {
-    if hud.light.is_some() || hud.arrow.distance_m > GIVE_WAY_M {
+    if hud.arrow.distance_m > GIVE_WAY_M {
         return None;
     }
-    let own_mps = hud.speed_mps.max(3.0);
+    let own_mps = hud.speed_mps.max(3.5);
     let meets = |track: &Track| {
         (1..=GIVE_WAY_STEPS).find_map(|step| {
             let t_s = 0.25 * step as f32;
-            let (x, y, _) = arc.at(FRONT_M + own_mps * t_s);
-            let other = (track.at.0 + t_s * track.velocity_mps.0, track.at.1 + t_s * track.velocity_mps.1);
-            (ops::hypot(other.0 - x, other.1 - y) < MEET_M).then_some(own_mps * t_s)
+            let (x, y) = expected_way(arc, hud, FRONT_M + own_mps * t_s);
+            let near = |t_s: f32| ops::hypot(track.after(t_s).0 - x, track.after(t_s).1 - y) < MEET_M;
+            [t_s - 0.75, t_s, t_s + 0.75].into_iter().any(near).then_some(own_mps * t_s)
         })
     };
     let same_way = |track: &&Track| track.velocity_mps.0 > 2.0 * track.velocity_mps.1.abs();
@@ -104,6 +119,18 @@ fn give_way_m(arc: Arc, hud: &Hud, tracks: &Tracks) -> Option<f32> {
     // Before the junction it waits at its border, inside right before the other's way.
     let border_m = f32::from(hud.arrow.distance_m) - 1.0;
     Some(if border_m > 0.0 { border_m } else { meeting_m - MEET_M })
+}
+
+/// Where the rear axle will be after `s_m` metres: straight up to the junction, then round its bend.
+fn expected_way(arc: Arc, hud: &Hud, s_m: f32) -> (f32, f32) {
+    let straight_m = f32::from(hud.arrow.distance_m);
+    let bend = match hud.arrow.turn {
+        Turn::Straight => arc.curvature,
+        Turn::Left => LEFT_BEND.max(arc.curvature),
+        Turn::Right => -RIGHT_BEND.max(-arc.curvature),
+    };
+    let (x, y, _) = Arc { curvature: bend }.at((s_m - straight_m).max(0.0));
+    (x + straight_m.min(s_m), y)
 }
 
 /// Metres from the front of the car to a stop line that has to be respected.
@@ -118,10 +145,10 @@ fn stop_line_m(hud: &Hud) -> Option<f32> {
 }
 
 /// Speed allowed by the junction ahead.
-fn junction_mps(hud: &Hud) -> f32 {
+fn junction_mps(hud: &Hud, has_lights: bool) -> f32 {
     let there_mps = match hud.arrow.turn {
         Turn::Left | Turn::Right => TURN_MPS,
-        Turn::Straight if hud.light.is_none() && hud.arrow.distance_m < 30 => CROSSING_MPS,
+        Turn::Straight if !has_lights && hud.arrow.distance_m < 30 => CROSSING_MPS,
         Turn::Straight => return f32::INFINITY,
     };
     braking_from(there_mps, f32::from(hud.arrow.distance_m) - 2.0)
