@@ -47,9 +47,11 @@ impl Checkpoint {
             onnx::decode(&bytes).map_err(|reason| PerceptionError::NotOnnx { path: path.into(), reason })?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(&bytes);
+        let refuse = |reason| PerceptionError::NotSegmentation { path: path.into(), reason };
+        let (input, output) = ends(&model).map_err(refuse)?;
         let metadata = read_metadata(path, &model, &mut hasher)?;
-        let input = check(&model, &metadata)
-            .map_err(|reason| PerceptionError::NotSegmentation { path: path.into(), reason })?;
+        check_classes(output, metadata.classes.count()).map_err(refuse)?;
+        let input = input_of(input, metadata.layout).map_err(refuse)?;
         if input.element == Element::Float && metadata.normalisation.is_none() {
             let reason = "mean and std are missing, which a network with a float input needs".into();
             return Err(PerceptionError::Metadata { path: path.into(), reason });
@@ -117,8 +119,8 @@ fn read_metadata(
     }
 }
 
-/// What the model declares of its input, once that is an image and the output is a segmentation.
-fn check(model: &pb::ModelProto, metadata: &Metadata) -> Result<Input, String> {
+/// The model's one input and its first output, if they can be a picture and a segmentation.
+fn ends(model: &pb::ModelProto) -> Result<(&pb::ValueInfoProto, &pb::ValueInfoProto), String> {
     let graph = model.graph.as_ref().ok_or("it holds no graph")?;
     let weights: Vec<&str> = graph.initializer.iter().map(|t| t.name.as_str()).collect();
     let inputs: Vec<_> = graph.input.iter().filter(|i| !weights.contains(&i.name.as_str())).collect();
@@ -126,7 +128,34 @@ fn check(model: &pb::ModelProto, metadata: &Metadata) -> Result<Input, String> {
         return Err(format!("it has {} inputs, expected one image", inputs.len()));
     };
     let output = graph.output.first().ok_or("it has no output")?;
-    check_output(output, metadata.classes.count())?;
+    let (taken, given) = (shape_of(input), shape_of(output));
+    if taken.len() != 4 {
+        return Err(format!("its input has the shape {}, expected 1x3xHxW or 1xHxWx3", shape_text(&taken)));
+    }
+    // Exporters may leave the output's shape out; the engine finds it later.
+    if !matches!(given.len(), 0 | 3 | 4) {
+        let text = shape_text(&given);
+        return Err(format!(
+            "its output has the shape {text}, expected scores 1xCxHxW or 1xHxWxC, or a class map 1xHxW"
+        ));
+    }
+    Ok((input, output))
+}
+
+/// Whether the scores can be those of so many classes.
+fn check_classes(output: &pb::ValueInfoProto, classes: usize) -> Result<(), String> {
+    let shape = shape_of(output);
+    let fits = |n: Option<usize>| n.is_some_and(|n| n == classes || n == 1);
+    match shape[..] {
+        [_, second, _, fourth] if second.is_some() && !fits(second) && !fits(fourth) => {
+            Err(format!("its output has the shape {}, but the metadata names {classes} classes", shape_text(&shape)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What the model declares of its input.
+fn input_of(input: &pb::ValueInfoProto, declared: Option<Layout>) -> Result<Input, String> {
     let tensor = tensor_of(input).ok_or("its input has no type")?;
     let element = match tensor.elem_type {
         t if t == pb::tensor_proto::DataType::Float as i32 => Element::Float,
@@ -134,26 +163,13 @@ fn check(model: &pb::ModelProto, metadata: &Metadata) -> Result<Input, String> {
         _ => return Err("its input is neither float nor uint8".into()),
     };
     let shape = shape_of(input);
-    let layout = layout_of(&shape, metadata.layout)
+    let layout = layout_of(&shape, declared)
         .ok_or_else(|| format!("its input has the shape {}, expected 1x3xHxW or 1xHxWx3", shape_text(&shape)))?;
     let (height, width) = match layout {
         Layout::Nchw => (shape[2], shape[3]),
         Layout::Nhwc => (shape[1], shape[2]),
     };
     Ok(Input { element, layout, width, height })
-}
-
-fn check_output(output: &pb::ValueInfoProto, classes: usize) -> Result<(), String> {
-    let shape = shape_of(output);
-    let text = shape_text(&shape);
-    let fits = |n: Option<usize>| n.is_some_and(|n| n == classes || n == 1);
-    match shape.len() {
-        // Exporters may leave the output's shape out; the engine finds it later.
-        0 | 3 => Ok(()),
-        4 if shape[1].is_none() || fits(shape[1]) || fits(shape[3]) => Ok(()),
-        4 => Err(format!("its output has the shape {text}, but the metadata names {classes} classes")),
-        _ => Err(format!("its output has the shape {text}, expected scores 1xCxHxW or 1xHxWxC, or a class map 1xHxW")),
-    }
 }
 
 fn tensor_of(value: &pb::ValueInfoProto) -> Option<&pb::type_proto::Tensor> {
@@ -232,7 +248,7 @@ mod tests {
         assert!(said(&noise).contains("not an ONNX model"));
         std::fs::write(&noise, []).unwrap();
         assert!(said(&noise).contains("not an ONNX model"));
-        let classifier = toy::write(dir.path(), "classifier.onnx", &toy::classifier(&toy::metadata()));
+        let classifier = toy::write(dir.path(), "classifier.onnx", &toy::classifier());
         assert!(said(&classifier).contains("shape 1x3, expected scores"), "{}", said(&classifier));
     }
 

@@ -176,8 +176,8 @@ fn finish(graph: pb::GraphProto, metadata: Option<&Metadata>) -> pb::ModelProto 
     }
 }
 
-/// A network that gives one score for each of ten classes to the whole picture.
-pub fn classifier(metadata: &Metadata) -> pb::ModelProto {
+/// A network that gives one score for each of three classes to the whole picture.
+pub fn classifier() -> pb::ModelProto {
     let nodes = vec![
         node("GlobalAveragePool", &["image"], "mean", vec![]),
         node("Flatten", &["mean"], "scores", vec![int("axis", 1)]),
@@ -188,7 +188,7 @@ pub fn classifier(metadata: &Metadata) -> pb::ModelProto {
         output: vec![value("scores", DataType::Float, &[1, 3])],
         ..Default::default()
     };
-    finish(graph, Some(metadata))
+    finish(graph, None)
 }
 
 pub fn write(dir: &Path, name: &str, model: &pb::ModelProto) -> PathBuf {

@@ -38,21 +38,30 @@ const STANDING_MPS: f32 = 0.2;
 
 /// What a dataset is made from; the same recipe gives the same frames on the same adapter.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-struct Recipe {
-    seed: u64,
-    scenes: u32,
-    val_scenes: u32,
-    frames: u32,
-    size: (u32, u32),
+pub struct Recipe {
+    /// Seed of every scene's own.
+    pub seed: u64,
+    /// Scenes of the training split.
+    pub scenes: u32,
+    /// Scenes of the validation split.
+    pub val_scenes: u32,
+    /// Frames a scene.
+    pub frames: u32,
+    /// Width and height of the pictures, pixels.
+    pub size: (u32, u32),
     /// People on foot, where not as many as in the map's default scenario.
-    pedestrians: Option<u16>,
-    maps: Vec<MapUsed>,
+    pub pedestrians: Option<u16>,
+    /// The scenes' maps, in turn.
+    pub maps: Vec<MapUsed>,
 }
 
+/// A map of a dataset.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-struct MapUsed {
-    name: String,
-    digest: String,
+pub struct MapUsed {
+    /// Its name, as it stands in file names.
+    pub name: String,
+    /// Digest of the baked map.
+    pub digest: String,
 }
 
 /// One frame's provenance, a line of `frames.jsonl`.
@@ -88,26 +97,40 @@ impl From<Weather> for WeatherLine {
     }
 }
 
-/// `dataset.json`.
-#[derive(Serialize)]
-struct Manifest<'a> {
-    kind: &'a str,
-    recipe: &'a Recipe,
-    adapter: String,
-    train_frames: u32,
-    val_frames: u32,
+/// The content of `dataset.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Manifest {
+    /// `natural`.
+    pub kind: &'static str,
+    /// What it is made from.
+    pub recipe: Recipe,
+    /// The graphics adapter that drew it; colours depend on it, labels do not.
+    pub adapter: String,
+    /// Frames to learn from.
+    pub train_frames: u32,
+    /// Frames to measure on.
+    pub val_frames: u32,
     /// Names of the train ids, in order.
-    classes: Vec<&'a str>,
+    pub classes: Vec<&'static str>,
     /// BLAKE3 over `frames.jsonl`.
-    digest: String,
+    pub digest: String,
 }
 
 /// Runs `aeye dataset natural`.
 pub fn run(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
+    let manifest = make(args, &Interrupt::listen()?)?;
+    output::print(json, &manifest, || {
+        let (train, val) = (manifest.train_frames, manifest.val_frames);
+        format!("{}: {train} training and {val} validation frames, digest {}", args.out.display(), manifest.digest)
+    })?;
+    Ok(Verdict::Ok)
+}
+
+/// Makes a dataset, or completes one that was interrupted.
+pub fn make(args: &NaturalArgs, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     let maps = Map::find_all(&args.maps)?;
     let recipe = Recipe::new(args, &maps)?;
     let parts = prepare(&args.out, &recipe)?;
-    let interrupt = Interrupt::listen()?;
     let scenes = recipe.scenes();
     let bar = progress::bar("frames", u64::from(recipe.frames) * scenes.len() as u64);
     let adapter = Renderer::new(&maps[0].network, &RenderOptions::default())?.adapter().name.clone();
@@ -124,17 +147,12 @@ pub fn run(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
             Some(renderer) => renderer,
             none => none.insert(Renderer::new(&map.network, &RenderOptions::default())?),
         };
-        let mut studio = Studio { recipe: &recipe, out: &args.out, renderer, interrupt: &interrupt, bar: &bar };
+        let mut studio = Studio { recipe: &recipe, out: &args.out, renderer, interrupt, bar: &bar };
         let lines = studio.shoot(scene, map)?;
         output::write_file(&part, lines.as_bytes())
     })?;
     bar.finish_and_clear();
-    let manifest = finish(args, &recipe, &parts, adapter)?;
-    output::print(json, &manifest, || {
-        let (train, val) = (manifest.train_frames, manifest.val_frames);
-        format!("{}: {train} training and {val} validation frames, digest {}", args.out.display(), manifest.digest)
-    })?;
-    Ok(Verdict::Ok)
+    finish(args, &recipe, &parts, adapter)
 }
 
 /// The folder of finished scenes, once it is certain that they belong to this recipe.
@@ -161,7 +179,7 @@ fn prepare(out: &Path, recipe: &Recipe) -> anyhow::Result<std::path::PathBuf> {
 }
 
 /// Joins the scenes' lines and writes the manifest, which makes the dataset complete.
-fn finish<'a>(args: &NaturalArgs, recipe: &'a Recipe, parts: &Path, adapter: String) -> anyhow::Result<Manifest<'a>> {
+fn finish(args: &NaturalArgs, recipe: &Recipe, parts: &Path, adapter: String) -> anyhow::Result<Manifest> {
     let mut lines = String::new();
     for scene in recipe.scenes() {
         let part = parts.join(scene.part());
@@ -170,7 +188,7 @@ fn finish<'a>(args: &NaturalArgs, recipe: &'a Recipe, parts: &Path, adapter: Str
     output::write_file(&args.out.join("frames.jsonl"), lines.as_bytes())?;
     let manifest = Manifest {
         kind: "natural",
-        recipe,
+        recipe: recipe.clone(),
         adapter,
         train_frames: recipe.frames * recipe.scenes,
         val_frames: recipe.frames * recipe.val_scenes,

@@ -1,0 +1,170 @@
+//! The offline lab: the same inputs give the same bytes, and what fails leaves nothing behind.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use kernel::{Controls, World};
+use replay::{Annotation, Case, Label, Manifest, Provenance, Recorder, Recording};
+use rig::cli::{CheckpointChoice, EvalArgs, NaturalArgs, RerenderArgs};
+use rig::exit::Verdict;
+use rig::lab::{eval, natural, report, rerender};
+use rig::progress::Interrupt;
+use tests::scenes::{busy_city, follow_route};
+
+/// The safety driver's foot comes down at this tick.
+const TAKEOVER: u64 = 330;
+
+/// A recording of the city whose safety driver brakes, and the case cut from it.
+fn recorded(folder: &Path) -> (PathBuf, PathBuf) {
+    let scene = busy_city();
+    let mut world: World = scene.world();
+    let manifest = Manifest::new(&scene.scenario, &scene.network, None, Provenance::new());
+    let mut recorder = Recorder::new(Vec::new(), &manifest, &world.initial_keyframe()).unwrap();
+    while world.tick() < TAKEOVER + 60 {
+        let mut input = follow_route(&world);
+        if world.tick() + 1 >= TAKEOVER {
+            input.safety = Controls::from_fractions(0.0, 0.0, 0.9);
+        }
+        let output = world.step(&input);
+        recorder.tick(&input, &output, &world.part_hashes()).unwrap();
+    }
+    recorder.annotate(Annotation { label: Label::Rules, comment: "a <test>".into(), perception_caused: None });
+    let bytes = recorder.finish(world.arbiter().outcome).unwrap();
+    let (path, case_path) = (folder.join("a.mcap"), folder.join("a.case.mcap"));
+    fs::write(&path, &bytes).unwrap();
+    let recording = Recording::from_bytes(&bytes).unwrap();
+    let window = Case::window(recording.log()).expect("an intervention");
+    fs::write(&case_path, Case::cut(&recording, &scene.network, window).unwrap().encode().unwrap()).unwrap();
+    (path, case_path)
+}
+
+/// Every file below a folder with its bytes.
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                files.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+fn rerender_args(file: &Path, out: PathBuf) -> RerenderArgs {
+    let checkpoint = vec![CheckpointChoice::Truth];
+    RerenderArgs { files: vec![file.to_owned()], checkpoint, last: 180, fps: 10, size: (128, 64), out }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_case_and_its_recording_render_to_the_same_bytes_every_time() {
+    let dir = tempfile::tempdir().unwrap();
+    let (recording, case) = recorded(dir.path());
+    let out = |name: &str, file: &Path| {
+        let out = dir.path().join(name);
+        assert_eq!(rerender::run(&rerender_args(file, out.clone()), true).unwrap(), Verdict::Ok);
+        contents(&out)
+    };
+    let first = out("first", &case);
+    assert_eq!(first, out("second", &case));
+    let count = |part: &str| first.keys().filter(|path| path.starts_with(Path::new("a.case").join(part))).count();
+    assert_eq!((count("rgb"), count("labels"), count("predictions/truth")), (30, 30, 30));
+    let metrics = String::from_utf8(first[Path::new("metrics.jsonl")].clone()).unwrap();
+    assert_eq!(metrics.lines().count(), 32);
+    let last: serde_json::Value = serde_json::from_str(metrics.lines().last().unwrap()).unwrap();
+    assert_eq!((last["over"].as_str(), last["miou"].as_f64()), (Some("overall"), Some(1.0)));
+    let whole = out("whole", &recording);
+    for (path, bytes) in first.iter().filter(|(path, _)| path.starts_with("a.case")) {
+        let same = Path::new("a").join(path.strip_prefix("a.case").unwrap());
+        assert!(whole[&same] == *bytes, "{}", same.display());
+    }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_divergent_or_damaged_recording_leaves_no_pictures() {
+    let dir = tempfile::tempdir().unwrap();
+    let (recording, _) = recorded(dir.path());
+    let mut log = Recording::open(&recording).unwrap().into_log();
+    log.inputs[TAKEOVER as usize - 60].semantic.steer ^= 1;
+    let forged = dir.path().join("forged.mcap");
+    fs::write(&forged, log.encode().unwrap()).unwrap();
+    let out = dir.path().join("out");
+    assert_eq!(rerender::run(&rerender_args(&forged, out.clone()), true).unwrap(), Verdict::CheckFailed);
+    let mut bytes = fs::read(&recording).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&forged, bytes).unwrap();
+    let error = rerender::run(&rerender_args(&forged, out.clone()), true).unwrap_err();
+    assert!(format!("{error:#}").contains("forged.mcap"), "{error:#}");
+    assert!(!out.exists());
+    let left = fs::read_dir(dir.path()).unwrap().count();
+    assert_eq!(left, 3, "the two recordings and the case, and nothing half-written");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_report_stands_alone_and_escapes_what_people_wrote() {
+    let dir = tempfile::tempdir().unwrap();
+    let (_, case) = recorded(dir.path());
+    let html = report::render(&[case], &[CheckpointChoice::Truth], (64, 32)).unwrap();
+    assert_eq!(html.matches("data:image/png;base64,").count(), 90);
+    assert!(html.contains("a &lt;test&gt;") && !html.contains("<test>"));
+    assert!(html.contains("<svg") && html.contains("<circle") && html.contains("5.5 s"));
+    let outside = ["src=\"http", "href=\"http", "src=\"/", "@import", "url("];
+    assert!(outside.iter().all(|link| !html.contains(link)));
+}
+
+fn natural_args(out: PathBuf, jobs: u16) -> NaturalArgs {
+    NaturalArgs {
+        scenes: 2,
+        val_scenes: 1,
+        frames: 2,
+        size: (64, 32),
+        maps: vec!["rural".into(), "city".into()],
+        pedestrians: Some(20),
+        seed: 5,
+        jobs: Some(jobs),
+        out,
+    }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
+    let dir = tempfile::tempdir().unwrap();
+    let interrupt = Interrupt::default();
+    let (a, b) = (dir.path().join("a"), dir.path().join("b"));
+    let made = natural::make(&natural_args(a.clone(), 1), &interrupt).unwrap();
+    assert_eq!((made.train_frames, made.val_frames), (4, 2));
+    let whole = contents(&a);
+    assert_eq!(whole.len(), 6 * 5 + 2, "five files a frame, the frames' list, the manifest");
+
+    // What an interrupted run leaves: the recipe, one finished scene, no manifest.
+    let line = |text: &str| text.lines().filter(|l| l.contains("\"train\"") && l.contains("\"scene\":0,")).count();
+    let lines = String::from_utf8(whole[Path::new("frames.jsonl")].clone()).unwrap();
+    assert_eq!(line(&lines), 2);
+    fs::create_dir_all(b.join("parts")).unwrap();
+    let recipe = serde_json::to_string(&made.recipe).unwrap();
+    fs::write(b.join("parts/recipe.json"), recipe).unwrap();
+    let first: String = lines.lines().take(2).map(|l| format!("{l}\n")).collect();
+    fs::write(b.join("parts/train_000000.jsonl"), first).unwrap();
+    for (path, bytes) in whole.iter().filter(|(path, _)| path.to_string_lossy().contains("train/rural")) {
+        fs::create_dir_all(b.join(path).parent().unwrap()).unwrap();
+        fs::write(b.join(path), bytes).unwrap();
+    }
+    let other = natural::make(&NaturalArgs { seed: 6, ..natural_args(b.clone(), 2) }, &interrupt);
+    assert!(other.unwrap_err().to_string().contains("other arguments"));
+    natural::make(&natural_args(b.clone(), 2), &interrupt).unwrap();
+    assert_eq!(contents(&b), whole);
+
+    assert!(natural::make(&natural_args(a.clone(), 1), &interrupt).is_err(), "it is complete");
+    let eval_args = EvalArgs { checkpoint: CheckpointChoice::Truth, dataset: a, split: "val".into() };
+    assert_eq!(eval::run(&eval_args, true).unwrap(), Verdict::Ok);
+}
