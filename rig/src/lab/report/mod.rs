@@ -51,7 +51,7 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
     let bar = progress::bar("report", files.len() as u64);
     for path in files {
         let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
-        let mut strip = Strip::new(&eyes, footage.scenes.last().map_or(0, |scene| scene.tick));
+        let mut strip = Strip::new(&eyes, &footage);
         for scene in &footage.scenes {
             let frame = studio.draw(&footage.network, scene)?;
             let masks = look(&mut eyes, &frame)?;

@@ -10,6 +10,7 @@ use render::Frame;
 use serde::Serialize;
 
 use super::super::figures::{Figures, decimal};
+use super::super::footage::Footage;
 use super::super::png;
 use super::Exposure;
 use super::story::{Fact, Story};
@@ -51,25 +52,29 @@ struct PictureRow {
 /// The pictures of a case, a row for the camera, the truth and each eye.
 pub struct Strip {
     last: Tick,
+    /// What the last frame shows.
+    end: &'static str,
     times: Vec<String>,
     rows: Vec<PictureRow>,
     matrices: Vec<ConfusionMatrix>,
 }
 
 impl Strip {
-    /// An empty strip whose last frame has tick `last`.
-    pub fn new(eyes: &[Eye], last: Tick) -> Self {
+    /// An empty strip for the frames of a window.
+    pub fn new(eyes: &[Eye], footage: &Footage) -> Self {
+        let last = footage.scenes.last().map_or(0, |scene| scene.tick);
+        let end = if footage.log.intervention.is_some() { "takeover" } else { "collision" };
         let row = |name: &str, class| PictureRow { name: name.to_owned(), class, cells: Vec::new() };
         let mut rows = vec![row("camera", "rgb"), row("truth", "mask")];
         rows.extend(eyes.iter().map(|eye| row(eye.name(), "mask")));
-        Self { last, times: Vec::new(), rows, matrices: vec![ConfusionMatrix::default(); eyes.len()] }
+        Self { last, end, times: Vec::new(), rows, matrices: vec![ConfusionMatrix::default(); eyes.len()] }
     }
 
     /// Adds a frame and what each eye made of it.
     pub fn add(&mut self, frame: &Frame, masks: &[Mask]) -> anyhow::Result<()> {
         let size = (frame.width, frame.height);
         let before_s = (self.last - frame.tick) as f64 / f64::from(TICK_HZ);
-        self.times.push(if before_s > 0.0 { format!("-{before_s:.1} s") } else { "takeover".into() });
+        self.times.push(if before_s > 0.0 { format!("-{before_s:.1} s") } else { self.end.into() });
         let mut pictures = vec![
             Picture { png: STANDARD.encode(png::rgb(size, &frame.rgb)?), caption: String::new() },
             Picture { png: STANDARD.encode(png::tags(size, &frame.class_ids)?), caption: pedestrian_pixels(frame) },
