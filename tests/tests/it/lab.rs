@@ -4,36 +4,23 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use kernel::{Controls, World};
-use replay::{Annotation, Case, Label, Manifest, Provenance, Recorder, Recording};
+use replay::{Annotation, Case, Label, Recording};
 use rig::cli::{CheckpointChoice, EvalArgs, NaturalArgs, RerenderArgs};
 use rig::exit::Verdict;
 use rig::lab::{eval, natural, report, rerender};
 use rig::progress::Interrupt;
-use tests::scenes::{busy_city, follow_route};
-
-/// The safety driver's foot comes down at this tick.
-const TAKEOVER: u64 = 330;
+use tests::recordings::{TAKEOVER, WITH_TAKEOVER, record};
+use tests::scenes::busy_city;
 
 /// A recording of the city whose safety driver brakes, and the case cut from it.
 fn recorded(folder: &Path) -> (PathBuf, PathBuf) {
     let scene = busy_city();
-    let mut world: World = scene.world();
-    let manifest = Manifest::new(&scene.scenario, &scene.network, None, Provenance::new());
-    let mut recorder = Recorder::new(Vec::new(), &manifest, &world.initial_keyframe()).unwrap();
-    while world.tick() < TAKEOVER + 60 {
-        let mut input = follow_route(&world);
-        if world.tick() + 1 >= TAKEOVER {
-            input.safety = Controls::from_fractions(0.0, 0.0, 0.9);
-        }
-        let output = world.step(&input);
-        recorder.tick(&input, &output, &world.part_hashes()).unwrap();
-    }
-    recorder.annotate(Annotation { label: Label::Rules, comment: "a <test>".into(), perception_caused: None });
-    let bytes = recorder.finish(world.arbiter().outcome).unwrap();
+    let mut log = Recording::from_bytes(&record(&scene, TAKEOVER + 60, WITH_TAKEOVER)).unwrap().into_log();
+    let comment = "a <test>".into();
+    log.annotation = Some(Annotation { label: Label::Rules, comment, perception_caused: None });
     let (path, case_path) = (folder.join("a.mcap"), folder.join("a.case.mcap"));
-    fs::write(&path, &bytes).unwrap();
-    let recording = Recording::from_bytes(&bytes).unwrap();
+    fs::write(&path, log.encode().unwrap()).unwrap();
+    let recording = Recording::open(&path).unwrap();
     let window = Case::window(recording.log()).expect("an intervention");
     fs::write(&case_path, Case::cut(&recording, &scene.network, window).unwrap().encode().unwrap()).unwrap();
     (path, case_path)
@@ -116,7 +103,7 @@ fn a_report_stands_alone_and_escapes_what_people_wrote() {
     let html = report::render(&[case], &[CheckpointChoice::Truth], (64, 32)).unwrap();
     assert_eq!(html.matches("data:image/png;base64,").count(), 90);
     assert!(html.contains("a &lt;test&gt;") && !html.contains("<test>"));
-    assert!(html.contains("<svg") && html.contains("<circle") && html.contains("5.5 s"));
+    assert!(html.contains("<svg") && html.contains("<circle") && html.contains("15.8 s"));
     let outside = ["src=\"http", "href=\"http", "src=\"/", "@import", "url("];
     assert!(outside.iter().all(|link| !html.contains(link)));
 }
