@@ -82,11 +82,35 @@ fn wrong_imports(path: &str, manifest: &str) -> Vec<String> {
     let Some((_, allowed)) = IMPORTS.iter().find(|(name, _)| *name == crate_name) else {
         return vec![format!("{path}: not a crate of the table")];
     };
+    let manifest: toml::Table = match manifest.parse() {
+        Ok(manifest) => manifest,
+        Err(error) => return vec![format!("{path}: {error}")],
+    };
+    let named = dependencies(&manifest);
     let names = IMPORTS.iter().map(|(name, _)| *name);
     names
-        .filter(|name| manifest.lines().any(|l| l.starts_with(&format!("{name}."))) && !allowed.contains(name))
+        .filter(|name| named.contains(name) && !allowed.contains(name))
         .map(|name| format!("{path}: {crate_name} may not import {name}"))
         .collect()
+}
+
+/// Packages that a manifest depends on in any of its sections, for any target, under any name.
+fn dependencies(manifest: &toml::Table) -> Vec<&str> {
+    let mut packages = Vec::new();
+    for (key, value) in manifest {
+        let Some(section) = value.as_table() else { continue };
+        if key.ends_with("dependencies") {
+            packages.extend(section.iter().map(|(name, spec)| renamed(spec).unwrap_or(name)));
+        } else if key == "target" {
+            packages.extend(section.values().filter_map(toml::Value::as_table).flat_map(dependencies));
+        }
+    }
+    packages
+}
+
+/// The package behind a dependency that has another name.
+fn renamed(spec: &toml::Value) -> Option<&str> {
+    spec.get("package")?.as_str()
 }
 
 fn misplaced_names(path: &str, text: &str) -> Vec<String> {
@@ -117,21 +141,46 @@ fn too_long(path: &str, text: &str) -> Vec<String> {
         broken.push(format!("{path}: {} lines, more than {MAX_FILE_LINES}", lines.len()));
     }
     for (start, line) in lines.iter().enumerate() {
-        let indent = line.len() - line.trim_start().len();
-        let head = line.trim_start();
-        let is_function = ["fn ", "pub fn ", "pub(crate) fn ", "pub(super) fn ", "const fn ", "pub const fn "]
-            .iter()
-            .any(|k| head.starts_with(k));
-        if !is_function || !path.ends_with(".rs") {
+        if !path.ends_with(".rs") || !begins_function(line) {
             continue;
         }
-        let close = format!("{}}}", " ".repeat(indent));
-        let length = lines[start..].iter().position(|l| *l == close).unwrap_or(0) + 1;
+        let length = function_lines(&lines[start..]);
         if length > MAX_FUNCTION_LINES {
             broken.push(format!("{path}:{}: a function of {length} lines", start + 1));
         }
     }
     broken
+}
+
+/// Whether a line holds the `fn` of an item, whatever stands before it.
+fn begins_function(line: &str) -> bool {
+    let mut rest = line.trim_start();
+    while let Some(next) = after_qualifier(rest) {
+        rest = next.trim_start();
+    }
+    rest.starts_with("fn ")
+}
+
+/// What follows a visibility, a qualifier of a function or the name of a binary interface.
+fn after_qualifier(text: &str) -> Option<&str> {
+    if let Some(path) = text.strip_prefix("pub(") {
+        return path.split_once(')').map(|(_, rest)| rest);
+    }
+    if let Some(interface) = text.strip_prefix('"') {
+        return interface.split_once('"').map(|(_, rest)| rest);
+    }
+    ["pub ", "default ", "const ", "async ", "unsafe ", "extern "].iter().find_map(|word| text.strip_prefix(word))
+}
+
+/// Lines from the first of `lines`, which begins a function, to its closing brace.
+fn function_lines(lines: &[&str]) -> usize {
+    let head = lines[0];
+    if head.ends_with(['}', ';']) {
+        return 1;
+    }
+    let indent = head.len() - head.trim_start().len();
+    let close = format!("{}}}", " ".repeat(indent));
+    lines.iter().position(|line| *line == close).unwrap_or(0) + 1
 }
 
 fn unfinished(path: &str, text: &str) -> Vec<String> {
@@ -149,8 +198,20 @@ fn undocumented_module(path: &str, text: &str) -> Vec<String> {
 #[test]
 fn crates_import_only_what_the_table_allows() {
     check(wrong_imports, &["Cargo.toml"]);
-    assert_eq!(wrong_imports("kernel/Cargo.toml", "render.workspace = true").len(), 1);
-    assert_eq!(wrong_imports("rig/Cargo.toml", "render.workspace = true"), Vec::<String>::new());
+    for forbidden in [
+        "[dependencies]\nrender.workspace = true",
+        "[dependencies]\nrender = { path = \"../render\" }",
+        "[dependencies.render]\nworkspace = true",
+        "[dev-dependencies.render]\npath = \"../render\"",
+        "[build-dependencies]\nrender.workspace = true",
+        "[target.'cfg(unix)'.dependencies.render]\nworkspace = true",
+        "[dependencies]\npictures = { path = \"../render\", package = \"render\" }",
+    ] {
+        assert_eq!(wrong_imports("kernel/Cargo.toml", forbidden).len(), 1, "{forbidden}");
+        assert_eq!(wrong_imports("rig/Cargo.toml", forbidden), Vec::<String>::new());
+    }
+    assert_eq!(wrong_imports("kernel/Cargo.toml", "[dependencies").len(), 1);
+    assert_eq!(wrong_imports("kernel/Cargo.toml", "[features]\nrender = []"), Vec::<String>::new());
 }
 
 #[test]
@@ -165,8 +226,25 @@ fn libraries_and_hazards_stand_where_they_may() {
 fn files_and_functions_are_short() {
     check(too_long, &[".rs", ".wgsl"]);
     assert_eq!(too_long("a.rs", &"\n".repeat(MAX_FILE_LINES + 1)).len(), 1);
-    let long = format!("fn f() {{\n{}}}\n", "    x();\n".repeat(MAX_FUNCTION_LINES));
-    assert_eq!(too_long("a.rs", &long).len(), 1);
+    let body = format!(" {{\n{}}}\n", "    x();\n".repeat(MAX_FUNCTION_LINES));
+    for head in [
+        "fn f()",
+        "pub fn f()",
+        "pub(crate) async fn f()",
+        "pub(in crate::world) fn f()",
+        "pub const fn f()",
+        "const unsafe fn f()",
+        "unsafe fn f()",
+        "default fn f()",
+        "extern \"C\" fn f()",
+        "pub unsafe extern \"C\" fn f()",
+    ] {
+        assert_eq!(too_long("a.rs", &format!("{head}{body}")).len(), 1, "{head}");
+    }
+    for other in ["pub const F: [u8; 1] =", "unsafe impl F for G", "impl F", "extern \"C\"", "mod functions"] {
+        assert_eq!(too_long("a.rs", &format!("{other}{body}")), Vec::<String>::new());
+    }
+    assert_eq!(too_long("a.rs", &format!("fn f() {{}}\nimpl F{body}")), Vec::<String>::new());
 }
 
 #[test]
