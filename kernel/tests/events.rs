@@ -207,3 +207,15 @@ fn a_scenario_that_does_not_fit_is_refused_in_one_sentence() {
     assert_eq!(refused(99, 0.0), "scenario does not fit map ring: ego.lane is 99, expected a driving lane out of 16");
     assert!(refused(0, 500.0).starts_with("scenario does not fit map ring: ego.s_m is 500, expected at most 64"));
 }
+
+#[test]
+fn a_scenario_of_another_map_is_neither_started_nor_resumed() {
+    let (mut scenario, network) = (alone(), ring());
+    let keyframe = start(&scenario).initial_keyframe();
+    scenario.map = "city".to_owned();
+    let refused = "scenario does not fit map ring: its map is \"city\", expected \"ring\"";
+    let started = World::new(&scenario, &network).err().expect("it is refused");
+    assert_eq!(started.to_string(), refused);
+    let resumed = World::resume(&scenario, &network, &keyframe).err().expect("it is refused");
+    assert_eq!(resumed.to_string(), refused);
+}

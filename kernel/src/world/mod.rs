@@ -102,14 +102,15 @@ struct Scratch {
 }
 
 impl World {
-    /// A world at tick 0.
+    /// A world at tick 0. The scenario's map is refused when it has another name than `network`.
     pub fn new(scenario: &Scenario, network: &Arc<RoadNetwork>) -> Result<Self, WorldError> {
         let (parts, traffic) = start::begin(scenario, network)?;
         Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
     }
 
-    /// The world as it was at a keyframe, bit for bit.
+    /// The world as it was at a keyframe, bit for bit. Refuses another map as [`World::new`] does.
     pub fn resume(scenario: &Scenario, network: &Arc<RoadNetwork>, keyframe: &Keyframe) -> Result<Self, WorldError> {
+        start::check_map(scenario, network)?;
         let (parts, traffic) = keyframe.read()?;
         let wrong = |reason| WorldError::State { tick: keyframe.tick, reason };
         keyframe::check(&parts, network).map_err(wrong)?;

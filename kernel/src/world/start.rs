@@ -21,7 +21,17 @@ use super::snapshot::{EgoPart, InputPart, OutputPart, Parts, RunPart};
 /// Shortest lane on which a car starts when the scenario names none, metres.
 const LEAST_LANE_M: f32 = 20.0;
 
+/// Refuses a map that is not the scenario's.
+pub(super) fn check_map(scenario: &Scenario, network: &RoadNetwork) -> Result<(), WorldError> {
+    if scenario.map == network.name {
+        return Ok(());
+    }
+    let reason = format!("its map is {:?}, expected {:?}", scenario.map, network.name);
+    Err(WorldError::Scenario { map: network.name.clone(), reason })
+}
+
 pub(super) fn begin(scenario: &Scenario, network: &Arc<RoadNetwork>) -> Result<(Parts, Traffic), WorldError> {
+    check_map(scenario, network)?;
     let (lane, s_m) =
         place(scenario, network).map_err(|reason| WorldError::Scenario { map: network.name.clone(), reason })?;
     let car = standing(network, lane, s_m);
