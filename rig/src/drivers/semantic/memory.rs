@@ -18,6 +18,9 @@ const GAP_PER_M: f32 = 0.08;
 /// Looks after which the velocity of a vehicle is believed.
 const BELIEVED_AFTER: u32 = 4;
 
+/// How long others are let pass after they were last seen to come, seconds.
+const PATIENCE_S: f32 = 1.2;
+
 /// A point in the car's frame, metres: x forward from the rear axle, y left.
 pub type Point = (f32, f32);
 
@@ -138,6 +141,25 @@ impl Tracks {
     }
 }
 
+/// A place to wait at, kept for a moment after its reason was last seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Patience {
+    stop_in_m: f32,
+    left_s: f32,
+}
+
+impl Patience {
+    /// Metres to the place to wait at: the one that is seen now, or the remembered one.
+    pub fn keep(&mut self, seen_m: Option<f32>, moved: Moved) -> Option<f32> {
+        self.left_s -= TICK_S;
+        self.stop_in_m -= moved.forward_m;
+        if let Some(stop_in_m) = seen_m {
+            *self = Self { stop_in_m, left_s: PATIENCE_S };
+        }
+        (self.left_s > 0.0).then_some(self.stop_in_m)
+    }
+}
+
 /// One place for each vehicle: its nearest distance, the middle of its width.
 fn blobs(contacts: &[Contact]) -> Vec<Point> {
     let mut blobs: Vec<(Point, Contact, f32)> = Vec::new();
@@ -170,6 +192,16 @@ mod tests {
         let (x, y) = trail.point_at(6.0).expect("laid");
         assert!((x - 6.0).abs() < 0.6 && (y - 1.0).abs() < 1e-3, "{x} {y}");
         assert_eq!(Trail::default().point_at(6.0), None);
+    }
+
+    #[test]
+    fn patience_ends() {
+        let mut patience = Patience::default();
+        let forward = Moved { forward_m: 0.1, turned_rad: 0.0 };
+        assert_eq!(patience.keep(None, forward), None);
+        assert_eq!(patience.keep(Some(5.0), forward), Some(5.0));
+        let kept: Vec<f32> = (0..200).map_while(|_| patience.keep(None, forward)).collect();
+        assert!((kept[9] - 4.0).abs() < 1e-4 && (kept.len() as f32 * TICK_S - PATIENCE_S).abs() < 0.05, "{kept:?}");
     }
 
     #[test]

@@ -11,10 +11,10 @@ use kernel::time::TICK_S;
 use kernel::{Controls, ego, ops};
 
 use super::{Driver, SemanticView};
-use memory::{Moved, Tracks, Trail};
+use memory::{Moved, Patience, Tracks, Trail};
 use path::Arc;
 use sight::{Contact, Sight};
-use speed::{Scene, Wish};
+use speed::{COMFORT_MPS2, Scene, Wish};
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
@@ -31,6 +31,7 @@ pub struct SemanticBot {
     steer: f32,
     trail: Trail,
     tracks: Tracks,
+    patience: Patience,
     has_lights: bool,
     /// The mask that was looked at last, and where others stood in it.
     ids: Vec<u8>,
@@ -59,10 +60,12 @@ impl SemanticBot {
             self.contacts = sight.contacts();
             self.tracks.look(&self.contacts);
         }
-        let arc = path::choose(sight, &view.hud.arrow, &self.trail);
+        let arc = path::choose(sight, &view.hud, &self.trail);
         // A light leaves the HUD once its line is passed, but the junction still has it.
         self.has_lights = view.hud.light.is_some() || (self.has_lights && view.hud.arrow.distance_m < 10);
-        let scene = Scene { contacts: &self.contacts, tracks: &self.tracks, has_lights: self.has_lights };
+        let give_way_m = if self.has_lights { None } else { speed::give_way_m(arc, &view.hud, &self.tracks) };
+        let give_way_m = self.patience.keep(give_way_m, moved);
+        let scene = Scene { contacts: &self.contacts, give_way_m, has_lights: self.has_lights };
         (arc, speed::wish(sight, arc, &view.hud, scene))
     }
 }
@@ -87,7 +90,7 @@ fn pedals(speed_mps: f32, wish: &Wish) -> (f32, f32) {
     let by_speed = ((wish.speed_mps - speed_mps) / SPEED_TIME_S).clamp(-4.0, 2.5);
     let by_stop = wish.stop_in_m.map_or(by_speed, |d| -speed_mps * speed_mps / (2.0 * d.max(0.3)));
     // Beyond the comfortable deceleration the distance that is left decides.
-    let acceleration = if by_stop < -3.0 { by_speed.min(by_stop) } else { by_speed };
+    let acceleration = if by_stop < -COMFORT_MPS2 { by_speed.min(by_stop) } else { by_speed };
     if wish.speed_mps < 0.3 && speed_mps < 0.5 {
         return (0.0, 0.5);
     }

@@ -1,17 +1,22 @@
 //! Where to steer: the arc that follows the arrow, keeps the lane and stays on the asphalt.
 
-use kernel::events::RouteArrow;
+use kernel::events::{Hud, RouteArrow};
 use kernel::{ego, ops};
 
 use super::memory::{Point, Trail};
 use super::sight::{Ground, Sight};
 
-/// Distance of the point that the arrow of the HUD shows, metres from the middle of the car.
+/// Distance along the route of the point that the arrow of the HUD shows, metres from the middle of
+/// the car.
 pub const ARROW_M: f32 = 12.0;
 /// Distance to a junction within which lines and edges stop to lead, metres.
 const JUNCTION_M: u16 = 8;
-/// Distance of the point on the trail that is steered to in junctions, metres.
-const TURN_LOOK_M: f32 = 7.5;
+/// Distance of the point on the trail that is steered to: least, and by speed (Coulter 1992), metres
+/// and seconds.
+const LOOK_M: f32 = 7.5;
+const LOOK_S: f32 = 0.8;
+/// Bearing of the arrow from which the car is turning, degrees.
+const TURNING_DEG: i16 = 10;
 /// Sharpest arc that is tried, 1/m; about the car's turning circle.
 const SHARPEST: f32 = 0.2;
 /// From the rear axle to the middle of the car, metres.
@@ -20,8 +25,8 @@ const MIDDLE_M: f32 = ego::CENTRE_M.x;
 const TRIED: i32 = 12;
 /// Half of the width that has to be asphalt, metres.
 const HALF_TRACK_M: f32 = 1.0;
-/// Length over which an arc is looked at, metres.
-const LOOKED_AT_M: f32 = 16.0;
+/// Length over which an arc is looked at, beyond the point that is steered to, metres.
+const LOOKED_BEYOND_M: f32 = 3.0;
 /// Lane widths that are believed, metres.
 const LANE_WIDTHS_M: std::ops::RangeInclusive<f32> = 2.5..=4.6;
 /// Distance kept from an edge of the road without lines, metres.
@@ -88,11 +93,11 @@ impl Arc {
         reach_m
     }
 
-    /// Share of the car's track over the next metres that is no asphalt, near ground counting more.
-    fn off_road(&self, sight: &Sight<'_>) -> f32 {
+    /// Share of the car's track up to `reach_m` that is no asphalt, near ground counting more.
+    fn off_road(&self, sight: &Sight<'_>, reach_m: f32) -> f32 {
         let (mut off, mut all) = (0.0, 0.0);
         for step in 0..20 {
-            let s_m = 6.0 + step as f32 * (LOOKED_AT_M - 6.0) / 20.0;
+            let s_m = 6.0 + step as f32 * (reach_m - 6.0) / 20.0;
             for left_m in [-HALF_TRACK_M, 0.0, HALF_TRACK_M] {
                 let (x, y) = self.beside(s_m, left_m);
                 let weight = 1.0 / s_m;
@@ -104,22 +109,24 @@ impl Arc {
     }
 }
 
-/// The place that the arrow points to, in the car's frame.
+/// The place that the arrow points to, in the car's frame: so far along an arc that starts straight ahead.
 pub fn arrow_point(arrow: &RouteArrow) -> Point {
     let bearing_rad = -f32::from(arrow.bearing_deg).to_radians();
-    (MIDDLE_M + ARROW_M * ops::cos(bearing_rad), ARROW_M * ops::sin(bearing_rad))
+    let chord = if bearing_rad == 0.0 { 1.0 } else { ops::sin(bearing_rad) / bearing_rad };
+    let distance_m = ARROW_M * chord.max(0.5);
+    (MIDDLE_M + distance_m * ops::cos(bearing_rad), distance_m * ops::sin(bearing_rad))
 }
 
-/// The arc to steer: in junctions along the remembered arrows, elsewhere along the lane.
-pub fn choose(sight: &Sight<'_>, arrow: &RouteArrow, trail: &Trail) -> Arc {
-    let (x_m, y_m) = arrow_point(arrow);
-    let by_arrow = Arc::to(x_m, y_m);
-    if arrow.distance_m < JUNCTION_M {
-        let by_trail = trail.point_at(TURN_LOOK_M).map(|(x_m, y_m)| Arc::to(x_m, y_m));
-        return nearest_on_road(sight, by_trail.unwrap_or(by_arrow));
+/// The arc to steer: along the remembered arrows, outside of junctions moved to the middle of the lane.
+pub fn choose(sight: &Sight<'_>, hud: &Hud, trail: &Trail) -> Arc {
+    let look_m = LOOK_M.max(LOOK_S * hud.speed_mps).min(ARROW_M);
+    let (x_m, y_m) = trail.point_at(look_m).unwrap_or_else(|| arrow_point(&hud.arrow));
+    let followed = Arc::to(x_m, y_m);
+    if hud.arrow.distance_m < JUNCTION_M || hud.arrow.bearing_deg.abs() > TURNING_DEG {
+        return nearest_on_road(sight, followed, look_m);
     }
-    let shifted = lane_shift_m(sight, by_arrow).map(|shift_m| by_arrow.beside(MIDDLE_M + ARROW_M, shift_m));
-    nearest_on_road(sight, shifted.map_or(by_arrow, |(x_m, y_m)| Arc::to(x_m, y_m)))
+    let shifted = lane_shift_m(sight, followed).map(|shift_m| followed.beside(MIDDLE_M + ARROW_M, shift_m));
+    nearest_on_road(sight, shifted.map_or(followed, |(x_m, y_m)| Arc::to(x_m, y_m)), look_m)
 }
 
 /// How far to the left of the arc the middle of its lane lies, by lines and edges.
@@ -146,8 +153,8 @@ fn median(mut values: Vec<f32>) -> Option<f32> {
 }
 
 /// The arc next to the wanted one whose track is asphalt.
-fn nearest_on_road(sight: &Sight<'_>, wanted: Arc) -> Arc {
-    let cost = |arc: Arc, step: i32| arc.off_road(sight) + 0.012 * step.abs() as f32;
+fn nearest_on_road(sight: &Sight<'_>, wanted: Arc, look_m: f32) -> Arc {
+    let cost = |arc: Arc, step: i32| arc.off_road(sight, look_m + LOOKED_BEYOND_M) + 0.012 * step.abs() as f32;
     let arc_of = |step: i32| Arc { curvature: (wanted.curvature + 0.01 * step as f32).clamp(-SHARPEST, SHARPEST) };
     (-TRIED..=TRIED)
         .map(|step| (cost(arc_of(step), step), arc_of(step)))

@@ -95,10 +95,17 @@ impl<'a> Sight<'a> {
         ground_of(self.tag(column as usize, row as usize))
     }
 
-    /// Where people and vehicles stand, column by column. Blobs that are too low for their distance
-    /// are noise; so are single columns.
+    /// Where people and vehicles stand. Blobs that are too low for their distance are noise; so are
+    /// single columns.
     pub fn contacts(&self) -> Vec<Contact> {
-        let columns: Vec<Vec<Contact>> = (0..self.mask.width).map(|c| self.contacts_of_column(c)).collect();
+        let mut contacts = self.vehicles();
+        contacts.extend(self.people());
+        contacts
+    }
+
+    /// Where vehicles stand, column by column: a long one reaches from near to far.
+    fn vehicles(&self) -> Vec<Contact> {
+        let columns: Vec<Vec<Contact>> = (0..self.mask.width).map(|c| self.vehicles_of_column(c)).collect();
         let agree = |a: &Contact, b: &Contact| (a.x_m - b.x_m).abs() < 1.0 + 0.15 * b.x_m;
         let seen_beside = |column: usize, contact: &Contact| {
             let beside = [column.checked_sub(1), Some(column + 1)];
@@ -108,20 +115,61 @@ impl<'a> Sight<'a> {
         all.filter(|(column, contact)| seen_beside(*column, contact)).map(|(_, contact)| *contact).collect()
     }
 
-    /// The blobs of a column, nearest first. A rider and his bicycle are one blob, and a person behind
-    /// a car is one with the car: what touches the ground counts.
-    fn contacts_of_column(&self, column: usize) -> Vec<Contact> {
+    /// The vehicles of a column, nearest first. A rider and his bicycle are one blob, and a person
+    /// behind a car is one with the car: what touches the ground counts.
+    fn vehicles_of_column(&self, column: usize) -> Vec<Contact> {
         let mut found = Vec::new();
         let mut row = self.mask.height;
         while row > self.horizon() {
             let hides = |r: &usize| ground_of(self.tag(column, *r)) == Ground::Hidden;
             let rows = (0..row).rev().take_while(hides).count();
-            if rows > 0 {
+            if rows > 0 && is_vehicle(self.tag(column, row - 1)) {
                 found.extend(self.contact(column, row, rows));
             }
             row -= rows.max(1);
         }
         found
+    }
+
+    /// Where people stand: a walking one touches the ground with one foot, so the lowest pixel of the
+    /// whole figure says how far all of it is.
+    fn people(&self) -> Vec<Contact> {
+        let mut seen = vec![false; self.mask.ids.len()];
+        let mut found = Vec::new();
+        for row in (self.horizon()..self.mask.height).rev() {
+            for column in 0..self.mask.width {
+                let Some(figure) = self.figure(column, row, &mut seen) else { continue };
+                let behind_vehicle = row + 1 < self.mask.height && is_vehicle(self.tag(column, row + 1));
+                if figure.left == figure.right || behind_vehicle {
+                    continue;
+                }
+                let foot = self.contact(column, row + 1, row + 1 - figure.top);
+                let part = |foot: Contact, column| Contact { y_m: self.column_y_m(column, foot.x_m), ..foot };
+                found.extend(foot.iter().flat_map(|foot| (figure.left..=figure.right).map(|c| part(*foot, c))));
+            }
+        }
+        found
+    }
+
+    /// The connected pixels of people around a pixel, if they were not seen before.
+    fn figure(&self, column: usize, row: usize, seen: &mut [bool]) -> Option<Figure> {
+        let mut figure = Figure { left: column, right: column, top: row };
+        let mut open = vec![(column, row)];
+        let mut size = 0;
+        while let Some((column, row)) = open.pop() {
+            let is_new = !std::mem::replace(&mut seen[row * self.mask.width + column], true);
+            if !is_new || !is_person(self.tag(column, row)) {
+                continue;
+            }
+            size += 1;
+            figure.left = figure.left.min(column);
+            figure.right = figure.right.max(column);
+            figure.top = figure.top.min(row);
+            let columns = column.saturating_sub(1)..(column + 2).min(self.mask.width);
+            let rows = row.saturating_sub(1)..(row + 2).min(self.mask.height);
+            open.extend(columns.flat_map(|c| rows.clone().map(move |r| (c, r))));
+        }
+        (size > 0).then_some(figure)
     }
 
     /// The contact of a blob of `rows` rows that ends above `row`.
@@ -166,6 +214,13 @@ impl<'a> Sight<'a> {
             .map(|row| (row, self.row_x_m(row)))
             .filter(move |(_, x)| (from_m..=to_m).contains(x))
     }
+}
+
+/// Pixels that are connected.
+struct Figure {
+    left: usize,
+    right: usize,
+    top: usize,
 }
 
 /// Where a lane ends on one side.

@@ -13,7 +13,7 @@ use super::sight::{Contact, Sight};
 /// Half of the car's width, metres.
 const HALF_WIDTH_M: f32 = 0.5 * ego::SIZE_M.y;
 /// Deceleration that is planned with, m/s^2.
-const COMFORT_MPS2: f32 = 2.5;
+pub const COMFORT_MPS2: f32 = 2.0;
 /// Deceleration that a yellow light is worth, m/s^2.
 const YELLOW_MPS2: f32 = 3.5;
 /// Lateral acceleration in bends, m/s^2.
@@ -25,7 +25,7 @@ const BEFORE_LINE_M: f32 = 1.5;
 /// Speed in turns at junctions, m/s.
 const TURN_MPS: f32 = 5.5;
 /// Speed across junctions without lights, m/s.
-const CROSSING_MPS: f32 = 7.0;
+const CROSSING_MPS: f32 = 5.5;
 /// Speed at which the end of the visible road is approached, m/s.
 const FEELING_MPS: f32 = 4.5;
 /// Distance to a junction within which others are given way, metres.
@@ -42,7 +42,7 @@ const REACH_M: f32 = 45.0;
 /// Side clearance to vehicles, to people beside the road, and to people on it, metres.
 const BESIDE_VEHICLE_M: f32 = 0.35;
 const BESIDE_WALKER_M: f32 = 0.6;
-const BESIDE_CROSSING_M: f32 = 2.6;
+const BESIDE_CROSSING_M: f32 = 3.6;
 
 /// The speed from which the car can slow to `end_mps` within `distance_m`.
 fn braking_from(end_mps: f32, distance_m: f32) -> f32 {
@@ -58,21 +58,20 @@ pub struct Wish {
     pub stop_in_m: Option<f32>,
 }
 
-/// Others on the road, and whether the junction ahead or around has lights.
+/// Others on the road, and where to wait for them.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// Where people and vehicles stand in the mask.
     pub contacts: &'a [Contact],
-    /// How vehicles move.
-    pub tracks: &'a Tracks,
+    /// Metres from the front of the car to where it lets others pass.
+    pub give_way_m: Option<f32>,
     /// The HUD shows a light, or showed the one of this junction.
     pub has_lights: bool,
 }
 
 /// The speed for an arc.
 pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud, scene: Scene<'_>) -> Wish {
-    let give_way_m = if scene.has_lights { None } else { give_way_m(arc, hud, scene.tracks) };
-    let stops = [obstacle_m(scene.contacts, arc), stop_line_m(hud), give_way_m];
+    let stops = [obstacle_m(scene.contacts, arc), stop_line_m(hud), scene.give_way_m];
     let stop_in_m = stops.into_iter().flatten().reduce(f32::min);
     let bend_mps = (LATERAL_MPS2 / arc.curvature.abs().max(1e-3)).sqrt();
     let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M);
@@ -101,7 +100,7 @@ fn clearance_m(contact: &Contact) -> f32 {
 
 /// Metres from the front of the car to where it lets others pass at a junction without lights: where
 /// the car would meet a moving vehicle within the next seconds if both went on.
-fn give_way_m(arc: Arc, hud: &Hud, tracks: &Tracks) -> Option<f32> {
+pub fn give_way_m(arc: Arc, hud: &Hud, tracks: &Tracks) -> Option<f32> {
     if hud.arrow.distance_m > GIVE_WAY_M {
         return None;
     }

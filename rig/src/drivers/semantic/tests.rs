@@ -149,3 +149,32 @@ fn it_brakes_for_a_person_but_not_for_specks() {
     assert_eq!(with_person(126..127, 62..79).brake, 0, "a single column");
     assert_eq!(with_person(190..195, 62..79).brake, 0, "on the far side");
 }
+
+#[test]
+fn a_figure_is_as_far_as_its_lowest_foot() {
+    let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    // Trunk, one leg to the left, and the other, which stands, to the right.
+    for (columns, rows) in [(126..130, 60..70), (124..127, 70..75), (129..132, 70..79)] {
+        for row in rows {
+            ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(SemanticTag::Pedestrian as u8);
+        }
+    }
+    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids });
+    let (_, foot_m) = sight.rows_between(0.0, 60.0).find(|(row, _)| *row == 78).expect("in view");
+    let contacts = sight.contacts();
+    assert_eq!(contacts.len(), 8, "a contact for every column: {contacts:?}");
+    assert!(contacts.iter().all(|c| c.is_person && c.x_m == foot_m), "{foot_m} m: {contacts:?}");
+}
+
+#[test]
+fn a_bend_ahead_is_no_farther_than_it_is_along_the_route() {
+    for curvature in [0.04, -0.08, 0.11] {
+        let road = Road { curvature };
+        let pose = Pose { x: 0.0, y: 0.0, heading: 0.0 };
+        let middle = pose.place(ego::CENTRE_M.x, 0.0);
+        let (x, y) = path::arrow_point(&road.arrow(pose));
+        let along = Arc { curvature }.project(x, y).0 - Arc { curvature }.project(middle.0, middle.1).0;
+        // Half a step of the arrow is 0.52 m at this distance.
+        assert!((along - path::ARROW_M).abs() < 0.53, "curvature {curvature}: {along} m");
+    }
+}
