@@ -83,11 +83,16 @@ impl AdapterChoice {
 
     fn text(&self) -> String {
         match self {
-            Self::Auto => "any".into(),
-            Self::Cpu => "cpu".into(),
-            Self::Gpu => "gpu".into(),
-            Self::Named(part) => part.clone(),
+            Self::Auto => "graphics adapter".into(),
+            Self::Cpu => "CPU graphics adapter".into(),
+            Self::Gpu => "GPU".into(),
+            Self::Named(part) => format!("graphics adapter '{part}'"),
         }
+    }
+
+    /// The adapter that would draw; the error says what to install.
+    pub fn find(&self) -> Result<AdapterInfo, RenderError> {
+        self.open().map(|(_, info)| info)
     }
 
     /// The best adapter of the wanted kind.

@@ -5,8 +5,8 @@
 pub enum RenderError {
     /// No adapter of the wanted kind answered.
     #[error(
-        "no graphics adapter for '{wanted}': install a Vulkan driver (on Debian: apt install libvulkan1 \
-         mesa-vulkan-drivers, whose lavapipe needs no GPU); found: {found}"
+        "no {wanted} found: install a Vulkan driver (on Debian: apt install libvulkan1 mesa-vulkan-drivers, which \
+         draws on the CPU where there is no GPU); adapters of this machine: {found}"
     )]
     NoAdapter {
         /// What was asked for.

@@ -9,7 +9,7 @@ use crate::gpu::{Draws, Gpu, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
 use crate::scenery::Scenery;
 use crate::view::View;
-use crate::{AdapterChoice, AdapterInfo, Camera, Frame, RenderError};
+use crate::{AdapterChoice, Camera, Frame, RenderError};
 
 /// How much to draw. Classes, instances and depth are the same in both.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -137,10 +137,5 @@ impl Renderer {
             return Err(RenderError::OtherMap { expected: self.light_groups, got: scene.lights.len() });
         }
         Ok(())
-    }
-
-    /// The adapter it draws with.
-    pub fn adapter(&self) -> &AdapterInfo {
-        &self.gpu.info
     }
 }

@@ -38,7 +38,26 @@ pub fn code(result: &anyhow::Result<Verdict>) -> ExitCode {
     ExitCode::from(number(result))
 }
 
-/// An error with its causes as one line.
+/// An error with its causes as one line; causes that the text tells already are left out.
 pub fn sentence(error: &anyhow::Error) -> String {
-    format!("{error:#}").split_whitespace().collect::<Vec<_>>().join(" ")
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::Context;
+
+    #[test]
+    fn a_sentence_says_each_cause_once() {
+        let cause: anyhow::Error = anyhow::anyhow!("no\n room");
+        let error = Err::<(), _>(cause).context("b: no\n room").context("a").expect_err("one");
+        assert_eq!(sentence(&error), "a: b: no room");
+    }
 }

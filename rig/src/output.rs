@@ -40,9 +40,33 @@ pub fn print<T: Serialize>(json: bool, value: &T, text: impl FnOnce() -> String)
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let folder = folder_of(path);
     let mut file = tempfile::NamedTempFile::new_in(&folder).with_context(|| folder.display().to_string())?;
-    file.write_all(bytes).with_context(|| path.display().to_string())?;
+    file.as_file_mut().write_all(bytes).with_context(|| path.display().to_string())?;
     make_readable(file.path(), 0o644)?;
     file.persist(path).with_context(|| path.display().to_string())?;
+    Ok(())
+}
+
+/// Refuses a place where no file can be written, before the work whose result it is for.
+pub fn check_file(path: &Path) -> anyhow::Result<()> {
+    let folder = folder_of(path);
+    if path.is_dir() {
+        bail!("{}: is a folder; expected a file", path.display());
+    }
+    if !folder.is_dir() {
+        bail!("{}: the folder {} does not exist", path.display(), folder.display());
+    }
+    tempfile::tempfile_in(&folder).with_context(|| path.display().to_string())?;
+    Ok(())
+}
+
+/// Makes a folder that results can be written to, with those above it, unless it is there.
+pub fn create_folder(path: &Path) -> anyhow::Result<()> {
+    if let Some(file) = path.ancestors().find(|above| above.exists()).filter(|above| !above.is_dir()) {
+        bail!("{}: is a file; expected a folder", file.display());
+    }
+    let context = || path.display().to_string();
+    fs::create_dir_all(path).with_context(context)?;
+    tempfile::tempfile_in(path).with_context(context)?;
     Ok(())
 }
 
@@ -67,7 +91,7 @@ impl PendingFolder {
             bail!("{}: exists already; expected a new or an empty folder", path.display());
         }
         let parent = folder_of(path);
-        fs::create_dir_all(&parent).with_context(|| parent.display().to_string())?;
+        create_folder(&parent)?;
         let temporary = tempfile::Builder::new().prefix(".aeye-").tempdir_in(&parent);
         Ok(Self { temporary: temporary.with_context(|| parent.display().to_string())?, path: path.to_owned() })
     }

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::fs;
 
-use anyhow::Context;
+use render::AdapterChoice;
 
 use crate::campaign::{CampaignFigures, Plan, Until, drive_all, figures};
 use crate::cli::CampaignArgs;
@@ -29,7 +28,8 @@ pub fn drive(args: &CampaignArgs, interrupt: &Interrupt) -> anyhow::Result<Campa
     if names.iter().collect::<BTreeSet<_>>().len() < names.len() {
         return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
     }
-    fs::create_dir_all(&plan.out).with_context(|| plan.out.display().to_string())?;
+    AdapterChoice::default().find()?;
+    output::create_folder(&plan.out)?;
     let cores = || std::thread::available_parallelism().map_or(1, |n| n.get());
     let jobs = args.jobs.map_or_else(cores, usize::from);
     let mut runs = Vec::new();

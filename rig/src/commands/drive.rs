@@ -96,7 +96,7 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
         }
         !interrupt.is_raised()
     };
-    simulate::drive(&scenario, &map, vision, file, keep_on)?;
+    simulate::drive(&scenario, &map, vision, file, keep_on).with_context(|| path.display().to_string())?;
     let figures = RunFigures::of(&Recording::open(path)?);
     output::print(json, &figures, || {
         let label = figures.label.map(|l| format!(" ({l})")).unwrap_or_default();

@@ -24,19 +24,22 @@ pub fn open_eyes(choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Resu
 /// A renderer for the driver's camera, made anew when the map changes.
 pub struct Studio {
     camera: Camera,
+    options: RenderOptions,
     current: Option<(u128, Renderer)>,
 }
 
 impl Studio {
-    /// For pictures of one size.
-    pub fn new((width, height): (u32, u32)) -> Self {
-        Self { camera: Camera::driver(width, height), current: None }
+    /// For pictures of one size; fails where nothing can draw.
+    pub fn new((width, height): (u32, u32)) -> anyhow::Result<Self> {
+        let options = RenderOptions::default();
+        options.adapter.find()?;
+        Ok(Self { camera: Camera::driver(width, height), options, current: None })
     }
 
     /// The driver's view of a scene.
     pub fn draw(&mut self, network: &RoadNetwork, scene: &SceneSnapshot) -> anyhow::Result<Frame> {
         if self.current.as_ref().is_none_or(|(digest, _)| *digest != network.digest) {
-            self.current = Some((network.digest, Renderer::new(network, &RenderOptions::default())?));
+            self.current = Some((network.digest, Renderer::new(network, &self.options)?));
         }
         let (_, renderer) = self.current.as_mut().context("a renderer")?;
         Ok(renderer.draw(scene, &self.camera)?)

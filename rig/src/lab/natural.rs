@@ -130,10 +130,11 @@ pub fn run(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
 pub fn make(args: &NaturalArgs, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     let maps = Map::find_all(&args.maps)?;
     let recipe = Recipe::new(args, &maps)?;
+    let options = RenderOptions::default();
+    let adapter = options.adapter.find()?.name;
     let parts = prepare(&args.out, &recipe)?;
     let scenes = recipe.scenes();
     let bar = progress::bar("frames", u64::from(recipe.frames) * scenes.len() as u64);
-    let adapter = Renderer::new(&maps[0].network, &RenderOptions::default())?.adapter().name.clone();
     let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
     spread(jobs(args.jobs), scenes.len(), fresh, |renderers, index| {
         let scene = &scenes[index];
@@ -145,7 +146,7 @@ pub fn make(args: &NaturalArgs, interrupt: &Interrupt) -> anyhow::Result<Manifes
         let map = &maps[scene.map];
         let renderer = match &mut renderers[scene.map] {
             Some(renderer) => renderer,
-            none => none.insert(Renderer::new(&map.network, &RenderOptions::default())?),
+            none => none.insert(Renderer::new(&map.network, &options)?),
         };
         let mut studio = Studio { recipe: &recipe, out: &args.out, renderer, interrupt, bar: &bar };
         let lines = studio.shoot(scene, map)?;
@@ -165,7 +166,7 @@ fn prepare(out: &Path, recipe: &Recipe) -> anyhow::Result<std::path::PathBuf> {
             out.display()
         );
     }
-    fs::create_dir_all(&parts).with_context(|| parts.display().to_string())?;
+    output::create_folder(&parts)?;
     if recipe_file.exists() {
         let text = fs::read_to_string(&recipe_file).with_context(|| recipe_file.display().to_string())?;
         let begun: Recipe = serde_json::from_str(&text).with_context(|| recipe_file.display().to_string())?;

@@ -76,9 +76,9 @@ fn text(summary: &Summary) -> String {
 }
 
 fn rerender(args: &RerenderArgs) -> anyhow::Result<Summary> {
-    let out = PendingFolder::new(&args.out)?;
     let mut eyes = open_eyes(&args.checkpoint, args.size)?;
-    let mut studio = Studio::new(args.size);
+    let mut studio = Studio::new(args.size)?;
+    let out = PendingFolder::new(&args.out)?;
     let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
     let mut metrics = String::new();
     let mut frames = 0;

@@ -16,6 +16,7 @@ use crate::progress::{self, Interrupt};
 
 /// Runs `aeye train`. Ctrl-C stops it; the same command goes on from the last finished epoch.
 pub fn run(args: &TrainArgs, json: bool) -> anyhow::Result<Verdict> {
+    output::check_file(&args.out)?;
     let options = options(args);
     let unfinished = beside(&args.out, "onnx.part");
     let interrupt = Interrupt::listen()?;

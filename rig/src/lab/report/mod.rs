@@ -34,6 +34,7 @@ struct Summary {
 
 /// Runs `aeye report`.
 pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
+    output::check_file(&args.out)?;
     let html = render(&args.files, &args.checkpoint, args.size)?;
     output::write_file(&args.out, html.as_bytes())?;
     let summary = Summary { report: args.out.display().to_string(), cases: args.files.len(), bytes: html.len() };
@@ -45,7 +46,7 @@ pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
 /// Kilometres and minutes are those of all recordings that lie beside the cases.
 pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<String> {
     let mut eyes = open_eyes(choices, size)?;
-    let mut studio = Studio::new(size);
+    let mut studio = Studio::new(size)?;
     let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
     let mut cases = Vec::new();
     let bar = progress::bar("report", files.len() as u64);
