@@ -43,13 +43,19 @@ impl Checkpoint {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, PerceptionError> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|source| PerceptionError::Io { path: path.into(), source })?;
-        let mut model =
-            onnx::decode(&bytes).map_err(|reason| PerceptionError::NotOnnx { path: path.into(), reason })?;
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(&bytes);
+        Self::new(path, &bytes, read_sidecar(&path.with_extension("toml"))?.as_deref())
+    }
+
+    /// A model at hand as bytes, with its metadata; errors call it by its name.
+    pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, PerceptionError> {
+        Self::new(Path::new(name), bytes, None)
+    }
+
+    fn new(path: &Path, bytes: &[u8], sidecar: Option<&str>) -> Result<Self, PerceptionError> {
+        let mut model = onnx::decode(bytes).map_err(|reason| PerceptionError::NotOnnx { path: path.into(), reason })?;
         let refuse = |reason| PerceptionError::NotSegmentation { path: path.into(), reason };
         let (input, output) = ends(&model).map_err(refuse)?;
-        let metadata = read_metadata(path, &model, &mut hasher)?;
+        let metadata = metadata_of(path, &model, sidecar)?;
         check_classes(output, metadata.classes.count()).map_err(refuse)?;
         let input = input_of(input, metadata.layout).map_err(refuse)?;
         if input.element == Element::Float && metadata.normalisation.is_none() {
@@ -58,11 +64,12 @@ impl Checkpoint {
         }
         let align_corners = peel(&mut model).unwrap_or(metadata.align_corners);
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let digest = hasher.finalize();
+        let mut hasher = blake3::Hasher::new();
+        let digest = hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes()).finalize();
         Ok(Self { path: path.into(), name, digest, metadata, model: Arc::new(model), input, align_corners })
     }
 
-    /// Where it was read.
+    /// Where it was read, or the name of a bundled one.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -93,30 +100,28 @@ impl Checkpoint {
     }
 }
 
-/// The sidecar's word, or else the model's own.
-fn read_metadata(
-    path: &Path,
-    model: &pb::ModelProto,
-    hasher: &mut blake3::Hasher,
-) -> Result<Metadata, PerceptionError> {
-    let sidecar = path.with_extension("toml");
-    match std::fs::read_to_string(&sidecar) {
-        Ok(text) => {
-            hasher.update(text.as_bytes());
-            Metadata::from_toml(&text).map_err(|reason| PerceptionError::Metadata { path: sidecar, reason })
-        }
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            let props = model.metadata_props.iter().map(|p| (p.key.as_str(), p.value.as_str()));
-            let absent = || {
-                let beside = sidecar.file_name().unwrap_or_default().to_string_lossy();
-                Err(format!("no class names: expected aeye.classes in the model's metadata, or {beside} beside it"))
-            };
-            Metadata::from_props(props)
-                .unwrap_or_else(absent)
-                .map_err(|reason| PerceptionError::Metadata { path: path.into(), reason })
-        }
-        Err(source) => Err(PerceptionError::Io { path: sidecar, source }),
+fn read_sidecar(path: &Path) -> Result<Option<String>, PerceptionError> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(PerceptionError::Io { path: path.into(), source }),
     }
+}
+
+/// The sidecar's word, or else the model's own.
+fn metadata_of(path: &Path, model: &pb::ModelProto, sidecar: Option<&str>) -> Result<Metadata, PerceptionError> {
+    let beside = path.with_extension("toml");
+    if let Some(text) = sidecar {
+        return Metadata::from_toml(text).map_err(|reason| PerceptionError::Metadata { path: beside, reason });
+    }
+    let props = model.metadata_props.iter().map(|p| (p.key.as_str(), p.value.as_str()));
+    let absent = || {
+        let beside = beside.file_name().unwrap_or_default().to_string_lossy();
+        Err(format!("no class names: expected aeye.classes in the model's metadata, or {beside} beside it"))
+    };
+    Metadata::from_props(props)
+        .unwrap_or_else(absent)
+        .map_err(|reason| PerceptionError::Metadata { path: path.into(), reason })
 }
 
 /// The model's one input and its first output, if they can be a picture and a segmentation.

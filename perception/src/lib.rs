@@ -4,6 +4,7 @@
 //! `u8`. What a network's output channels mean is its checkpoint's business ([`ClassMap`]); the 16
 //! classes that are trained and measured are one table ([`classes::TRAIN_CLASSES`]).
 
+mod bundled;
 mod checkpoint;
 pub mod classes;
 mod decode;
@@ -19,6 +20,7 @@ mod taps;
 mod toy;
 pub mod training;
 
+pub use bundled::{BUNDLED, bundled};
 pub use checkpoint::Checkpoint;
 pub use classes::ClassMap;
 pub use error::PerceptionError;

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use kernel::time::{CLIP_FPS, TICK_HZ, Tick};
+use perception::BUNDLED;
 
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
 ///
@@ -55,6 +56,8 @@ pub enum Command {
 pub enum CheckpointChoice {
     /// `truth`: the renderer's class ids instead of a prediction.
     Truth,
+    /// One that comes with the program, by name.
+    Bundled(&'static str),
     /// An ONNX file.
     File(PathBuf),
 }
@@ -63,7 +66,12 @@ impl FromStr for CheckpointChoice {
     type Err = Infallible;
 
     fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(if text == "truth" { Self::Truth } else { Self::File(PathBuf::from(text)) })
+        let bundled = BUNDLED.into_iter().find(|name| *name == text);
+        Ok(match bundled {
+            _ if text == "truth" => Self::Truth,
+            Some(name) => Self::Bundled(name),
+            None => Self::File(PathBuf::from(text)),
+        })
     }
 }
 
@@ -79,8 +87,8 @@ pub struct DriveArgs {
     /// A scenario file.
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,
-    /// What the semantic driver sees: an ONNX file, or `truth`.
-    #[arg(long, default_value = "truth", value_name = "FILE.onnx|truth")]
+    /// What the semantic driver sees: a bundled checkpoint, ground truth, or an ONNX file.
+    #[arg(long, default_value = "truth", value_name = "early|full|truth|FILE.onnx")]
     pub checkpoint: CheckpointChoice,
     /// Seed of everything random; replaces the scenario's.
     #[arg(long)]
@@ -97,8 +105,9 @@ pub struct DriveArgs {
 #[derive(Args, Debug)]
 #[command(group = clap::ArgGroup::new("until").required(true).args(["runs", "km", "cases"]))]
 pub struct CampaignArgs {
-    /// What the semantic driver sees: ONNX files, or `truth`; each drives the same runs.
-    #[arg(long, required = true, num_args = 1.., value_name = "FILE.onnx|truth")]
+    /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
+    /// the same runs.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones (default: the scenario's
     /// map, or all).
@@ -159,7 +168,7 @@ pub struct RerenderArgs {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
-    #[arg(long, required = true, num_args = 1.., value_name = "FILE.onnx|truth")]
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Length of the window that ends at the intervention (or at the end), as in `3s`.
     #[arg(long, default_value = "3s", value_parser = duration)]
@@ -251,7 +260,7 @@ pub struct TrainArgs {
 #[derive(Args, Debug)]
 pub struct EvalArgs {
     /// Checkpoint.
-    #[arg(long, value_name = "C.onnx|truth")]
+    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
     pub checkpoint: CheckpointChoice,
     /// Dataset folder.
     #[arg(long, value_name = "DIR")]
@@ -268,7 +277,7 @@ pub struct ReportArgs {
     #[arg(required = true, value_name = "CASE")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
-    #[arg(long, required = true, num_args = 1.., value_name = "FILE.onnx|truth")]
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Size of the pictures.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
@@ -284,9 +293,6 @@ pub struct DemoArgs {
     /// Seed of the campaign.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder with the bundled checkpoints `early.onnx` and `full.onnx`.
-    #[arg(long, default_value = "perception/checkpoints", value_name = "DIR")]
-    pub checkpoints: PathBuf,
     /// Folder of the results; a demo that was interrupted goes on there.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

@@ -1,15 +1,18 @@
 //! What the semantic driver sees in a simulated drive: in lockstep with the ticks, with a declared
 //! latency, so that the same run gives the same masks on a fast and on a slow machine.
 
-use anyhow::Context;
+use std::path::Path;
+
+use anyhow::{Context, bail};
 use kernel::World;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
-use perception::{Checkpoint, Mask, RgbView, Segmenter};
+use perception::{BUNDLED, Checkpoint, Mask, RgbView, Segmenter};
 use render::{Camera, Frame, Renderer};
 use replay::MaskShown;
 
 use crate::cli::CheckpointChoice;
 use crate::drivers::MaskView;
+use crate::exit::Usage;
 
 /// Ticks from one frame to the next: 10 frames a second.
 pub const FRAME_TICKS: Tick = CLIP_STRIDE_TICKS;
@@ -44,15 +47,18 @@ impl Eye {
     }
 
     fn open_for(choice: &CheckpointChoice, size: Option<(usize, usize)>) -> anyhow::Result<Self> {
-        let CheckpointChoice::File(path) = choice else { return Ok(Self::Truth) };
-        let checkpoint = Box::new(Checkpoint::load(path)?);
+        let checkpoint = Box::new(match choice {
+            CheckpointChoice::Truth => return Ok(Self::Truth),
+            CheckpointChoice::Bundled(name) => perception::bundled(name).context("a bundled checkpoint")??,
+            CheckpointChoice::File(path) => load(path)?,
+        });
         let own = || checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
         let (width, height) = size.unwrap_or_else(own);
         let segmenter = Box::new(Segmenter::new(&checkpoint, width, height)?);
         Ok(Self::Network { checkpoint, segmenter })
     }
 
-    /// `truth`, or the name of the checkpoint's file without its ending.
+    /// `truth`, or the checkpoint's name: that of its file without the ending.
     pub fn name(&self) -> &str {
         match self {
             Self::Truth => "truth",
@@ -84,6 +90,18 @@ impl Eye {
             Self::Network { segmenter, .. } => Ok(segmenter.run(RgbView::new(width, height, &frame.rgb)?)?),
         }
     }
+}
+
+fn load(path: &Path) -> anyhow::Result<Checkpoint> {
+    if path.exists() {
+        return Ok(Checkpoint::load(path)?);
+    }
+    let known = BUNDLED.join(", ");
+    let sentence = format!("{}: no such checkpoint; expected one of {known}, truth, or an ONNX file", path.display());
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("onnx")) {
+        bail!("{sentence}");
+    }
+    Err(Usage(sentence).into())
 }
 
 /// A mask on its way to the screen, or on it.

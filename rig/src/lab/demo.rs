@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
+use render::AdapterChoice;
 use serde::Serialize;
 
 use super::{report, rerender};
@@ -34,8 +35,8 @@ struct Summary {
 
 /// Runs `aeye demo`.
 pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
-    let choice = |name: &str| CheckpointChoice::File(args.checkpoints.join(name));
-    let (early, full) = (choice("early.onnx"), choice("full.onnx"));
+    AdapterChoice::default().find()?;
+    let (early, full) = (CheckpointChoice::Bundled("early"), CheckpointChoice::Bundled("full"));
     let drives = args.out.join("drives");
     eprintln!("1/4 driving through the early checkpoint until {CASES} corner cases have happened");
     let figures = campaign::drive(&campaign_args(args, early.clone(), &drives), &Interrupt::listen()?)?;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use rig::cli::Cli;
 use rig::exit;
 
@@ -66,7 +66,8 @@ fn checkpoints_are_refused_by_name() {
     let noise = dir.path().join("noise.onnx");
     fs::write(&noise, [7u8; 300]).expect("writable");
     refused(dir.path(), &["--checkpoint", noise.to_str().expect("UTF-8")], 1, &["noise.onnx"]);
-    refused(dir.path(), &["--checkpoint", "missing.onnx"], 1, &["missing.onnx"]);
+    refused(dir.path(), &["--checkpoint", "missing.onnx"], 1, &["missing.onnx", "early, full, truth"]);
+    refused(dir.path(), &["--checkpoint", "late"], 2, &["late", "early, full, truth"]);
 }
 
 #[test]
@@ -102,4 +103,78 @@ fn nonsense_on_the_command_line_is_usage() {
     let (code, sentence) = aeye(&campaign);
     assert!(code == 2 && sentence.contains("--km"), "{sentence}");
     assert!(names(dir.path()).is_empty());
+}
+
+/// Runs a command that is refused, and gives the sentence.
+fn sentence_of(arguments: &[&str]) -> String {
+    let (code, sentence) = aeye(arguments);
+    assert_eq!(code, 1, "{arguments:?}: {sentence}");
+    sentence
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn places_that_cannot_hold_results_are_refused_before_the_work() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
+    let (file, folder, missing) = (place("file"), place("folder"), place("missing/page.html"));
+    fs::write(&file, "a note").expect("writable");
+    fs::create_dir(&folder).expect("writable");
+    for below in ["", "/below"] {
+        let out = format!("{file}{below}");
+        for command in [&["campaign", "--checkpoint", "truth", "--runs", "1"][..], &["dataset", "natural"], &["demo"]] {
+            let sentence = sentence_of(&[command, &["--out", &out]].concat());
+            assert_eq!(sentence, format!("{file}: is a file; expected a folder"));
+        }
+    }
+    let sentence = sentence_of(&["rerender", "run.mcap", "--checkpoint", "truth", "--out", &file]);
+    assert_eq!(sentence, format!("{file}: exists already; expected a new or an empty folder"));
+    for command in [&["report", "case.mcap", "--checkpoint", "truth"][..], &["train", "--dataset", "none"]] {
+        let sentence = sentence_of(&[command, &["--out", &folder]].concat());
+        assert_eq!(sentence, format!("{folder}: is a folder; expected a file"));
+        let sentence = sentence_of(&[command, &["--out", &missing]].concat());
+        assert!(sentence.starts_with(&missing) && sentence.ends_with("does not exist"), "{sentence}");
+    }
+    assert_eq!(fs::read_to_string(&file).expect("still there"), "a note");
+    assert_eq!(names(dir.path()), ["file", "folder"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_full_disk_is_named_with_the_recording() {
+    let sentence = sentence_of(&["drive", "--headless", "--map", "rural", "--seconds", "1", "--record", "/dev/full"]);
+    assert!(sentence.starts_with("/dev/full: No space left on device"), "{sentence}");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_bundled_checkpoint_by_name_and_by_path_gives_the_same_recording() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../perception/checkpoints/early.onnx");
+    let recording = |checkpoint: &str, name: &str| {
+        let record = dir.path().join(name);
+        let record = record.to_str().expect("UTF-8");
+        let drive = ["drive", "--headless", "--map", "rural", "--seconds", "2", "--record", record];
+        assert_eq!(aeye(&[&drive[..], &["--checkpoint", checkpoint]].concat()).0, 0);
+        fs::read(record).expect("a recording")
+    };
+    assert!(recording("early", "a.mcap") == recording(path, "b.mcap"));
+}
+
+#[test]
+fn the_readme_names_every_command_as_it_is_called() {
+    let readme = include_str!("../../../README.md");
+    let calls = readme.lines().filter_map(|line| line.strip_prefix("| `aeye ")?.split('`').next());
+    let mut named: Vec<&str> = calls.clone().filter_map(|call| call.split(' ').next()).collect();
+    for call in calls {
+        let words = call.split(' ').map(|word| if word == "N" { "1" } else { word.trim_end_matches("...") });
+        let parsed = Cli::try_parse_from(["aeye"].into_iter().chain(words));
+        assert!(parsed.is_ok(), "aeye {call}: {:?}", parsed.err());
+    }
+    let command = Cli::command();
+    let mut known: Vec<&str> = command.get_subcommands().map(|command| command.get_name()).collect();
+    named.sort_unstable();
+    known.sort_unstable();
+    assert_eq!(named, known);
 }
