@@ -104,6 +104,8 @@ fn a_report_stands_alone_and_escapes_what_people_wrote() {
     assert_eq!(html.matches("data:image/png;base64,").count(), 90);
     assert!(html.contains("a &lt;test&gt;") && !html.contains("<test>"));
     assert!(html.contains("<svg") && html.contains("<circle") && html.contains("15.8 s"));
+    let columns = |class: &str| html.matches(&format!("<div class=\"{class}\">")).count();
+    assert_eq!((columns("time "), columns("time more")), (6, 24), "one in five frames is always on the page");
     let outside = ["src=\"http", "href=\"http", "src=\"/", "@import", "url("];
     assert!(outside.iter().all(|link| !html.contains(link)));
 }

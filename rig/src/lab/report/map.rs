@@ -1,4 +1,5 @@
-//! The map from above as SVG, north up: houses, lanes, the route that was driven, and its end.
+//! The map from above as SVG, north up: houses, lanes, the route that was driven, and its end. The
+//! page's style gives the colours.
 
 use std::fmt::Write;
 
@@ -8,7 +9,9 @@ use kernel::map::{LaneKind, Prop, PropKind};
 use kernel::ops;
 
 /// Width and height of the picture, pixels.
-const SIZE_PX: f32 = 380.0;
+const SIZE_PX: f32 = 340.0;
+/// Length of the scale bar, metres.
+const BAR_M: f32 = 100.0;
 /// Room around the roads, metres.
 const MARGIN_M: f32 = 15.0;
 /// Points of a lane that are closer than this are left out, metres.
@@ -22,7 +25,8 @@ pub fn svg(network: &RoadNetwork, route: &[Vec2]) -> String {
     let scale = SIZE_PX / size.max_element();
     let (width, height) = (size.x * scale, size.y * scale);
     let mut out = format!(
-        "<svg width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"{:.1} {:.1} {:.1} {:.1}\">",
+        "<svg role=\"img\" aria-label=\"map\" width=\"{width:.0}\" height=\"{height:.0}\" \
+         viewBox=\"{:.1} {:.1} {:.1} {:.1}\">",
         low.x, -high.y, size.x, size.y
     );
     for prop in network.props.iter().filter(|prop| prop.kind == PropKind::Building) {
@@ -32,24 +36,38 @@ pub fn svg(network: &RoadNetwork, route: &[Vec2]) -> String {
         }
     }
     for lane in &lanes {
-        polyline(&mut out, lane, "#c3cad1", 3.4);
+        polyline(&mut out, lane, "lane", 3.4);
     }
     // Lines as thick on the screen whatever the map's size.
     let pixel_m = 1.0 / scale;
-    polyline(&mut out, route, "#1f6feb", 3.0 * pixel_m);
+    polyline(&mut out, route, "route", 3.0 * pixel_m);
     if let Some(end) = route.last() {
         // Writing to a string cannot fail.
         let _ = write!(
             out,
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{:.1}\" fill=\"#c8102e\" stroke=\"#fff\" stroke-width=\"{:.1}\"/>",
+            "<circle class=\"place\" cx=\"{:.1}\" cy=\"{:.1}\" r=\"{:.1}\" stroke-width=\"{:.1}\"/>",
             end.x,
             -end.y,
             6.0 * pixel_m,
             1.5 * pixel_m
         );
     }
+    scale_bar(&mut out, low, pixel_m);
     out.push_str("</svg>");
     out
+}
+
+/// A bar of [`BAR_M`] in the lower left corner.
+fn scale_bar(out: &mut String, low: Vec2, pixel_m: f32) {
+    let left = low + 10.0 * pixel_m;
+    polyline(out, &[left, left + Vec2::new(BAR_M, 0.0)], "bar", 2.0 * pixel_m);
+    let _ = write!(
+        out,
+        "<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"{:.1}\">{BAR_M:.0} m</text>",
+        left.x,
+        -left.y - 5.0 * pixel_m,
+        11.0 * pixel_m
+    );
 }
 
 /// Centre lines of the driving lanes, thinned out.
@@ -75,8 +93,8 @@ fn bounds<'a>(points: impl Iterator<Item = &'a Vec2>) -> (Vec2, Vec2) {
     if low.is_finite() { (low - MARGIN_M, high + MARGIN_M) } else { (Vec2::ZERO, Vec2::ONE) }
 }
 
-fn polyline(out: &mut String, points: &[Vec2], colour: &str, width_m: f32) {
-    let _ = write!(out, "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width_m:.1}\" points=\"");
+fn polyline(out: &mut String, points: &[Vec2], class: &str, width_m: f32) {
+    let _ = write!(out, "<polyline class=\"{class}\" stroke-width=\"{width_m:.1}\" points=\"");
     for p in points {
         let _ = write!(out, "{:.1},{:.1} ", p.x, -p.y);
     }
@@ -86,7 +104,7 @@ fn polyline(out: &mut String, points: &[Vec2], colour: &str, width_m: f32) {
 fn polygon(out: &mut String, prop: &Prop) {
     let forward = Vec2::new(ops::cos(prop.heading_rad), ops::sin(prop.heading_rad)) * (0.5 * prop.size.x);
     let left = Vec2::new(-ops::sin(prop.heading_rad), ops::cos(prop.heading_rad)) * (0.5 * prop.size.y);
-    let _ = write!(out, "<polygon fill=\"#e4e7ea\" points=\"");
+    let _ = write!(out, "<polygon class=\"house\" points=\"");
     for corner in [forward + left, forward - left, -forward - left, left - forward] {
         let p = prop.position.xy() + corner;
         let _ = write!(out, "{:.1},{:.1} ", p.x, -p.y);

@@ -4,6 +4,7 @@
 mod map;
 mod page;
 mod story;
+mod strip;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -21,8 +22,9 @@ use crate::exit::Verdict;
 use crate::output;
 use crate::progress;
 
-use page::{CasePart, Page, Strip};
+use page::{CasePart, Page};
 use story::Story;
+use strip::{Seen, Strip};
 
 /// What the command prints.
 #[derive(Serialize)]
@@ -48,7 +50,7 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
     let mut eyes = open_eyes(choices, size)?;
     let mut studio = Studio::new(size)?;
     let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
-    let mut cases = Vec::new();
+    let (mut cases, mut seen) = (Vec::new(), Seen::nothing());
     let bar = progress::bar("report", files.len() as u64);
     for path in files {
         let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
@@ -56,15 +58,15 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
         for scene in &footage.scenes {
             let frame = studio.draw(&footage.network, scene)?;
             let masks = look(&mut eyes, &frame)?;
-            strip.add(&frame, &masks)?;
+            strip.add(&frame, &masks, &mut seen)?;
         }
         overall.iter_mut().zip(strip.matrices()).for_each(|(sum, matrix)| sum.merge(matrix));
         let story = Story::of(path, &footage)?;
-        cases.push(CasePart::new(&footage.name, &story, strip));
+        cases.push(CasePart::new(&footage.name, story, strip));
         bar.inc(1);
     }
     bar.finish_and_clear();
-    Page::new(&eyes, &overall, &exposure(files)?, cases).render()
+    Page::new(&eyes, &overall, &seen, &exposure(files)?, cases).render()
 }
 
 /// What was driven.

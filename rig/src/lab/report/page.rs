@@ -1,19 +1,15 @@
 //! The page itself: parts as plain data, put into the template.
 
 use anyhow::Context;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use kernel::time::{TICK_HZ, Tick};
+use kernel::time::CLIP_FPS;
+use perception::ConfusionMatrix;
 use perception::classes::{TRAIN_CLASSES, train_id};
-use perception::{ConfusionMatrix, Mask};
-use render::Frame;
 use serde::Serialize;
 
 use super::super::figures::{Figures, decimal};
-use super::super::footage::Footage;
-use super::super::png;
 use super::Exposure;
 use super::story::{Fact, Story};
+use super::strip::{Moment, PictureRow, Seen, Strip};
 use crate::vision::Eye;
 
 const TEMPLATE: &str = include_str!("template.html");
@@ -24,9 +20,19 @@ struct Tile {
     value: String,
 }
 
+/// A checkpoint that is looked through.
+#[derive(Serialize)]
+struct Checkpoint {
+    name: String,
+    digest: String,
+}
+
+/// A row of a table of scores.
 #[derive(Serialize)]
 struct Row {
-    name: String,
+    name: &'static str,
+    /// Share of the pixels of the ground truth; empty for means.
+    share: String,
     cells: Vec<String>,
 }
 
@@ -34,72 +40,7 @@ struct Row {
 struct Class {
     name: &'static str,
     rgb: String,
-}
-
-#[derive(Serialize)]
-struct Picture {
-    png: String,
-    caption: String,
-}
-
-#[derive(Serialize)]
-struct PictureRow {
-    name: String,
-    class: &'static str,
-    cells: Vec<Picture>,
-}
-
-/// The pictures of a case, a row for the camera, the truth and each eye.
-pub struct Strip {
-    last: Tick,
-    /// What the last frame shows.
-    end: &'static str,
-    times: Vec<String>,
-    rows: Vec<PictureRow>,
-    matrices: Vec<ConfusionMatrix>,
-}
-
-impl Strip {
-    /// An empty strip for the frames of a window.
-    pub fn new(eyes: &[Eye], footage: &Footage) -> Self {
-        let last = footage.scenes.last().map_or(0, |scene| scene.tick);
-        let end = if footage.log.intervention.is_some() { "takeover" } else { "collision" };
-        let row = |name: &str, class| PictureRow { name: name.to_owned(), class, cells: Vec::new() };
-        let mut rows = vec![row("camera", "rgb"), row("truth", "mask")];
-        rows.extend(eyes.iter().map(|eye| row(eye.name(), "mask")));
-        Self { last, end, times: Vec::new(), rows, matrices: vec![ConfusionMatrix::default(); eyes.len()] }
-    }
-
-    /// Adds a frame and what each eye made of it.
-    pub fn add(&mut self, frame: &Frame, masks: &[Mask]) -> anyhow::Result<()> {
-        let size = (frame.width, frame.height);
-        let before_s = (self.last - frame.tick) as f64 / f64::from(TICK_HZ);
-        self.times.push(if before_s > 0.0 { format!("-{before_s:.1} s") } else { self.end.into() });
-        let mut pictures = vec![
-            Picture { png: STANDARD.encode(png::rgb(size, &frame.rgb)?), caption: String::new() },
-            Picture { png: STANDARD.encode(png::tags(size, &frame.class_ids)?), caption: pedestrian_pixels(frame) },
-        ];
-        for (mask, sum) in masks.iter().zip(&mut self.matrices) {
-            let mut matrix = ConfusionMatrix::default();
-            matrix.add(&frame.class_ids, &mask.ids);
-            let figures = Figures::from(&matrix);
-            let caption = format!("pedestrian {}, mean {}", decimal(figures.pedestrian_iou), decimal(figures.miou));
-            pictures.push(Picture { png: STANDARD.encode(png::tags(size, &mask.ids)?), caption });
-            sum.merge(&matrix);
-        }
-        self.rows.iter_mut().zip(pictures).for_each(|(row, picture)| row.cells.push(picture));
-        Ok(())
-    }
-
-    /// The matrix of each eye over all frames.
-    pub fn matrices(&self) -> &[ConfusionMatrix] {
-        &self.matrices
-    }
-}
-
-fn pedestrian_pixels(frame: &Frame) -> String {
-    let tag = perception::classes::PEDESTRIAN_TAG;
-    format!("{} pedestrian pixels", frame.class_ids.iter().filter(|id| **id == tag).count())
+    scored: bool,
 }
 
 /// A case on the page.
@@ -107,47 +48,60 @@ fn pedestrian_pixels(frame: &Frame) -> String {
 pub struct CasePart {
     name: String,
     label: String,
+    comment: String,
     facts: Vec<Fact>,
     map_svg: String,
     scores: Vec<Row>,
-    times: Vec<String>,
+    moments: Vec<Moment>,
     rows: Vec<PictureRow>,
 }
 
 impl CasePart {
     /// From what is known and what was drawn.
-    pub fn new(name: &str, story: &Story, strip: Strip) -> Self {
+    pub fn new(name: &str, story: Story, strip: Strip) -> Self {
         Self {
             name: name.strip_suffix(".case").unwrap_or(name).to_owned(),
-            label: story.label.clone(),
-            facts: story.facts.clone(),
-            map_svg: story.map_svg.clone(),
+            label: story.label,
+            comment: story.comment,
+            facts: story.facts,
+            map_svg: story.map_svg,
             scores: score_rows(strip.matrices(), false),
-            times: strip.times,
+            moments: strip.moments,
             rows: strip.rows,
         }
     }
 }
 
-/// Rows of a table of scores: pedestrian and mean, and on demand every class.
+/// Rows of a table of scores: the mean and pedestrians, or the mean and every class.
 fn score_rows(matrices: &[ConfusionMatrix], every_class: bool) -> Vec<Row> {
     let figures: Vec<Figures> = matrices.iter().map(Figures::from).collect();
-    let row = |name: &str, of: &dyn Fn(&Figures) -> Option<f64>| Row {
-        name: name.to_owned(),
+    let row = |name, share, of: &dyn Fn(&Figures) -> Option<f64>| Row {
+        name,
+        share,
         cells: figures.iter().map(|f| decimal(of(f))).collect(),
     };
-    let mut rows = vec![row("pedestrian", &|f| f.pedestrian_iou), row("mean", &|f| f.miou)];
+    let share = |id: usize| {
+        let matrix = matrices.first()?;
+        Some(100.0 * matrix.truth_pixels(id as u8) as f64 / matrix.scores().pixels as f64)
+    };
+    let class = |(id, class): (usize, &perception::classes::TrainClass)| {
+        let share = share(id).map_or(String::new(), |percent| format!("{percent:.2}"));
+        row(class.name, share, &|f| f.iou[class.name])
+    };
+    let mean = row("mean", String::new(), &|f| f.miou);
     if every_class {
-        rows.extend(TRAIN_CLASSES.iter().map(|class| row(class.name, &|f| f.iou[class.name])));
+        std::iter::once(mean).chain(TRAIN_CLASSES.iter().enumerate().map(class)).collect()
+    } else {
+        vec![mean, row("Pedestrian", String::new(), &|f| f.pedestrian_iou)]
     }
-    rows
 }
 
 /// The whole page.
 #[derive(Serialize)]
 pub struct Page {
-    title: &'static str,
-    checkpoints: Vec<String>,
+    version: &'static str,
+    fps: u32,
+    checkpoints: Vec<Checkpoint>,
     tiles: Vec<Tile>,
     overall: Vec<Row>,
     legend: Vec<Class>,
@@ -155,23 +109,32 @@ pub struct Page {
 }
 
 impl Page {
-    /// From its parts.
-    pub fn new(eyes: &[Eye], overall: &[ConfusionMatrix], exposure: &Exposure, cases: Vec<CasePart>) -> Self {
+    /// From its parts; `seen` is what appears in any picture.
+    pub fn new(
+        eyes: &[Eye],
+        overall: &[ConfusionMatrix],
+        seen: &Seen,
+        exposure: &Exposure,
+        cases: Vec<CasePart>,
+    ) -> Self {
         let tile = |name, value| Tile { name, value };
         let mut tiles = vec![tile("corner cases", cases.len().to_string())];
         if exposure.recordings > 0 {
             tiles.push(tile("runs", exposure.recordings.to_string()));
-            tiles.push(tile("kilometres", format!("{:.2}", exposure.km)));
-            tiles.push(tile("minutes", format!("{:.1}", exposure.minutes)));
+            tiles.push(tile("kilometres driven", format!("{:.2}", exposure.km)));
+            tiles.push(tile("minutes driven", format!("{:.1}", exposure.minutes)));
             tiles.push(tile("km per corner case", format!("{:.2}", exposure.km / cases.len().max(1) as f64)));
         }
         let class = |tag: &render::SemanticTag| {
             let [r, g, b] = tag.colour();
-            train_id(*tag as u8).map(|_| Class { name: tag.name(), rgb: format!("{r}, {g}, {b}") })
+            let scored = train_id(*tag as u8).is_some();
+            seen.has(*tag as u8).then(|| Class { name: tag.name(), rgb: format!("{r}, {g}, {b}"), scored })
         };
+        let checkpoint = |eye: &Eye| Checkpoint { name: eye.name().to_owned(), digest: eye.digest() };
         Self {
-            title: "A-Eye: corner cases",
-            checkpoints: eyes.iter().map(|eye| eye.name().to_owned()).collect(),
+            version: env!("CARGO_PKG_VERSION"),
+            fps: CLIP_FPS,
+            checkpoints: eyes.iter().map(checkpoint).collect(),
             tiles,
             overall: score_rows(overall, true),
             legend: render::tags::TAGS.iter().filter_map(class).collect(),

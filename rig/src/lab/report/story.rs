@@ -26,6 +26,8 @@ pub struct Fact {
 pub struct Story {
     /// What kind of corner case it is.
     pub label: String,
+    /// What happened, in the words of whoever labelled it.
+    pub comment: String,
     /// Everything else.
     pub facts: Vec<Fact>,
     /// The map with the route and the place.
@@ -40,8 +42,10 @@ impl Story {
         let whole = recording.as_ref().map_or(log, Recording::log);
         let at = footage.scenes.last().map_or(log.last_tick(), |scene| scene.tick);
         let (route, odometer_mm) = route(whole, footage, at)?;
-        let label = log.annotation.as_ref().map_or("not labelled".into(), |a| a.label.to_string());
-        Ok(Self { label, facts: facts(log, at, odometer_mm), map_svg: map::svg(&footage.network, &route) })
+        let annotation = log.annotation.as_ref();
+        let label = annotation.map_or("not labelled".into(), |a| a.label.to_string());
+        let comment = annotation.map_or(String::new(), |a| a.comment.clone());
+        Ok(Self { label, comment, facts: facts(log, at, odometer_mm), map_svg: map::svg(&footage.network, &route) })
     }
 }
 
@@ -78,7 +82,6 @@ fn facts(log: &Log, at: Tick, odometer_mm: Option<u64>) -> Vec<Fact> {
     let mut facts = Vec::new();
     let mut add = |name, value: String| facts.push(Fact { name, value });
     if let Some(annotation) = &log.annotation {
-        add("What happened", annotation.comment.clone());
         let cause = match annotation.perception_caused {
             Some(true) => "yes: with true masks no takeover is needed",
             Some(false) => "no: true masks need the takeover as well",
@@ -86,7 +89,7 @@ fn facts(log: &Log, at: Tick, odometer_mm: Option<u64>) -> Vec<Fact> {
         };
         add("Caused by perception", cause.into());
     }
-    add("Time", format!("{:.1} s", at as f64 / f64::from(TICK_HZ)));
+    add("Time in the run", format!("{:.1} s", at as f64 / f64::from(TICK_HZ)));
     if let Some(mm) = odometer_mm {
         add("Driven before", format!("{:.3} km", mm as f64 / 1e6));
     }
