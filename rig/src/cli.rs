@@ -93,8 +93,8 @@ pub struct DriveArgs {
     /// Seed of everything random; replaces the scenario's.
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Longest simulated time, seconds.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    /// Longest simulated time, seconds; 4 to 86400, as `rules.max_seconds` of scenarios.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(4..=86_400))]
     pub seconds: Option<u32>,
     /// Where the recording goes.
     #[arg(long, value_name = "FILE.mcap")]

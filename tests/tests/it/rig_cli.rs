@@ -88,6 +88,7 @@ fn recordings_are_refused_with_the_place() {
 fn nonsense_on_the_command_line_is_usage() {
     for arguments in [
         &["drive", "--record", "x.mcap"][..],
+        &["drive", "--headless", "--record", "x.mcap", "--seconds", "3"],
         &["campaign", "--checkpoint", "truth", "--out", "d"],
         &["campaign", "--checkpoint", "truth", "--out", "d", "--runs", "0"],
         &["rerender", "x.mcap", "--checkpoint", "truth", "--size", "0x0", "--out", "d"],
@@ -143,7 +144,7 @@ fn places_that_cannot_hold_results_are_refused_before_the_work() {
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_full_disk_is_named_with_the_recording() {
-    let sentence = sentence_of(&["drive", "--headless", "--map", "rural", "--seconds", "1", "--record", "/dev/full"]);
+    let sentence = sentence_of(&["drive", "--headless", "--map", "rural", "--seconds", "4", "--record", "/dev/full"]);
     assert!(sentence.starts_with("/dev/full: No space left on device"), "{sentence}");
 }
 
@@ -155,7 +156,7 @@ fn a_bundled_checkpoint_by_name_and_by_path_gives_the_same_recording() {
     let recording = |checkpoint: &str, name: &str| {
         let record = dir.path().join(name);
         let record = record.to_str().expect("UTF-8");
-        let drive = ["drive", "--headless", "--map", "rural", "--seconds", "2", "--record", record];
+        let drive = ["drive", "--headless", "--map", "rural", "--seconds", "4", "--record", record];
         assert_eq!(aeye(&[&drive[..], &["--checkpoint", checkpoint]].concat()).0, 0);
         fs::read(record).expect("a recording")
     };
