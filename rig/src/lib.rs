@@ -15,6 +15,7 @@ pub mod quiet;
 pub mod session;
 pub mod simulate;
 pub mod stats;
+pub mod units;
 pub mod vision;
 
 use cli::{Cli, Command, DatasetCommand};
