@@ -69,11 +69,7 @@ impl EgoWay {
 
     /// Metres driven in `t_s` seconds.
     pub fn driven_m(&self, t_s: f32) -> f32 {
-        if self.acceleration_mps2 > -0.1 {
-            return self.speed_mps * t_s;
-        }
-        let t_s = t_s.min(-self.speed_mps / self.acceleration_mps2);
-        self.speed_mps * t_s + 0.5 * self.acceleration_mps2 * t_s * t_s
+        driven_m(self.speed_mps, self.acceleration_mps2, t_s)
     }
 
     /// Footprint in `t_s` seconds; `None` beyond the known route.
@@ -87,6 +83,15 @@ impl EgoWay {
     }
 }
 
+/// Metres driven in `t_s` seconds by one who goes on braking until he stands, or keeps his speed.
+pub fn driven_m(speed_mps: f32, acceleration_mps2: f32, t_s: f32) -> f32 {
+    if acceleration_mps2 > -0.1 {
+        return speed_mps * t_s;
+    }
+    let t_s = t_s.min(-speed_mps / acceleration_mps2);
+    speed_mps * t_s + 0.5 * acceleration_mps2 * t_s * t_s
+}
+
 /// Middle of the ego car, seen from above.
 pub fn middle(car: &EgoScene) -> Vec2 {
     car.position.truncate() + ego::CENTRE_M.x * forward(car)
@@ -97,16 +102,16 @@ pub fn forward(car: &EgoScene) -> Vec2 {
     (car.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X)
 }
 
-/// Footprint of another actor in `t_s` seconds: vehicles keep their lane, people their direction.
-pub fn actor_at(network: &RoadNetwork, actor: &ActorScene, t_s: f32) -> Footprint {
+/// Footprint of another actor after some metres: vehicles keep their lane, people their direction.
+pub fn actor_after(network: &RoadNetwork, actor: &ActorScene, driven_m: f32) -> Footprint {
     let now = Footprint::of_actor(actor);
-    let straight = || Footprint { centre: now.centre + actor.speed_mps * t_s * now.forward, ..now };
+    let straight = || Footprint { centre: now.centre + driven_m * now.forward, ..now };
     if actor.kind == ActorKind::Pedestrian || actor.speed_mps < 0.5 {
         return straight();
     }
     let heading = ops::atan2(now.forward.y, now.forward.x);
     match network.nearest_lane(actor.position, LaneKind::Driving, Some(heading), ON_LANE_M) {
-        Some(place) => along_lane(network, place.lane, place.s_m + actor.speed_mps * t_s, place.lateral_m, now),
+        Some(place) => along_lane(network, place.lane, place.s_m + driven_m, place.lateral_m, now),
         None => straight(),
     }
 }
@@ -129,6 +134,13 @@ fn along_lane(network: &RoadNetwork, lane: u32, s_m: f32, lateral_m: f32, now: F
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn who_brakes_comes_to_a_stand() {
+        assert_eq!(driven_m(6.0, 1.0, 2.0), 12.0);
+        assert_eq!(driven_m(6.0, -2.0, 2.0), 8.0);
+        assert_eq!(driven_m(6.0, -2.0, 9.0), 9.0);
+    }
 
     #[test]
     fn footprints_overlap_as_boxes_do() {

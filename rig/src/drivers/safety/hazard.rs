@@ -8,7 +8,8 @@ use kernel::signals::LightPhase;
 use kernel::{World, ego, ops};
 use replay::Label;
 
-use super::forecast::{EgoWay, Footprint, actor_at, forward, middle};
+use super::forecast::{EgoWay, Footprint, actor_after, driven_m, forward, middle};
+use super::looks::Looks;
 
 /// An encroachment predicted within this time is critical (Westhofen et al. 2022), seconds.
 const CRITICAL_S: f32 = 2.0;
@@ -38,14 +39,16 @@ pub struct Hazard {
     pub steer: bool,
 }
 
-/// The most pressing hazard; `acceleration_mps2` is the car's, as felt.
-pub fn find(world: &World, scene: &SceneSnapshot, acceleration_mps2: f32) -> Option<Hazard> {
-    let way = EgoWay::new(world, &scene.ego, acceleration_mps2);
-    encroachment(world, scene, &way).or_else(|| red_light(&world.hud(), &way)).or_else(|| leaving_lane(world, scene))
+/// The most pressing hazard, by the present look and the ones before.
+pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Hazard> {
+    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
+    encroachment(world, scene, &way, looks)
+        .or_else(|| red_light(&world.hud(), &way))
+        .or_else(|| leaving_lane(world, scene))
 }
 
 /// The actor or parked car that the ego car will touch first.
-fn encroachment(world: &World, scene: &SceneSnapshot, way: &EgoWay) -> Option<Hazard> {
+fn encroachment(world: &World, scene: &SceneSnapshot, way: &EgoWay, looks: &Looks) -> Option<Hazard> {
     if scene.ego.speed_mps < 0.5 {
         return None;
     }
@@ -60,10 +63,13 @@ fn encroachment(world: &World, scene: &SceneSnapshot, way: &EgoWay) -> Option<Ha
         .filter(|p| near(p.position))
         .map(Footprint::of_prop)
         .collect();
+    let actor_at = |actor: &ActorScene, t_s: f32| {
+        actor_after(world.network(), actor, driven_m(actor.speed_mps, looks.actor_mps2(actor), t_s))
+    };
     (1..=(CRITICAL_S / STEP_S) as u32).find_map(|step| {
         let t_s = step as f32 * STEP_S;
         let ego = way.at(t_s)?;
-        let actor = actors.iter().find(|a| actor_at(world.network(), a, t_s).overlaps(&ego));
+        let actor = actors.iter().find(|a| actor_at(a, t_s).overlaps(&ego));
         actor.map(|a| of_actor(a, t_s)).or_else(|| {
             let hit = parked.iter().any(|p| p.overlaps(&ego));
             hit.then(|| hazard(Label::Vehicle, format!("parked car, {t_s:.1} s before contact")))

@@ -2,6 +2,7 @@
 
 mod forecast;
 mod hazard;
+mod looks;
 
 use glam::Vec2;
 use kernel::rng::{self, Stream};
@@ -10,9 +11,8 @@ use kernel::{Controls, World, ego, ops};
 
 use super::Driver;
 pub use hazard::{Hazard, label_of};
+use looks::{LOOK_TICKS, Looks};
 
-/// Ticks between two looks at the road.
-const LOOK_TICKS: Tick = 6;
 /// Reaction times are log-normal with this mean (Dixit et al. 2016), seconds, and spread.
 const REACTION_MEAN_S: f32 = 0.83;
 const REACTION_SIGMA: f32 = 0.35;
@@ -30,8 +30,7 @@ const STEER_TO_M: usize = 8;
 /// Sees the truth, and takes over when it gets dangerous.
 #[derive(Clone, Debug, Default)]
 pub struct SafetyBot {
-    /// Speeds at the last looks, newest last, m/s.
-    speeds_mps: [f32; 4],
+    looks: Looks,
     /// When the present hazard was first and last seen.
     feared: Option<Feared>,
     /// Why it took over.
@@ -54,11 +53,8 @@ impl SafetyBot {
 
     fn look(&mut self, world: &World) {
         let scene = world.scene();
-        self.speeds_mps.rotate_left(1);
-        self.speeds_mps[3] = scene.ego.speed_mps;
-        let per_look_s = LOOK_TICKS as f32 / TICK_HZ as f32;
-        let acceleration = (self.speeds_mps[3] - self.speeds_mps[1]) / (2.0 * per_look_s);
-        match hazard::find(world, &scene, acceleration) {
+        self.looks.look(&scene);
+        match hazard::find(world, &scene, &self.looks) {
             Some(hazard) => self.fear(hazard, world),
             None => self.calm(world.tick()),
         }

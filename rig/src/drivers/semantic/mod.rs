@@ -7,6 +7,7 @@ pub mod speed;
 #[cfg(test)]
 mod tests;
 
+use kernel::map::Turn;
 use kernel::time::TICK_S;
 use kernel::{Controls, ego, ops};
 
@@ -63,7 +64,9 @@ impl SemanticBot {
         let arc = path::choose(sight, &view.hud, &self.trail);
         // A light leaves the HUD once its line is passed, but the junction still has it.
         self.has_lights = view.hud.light.is_some() || (self.has_lights && view.hud.arrow.distance_m < 10);
-        let give_way_m = if self.has_lights { None } else { speed::give_way_m(arc, &view.hud, &self.tracks) };
+        // Lights keep crossing traffic away, but not the oncoming one that a left turn crosses.
+        let gives_way = !self.has_lights || view.hud.arrow.turn == Turn::Left;
+        let give_way_m = if gives_way { speed::give_way_m(arc, &view.hud, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
         let scene = Scene { contacts: &self.contacts, give_way_m, has_lights: self.has_lights };
         (arc, speed::wish(sight, arc, &view.hud, scene))

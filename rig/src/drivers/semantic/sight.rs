@@ -138,12 +138,9 @@ impl<'a> Sight<'a> {
         let mut found = Vec::new();
         for row in (self.horizon()..self.mask.height).rev() {
             for column in 0..self.mask.width {
-                let Some(figure) = self.figure(column, row, &mut seen) else { continue };
-                let behind_vehicle = row + 1 < self.mask.height && is_vehicle(self.tag(column, row + 1));
-                if figure.left == figure.right || behind_vehicle {
-                    continue;
-                }
-                let foot = self.contact(column, row + 1, row + 1 - figure.top);
+                let Some(figure) = self.figure(column, row, &mut seen).filter(|f| f.left < f.right) else { continue };
+                let (column, end) = self.vehicle_under(&figure).unwrap_or((column, row + 1));
+                let foot = self.contact(column, end, end - figure.top);
                 let part = |foot: Contact, column| Contact { y_m: self.column_y_m(column, foot.x_m), ..foot };
                 found.extend(foot.iter().flat_map(|foot| (figure.left..=figure.right).map(|c| part(*foot, c))));
             }
@@ -151,17 +148,29 @@ impl<'a> Sight<'a> {
         found
     }
 
+    /// Where the vehicle ends that carries or hides a figure: a column, and the row below its wheels.
+    fn vehicle_under(&self, figure: &Figure) -> Option<(usize, usize)> {
+        let below = figure.pixels.iter().map(|&(column, row)| (column, row + 1));
+        let on_vehicle = below.filter(|&(c, r)| r < self.mask.height && is_vehicle(self.tag(c, r)));
+        let ends = on_vehicle.map(|(column, row)| {
+            let hides = |r: &usize| ground_of(self.tag(column, *r)) == Ground::Hidden;
+            (column, row + (row..self.mask.height).take_while(hides).count())
+        });
+        let ends: Vec<(usize, usize)> = ends.collect();
+        let is_carried = 4 * ends.len() > figure.right - figure.left;
+        ends.into_iter().filter(|_| is_carried).max_by_key(|(_, end)| *end)
+    }
+
     /// The connected pixels of people around a pixel, if they were not seen before.
     fn figure(&self, column: usize, row: usize, seen: &mut [bool]) -> Option<Figure> {
-        let mut figure = Figure { left: column, right: column, top: row };
+        let mut figure = Figure { left: column, right: column, top: row, pixels: Vec::new() };
         let mut open = vec![(column, row)];
-        let mut size = 0;
         while let Some((column, row)) = open.pop() {
             let is_new = !std::mem::replace(&mut seen[row * self.mask.width + column], true);
             if !is_new || !is_person(self.tag(column, row)) {
                 continue;
             }
-            size += 1;
+            figure.pixels.push((column, row));
             figure.left = figure.left.min(column);
             figure.right = figure.right.max(column);
             figure.top = figure.top.min(row);
@@ -169,7 +178,7 @@ impl<'a> Sight<'a> {
             let rows = row.saturating_sub(1)..(row + 2).min(self.mask.height);
             open.extend(columns.flat_map(|c| rows.clone().map(move |r| (c, r))));
         }
-        (size > 0).then_some(figure)
+        (!figure.pixels.is_empty()).then_some(figure)
     }
 
     /// The contact of a blob of `rows` rows that ends above `row`.
@@ -216,8 +225,9 @@ impl<'a> Sight<'a> {
     }
 }
 
-/// Pixels that are connected.
+/// Pixels that are connected, as column and row.
 struct Figure {
+    pixels: Vec<(usize, usize)>,
     left: usize,
     right: usize,
     top: usize,

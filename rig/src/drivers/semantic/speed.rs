@@ -40,7 +40,7 @@ const RIGHT_BEND: f32 = 0.14;
 /// How far the road is looked at, metres.
 const REACH_M: f32 = 45.0;
 /// Side clearance to vehicles, to people beside the road, and to people on it, metres.
-const BESIDE_VEHICLE_M: f32 = 0.35;
+const BESIDE_VEHICLE_M: f32 = 0.5;
 const BESIDE_WALKER_M: f32 = 0.6;
 const BESIDE_CROSSING_M: f32 = 3.6;
 

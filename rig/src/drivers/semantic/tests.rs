@@ -178,3 +178,21 @@ fn a_bend_ahead_is_no_farther_than_it_is_along_the_route() {
         assert!((along - path::ARROW_M).abs() < 0.53, "curvature {curvature}: {along} m");
     }
 }
+
+#[test]
+fn a_rider_is_where_his_wheels_are() {
+    let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    for (tag, columns, rows) in [(SemanticTag::Vehicles, 128..130, 70..79), (SemanticTag::Pedestrian, 127..131, 60..72)]
+    {
+        for row in rows {
+            ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(tag as u8);
+        }
+    }
+    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids });
+    let (_, wheels_m) = sight.rows_between(0.0, 60.0).find(|(row, _)| *row == 78).expect("in view");
+    let contacts = sight.contacts();
+    assert!(
+        contacts.len() >= 4 && contacts.iter().all(|c| !c.is_person && c.x_m == wheels_m),
+        "{wheels_m} m: {contacts:?}"
+    );
+}
