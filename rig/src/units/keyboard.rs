@@ -11,7 +11,7 @@ const RELEASE_PER_S: f32 = 4.0;
 /// Steering, times speed squared, at which the car's lateral acceleration is about 0.45 g, m²/s².
 const COMFORT_M2PS2: f32 = 20.0;
 /// Speed below which the gear can be changed, m/s.
-const GEAR_CHANGE_MPS: f32 = 1.0;
+pub(super) const GEAR_CHANGE_MPS: f32 = 1.0;
 
 /// A key with a meaning for one of the seats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,23 +1,43 @@
 //! Both seats' control units: what the drivers' hands and feet do, as [`Controls`], once a tick.
 //!
 //! Nothing here reads the clock: [`Seats::poll`] is called once for every tick of the world.
+//!
+//! **The car drives only while both units are armed.** While one of them is not, the semantic
+//! controls are those of braking to a stop with the steering held. The safety controls are neutral
+//! then, so that a lost unit never looks like an intervention; after a takeover they brake and hold
+//! the steering too, since they are what reaches the car. The run should be ended when the safety
+//! driver's unit is lost: nobody watches over it.
 
+pub mod calibration;
+mod device;
 pub mod keyboard;
+pub mod presets;
+mod slot;
+pub mod source;
 pub mod status;
+#[cfg(test)]
+mod testing;
 
 use kernel::{Controls, Seat, TickInput};
 
+use calibration::Calibration;
 pub use keyboard::Key;
 use keyboard::Keyboard;
+use slot::{Binding, Unit};
+use source::{DeviceId, DeviceInfo, InputSource, RawEvent, Simulated};
 pub use status::{SeatChoice, UnitEvent, UnitEventKind, UnitState, UnitStatus};
+
+/// How hard a car without a driver brakes, fraction of the pedal.
+const STOP_BRAKE: f32 = 0.6;
+const SEATS: [Seat; 2] = [Seat::Semantic, Seat::Safety];
 
 /// What the units need to know of the car; that of the tick before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CarState {
     /// Speed along the car's x axis, m/s.
     pub speed_mps: f32,
-    /// Whether the safety driver steers or has the pedals (`TickOutput::applied`).
-    pub safety_in_control: bool,
+    /// Whether the safety driver has taken over (`Arbiter::intervention`).
+    pub taken_over: bool,
 }
 
 /// What the units gave for one tick.
@@ -45,90 +65,195 @@ impl Polled {
     }
 }
 
-/// What moves the controls of a seat.
-#[derive(Debug)]
-enum Unit {
-    Keyboard(Keyboard),
-    Bot,
-}
-
 /// Both seats' control units.
 #[derive(Debug)]
 pub struct Seats {
+    source: Box<dyn InputSource>,
     units: [Unit; 2],
+    /// Devices that are there.
+    devices: Vec<DeviceInfo>,
+    calibrations: Vec<Calibration>,
+    /// Steering that each seat gave last while it was armed.
+    held_steer: [i16; 2],
+    events: Vec<UnitEvent>,
 }
 
 impl Seats {
     /// Units for both seats, semantic driver's first.
     pub fn new(choices: [SeatChoice; 2]) -> anyhow::Result<Self> {
-        let seats = [Seat::Semantic, Seat::Safety];
-        let [semantic, safety] = seats.map(|seat| match choices[seat as usize] {
-            SeatChoice::Bot => Unit::Bot,
-            SeatChoice::Keyboard => Unit::Keyboard(Keyboard::new(seat)),
-        });
-        Ok(Self { units: [semantic, safety] })
+        Ok(Self::with_source(choices, Vec::new(), Box::new(Simulated::default())))
+    }
+
+    /// Units for both seats, with devices from a source. A device is read by the calibration that
+    /// bears its name, else by a preset.
+    pub fn with_source(
+        choices: [SeatChoice; 2],
+        calibrations: Vec<Calibration>,
+        mut source: Box<dyn InputSource>,
+    ) -> Self {
+        let (mut devices, mut later) = (Vec::new(), Vec::new());
+        while let Some(event) = source.next_event() {
+            match event {
+                RawEvent::Connected(device) => devices.push(device),
+                other => later.push(other),
+            }
+        }
+        let usable = devices.iter().filter(|d| calibration_of(&calibrations, d).is_some()).count();
+        let units = settle(choices, usable);
+        let mut seats =
+            Self { source, units, devices: Vec::new(), calibrations, held_steer: [0; 2], events: Vec::new() };
+        devices.into_iter().map(RawEvent::Connected).chain(later).for_each(|event| seats.take(event));
+        seats
     }
 
     /// A key of any window went down or up.
     pub fn key(&mut self, key: Key, pressed: bool) {
-        for unit in &mut self.units {
-            if let Unit::Keyboard(keyboard) = unit {
-                keyboard.key(key, pressed);
-            }
-        }
+        self.keyboards().for_each(|keyboard| keyboard.key(key, pressed));
     }
 
     /// All keys went up: to be called when the last window that has the keyboard loses it.
     pub fn release_keys(&mut self) {
-        for unit in &mut self.units {
-            if let Unit::Keyboard(keyboard) = unit {
-                keyboard.release();
-            }
-        }
+        self.keyboards().for_each(Keyboard::release);
+    }
+
+    /// The devices that are there.
+    pub fn devices(&self) -> &[DeviceInfo] {
+        &self.devices
     }
 
     /// The controls of the next tick; moves wheels and pedals of the keyboard by one tick.
     pub fn poll(&mut self, car: CarState) -> Polled {
-        let [semantic, safety] = [0, 1].map(|seat| match &mut self.units[seat] {
-            Unit::Keyboard(keyboard) => keyboard.tick(car.speed_mps),
-            Unit::Bot => Controls::default(),
-        });
-        Polled { semantic, safety, events: Vec::new(), status: [0, 1].map(|seat| self.status(seat)) }
+        while let Some(event) = self.source.next_event() {
+            self.take(event);
+        }
+        let own = [0, 1].map(|seat| self.units[seat].tick(car.speed_mps));
+        for (held, own) in self.held_steer.iter_mut().zip(own) {
+            *held = own.map_or(*held, |controls| controls.steer);
+        }
+        let stop = self.held_steer.map(|steer| Controls { steer, ..Controls::from_fractions(0.0, 0.0, STOP_BRAKE) });
+        let semantic = own[0].filter(|_| own[1].is_some()).unwrap_or(stop[0]);
+        let safety = own[1].unwrap_or(if car.taken_over { stop[1] } else { Controls::default() });
+        let status = SEATS.map(|seat| self.units[seat as usize].status(seat));
+        Polled { semantic, safety, events: std::mem::take(&mut self.events), status }
     }
 
-    fn status(&self, seat: usize) -> UnitStatus {
-        let unit = match &self.units[seat] {
-            Unit::Keyboard(_) => String::from("keyboard"),
-            Unit::Bot => String::from("bot"),
-        };
-        UnitStatus { unit, state: UnitState::Armed }
+    fn keyboards(&mut self) -> impl Iterator<Item = &mut Keyboard> {
+        self.units.iter_mut().filter_map(|unit| match unit {
+            Unit::Keyboard(keyboard) => Some(keyboard),
+            _ => None,
+        })
     }
+
+    fn take(&mut self, event: RawEvent) {
+        match event {
+            RawEvent::Connected(device) => self.connected(device),
+            RawEvent::Lost(id) => self.lost(id),
+            RawEvent::Axis { device, code, value } => {
+                if let Some(seat) = self.seat_of(device) {
+                    self.move_axis(seat, code, value);
+                }
+            }
+            RawEvent::Button { device, code, pressed } => match self.seat_of(device) {
+                Some(seat) => {
+                    self.binding(seat).and_then(Binding::unit).into_iter().for_each(|u| u.button(code, pressed))
+                }
+                None if pressed => self.pressed_on(device),
+                None => {}
+            },
+        }
+    }
+
+    fn connected(&mut self, device: DeviceInfo) {
+        self.devices.retain(|d| d.id != device.id);
+        self.devices.push(device.clone());
+        let waiting = |wish: &dyn Fn(&Binding) -> bool| {
+            let seats = SEATS.into_iter().filter(|seat| match &self.units[*seat as usize] {
+                Unit::Device(binding) => binding.waits() && wish(binding),
+                _ => false,
+            });
+            seats.collect::<Vec<_>>()
+        };
+        let exact = waiting(&|b| b.asks_for(&device) || b.misses(&device));
+        let alike = waiting(&|b| b.misses_make(&device));
+        // Of two equal wheels that are gone, only a button tells which one has come back.
+        if let ([seat, ..], _) | ([], [seat]) = (&exact[..], &alike[..]) {
+            self.bind(*seat, &device);
+        }
+    }
+
+    /// A button of a device without a seat: its driver claims it.
+    fn pressed_on(&mut self, id: DeviceId) {
+        let Some(device) = self.devices.iter().find(|d| d.id == id).cloned() else { return };
+        let waiting: Vec<Seat> =
+            SEATS.into_iter().filter(|seat| self.binding(*seat).is_some_and(|b| b.waits())).collect();
+        let missed = waiting.iter().find(|seat| self.binding(**seat).is_some_and(|b| b.misses_make(&device)));
+        if let Some(seat) = missed.or(waiting.first()) {
+            self.bind(*seat, &device);
+        }
+    }
+
+    fn bind(&mut self, seat: Seat, device: &DeviceInfo) {
+        let Some(calibration) = calibration_of(&self.calibrations, device) else { return };
+        let Some(binding) = self.binding(seat) else { return };
+        let returned = binding.bind(device.clone(), calibration);
+        let kind = if returned { UnitEventKind::Returned } else { UnitEventKind::Bound };
+        self.events.push(UnitEvent { seat, kind, unit: device.name.clone() });
+    }
+
+    fn lost(&mut self, id: DeviceId) {
+        let seat = self.seat_of(id);
+        let Some(at) = self.devices.iter().position(|d| d.id == id) else { return };
+        let unit = self.devices.remove(at).name;
+        if let Some(seat) = seat {
+            self.binding(seat).into_iter().for_each(Binding::lose);
+            self.events.push(UnitEvent { seat, kind: UnitEventKind::Lost, unit });
+        }
+    }
+
+    fn move_axis(&mut self, seat: Seat, code: u16, value: i32) {
+        let Some(unit) = self.binding(seat).and_then(Binding::unit) else { return };
+        unit.axis(code, value);
+        if unit.arm() {
+            let unit = self.units[seat as usize].status(seat).unit;
+            self.events.push(UnitEvent { seat, kind: UnitEventKind::Armed, unit });
+        }
+    }
+
+    fn seat_of(&mut self, id: DeviceId) -> Option<Seat> {
+        SEATS.into_iter().find(|seat| self.binding(*seat).is_some_and(|b| b.has(id)))
+    }
+
+    fn binding(&mut self, seat: Seat) -> Option<&mut Binding> {
+        match &mut self.units[seat as usize] {
+            Unit::Device(binding) => Some(binding),
+            _ => None,
+        }
+    }
+}
+
+fn calibration_of(calibrations: &[Calibration], device: &DeviceInfo) -> Option<Calibration> {
+    let own = calibrations.iter().find(|c| c.device == device.name).cloned();
+    own.or_else(|| presets::preset(device))
+}
+
+/// The units of the seats when so many devices are there.
+fn settle(choices: [SeatChoice; 2], devices: usize) -> [Unit; 2] {
+    let named = choices.iter().filter(|c| matches!(c, SeatChoice::Device(_) | SeatChoice::Press)).count();
+    let asking = choices.iter().filter(|c| **c == SeatChoice::Auto).count();
+    // The devices that named choices leave over go to those who take what is there.
+    let mut free = devices.saturating_sub(named).min(asking);
+    let mut choices = choices.into_iter();
+    SEATS.map(|seat| match choices.next().unwrap_or_default() {
+        SeatChoice::Bot => Unit::Bot,
+        SeatChoice::Device(path) => Unit::Device(Binding::new(Some(path))),
+        SeatChoice::Press => Unit::Device(Binding::new(None)),
+        SeatChoice::Auto if free > 0 => {
+            free -= 1;
+            Unit::Device(Binding::new(None))
+        }
+        SeatChoice::Auto | SeatChoice::Keyboard => Unit::Keyboard(Keyboard::new(seat)),
+    })
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn two_people_share_a_keyboard() {
-        let mut seats = Seats::new([SeatChoice::Keyboard, SeatChoice::Keyboard]).unwrap();
-        seats.key(Key::W, true);
-        seats.key(Key::Down, true);
-        let polled = (0..60).map(|_| seats.poll(CarState::default())).last().unwrap();
-        assert!(polled.ready());
-        assert_eq!((polled.semantic.throttle, polled.semantic.brake), (65535, 0));
-        assert_eq!((polled.safety.throttle, polled.safety.brake), (0, 65535));
-        seats.release_keys();
-        let polled = (0..60).map(|_| seats.poll(CarState::default())).last().unwrap();
-        assert_eq!(polled.input(), TickInput::default());
-    }
-
-    #[test]
-    fn a_bot_has_no_unit() {
-        let mut seats = Seats::new([SeatChoice::Bot, SeatChoice::Keyboard]).unwrap();
-        seats.key(Key::W, true);
-        let polled = seats.poll(CarState::default());
-        assert_eq!(polled.semantic, Controls::default());
-        assert_eq!(polled.status[0].to_string(), "bot: armed");
-    }
-}
+mod tests;

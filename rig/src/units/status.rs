@@ -1,23 +1,59 @@
 //! What a seat is to be driven with, how its unit is, and what happens to it.
 
+use std::convert::Infallible;
 use std::fmt;
+use std::str::FromStr;
 
 use kernel::Seat;
 
 /// What a seat is to be driven with.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SeatChoice {
+    /// What is there: with one device it goes to the semantic driver (or to the only seat that asks);
+    /// with more, each seat takes the one on which its driver presses a button; else the keyboard.
+    #[default]
+    Auto,
     /// Half of the keyboard: the letters for the semantic driver, the arrows for the safety driver.
     Keyboard,
+    /// The device on which a button is pressed next; the semantic driver's comes first.
+    Press,
+    /// The device at a path such as `/dev/input/event5` or a link to it.
+    Device(String),
     /// Nothing: a bot drives. The unit counts as armed and gives neutral controls.
     Bot,
+}
+
+impl FromStr for SeatChoice {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(match text {
+            "auto" => Self::Auto,
+            "keyboard" => Self::Keyboard,
+            "press" => Self::Press,
+            "bot" => Self::Bot,
+            path => Self::Device(path.to_owned()),
+        })
+    }
 }
 
 /// How a unit is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum UnitState {
+    /// No device has been there yet.
+    Waiting {
+        /// What would end that.
+        waits_for: String,
+    },
+    /// The device is there and has not been moved enough.
+    Arming {
+        /// What the driver has still to do.
+        to_do: Vec<&'static str>,
+    },
     /// Its controls are its driver's.
     Armed,
+    /// The device is gone.
+    Lost,
 }
 
 /// How a seat's unit is, for people to read.
@@ -33,7 +69,10 @@ impl fmt::Display for UnitStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.unit)?;
         match &self.state {
+            UnitState::Waiting { waits_for } => write!(f, "waiting for {waits_for}"),
+            UnitState::Arming { to_do } => write!(f, "to arm it, {}", to_do.join(", ")),
             UnitState::Armed => f.write_str("armed"),
+            UnitState::Lost => f.write_str("lost, plug it in again"),
         }
     }
 }
@@ -47,7 +86,7 @@ pub enum UnitEventKind {
     Armed,
     /// The device is gone.
     Lost,
-    /// The device that was gone is back, and has to be armed again.
+    /// The device that was gone is back or replaced, and has to be armed again.
     Returned,
 }
 

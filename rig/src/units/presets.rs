@@ -1,0 +1,147 @@
+//! Calibrations of wheels that many people have, and one for any gamepad. The axes of a device that
+//! is there bring their own ends.
+
+use super::calibration::{Axis, Buttons, Calibration, Curve};
+use super::source::DeviceInfo;
+
+// Codes of axes and buttons in the Linux kernel.
+const ABS_X: u16 = 0x00;
+const ABS_Y: u16 = 0x01;
+const ABS_Z: u16 = 0x02;
+const ABS_RZ: u16 = 0x05;
+const ABS_GAS: u16 = 0x09;
+const ABS_BRAKE: u16 = 0x0a;
+const BTN_TRIGGER: u16 = 0x120;
+const BTN_THUMB: u16 = 0x121;
+const BTN_THUMB2: u16 = 0x122;
+const BTN_SOUTH: u16 = 0x130;
+const BTN_EAST: u16 = 0x131;
+const BTN_WEST: u16 = 0x134;
+
+/// Dead zone of a stick, which never rests exactly.
+const STICK_DEAD_ZONE: f32 = 0.12;
+
+/// A wheel by its USB numbers.
+type Preset = (u16, u16, fn() -> Calibration);
+
+const WHEELS: [Preset; 4] =
+    [(0x046d, 0xc24f, g29), (0x046d, 0xc262, g920), (0x044f, 0xb677, t150), (0x044f, 0xb66e, t300)];
+
+/// Logitech G29.
+pub fn g29() -> Calibration {
+    wheel("Logitech G29 Driving Force Racing Wheel", 900.0, 255, ABS_Z, ABS_RZ)
+}
+
+/// Logitech G920.
+pub fn g920() -> Calibration {
+    wheel("Logitech G920 Driving Force Racing Wheel", 900.0, 255, ABS_Y, ABS_Z)
+}
+
+/// Thrustmaster T150.
+pub fn t150() -> Calibration {
+    wheel("Thrustmaster T150RS", 1080.0, 1023, ABS_RZ, ABS_Y)
+}
+
+/// Thrustmaster T300.
+pub fn t300() -> Calibration {
+    wheel("Thrustmaster T300RS Racing wheel", 1080.0, 1023, ABS_Z, ABS_RZ)
+}
+
+/// Any gamepad: the left stick steers, the triggers are the pedals.
+pub fn gamepad() -> Calibration {
+    let axis =
+        |axis, min, rest| Axis { axis, min, rest, max: 255, invert: false, dead_zone: 0.0, curve: Curve::Linear };
+    Calibration {
+        device: "gamepad".into(),
+        rotation_deg: 90.0,
+        used_deg: 90.0,
+        steering: Axis { dead_zone: STICK_DEAD_ZONE, curve: Curve::Square, ..axis(ABS_X, 0, 128) },
+        throttle: axis(ABS_RZ, 0, 0),
+        brake: axis(ABS_Z, 0, 0),
+        buttons: Buttons { hand_brake: Some(BTN_SOUTH), reverse: Some(BTN_EAST), seen: Some(BTN_WEST) },
+    }
+}
+
+/// A wheel whose pedals give their greatest value when released, as all of these do.
+fn wheel(device: &str, rotation_deg: f32, pedal_max: i32, throttle: u16, brake: u16) -> Calibration {
+    let pedal = |axis| Axis {
+        axis,
+        min: 0,
+        rest: pedal_max,
+        max: pedal_max,
+        invert: true,
+        dead_zone: 0.02,
+        curve: Curve::Linear,
+    };
+    Calibration {
+        device: device.into(),
+        rotation_deg,
+        used_deg: 540.0,
+        steering: Axis { rest: 32_768, max: 65_535, invert: false, dead_zone: 0.0, ..pedal(ABS_X) },
+        throttle: pedal(throttle),
+        brake: pedal(brake),
+        buttons: Buttons { hand_brake: Some(BTN_TRIGGER), reverse: Some(BTN_THUMB), seen: Some(BTN_THUMB2) },
+    }
+}
+
+/// The calibration of a device that nobody has calibrated: its preset, or that of a gamepad. `None`
+/// when it lacks one of the axes.
+pub fn preset(device: &DeviceInfo) -> Option<Calibration> {
+    let known = WHEELS.iter().find(|(vendor, product, _)| (*vendor, *product) == (device.vendor, device.product));
+    let mut calibration = known.map_or_else(gamepad, |(_, _, wheel)| wheel());
+    if known.is_none() && device.axis(ABS_GAS).is_some() && device.axis(ABS_BRAKE).is_some() {
+        (calibration.throttle.axis, calibration.brake.axis) = (ABS_GAS, ABS_BRAKE);
+    }
+    calibration.device.clone_from(&device.name);
+    for axis in [&mut calibration.steering, &mut calibration.throttle, &mut calibration.brake] {
+        let range = device.axis(axis.axis)?;
+        fit(axis, range.min, range.max);
+    }
+    calibration.problem().is_none().then_some(calibration)
+}
+
+/// Gives an axis other ends; its rest stays at the same end or in the middle.
+pub(super) fn fit(axis: &mut Axis, min: i32, max: i32) {
+    axis.rest = if axis.rest == axis.min {
+        min
+    } else if axis.rest == axis.max {
+        max
+    } else {
+        // Of an even number of values the middle is the upper one, as the kernel centres wheels.
+        ((i64::from(min) + i64::from(max) + 1) / 2) as i32
+    };
+    (axis.min, axis.max) = (min, max);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::testing::device;
+
+    #[test]
+    fn every_preset_is_sound() {
+        for calibration in [g29(), g920(), t150(), t300(), gamepad()] {
+            assert_eq!(calibration.problem(), None, "{}", calibration.device);
+            let text = calibration.to_toml().unwrap();
+            assert_eq!(Calibration::from_toml(&text), Ok(calibration));
+        }
+    }
+
+    #[test]
+    fn a_known_wheel_is_recognised_and_takes_the_ends_of_the_device() {
+        let mut wheel = device(0, "/dev/input/event5");
+        (wheel.vendor, wheel.product) = (0x046d, 0xc24f);
+        wheel.axes.iter_mut().find(|a| a.code == ABS_RZ).unwrap().max = 1023;
+        let calibration = preset(&wheel).unwrap();
+        assert_eq!((calibration.brake.rest, calibration.throttle.rest), (1023, 255));
+        assert_eq!(calibration.brake.pressed(0), 1.0);
+    }
+
+    #[test]
+    fn a_device_without_the_axes_has_no_preset() {
+        let mut pedals = device(0, "/dev/input/event5");
+        assert_eq!(preset(&pedals).unwrap().steering.dead_zone, STICK_DEAD_ZONE);
+        pedals.axes.retain(|a| a.code != ABS_X);
+        assert_eq!(preset(&pedals), None);
+    }
+}

@@ -1,0 +1,129 @@
+//! A seat and what is in it.
+
+use kernel::{Controls, Seat};
+
+use super::calibration::Calibration;
+use super::device::DeviceUnit;
+use super::keyboard::Keyboard;
+use super::source::{DeviceId, DeviceInfo};
+use super::status::{UnitState, UnitStatus};
+
+/// What moves the controls of a seat.
+#[derive(Debug)]
+pub(super) enum Unit {
+    Bot,
+    Keyboard(Keyboard),
+    Device(Binding),
+}
+
+/// A seat for a device.
+#[derive(Debug, Default)]
+pub(super) struct Binding {
+    /// The device must be the one at this path; else the one on which a button is pressed.
+    path: Option<String>,
+    bound: Option<Box<Bound>>,
+}
+
+#[derive(Debug)]
+struct Bound {
+    info: DeviceInfo,
+    unit: DeviceUnit,
+    present: bool,
+}
+
+impl Binding {
+    /// A seat that waits for the device at a path, or for any device whose button is pressed.
+    pub fn new(path: Option<String>) -> Self {
+        Self { path, bound: None }
+    }
+
+    /// Whether it has no device that is there.
+    pub fn waits(&self) -> bool {
+        self.bound.as_ref().is_none_or(|b| !b.present)
+    }
+
+    /// Whether its device is one with this number.
+    pub fn has(&self, id: DeviceId) -> bool {
+        self.bound.as_ref().is_some_and(|b| b.present && b.info.id == id)
+    }
+
+    /// Whether the seat asks for the device by its path, which may be a link such as those in
+    /// `/dev/input/by-id`.
+    pub fn asks_for(&self, device: &DeviceInfo) -> bool {
+        let resolved = |path: &String| std::fs::canonicalize(path).is_ok_and(|p| p.to_str() == Some(&device.path));
+        self.path.as_ref().is_some_and(|path| *path == device.path || resolved(path))
+    }
+
+    /// Whether the seat has lost a device of this make.
+    pub fn misses_make(&self, device: &DeviceInfo) -> bool {
+        self.bound.as_ref().is_some_and(|b| !b.present && b.info.same_make(device))
+    }
+
+    /// Whether the device that the seat has lost was of this make and at this path.
+    pub fn misses(&self, device: &DeviceInfo) -> bool {
+        self.misses_make(device) && self.bound.as_ref().is_some_and(|b| b.info.path == device.path)
+    }
+
+    /// Takes a device; true if the seat had lost one, which is back or replaced now.
+    pub fn bind(&mut self, info: DeviceInfo, calibration: Calibration) -> bool {
+        let unit = DeviceUnit::new(calibration);
+        self.bound.replace(Box::new(Bound { info, unit, present: true })).is_some()
+    }
+
+    /// Its device is gone.
+    pub fn lose(&mut self) {
+        if let Some(bound) = &mut self.bound {
+            bound.present = false;
+            bound.unit.disarm();
+        }
+    }
+
+    /// The device's unit, while it is there.
+    pub fn unit(&mut self) -> Option<&mut DeviceUnit> {
+        self.bound.as_mut().filter(|b| b.present).map(|b| &mut b.unit)
+    }
+
+    fn status(&self, seat: Seat) -> UnitStatus {
+        let Some(Bound { info, unit, present }) = self.bound.as_deref() else {
+            let waits_for =
+                self.path.clone().unwrap_or_else(|| format!("a button of the {} driver's wheel", name(seat)));
+            return UnitStatus { unit: String::from("device"), state: UnitState::Waiting { waits_for } };
+        };
+        let to_do = unit.to_do();
+        let state = match (present, to_do.is_empty()) {
+            (false, _) => UnitState::Lost,
+            (true, true) => UnitState::Armed,
+            (true, false) => UnitState::Arming { to_do },
+        };
+        UnitStatus { unit: info.name.clone(), state }
+    }
+}
+
+impl Unit {
+    /// Its controls for the next tick, unless it is not armed.
+    pub fn tick(&mut self, speed_mps: f32) -> Option<Controls> {
+        match self {
+            Self::Bot => Some(Controls::default()),
+            Self::Keyboard(keyboard) => Some(keyboard.tick(speed_mps)),
+            Self::Device(binding) => binding.unit().and_then(|unit| unit.tick(speed_mps)),
+        }
+    }
+
+    /// How it is.
+    pub fn status(&self, seat: Seat) -> UnitStatus {
+        let armed = |unit: &str| UnitStatus { unit: unit.into(), state: UnitState::Armed };
+        match self {
+            Self::Bot => armed("bot"),
+            Self::Keyboard(_) => armed("keyboard"),
+            Self::Device(binding) => binding.status(seat),
+        }
+    }
+}
+
+/// What people call a seat.
+pub(super) fn name(seat: Seat) -> &'static str {
+    match seat {
+        Seat::Semantic => "semantic",
+        Seat::Safety => "safety",
+    }
+}
