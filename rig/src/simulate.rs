@@ -5,15 +5,18 @@ use std::io::Write;
 use kernel::arbiter::{Outcome, Phase};
 use kernel::time::{CLIP_TICKS, Tick, seconds};
 use kernel::{Keyframe, Scenario, World};
-use replay::{Annotation, Manifest, Provenance};
+use replay::{Annotation, Label, Manifest, Provenance};
 
 use crate::crew::Crew;
+use crate::drivers::safety::BORING_TICKS;
 use crate::maps::Map;
 use crate::session::{Session, SessionState};
 use crate::vision::{Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
 
 /// A fork starts at least this long before the intervention, so that nothing is decided yet.
-const FORK_BEFORE_TICKS: Tick = CLIP_TICKS;
+fn fork_before_ticks(label: Label) -> Tick {
+    if label == Label::Boredom { BORING_TICKS + CLIP_TICKS } else { CLIP_TICKS }
+}
 /// A fork that is still going this long after the intervention did not need it.
 const FORK_AFTER_TICKS: Tick = seconds(5);
 
@@ -73,7 +76,7 @@ fn explain(world: &World, crew: Crew, keyframes: &[Keyframe]) -> anyhow::Result<
     let vision = crew.into_vision();
     let (Some(at), Some((label, comment))) = (at, cause) else { return Ok((None, vision)) };
     let eye = vision.eye().clone();
-    let (needed, vision) = needed_with_truth(world, keyframes, at, vision)?;
+    let (needed, vision) = needed_with_truth(world, keyframes, (at, fork_before_ticks(label)), vision)?;
     let perception_caused = Some(!matches!(eye, Eye::Truth) && !needed);
     Ok((Some(Annotation { label, comment, perception_caused }), vision.with_eye(eye)))
 }
@@ -83,13 +86,13 @@ fn explain(world: &World, crew: Crew, keyframes: &[Keyframe]) -> anyhow::Result<
 fn needed_with_truth(
     world: &World,
     keyframes: &[Keyframe],
-    at: Tick,
+    (at, before): (Tick, Tick),
     vision: Vision,
 ) -> anyhow::Result<(bool, Vision)> {
     if matches!(vision.eye(), Eye::Truth) {
         return Ok((true, vision));
     }
-    let early = |k: &&Keyframe| k.tick + FORK_BEFORE_TICKS <= at;
+    let early = |k: &&Keyframe| k.tick + before <= at;
     let Some(start) = keyframes.iter().rev().find(early) else { return Ok((true, vision)) };
     let mut fork = World::resume(world.scenario(), world.network(), start)?;
     let mut crew = Crew::new(vision.with_eye(Eye::Truth));

@@ -21,7 +21,7 @@ const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
 /// A hazard that is gone for this long is over.
 const FORGET_TICKS: Tick = 12;
 /// Standing without a red light ahead gets boring after this time.
-const BORING_TICKS: Tick = seconds(60);
+pub const BORING_TICKS: Tick = seconds(60);
 /// Deceleration of the full brake is asked for at once.
 const BRAKE: f32 = 1.0;
 /// How far ahead on the route the car is steered to, metres.
