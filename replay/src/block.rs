@@ -10,7 +10,7 @@ use kernel::{Keyframe, StateHash, TickInput, TickOutput};
 
 use crate::container::Container;
 use crate::layout::Channel;
-use crate::{Error, Mark, MaskShown, wire};
+use crate::{Error, Mark, MaskShown, Note, wire};
 
 /// A block ends at the latest at every multiple of this.
 pub(crate) const BLOCK_TICKS: Tick = TICK_HZ as Tick;
@@ -58,11 +58,12 @@ impl Block {
         self.happenings.intervention = self.happenings.intervention.or(output.intervention);
     }
 
-    /// Writes the block and the masks shown in it as one chunk. `state` is the last keyframe before
-    /// it, and becomes the last one in it.
+    /// Writes the block, the masks shown in it and the notes of it as one chunk. `state` is the last
+    /// keyframe before it, and becomes the last one in it.
     pub fn write<W: Write>(
         &self,
         masks: &[MaskShown],
+        notes: &[Note],
         state: &mut Vec<u8>,
         out: &mut Container<W>,
     ) -> Result<(), Error> {
@@ -77,6 +78,9 @@ impl Block {
         }
         if !masks.is_empty() {
             out.put(Channel::Masks, last, &wire::masks_bytes(masks))?;
+        }
+        if !notes.is_empty() {
+            out.put(Channel::Notes, last, &wire::notes_bytes(notes))?;
         }
         out.flush()
     }

@@ -92,6 +92,7 @@ fn cut_log(replayer: &Replayer<'_>, info: &CaseInfo, scenes: Vec<SceneSnapshot>)
         events: log.events.iter().filter(|(tick, _)| inside(*tick)).copied().collect(),
         intervention: log.intervention.filter(|i| inside(i.tick)),
         masks: log.masks.iter().filter(|m| inside(m.tick_shown)).copied().collect(),
+        notes: log.notes.iter().filter(|n| inside(n.tick)).copied().collect(),
         annotation: log.annotation.clone(),
         summary: Some(RunSummary {
             ticks: end,

@@ -8,7 +8,7 @@ use kernel::time::Tick;
 use crate::block::{BLOCK_TICKS, Block, Happenings};
 use crate::container::Container;
 use crate::layout::Channel;
-use crate::{Annotation, Error, Log, Manifest, Mark, MaskShown, RunSummary, wire};
+use crate::{Annotation, Error, Log, Manifest, Mark, MaskShown, Note, RunSummary, wire};
 
 /// A log's file being written.
 pub(crate) struct LogFile<W: Write> {
@@ -26,19 +26,23 @@ impl<W: Write> LogFile<W> {
         Ok(Self { file, state: start.bytes.clone() })
     }
 
-    pub fn block(&mut self, block: &Block, masks: &[MaskShown]) -> Result<(), Error> {
-        block.write(masks, &mut self.state, &mut self.file)
+    pub fn block(&mut self, block: &Block, masks: &[MaskShown], notes: &[Note]) -> Result<(), Error> {
+        block.write(masks, notes, &mut self.state, &mut self.file)
     }
 
     pub fn finish(
         mut self,
         masks: &[MaskShown],
+        notes: &[Note],
         tick: Tick,
         annotation: Option<&Annotation>,
         summary: Option<&RunSummary>,
     ) -> Result<W, Error> {
         if !masks.is_empty() {
             self.file.put(Channel::Masks, tick, &wire::masks_bytes(masks))?;
+        }
+        if !notes.is_empty() {
+            self.file.put(Channel::Notes, tick, &wire::notes_bytes(notes))?;
         }
         self.file.put(Channel::End, tick, &wire::end_bytes(annotation, summary))?;
         self.file.finish()
@@ -52,12 +56,13 @@ impl Log {
         let start =
             self.keyframes.first().ok_or_else(|| Error::Unsuited("a log needs a keyframe to start from".into()))?;
         let mut file = LogFile::new(Vec::new(), &self.manifest, start)?;
-        let mut masks = &self.masks[..];
+        let (mut masks, mut notes) = (&self.masks[..], &self.notes[..]);
         let mut first = start.tick + 1;
         for mark in &self.marks {
             let shown = masks.iter().position(|m| m.tick_shown > mark.tick).unwrap_or(masks.len());
-            file.block(&self.block(first, mark)?, &masks[..shown])?;
-            (first, masks) = (mark.tick + 1, &masks[shown..]);
+            let noted = notes.iter().position(|n| n.tick > mark.tick).unwrap_or(notes.len());
+            file.block(&self.block(first, mark)?, &masks[..shown], &notes[..noted])?;
+            (first, masks, notes) = (mark.tick + 1, &masks[shown..], &notes[noted..]);
         }
         if first != self.last_tick() + 1 {
             return Err(Error::Unsuited(format!("a log needs a mark at its last tick {}", self.last_tick())));
@@ -65,7 +70,7 @@ impl Log {
         if !self.scenes.is_empty() {
             file.file.put(Channel::Scenes, self.last_tick(), &wire::scenes_bytes(&self.scenes))?;
         }
-        file.finish(masks, self.last_tick(), self.annotation.as_ref(), self.summary.as_ref())
+        file.finish(masks, notes, self.last_tick(), self.annotation.as_ref(), self.summary.as_ref())
     }
 
     /// The block from tick `first` to a mark.

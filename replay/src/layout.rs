@@ -18,6 +18,7 @@ pub(crate) enum Channel {
     Masks = 5,
     End = 6,
     Scenes = 7,
+    Notes = 8,
 }
 
 /// What stands in the file about a channel.
@@ -35,7 +36,7 @@ pub(crate) const MESSAGE_ENCODING: &str = "bincode2";
 pub(crate) const SCHEMA_ENCODING: &str = "text";
 
 /// Every channel, in the order of their ids.
-pub(crate) const CHANNELS: [Layout; 7] = [
+pub(crate) const CHANNELS: [Layout; 8] = [
     Layout {
         channel: Channel::Manifest,
         topic: "/manifest",
@@ -89,6 +90,13 @@ pub(crate) const CHANNELS: [Layout; 7] = [
         text: "Of a corner case: state bytes of the snapshots of its window, stacked. Lengths of the snapshots; \
                then, if all are equal, their bytes transposed, each the difference to the snapshot before; else one \
                after the other.",
+    },
+    Layout {
+        channel: Channel::Notes,
+        topic: "/notes",
+        schema: "aeye.Notes.1",
+        text: "What happened to the rig, if anything, as columns: tick (differences), code of the kind, seat \
+               (0 semantic, 1 safety).",
     },
 ];
 

@@ -16,6 +16,7 @@ mod encode;
 mod error;
 mod layout;
 mod log;
+mod notes;
 mod recorder;
 mod recording;
 mod replayer;
@@ -32,6 +33,7 @@ pub use log::{
     Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Provenance,
     RunSummary,
 };
+pub use notes::{Note, NoteKind};
 pub use recorder::Recorder;
 pub use recording::Recording;
 pub use replayer::Replayer;

@@ -10,7 +10,7 @@ use kernel::time::Tick;
 use kernel::world::PARTS;
 use kernel::{Keyframe, RoadNetwork, Scenario, SceneSnapshot, StateHash, TickInput};
 
-use crate::Error;
+use crate::{Error, Note};
 
 /// Version of the file layout; other versions are refused.
 pub const FORMAT_VERSION: u16 = 1;
@@ -197,6 +197,8 @@ pub struct Log {
     pub intervention: Option<Intervention>,
     /// Masks shown, by ascending tick.
     pub masks: Vec<MaskShown>,
+    /// What happened to the rig, by ascending tick.
+    pub notes: Vec<Note>,
     /// What was said about the intervention.
     pub annotation: Option<Annotation>,
     /// How the run went; `None` in a file whose writer was stopped.

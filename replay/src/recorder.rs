@@ -9,7 +9,7 @@ use kernel::{Keyframe, TickInput, TickOutput};
 
 use crate::block::{BLOCK_TICKS, Block};
 use crate::encode::LogFile;
-use crate::{Annotation, Error, Manifest, Mark, MaskShown, RunSummary};
+use crate::{Annotation, Error, Manifest, Mark, MaskShown, Note, RunSummary};
 
 /// Writes a recording. What was written is only ever appended to, a block each second and at every
 /// intervention, so that a killed process loses at most a second.
@@ -21,6 +21,7 @@ pub struct Recorder<W: Write> {
     file: LogFile<W>,
     block: Block,
     masks: Vec<MaskShown>,
+    notes: Vec<Note>,
     /// Camera and digest of the last mask.
     on_screen: Option<(u8, u64)>,
     intervention: Option<Intervention>,
@@ -35,6 +36,7 @@ impl<W: Write> Recorder<W> {
             file: LogFile::new(out, manifest, start)?,
             block: Block::starting_at(start.tick + 1),
             masks: Vec::new(),
+            notes: Vec::new(),
             on_screen: None,
             intervention: None,
             annotation: None,
@@ -66,6 +68,11 @@ impl<W: Write> Recorder<W> {
         }
     }
 
+    /// Logs what happened to the rig, by ascending tick.
+    pub fn note(&mut self, note: Note) {
+        self.notes.push(note);
+    }
+
     /// Says what the intervention was; the last call counts.
     pub fn annotate(&mut self, annotation: Annotation) {
         self.annotation = Some(annotation);
@@ -78,15 +85,17 @@ impl<W: Write> Recorder<W> {
             self.end_block()?;
         }
         let summary = RunSummary { ticks: tick, odometer_mm, intervention: self.intervention, outcome };
-        self.file.finish(&self.masks, tick, self.annotation.as_ref(), Some(&summary))
+        self.file.finish(&self.masks, &self.notes, tick, self.annotation.as_ref(), Some(&summary))
     }
 
     fn end_block(&mut self) -> Result<(), Error> {
         let last = self.block.mark.tick;
         let later = self.masks.iter().position(|m| m.tick_shown > last).unwrap_or(self.masks.len());
         let masks = self.masks.drain(..later);
+        let later = self.notes.iter().position(|n| n.tick > last).unwrap_or(self.notes.len());
+        let notes = self.notes.drain(..later);
         let next = Block { mark: self.block.mark, ..Block::starting_at(last + 1) };
         let block = std::mem::replace(&mut self.block, next);
-        self.file.block(&block, masks.as_slice())
+        self.file.block(&block, masks.as_slice(), notes.as_slice())
     }
 }

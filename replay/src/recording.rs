@@ -114,6 +114,7 @@ fn assemble(messages: &[Message], finished: bool) -> Result<Log, Error> {
         events: Vec::new(),
         intervention: None,
         masks: Vec::new(),
+        notes: Vec::new(),
         annotation: None,
         summary: None,
         scenes: Vec::new(),
@@ -166,6 +167,7 @@ impl Log {
                 self.intervention = self.intervention.or(happenings.intervention);
             }
             Channel::Masks => self.masks.extend(message.parse(Channel::Masks, wire::masks)?),
+            Channel::Notes => self.notes.extend(message.parse(Channel::Notes, wire::notes)?),
             Channel::Scenes => self.scenes = message.parse(Channel::Scenes, wire::scenes)?,
             Channel::End => (self.annotation, self.summary) = message.parse(Channel::End, wire::end)?,
         }
@@ -212,6 +214,13 @@ mod tests {
             assert_eq!(recording.log(), &log);
             assert_eq!(recording.log().encode().unwrap(), bytes, "the same content gives the same bytes");
         }
+    }
+
+    #[test]
+    fn a_recording_from_before_there_were_notes_opens() {
+        let old = read(include_bytes!("../tests/without_notes.mcap")).unwrap();
+        assert!(old.finished() && old.log().notes.is_empty());
+        assert_eq!(old.log(), &Log { notes: Vec::new(), ..sample(61) });
     }
 
     #[test]

@@ -4,9 +4,12 @@ use kernel::arbiter::{Intervention, Outcome};
 use kernel::events::{Event, EventKind};
 use kernel::time::Tick;
 use kernel::world::PARTS;
-use kernel::{Controls, Keyframe, Scenario, StateHash, TickInput};
+use kernel::{Controls, Keyframe, Scenario, Seat, StateHash, TickInput};
 
-use crate::{Annotation, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, RunSummary};
+use crate::{
+    Annotation, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Note, NoteKind,
+    RunSummary,
+};
 
 /// A log of `ticks` ticks with something of everything in it.
 pub(crate) fn sample(ticks: Tick) -> Log {
@@ -36,6 +39,11 @@ pub(crate) fn sample(ticks: Tick) -> Log {
         events: vec![(takeover, Event { kind: EventKind::Intervention, actor: 0, speed_mps: 8.5 })],
         intervention: Some(intervention),
         masks: (1..=ticks).step_by(6).map(mask).collect(),
+        notes: vec![
+            Note { tick: 1, kind: NoteKind::UnitArmed, seat: Seat::Semantic },
+            Note { tick: takeover, kind: NoteKind::UnitLost, seat: Seat::Safety },
+            Note { tick: ticks + 1, kind: NoteKind::UnitReturned, seat: Seat::Safety },
+        ],
         annotation: Some(Annotation { label: Label::Walker, comment: "dusk".into(), perception_caused: Some(true) }),
         summary: Some(RunSummary {
             ticks,

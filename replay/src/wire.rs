@@ -9,11 +9,13 @@ use kernel::events::Event;
 use kernel::state::State;
 use kernel::time::Tick;
 use kernel::world::PARTS;
-use kernel::{Keyframe, Scenario, SceneSnapshot, StateHash, TickInput};
+use kernel::{Keyframe, Scenario, SceneSnapshot, Seat, StateHash, TickInput};
 
 use crate::block::{BLOCK_TICKS, Block, Happenings};
 use crate::columns::{self, ControlColumns};
-use crate::{Annotation, CaseInfo, FORMAT_VERSION, Label, LiveTimes, Manifest, Mark, MaskShown, RunSummary};
+use crate::{
+    Annotation, CaseInfo, FORMAT_VERSION, Label, LiveTimes, Manifest, Mark, MaskShown, Note, NoteKind, RunSummary,
+};
 
 /// Most bytes that a payload may claim; keeps damaged lengths from asking for memory.
 const LIMIT: usize = 256 << 20;
@@ -234,6 +236,37 @@ pub(crate) fn masks(bytes: &[u8]) -> Result<Vec<MaskShown>, Wrong> {
 }
 
 #[derive(Encode, Decode)]
+struct NotesWire {
+    ticks: Vec<i64>,
+    kinds: Vec<u8>,
+    seats: Vec<u8>,
+}
+
+pub(crate) fn notes_bytes(notes: &[Note]) -> Vec<u8> {
+    encode(NotesWire {
+        ticks: columns::differences(notes.iter().map(|n| n.tick)),
+        kinds: notes.iter().map(|n| n.kind as u8).collect(),
+        seats: notes.iter().map(|n| n.seat as u8).collect(),
+    })
+}
+
+pub(crate) fn notes(bytes: &[u8]) -> Result<Vec<Note>, Wrong> {
+    let wire: NotesWire = decode(bytes)?;
+    let rows = wire.ticks.len();
+    if [wire.kinds.len(), wire.seats.len()].iter().any(|n| *n != rows) {
+        return Err(format!("columns of different lengths for {rows} notes"));
+    }
+    let codes = wire.kinds.iter().zip(&wire.seats);
+    let rows = columns::sums(&wire.ticks).zip(codes).map(|(tick, (kind, seat))| {
+        let known = NoteKind::ALL.into_iter().find(|k| *k as u8 == *kind);
+        let kind = known.ok_or_else(|| format!("unknown kind {kind} of note"))?;
+        let seat = [Seat::Semantic, Seat::Safety].into_iter().find(|s| *s as u8 == *seat);
+        Ok(Note { tick, kind, seat: seat.ok_or("a note of an unknown seat")? })
+    });
+    rows.collect()
+}
+
+#[derive(Encode, Decode)]
 struct EndWire {
     annotation: Option<(u8, String, Option<bool>)>,
     summary: Option<(Tick, u64, Vec<u8>, Vec<u8>)>,
@@ -288,7 +321,18 @@ mod tests {
         })
     }
 
+    fn note() -> impl Strategy<Value = Note> {
+        let (kinds, seats) = (NoteKind::ALL.to_vec(), vec![Seat::Semantic, Seat::Safety]);
+        let fields = (any::<u64>(), prop::sample::select(kinds), prop::sample::select(seats));
+        fields.prop_map(|(tick, kind, seat)| Note { tick, kind, seat })
+    }
+
     proptest! {
+        #[test]
+        fn any_notes_come_back(rows in prop::collection::vec(note(), 0..40)) {
+            prop_assert_eq!(notes(&notes_bytes(&rows)), Ok(rows));
+        }
+
         #[test]
         fn any_masks_come_back(rows in prop::collection::vec(mask(), 0..40)) {
             prop_assert_eq!(masks(&masks_bytes(&rows)), Ok(rows));
@@ -301,8 +345,18 @@ mod tests {
                 bytes.iter_mut().for_each(|b| *b &= 7);
             }
             let _ = (manifest(&bytes), keyframe(&bytes, b"before"), block(&bytes), happenings(&bytes));
-            let _ = (masks(&bytes), end(&bytes), scenes(&bytes));
+            let _ = (masks(&bytes), end(&bytes), scenes(&bytes), notes(&bytes));
         }
+    }
+
+    #[test]
+    fn an_unknown_note_is_an_error() {
+        let wire = |kind, seat| encode(NotesWire { ticks: vec![5], kinds: vec![kind], seats: vec![seat] });
+        assert!(notes(&wire(0, 1)).is_ok());
+        assert_eq!(notes(&wire(200, 1)), Err("unknown kind 200 of note".to_owned()));
+        assert_eq!(notes(&wire(0, 2)), Err("a note of an unknown seat".to_owned()));
+        let short = encode(NotesWire { ticks: vec![5], kinds: vec![], seats: vec![0] });
+        assert!(notes(&short).is_err_and(|e| e.contains("different lengths")));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use kernel::arbiter::{Intervention, Outcome, Phase};
 use kernel::{TickInput, TickOutput, World};
-use replay::{Annotation, Manifest, MaskShown, Recorder};
+use replay::{Annotation, Manifest, MaskShown, Note, Recorder};
 
 /// Where a session stands after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +45,11 @@ impl<W: Write> Session<W> {
     /// Records what was on the semantic driver's screen.
     pub fn mask_shown(&mut self, mask: MaskShown) {
         self.recorder.mask_shown(mask);
+    }
+
+    /// Records what happened to the rig.
+    pub fn note(&mut self, note: Note) {
+        self.recorder.note(note);
     }
 
     /// Says what the intervention was.

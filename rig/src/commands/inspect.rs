@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use kernel::time::{TICK_HZ, Tick};
-use replay::Recording;
+use replay::{Note, Recording};
 use serde::Serialize;
 
 use super::drive::RunFigures;
@@ -34,6 +34,7 @@ struct Contents {
     intervention: Option<Takeover>,
     window: Option<Window>,
     events: Vec<EventLine>,
+    notes: Vec<NoteLine>,
     scenario: String,
 }
 
@@ -62,6 +63,20 @@ struct EventLine {
     kind: String,
     actor: u32,
     speed_mps: f32,
+}
+
+/// Something that happened to the rig.
+#[derive(Debug, Serialize)]
+struct NoteLine {
+    tick: Tick,
+    kind: &'static str,
+    seat: String,
+}
+
+impl NoteLine {
+    fn of(note: &Note) -> Self {
+        Self { tick: note.tick, kind: note.kind.name(), seat: format!("{:?}", note.seat).to_lowercase() }
+    }
 }
 
 /// Runs `aeye inspect`.
@@ -113,6 +128,7 @@ fn read(file: &Path) -> anyhow::Result<Contents> {
         intervention,
         window,
         events: events.collect(),
+        notes: log.notes.iter().map(NoteLine::of).collect(),
         scenario: manifest.scenario.to_toml(),
     })
 }
@@ -150,6 +166,9 @@ fn text(c: &Contents) -> String {
     for e in &c.events {
         let actor = if e.actor == 0 { String::new() } else { format!(", actor {}", e.actor) };
         line("event", format!("{}: {} at {:.1} km/h{actor}", at(e.tick), e.kind, 3.6 * e.speed_mps));
+    }
+    for n in &c.notes {
+        line("note", format!("{}: {} ({} driver)", at(n.tick), n.kind, n.seat));
     }
     text.truncate(text.trim_end().len());
     text

@@ -5,6 +5,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use kernel::Seat;
+use kernel::time::Tick;
+use replay::{Note, NoteKind};
 
 /// What a seat is to be driven with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -99,4 +101,17 @@ pub struct UnitEvent {
     pub kind: UnitEventKind,
     /// Name of the device.
     pub unit: String,
+}
+
+impl UnitEvent {
+    /// The event as it is recorded. `tick` is the tick that gets the controls which were polled with it.
+    pub fn note(&self, tick: Tick) -> Note {
+        let kind = match self.kind {
+            UnitEventKind::Bound => NoteKind::UnitBound,
+            UnitEventKind::Armed => NoteKind::UnitArmed,
+            UnitEventKind::Lost => NoteKind::UnitLost,
+            UnitEventKind::Returned => NoteKind::UnitReturned,
+        };
+        Note { tick, kind, seat: self.seat }
+    }
 }

@@ -12,4 +12,5 @@ mod replay_verify;
 mod rig_bots;
 mod rig_campaign;
 mod rig_cli;
+mod rig_units;
 mod tidy;
