@@ -47,6 +47,9 @@ pub enum Command {
     Report(ReportArgs),
     /// Drive until three corner cases, verify, render them again, and write a report.
     Demo(DemoArgs),
+    /// List and calibrate wheels and gamepads.
+    #[command(subcommand)]
+    Wheel(WheelCommand),
     /// Say what this machine has and how fast it is.
     Doctor,
 }
@@ -285,6 +288,51 @@ pub struct ReportArgs {
     /// Where the page goes.
     #[arg(long, value_name = "FILE.html")]
     pub out: PathBuf,
+}
+
+/// What to do with wheels and gamepads.
+#[derive(Debug, Subcommand)]
+pub enum WheelCommand {
+    /// Say which are there, and by which calibration they would be read.
+    List(WheelListArgs),
+    /// Ask for each movement of a device and write its calibration.
+    Calibrate(WheelCalibrateArgs),
+    /// Write a calibration from the `wheel_config.ini` of CARLA's example.
+    Import(WheelImportArgs),
+}
+
+/// Arguments of `wheel list`.
+#[derive(Args, Debug)]
+pub struct WheelListArgs {
+    /// Calibrations to choose from, by the name of their device.
+    #[arg(long, value_name = "FILE.toml")]
+    pub calibration: Vec<PathBuf>,
+}
+
+/// Arguments of `wheel calibrate`.
+#[derive(Args, Debug)]
+pub struct WheelCalibrateArgs {
+    /// The device, such as /dev/input/event5 (default: the only one).
+    #[arg(long, value_name = "PATH")]
+    pub device: Option<String>,
+    /// Where the calibration goes.
+    #[arg(long, value_name = "FILE.toml")]
+    pub calibration: PathBuf,
+}
+
+/// Arguments of `wheel import`.
+#[derive(Args, Debug)]
+pub struct WheelImportArgs {
+    /// The file of CARLA's example.
+    #[arg(value_name = "wheel_config.ini")]
+    pub file: PathBuf,
+    /// The device that the file numbers axes and buttons of, such as /dev/input/event5 (default: a
+    /// G29, which need not be there).
+    #[arg(long, value_name = "PATH")]
+    pub device: Option<String>,
+    /// Where the calibration goes.
+    #[arg(long, value_name = "FILE.toml")]
+    pub calibration: PathBuf,
 }
 
 /// Arguments of `demo`.

@@ -35,6 +35,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Eval(args) => lab::eval::run(args, json),
         Command::Report(args) => lab::report::run(args, json),
         Command::Demo(args) => lab::demo::run(args, json),
+        Command::Wheel(command) => commands::wheel::run(command, json),
         Command::Doctor => commands::doctor::run(json),
     }
 }

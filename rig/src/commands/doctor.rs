@@ -2,16 +2,17 @@
 
 use std::fmt::Write;
 
-use gilrs::Gilrs;
 use kernel::{TickInput, World};
 use render::{Camera, RenderOptions, Renderer};
 use serde::Serialize;
 
+use super::wheel;
 use crate::cli::CheckpointChoice;
 use crate::clock::seconds_of;
 use crate::exit::{Verdict, sentence};
 use crate::maps::Map;
 use crate::output;
+use crate::units::hardware::Hardware;
 use crate::vision::{DEFAULT_SIZE, Eye};
 
 /// Ticks, frames and inferences that are measured.
@@ -61,7 +62,7 @@ pub fn run(json: bool) -> anyhow::Result<Verdict> {
     };
     match devices() {
         Ok(devices) => findings.devices = devices,
-        Err(reason) => findings.notes.push(reason),
+        Err(error) => findings.notes.push(sentence(&error)),
     }
     if let Err(error) = measure(&mut findings.budgets) {
         findings.problems.push(sentence(&error));
@@ -76,13 +77,8 @@ fn adapters() -> Vec<Adapter> {
 }
 
 /// Names of the wheels and gamepads that are plugged in.
-fn devices() -> Result<Vec<String>, String> {
-    match Gilrs::new() {
-        Ok(gilrs) => Ok(gilrs.gamepads().map(|(_, pad)| pad.os_name().to_owned()).collect()),
-        // A platform without gamepads is none with a fault.
-        Err(gilrs::Error::NotImplemented(_)) => Ok(Vec::new()),
-        Err(error) => Err(format!("game devices: {error}")),
-    }
+fn devices() -> anyhow::Result<Vec<String>> {
+    Ok(Hardware::open()?.devices().into_iter().map(|d| format!("{} at {}", d.name, d.path)).collect())
 }
 
 /// World step, rendering and inference, as a drive needs them.
@@ -121,7 +117,7 @@ fn text(findings: &Findings) -> String {
         line("adapter", format!("{} ({kind}, {}, {})", a.name, a.backend, a.driver));
     }
     if findings.devices.is_empty() {
-        line("device", "none".into());
+        line("device", wheel::none_found());
     }
     for device in &findings.devices {
         line("device", device.clone());

@@ -5,3 +5,4 @@ pub mod doctor;
 pub mod drive;
 pub mod inspect;
 pub mod verify;
+pub mod wheel;

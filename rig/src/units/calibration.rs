@@ -1,5 +1,8 @@
 //! What the raw values of a device mean.
 
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
 use serde::{Deserialize, Serialize};
 
 /// How a fraction of the travel becomes a fraction of the control.
@@ -193,6 +196,12 @@ impl Calibration {
         (throttle.axis == brake.axis && !opposite)
             .then(|| String::from("pedals that share an axis need the same rest, and invert = true for one of them"))
     }
+}
+
+/// Reads a calibration's file.
+pub fn read(path: &Path) -> anyhow::Result<Calibration> {
+    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    Calibration::from_toml(&text).map_err(|problem| anyhow!("{}: {problem}", path.display()))
 }
 
 #[cfg(test)]

@@ -79,6 +79,14 @@ impl Key {
     }
 }
 
+/// The keys of a seat, for people to read.
+pub fn keys(seat: Seat) -> &'static str {
+    match seat {
+        Seat::Semantic => "W A S D, hand brake Space, gear R, hazard seen E",
+        Seat::Safety => "arrows, hand brake right Ctrl, gear Page Down, hazard seen right Shift",
+    }
+}
+
 /// One seat's half of the keyboard.
 #[derive(Clone, Debug)]
 pub struct Keyboard {

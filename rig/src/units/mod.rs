@@ -9,7 +9,9 @@
 //! driver's unit is lost: nobody watches over it.
 
 pub mod calibration;
+pub mod carla;
 mod device;
+pub mod hardware;
 pub mod keyboard;
 pub mod presets;
 mod slot;
@@ -17,10 +19,14 @@ pub mod source;
 pub mod status;
 #[cfg(test)]
 mod testing;
+pub mod wizard;
+
+use std::path::PathBuf;
 
 use kernel::{Controls, Seat, TickInput};
 
 use calibration::Calibration;
+use hardware::Hardware;
 pub use keyboard::Key;
 use keyboard::Keyboard;
 use slot::{Binding, Unit};
@@ -29,6 +35,9 @@ pub use status::{SeatChoice, UnitEvent, UnitEventKind, UnitState, UnitStatus};
 
 /// How hard a car without a driver brakes, fraction of the pedal.
 const STOP_BRAKE: f32 = 0.6;
+/// How a seat is given another unit.
+pub const HOW_TO_CHOOSE: &str = "choose with --semantic and --safety: auto, keyboard, press (a button on the wheel), \
+                                 bot, or a path such as /dev/input/event5";
 const SEATS: [Seat; 2] = [Seat::Semantic, Seat::Safety];
 
 /// What the units need to know of the car; that of the tick before.
@@ -79,9 +88,23 @@ pub struct Seats {
 }
 
 impl Seats {
-    /// Units for both seats, semantic driver's first.
+    /// Units for both seats, semantic driver's first, with the devices of this machine and their presets.
     pub fn new(choices: [SeatChoice; 2]) -> anyhow::Result<Self> {
-        Ok(Self::with_source(choices, Vec::new(), Box::new(Simulated::default())))
+        Self::calibrated(choices, &[])
+    }
+
+    /// As [`Seats::new`], with the calibrations in these files. An unreadable file is an error, and so
+    /// are devices that cannot be reached when a seat needs one.
+    pub fn calibrated(choices: [SeatChoice; 2], files: &[PathBuf]) -> anyhow::Result<Self> {
+        let calibrations = files.iter().map(|file| calibration::read(file)).collect::<anyhow::Result<_>>()?;
+        let any = |wish: fn(&SeatChoice) -> bool| choices.iter().any(wish);
+        let source: Box<dyn InputSource> = match Hardware::open() {
+            _ if !any(|c| !matches!(c, SeatChoice::Bot | SeatChoice::Keyboard)) => Box::new(Simulated::default()),
+            Ok(hardware) => Box::new(hardware),
+            Err(error) if any(|c| matches!(c, SeatChoice::Press | SeatChoice::Device(_))) => return Err(error),
+            Err(_) => Box::new(Simulated::default()),
+        };
+        Ok(Self::with_source(choices, calibrations, source))
     }
 
     /// Units for both seats, with devices from a source. A device is read by the calibration that
@@ -114,6 +137,15 @@ impl Seats {
     /// All keys went up: to be called when the last window that has the keyboard loses it.
     pub fn release_keys(&mut self) {
         self.keyboards().for_each(Keyboard::release);
+    }
+
+    /// What was found, what each seat uses, and how to change that, a line each.
+    pub fn summary(&self) -> Vec<String> {
+        let found = self.devices.iter().map(|d| format!("found {} at {}", d.name, d.path));
+        let none = self.devices.is_empty().then(|| String::from("found no wheel or gamepad"));
+        let seats =
+            SEATS.map(|seat| format!("{} driver: {}", slot::name(seat), self.units[seat as usize].summary(seat)));
+        found.chain(none).chain(seats).chain([String::from(HOW_TO_CHOOSE)]).collect()
     }
 
     /// The devices that are there.
@@ -231,7 +263,8 @@ impl Seats {
     }
 }
 
-fn calibration_of(calibrations: &[Calibration], device: &DeviceInfo) -> Option<Calibration> {
+/// The calibration of a device: the one that bears its name, else its preset.
+pub fn calibration_of(calibrations: &[Calibration], device: &DeviceInfo) -> Option<Calibration> {
     let own = calibrations.iter().find(|c| c.device == device.name).cloned();
     own.or_else(|| presets::preset(device))
 }

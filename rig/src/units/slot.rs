@@ -4,7 +4,7 @@ use kernel::{Controls, Seat};
 
 use super::calibration::Calibration;
 use super::device::DeviceUnit;
-use super::keyboard::Keyboard;
+use super::keyboard::{self, Keyboard};
 use super::source::{DeviceId, DeviceInfo};
 use super::status::{UnitState, UnitStatus};
 
@@ -106,6 +106,15 @@ impl Unit {
             Self::Bot => Some(Controls::default()),
             Self::Keyboard(keyboard) => Some(keyboard.tick(speed_mps)),
             Self::Device(binding) => binding.unit().and_then(|unit| unit.tick(speed_mps)),
+        }
+    }
+
+    /// What it is, with the keys of a keyboard.
+    pub fn summary(&self, seat: Seat) -> String {
+        match self {
+            Self::Keyboard(_) => format!("keyboard ({})", keyboard::keys(seat)),
+            Self::Bot => String::from("bot"),
+            Self::Device(_) => self.status(seat).to_string(),
         }
     }
 

@@ -21,7 +21,8 @@ pub enum SeatChoice {
     Press,
     /// The device at a path such as `/dev/input/event5` or a link to it.
     Device(String),
-    /// Nothing: a bot drives. The unit counts as armed and gives neutral controls.
+    /// Nothing: a bot drives. The unit counts as armed and gives neutral controls; the bot's are to
+    /// replace them while `Polled::ready`.
     Bot,
 }
 

@@ -64,6 +64,9 @@ fn a_bot_has_no_unit() {
     let polled = seats.poll(CarState::default());
     assert_eq!(polled.semantic, Controls::default());
     assert_eq!(polled.status[0].to_string(), "bot: armed");
+    let summary = seats.summary();
+    assert_eq!(summary[..2], ["found no wheel or gamepad", "semantic driver: bot"]);
+    assert!(summary[2].starts_with("safety driver: keyboard (arrows,") && summary[3].contains("--safety"));
 }
 
 #[test]

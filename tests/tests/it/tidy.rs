@@ -21,7 +21,7 @@ const IMPORTS: [(&str, &[&str]); 7] = [
 ];
 
 /// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str], &[&str]); 6] = [
+const NAMED_ONCE: [(&str, &[&str], &[&str]); 7] = [
     (
         "rapier3d::",
         &["kernel", "render", "perception", "replay", "rig"],
@@ -30,6 +30,7 @@ const NAMED_ONCE: [(&str, &[&str], &[&str]); 6] = [
     ("bincode::", &["kernel", "render", "perception", "replay", "rig"], &["replay/src/wire.rs"]),
     ("mcap::", &["kernel", "render", "perception", "rig"], &[]),
     ("wgpu::", &["kernel", "perception", "replay", "rig"], &[]),
+    ("gilrs_core::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/units/hardware.rs"]),
     ("std::time", &["kernel", "render", "replay"], &[]),
     ("HashMap", &["kernel"], &[]),
 ];
