@@ -19,10 +19,11 @@ test: setup
 
 ## Benchmarks; fails when a budget is broken.
 bench: setup
-	cargo bench -p benches
+	cargo bench --workspace --bench budgets
 
+# The whole workspace, so that demo, test and bench ask the same features of the dependencies.
 build: setup
-	cargo build --release -p rig
+	cargo build --release --workspace --bins
 
 setup:
 	@missing=$$(for p in $(PACKAGES); do dpkg -s $$p >/dev/null 2>&1 || echo $$p; done); \
