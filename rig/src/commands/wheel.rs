@@ -15,7 +15,7 @@ use crate::units::calibration::{self, Calibration};
 use crate::units::hardware::Hardware;
 use crate::units::source::DeviceInfo;
 use crate::units::wizard::{Console, calibrate};
-use crate::units::{HOW_TO_CHOOSE, calibration_of, carla};
+use crate::units::{calibration_of, carla};
 
 /// How often devices are listened to while their driver reads the question.
 const LISTEN: Duration = Duration::from_millis(5);
@@ -55,7 +55,7 @@ fn list(args: &WheelListArgs, json: bool) -> anyhow::Result<()> {
 
 /// What there is to say when nothing is plugged in.
 pub fn none_found() -> String {
-    format!("none: the keyboard will be used; plug a wheel or gamepad in, and {HOW_TO_CHOOSE}")
+    String::from("none: plug a wheel or gamepad in; /dev/input needs read and write permission")
 }
 
 fn entry(own: &[Calibration], device: &DeviceInfo) -> Entry {

@@ -36,7 +36,7 @@ pub use status::{SeatChoice, UnitEvent, UnitEventKind, UnitState, UnitStatus};
 /// How hard a car without a driver brakes, fraction of the pedal.
 const STOP_BRAKE: f32 = 0.6;
 /// How a seat is given another unit.
-pub const HOW_TO_CHOOSE: &str = "choose with --semantic and --safety: auto, keyboard, press (a button on the wheel), \
+const HOW_TO_CHOOSE: &str = "choose with --semantic and --safety: auto, keyboard, press (a button on the wheel), \
                                  bot, or a path such as /dev/input/event5";
 const SEATS: [Seat; 2] = [Seat::Semantic, Seat::Safety];
 
