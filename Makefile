@@ -1,6 +1,8 @@
 # demo and test install what they need on Debian (apt; sudo only where you are not root).
 
-PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers
+PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers \
+	libxkbcommon-x11-0 libxcursor1 libxi6 libxrandr2 libx11-xcb1
+TEST_PACKAGES := xvfb xdotool
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
@@ -11,6 +13,7 @@ demo: build
 	$(AEYE) demo --out out/demo
 
 ## Everything that CI runs.
+test: PACKAGES += $(TEST_PACKAGES)
 test: setup
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings

@@ -8,6 +8,8 @@ use clap::{Args, Parser, Subcommand};
 use kernel::time::{CLIP_FPS, TICK_HZ, Tick};
 use perception::BUNDLED;
 
+use crate::units::SeatChoice;
+
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
 ///
 /// Data goes to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 error (unreadable,
@@ -26,7 +28,7 @@ pub struct Cli {
 /// Every command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Drive one run and record it.
+    /// Drive in windows, or one run without, and record it.
     Drive(DriveArgs),
     /// Simulated drives, headless, until so many runs, kilometres or corner cases.
     Campaign(CampaignArgs),
@@ -82,8 +84,15 @@ impl FromStr for CheckpointChoice {
 #[derive(Args, Debug)]
 pub struct DriveArgs {
     /// Without windows: bots in both seats, as fast as the machine allows.
-    #[arg(long, required = true)]
+    #[arg(long)]
     pub headless: bool,
+    /// What the semantic driver drives with: `auto` takes a device if there is one, else the keyboard;
+    /// `press` the device on which a button is pressed next.
+    #[arg(long, value_name = "auto|keyboard|press|DEVICE|bot", conflicts_with = "headless")]
+    pub semantic: Option<SeatChoice>,
+    /// What the safety driver drives with.
+    #[arg(long, value_name = "auto|keyboard|press|DEVICE|bot", conflicts_with = "headless")]
+    pub safety: Option<SeatChoice>,
     /// A bundled map or an OpenDRIVE file.
     #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
     pub map: Option<String>,
@@ -99,7 +108,7 @@ pub struct DriveArgs {
     /// Longest simulated time, seconds; 4 to 86400, as `rules.max_seconds` of scenarios.
     #[arg(long, value_parser = clap::value_parser!(u32).range(4..=86_400))]
     pub seconds: Option<u32>,
-    /// Where the recording goes.
+    /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
     #[arg(long, value_name = "FILE.mcap")]
     pub record: PathBuf,
 }

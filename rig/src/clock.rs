@@ -37,3 +37,21 @@ pub fn seconds_of<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let value = work();
     (value, start.elapsed().as_secs_f64())
 }
+
+/// Time since a live session began.
+#[derive(Clone, Copy, Debug)]
+pub struct SessionClock {
+    start: Instant,
+}
+
+impl SessionClock {
+    /// The session begins now.
+    pub fn starting_now() -> Self {
+        Self { start: Instant::now() }
+    }
+
+    /// Microseconds since the session began.
+    pub fn now_us(&self) -> u64 {
+        self.start.elapsed().as_micros() as u64
+    }
+}

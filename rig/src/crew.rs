@@ -33,24 +33,29 @@ impl Crew {
 
     /// What the truth says about how the run went wrong: label and comment.
     pub fn cause(&self, world: &World) -> Option<(Label, String)> {
-        if let Some(hazard) = self.safety.reason() {
-            return Some((hazard.label, hazard.comment.clone()));
-        }
-        let hit = world.last_events().iter().find_map(|e| match e.kind {
-            EventKind::CollisionActor => Some(e.actor),
-            EventKind::CollisionScenery => Some(0),
-            _ => None,
-        })?;
-        let scene = world.scene();
-        let actor = scene.actors.iter().find(|a| a.id == hit);
-        Some(match actor {
-            Some(actor) => (label_of(actor.kind), format!("collision with actor {hit}")),
-            None => (Label::Rules, "collision with scenery".into()),
-        })
+        cause(&self.safety, world)
     }
 
     /// Leaves the seats.
     pub fn into_vision(self) -> Vision {
         self.vision
     }
+}
+
+/// What the truth says about how a run went wrong: why the safety driver took over, or what was hit.
+pub fn cause(safety: &SafetyBot, world: &World) -> Option<(Label, String)> {
+    if let Some(hazard) = safety.reason() {
+        return Some((hazard.label, hazard.comment.clone()));
+    }
+    let hit = world.last_events().iter().find_map(|e| match e.kind {
+        EventKind::CollisionActor => Some(e.actor),
+        EventKind::CollisionScenery => Some(0),
+        _ => None,
+    })?;
+    let scene = world.scene();
+    let actor = scene.actors.iter().find(|a| a.id == hit);
+    Some(match actor {
+        Some(actor) => (label_of(actor.kind), format!("collision with actor {hit}")),
+        None => (Label::Rules, "collision with scenery".into()),
+    })
 }

@@ -8,6 +8,7 @@ pub mod crew;
 pub mod drivers;
 pub mod exit;
 pub mod lab;
+mod live;
 pub mod maps;
 pub mod output;
 pub mod progress;

@@ -104,6 +104,11 @@ fn load(path: &Path) -> anyhow::Result<Checkpoint> {
     Err(Usage(sentence).into())
 }
 
+/// First 8 bytes of the blake3 digest of a mask's tag ids, as recordings hold it.
+pub fn digest_of(ids: &[u8]) -> u64 {
+    blake3::hash(ids).as_bytes().iter().take(8).rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
+}
+
 /// A mask on its way to the screen, or on it.
 struct Picture {
     shown: MaskShown,
@@ -165,8 +170,7 @@ impl Vision {
         let frame = self.renderer.draw(&world.scene(), &self.camera)?;
         let tick_of_frame = frame.tick;
         let mask = self.eye.see(frame)?;
-        let hash = blake3::hash(&mask.ids);
-        let digest = hash.as_bytes().iter().take(8).rev().fold(0, |value, byte| value << 8 | u64::from(*byte));
+        let digest = digest_of(&mask.ids);
         // The controls of the next tick are the first that are given with this mask in view.
         let shown = MaskShown { tick_shown, tick_of_frame, camera: 0, digest, times: None };
         Ok(Picture { shown, mask })

@@ -1,10 +1,11 @@
 //! One run, recorded as it goes.
 
 use std::fs::File;
+use std::path::Path;
 
 use anyhow::Context;
-use kernel::World;
 use kernel::arbiter::Outcome;
+use kernel::{Scenario, World};
 use render::{RenderOptions, Renderer};
 use replay::{Label, Recording};
 use serde::Serialize;
@@ -12,6 +13,7 @@ use serde::Serialize;
 use crate::cli::DriveArgs;
 use crate::clock::EverySecond;
 use crate::exit::Verdict;
+use crate::live;
 use crate::maps::{Map, read_scenario};
 use crate::output;
 use crate::progress::Interrupt;
@@ -62,6 +64,17 @@ impl RunFigures {
     }
 }
 
+impl RunFigures {
+    /// Prints those of a recording at a path.
+    pub fn print(&self, path: &Path, json: bool) -> anyhow::Result<()> {
+        output::print(json, self, || {
+            let label = self.label.map(|l| format!(" ({l})")).unwrap_or_default();
+            let Self { km, minutes, outcome, .. } = self;
+            format!("{}: {km:.3} km in {minutes:.1} min, {outcome}{label}", path.display())
+        })
+    }
+}
+
 fn outcome_name(outcome: Option<Outcome>) -> &'static str {
     match outcome {
         Some(Outcome::Intervened) => "intervened",
@@ -82,9 +95,13 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     };
     scenario.seed = args.seed.unwrap_or(scenario.seed);
     scenario.rules.max_seconds = args.seconds.unwrap_or(scenario.rules.max_seconds);
+    if args.headless { headless(args, &scenario, &map, json) } else { live::drive(args, scenario, map, json) }
+}
+
+fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<Verdict> {
     let eye = Eye::open(&args.checkpoint)?;
     let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
-    World::new(&scenario, &map.network)?;
+    World::new(scenario, &map.network)?;
 
     let path = &args.record;
     let file = File::create(path).with_context(|| path.display().to_string())?;
@@ -96,12 +113,7 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
         }
         !interrupt.is_raised()
     };
-    simulate::drive(&scenario, &map, vision, file, keep_on).with_context(|| path.display().to_string())?;
-    let figures = RunFigures::of(&Recording::open(path)?);
-    output::print(json, &figures, || {
-        let label = figures.label.map(|l| format!(" ({l})")).unwrap_or_default();
-        let RunFigures { km, minutes, outcome, .. } = &figures;
-        format!("{}: {km:.3} km in {minutes:.1} min, {outcome}{label}", path.display())
-    })?;
+    simulate::drive(scenario, map, vision, file, keep_on).with_context(|| path.display().to_string())?;
+    RunFigures::of(&Recording::open(path)?).print(path, json)?;
     Ok(Verdict::Ok)
 }

@@ -87,7 +87,8 @@ fn recordings_are_refused_with_the_place() {
 #[test]
 fn nonsense_on_the_command_line_is_usage() {
     for arguments in [
-        &["drive", "--record", "x.mcap"][..],
+        &["drive"][..],
+        &["drive", "--headless", "--safety", "keyboard", "--record", "x.mcap"],
         &["drive", "--headless", "--record", "x.mcap", "--seconds", "3"],
         &["campaign", "--checkpoint", "truth", "--out", "d"],
         &["campaign", "--checkpoint", "truth", "--out", "d", "--runs", "0"],

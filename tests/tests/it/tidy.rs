@@ -21,7 +21,7 @@ const IMPORTS: [(&str, &[&str]); 7] = [
 ];
 
 /// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str], &[&str]); 7] = [
+const NAMED_ONCE: [(&str, &[&str], &[&str]); 9] = [
     (
         "rapier3d::",
         &["kernel", "render", "perception", "replay", "rig"],
@@ -29,7 +29,9 @@ const NAMED_ONCE: [(&str, &[&str], &[&str]); 7] = [
     ),
     ("bincode::", &["kernel", "render", "perception", "replay", "rig"], &["replay/src/wire.rs"]),
     ("mcap::", &["kernel", "render", "perception", "rig"], &[]),
-    ("wgpu::", &["kernel", "perception", "replay", "rig"], &[]),
+    ("wgpu::", &["kernel", "perception", "replay", "rig"], &["rig/src/live/windows/"]),
+    ("winit::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/live/windows/"]),
+    ("egui::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/live/windows/"]),
     ("gilrs_core::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/units/hardware.rs"]),
     ("std::time", &["kernel", "render", "replay"], &[]),
     ("HashMap", &["kernel"], &[]),

@@ -1,0 +1,162 @@
+//! What the threads of a live drive show each other. Nobody waits for a reader.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use kernel::arbiter::Phase;
+use kernel::events::Hud;
+use kernel::time::Tick;
+use kernel::{SceneSnapshot, Seat, TickInput};
+
+use super::newest::Newest;
+use super::stage::{Press, Stage};
+use crate::units::Key;
+
+/// The newest of everything that is looked at.
+#[derive(Debug, Default)]
+pub struct Board {
+    /// What there is to draw.
+    pub scene: Newest<Look>,
+    /// What the semantic driver is to see next.
+    pub semantic: Newest<View>,
+    /// What the safety driver is to see next.
+    pub safety: Newest<View>,
+    /// How the session is.
+    pub status: Newest<Status>,
+}
+
+/// A scene to draw.
+#[derive(Debug)]
+pub struct Look {
+    /// Number of the run.
+    pub run: u32,
+    /// What there is to see.
+    pub scene: SceneSnapshot,
+    /// When it was captured, microseconds since the session began.
+    pub captured_us: u64,
+}
+
+/// A picture for a screen.
+#[derive(Debug)]
+pub struct View {
+    /// Number of the run.
+    pub run: u32,
+    /// The tick it is a picture of.
+    pub tick: Tick,
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// 3 bytes a pixel: red, green, blue.
+    pub rgb: Vec<u8>,
+    /// Tag ids and their digest, where the picture is a mask in class colours.
+    pub mask: Option<ShownMask>,
+    /// When its scene was captured, microseconds since the session began.
+    pub captured_us: u64,
+    /// When the picture was complete, microseconds since the session began.
+    pub ready_us: u64,
+}
+
+/// The mask behind a picture in class colours.
+#[derive(Debug)]
+pub struct ShownMask {
+    /// Tag ids of CARLA 0.9.10, rows from top to bottom.
+    pub ids: Vec<u8>,
+    /// [`crate::vision::digest_of`] them.
+    pub digest: u64,
+}
+
+/// What the simulation hears from the windows and the other threads.
+#[derive(Debug)]
+pub enum Message {
+    /// A key of one of the seats went down or up.
+    SeatKey(Key, bool),
+    /// No window has the keyboard any more.
+    KeysReleased,
+    /// A key of the operators went down; `true` when it is held and repeats.
+    Press(Press, bool),
+    /// A view came onto the semantic driver's screen, microseconds since the session began.
+    Shown(Arc<View>, u64),
+    /// A corner case was cut, or a run came to its figures.
+    Note(String),
+    /// A window was closed.
+    Closed,
+    /// A thread cannot go on.
+    Failed(anyhow::Error),
+}
+
+/// What is to be drawn anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wake {
+    /// The semantic driver's window.
+    Semantic,
+    /// The safety driver's window.
+    Safety,
+    /// The control centre.
+    Centre,
+    /// Every window.
+    All,
+    /// Nothing: the session is over.
+    Over,
+}
+
+/// How a session is.
+#[derive(Clone, Debug)]
+pub struct Status {
+    /// Where it stands.
+    pub stage: Stage,
+    /// Number of the run, from 1.
+    pub run: u32,
+    /// The world's tick.
+    pub tick: Tick,
+    /// What both drivers see besides the picture.
+    pub hud: Hud,
+    /// Where the arbitration stands.
+    pub phase: Phase,
+    /// Who steers.
+    pub steering: Seat,
+    /// Who has the pedals.
+    pub pedals: Seat,
+    /// Whether the car's reverse gear is engaged.
+    pub is_reverse: bool,
+    /// Both drivers' controls.
+    pub input: TickInput,
+    /// Distance driven in this run, millimetres.
+    pub odometer_mm: u64,
+    /// What the finished runs came to.
+    pub totals: Totals,
+    /// How late the last tick began, microseconds.
+    pub late_us: u64,
+    /// By how much the run has fallen behind real time, microseconds.
+    pub slowed_us: u64,
+    /// Age of the mask on the semantic driver's screen, microseconds.
+    pub mask_age_us: Option<u64>,
+    /// The latest events, newest last.
+    pub events: VecDeque<String>,
+    /// How the units of both seats are, semantic driver's first.
+    pub units: [String; 2],
+    /// What does not change.
+    pub about: Arc<About>,
+}
+
+/// What the finished runs of a session came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Runs.
+    pub runs: u32,
+    /// Distance, millimetres.
+    pub odometer_mm: u64,
+    /// Simulated time, ticks.
+    pub ticks: Tick,
+    /// Corner cases.
+    pub cases: u32,
+}
+
+/// What does not change in a session.
+#[derive(Clone, Debug)]
+pub struct About {
+    /// Name of the checkpoint.
+    pub checkpoint: String,
+    /// Name of the map.
+    pub map: String,
+}

@@ -1,0 +1,144 @@
+//! One live run: both drivers, the world, the recording.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::Context;
+use kernel::events::Event;
+use kernel::{Controls, TickInput, TickOutput, World};
+use replay::{Annotation, LiveTimes, Manifest, MaskShown};
+
+use super::board::View;
+use super::disk::BackgroundFile;
+use crate::crew;
+use crate::drivers::safety::SafetyBot;
+use crate::drivers::semantic::SemanticBot;
+use crate::drivers::{Driver, MaskView, SemanticView};
+use crate::session::{Session, SessionState};
+use crate::units::{CarState, Polled, SeatChoice};
+
+/// The bots of those seats that no one sits in.
+#[derive(Debug, Default)]
+pub struct Bots {
+    semantic: Option<SemanticBot>,
+    safety: Option<SafetyBot>,
+}
+
+impl Bots {
+    /// For the seats that are to be driven by bots, semantic driver's first.
+    pub fn new(choices: &[SeatChoice; 2]) -> Self {
+        let [semantic, safety] = choices.each_ref().map(|choice| *choice == SeatChoice::Bot);
+        Self { semantic: semantic.then(SemanticBot::default), safety: safety.then(SafetyBot::default) }
+    }
+
+    /// Replaces the controls of their seats. The semantic bot looks at the mask on the screen; without
+    /// one it does nothing.
+    fn act(&mut self, world: &World, screen: Option<&Screen>, input: &mut TickInput) {
+        if let Some(bot) = &mut self.semantic {
+            let view = screen.and_then(Screen::mask).map(|mask| SemanticView { mask, hud: world.hud() });
+            input.semantic = view.map_or_else(Controls::default, |view| bot.controls(&view));
+        }
+        if let Some(bot) = &mut self.safety {
+            input.safety = bot.controls(world);
+        }
+    }
+}
+
+/// What is on the semantic driver's screen.
+#[derive(Clone, Debug)]
+pub struct Screen {
+    /// The view.
+    pub view: Arc<View>,
+    /// When it came there, microseconds since the session began.
+    pub presented_us: u64,
+}
+
+impl Screen {
+    fn mask(&self) -> Option<MaskView<'_>> {
+        let View { width, height, mask, .. } = &*self.view;
+        mask.as_ref().map(|mask| MaskView { width: *width, height: *height, ids: &mask.ids })
+    }
+
+    /// What the recording says of it, for controls of a tick.
+    fn shown(&self, tick_shown: u64) -> Option<MaskShown> {
+        let view = &*self.view;
+        let times =
+            LiveTimes { capture_us: view.captured_us, inference_us: view.ready_us, present_us: self.presented_us };
+        let digest = view.mask.as_ref()?.digest;
+        Some(MaskShown { tick_shown, tick_of_frame: view.tick, camera: 0, digest, times: Some(times) })
+    }
+}
+
+/// A run that is being recorded.
+pub struct Run {
+    session: Session<BackgroundFile>,
+    bots: Bots,
+    path: PathBuf,
+}
+
+impl Run {
+    /// Starts the recording of a world that has not been stepped yet.
+    pub fn start(
+        world: World,
+        manifest: &Manifest,
+        bots: Bots,
+        path: PathBuf,
+        file: BackgroundFile,
+    ) -> anyhow::Result<Self> {
+        let session = Session::new(world, manifest, file).with_context(|| path.display().to_string())?;
+        Ok(Self { session, bots, path })
+    }
+
+    /// The world at the last tick.
+    pub fn world(&self) -> &World {
+        self.session.world()
+    }
+
+    /// Drives a tick with what the units gave and what is on the screen. Gives the controls of both
+    /// seats, too.
+    pub fn tick(
+        &mut self,
+        polled: &Polled,
+        screen: Option<&Screen>,
+    ) -> anyhow::Result<(SessionState, TickOutput, TickInput)> {
+        let mut input = polled.input();
+        self.bots.act(self.session.world(), screen, &mut input);
+        let next = self.world().tick() + 1;
+        for event in &polled.events {
+            self.session.note(event.note(next));
+        }
+        if let Some(shown) = screen.and_then(|screen| screen.shown(next)) {
+            self.session.mask_shown(shown);
+        }
+        let (state, output) = self.session.tick(&input).with_context(|| self.path.display().to_string())?;
+        Ok((state, output, input))
+    }
+
+    /// What the bot in the safety driver's seat says about the end of the run, if there is one.
+    pub fn bots_word(&self) -> Option<Annotation> {
+        let (label, comment) = crew::cause(self.bots.safety.as_ref()?, self.world())?;
+        Some(Annotation { label, comment, perception_caused: None })
+    }
+
+    /// Ends the recording, and waits until it is written.
+    pub fn finish(mut self, annotation: Option<Annotation>) -> anyhow::Result<PathBuf> {
+        if let Some(annotation) = annotation {
+            self.session.annotate(annotation);
+        }
+        let named = || self.path.display().to_string();
+        self.session.finish().and_then(|file| Ok(file.close()?)).with_context(named)?;
+        Ok(self.path)
+    }
+}
+
+/// What the units need to know of the car.
+pub fn car_state(world: &World) -> CarState {
+    CarState { speed_mps: world.hud().speed_mps, taken_over: world.arbiter().intervention.is_some() }
+}
+
+/// An event in words.
+pub fn event_text(tick: u64, event: &Event) -> String {
+    let seconds = tick as f64 / f64::from(kernel::time::TICK_HZ);
+    let actor = if event.actor == 0 { String::new() } else { format!(", actor {}", event.actor) };
+    format!("{seconds:7.2} s  {:?} at {:.0} km/h{actor}", event.kind, 3.6 * event.speed_mps)
+}

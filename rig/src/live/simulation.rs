@@ -1,0 +1,360 @@
+//! The thread that drives: it paces the ticks, listens to everybody, and waits for nobody.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use anyhow::anyhow;
+use kernel::arbiter::Outcome;
+use kernel::rng::{self, Stream};
+use kernel::{Scenario, Seat, TickInput, TickOutput, World};
+use replay::{Annotation, Manifest, Provenance};
+
+use super::aftermath;
+use super::board::{About, Board, Look, Message, Status, Totals, Wake};
+use super::disk::{self, BackgroundFile};
+use super::pacing::Pacing;
+use super::run::{Bots, Run, Screen, car_state, event_text};
+use super::stage::{Dialog, Stage, Wish};
+use crate::clock::SessionClock;
+use crate::maps::Map;
+use crate::progress::Interrupt;
+use crate::session::SessionState;
+use crate::units::{Polled, SeatChoice, Seats, UnitEvent, UnitEventKind, UnitState, UnitStatus};
+
+/// While nothing drives, the units are asked this often, microseconds.
+const IDLE_US: u64 = 16_667;
+/// The control centre is drawn anew after so many ticks.
+const CENTRE_TICKS: u64 = 6;
+/// Events that the control centre shows.
+const EVENTS: usize = 12;
+
+/// What a session is about.
+pub struct Plan {
+    /// Where to drive.
+    pub map: Map,
+    /// The scenario of the first run; the others follow from its seed.
+    pub scenario: Scenario,
+    /// Who sits in the seats, semantic driver's first.
+    pub seats: [SeatChoice; 2],
+    /// Where the recordings go.
+    pub record: PathBuf,
+    /// What the recordings say about themselves.
+    pub provenance: Provenance,
+    /// Whether figures are printed as JSON.
+    pub json: bool,
+}
+
+/// The threads around the simulation.
+pub struct Links {
+    /// What everybody looks at.
+    pub board: Arc<Board>,
+    /// What the simulation hears.
+    pub inbox: Receiver<Message>,
+    /// For its own helpers to speak to it.
+    pub outbox: Sender<Message>,
+    /// Draws windows anew.
+    pub wake: Box<dyn Fn(Wake) + Send>,
+    /// Time since the session began.
+    pub clock: SessionClock,
+    /// Ctrl-C and SIGTERM.
+    pub interrupt: Interrupt,
+}
+
+/// A session of live runs.
+pub struct Simulation {
+    plan: Plan,
+    links: Links,
+    seats: Seats,
+    stage: Stage,
+    number: u32,
+    /// The world of a run that waits for its start.
+    next: Option<World>,
+    run: Option<Run>,
+    pacing: Pacing,
+    screen: Option<Screen>,
+    input: TickInput,
+    last: Option<TickOutput>,
+    units: Option<[UnitStatus; 2]>,
+    events: VecDeque<String>,
+    totals: Totals,
+    about: Arc<About>,
+    helpers: Vec<JoinHandle<()>>,
+}
+
+/// Why a session ends.
+enum End {
+    Asked,
+    Signal,
+}
+
+impl Simulation {
+    /// Takes the seats and makes the first world.
+    pub fn new(plan: Plan, links: Links, checkpoint: &str) -> anyhow::Result<Self> {
+        let seats = Seats::new(plan.seats.clone())?;
+        let about = Arc::new(About { checkpoint: checkpoint.into(), map: plan.scenario.map.clone() });
+        let mut simulation = Self {
+            plan,
+            links,
+            seats,
+            stage: Stage::Ready,
+            number: 0,
+            next: None,
+            run: None,
+            pacing: Pacing::starting_at(0),
+            screen: None,
+            input: TickInput::default(),
+            last: None,
+            units: None,
+            events: VecDeque::new(),
+            totals: Totals::default(),
+            about,
+            helpers: Vec::new(),
+        };
+        simulation.prepare()?;
+        Ok(simulation)
+    }
+
+    /// Drives until the operators have had enough. The last recording is finished whatever happens.
+    pub fn drive(mut self) -> anyhow::Result<()> {
+        let end = self.listen_and_tick();
+        let unfinished = self.run.take().map(|run| run.finish(None)).transpose();
+        for helper in std::mem::take(&mut self.helpers) {
+            helper.join().map_err(|_| anyhow!("cutting a corner case failed"))?;
+        }
+        if let (Ok(Some(path)), Ok(why)) = (&unfinished, &end) {
+            let why = if matches!(why, End::Signal) { "by Ctrl-C or SIGTERM" } else { "by the operators" };
+            eprintln!("the run was ended {why}; its recording is complete: {}", path.display());
+            aftermath::figures_of(path, self.plan.json)?;
+            aftermath::cut(path)?;
+        }
+        end?;
+        unfinished?;
+        Ok(())
+    }
+
+    fn listen_and_tick(&mut self) -> anyhow::Result<End> {
+        loop {
+            let now_us = self.links.clock.now_us();
+            let wait_us = if self.stage == Stage::Driving { self.pacing.wait_us(now_us) } else { IDLE_US };
+            match self.links.inbox.recv_timeout(Duration::from_micros(wait_us)) {
+                Ok(message) => {
+                    if let Some(end) = self.hear(message)? {
+                        return Ok(end);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => self.turn()?,
+                Err(RecvTimeoutError::Disconnected) => return Ok(End::Asked),
+            }
+            if self.links.interrupt.is_raised() {
+                return Ok(End::Signal);
+            }
+        }
+    }
+
+    /// A tick is due; between runs, the units are looked after all the same.
+    fn turn(&mut self) -> anyhow::Result<()> {
+        let car = self.world().map(car_state).unwrap_or_default();
+        let polled = self.seats.poll(car);
+        let has_changed = self.units.as_ref() != Some(&polled.status);
+        self.units = Some(polled.status.clone());
+        if has_changed {
+            self.show_status(Some(Wake::Centre));
+        }
+        for event in &polled.events {
+            self.note(format!("{:?} driver's unit {}: {:?}", event.seat, event.unit, event.kind));
+        }
+        if self.stage != Stage::Driving {
+            return Ok(());
+        }
+        self.tick(&polled)?;
+        let is_unwatched = |e: &UnitEvent| e.seat == Seat::Safety && e.kind == UnitEventKind::Lost;
+        if self.stage == Stage::Driving && polled.events.iter().any(is_unwatched) {
+            eprintln!("run {} was ended: the safety driver's unit is lost", self.number);
+            self.finish(None)?;
+        }
+        Ok(())
+    }
+
+    fn tick(&mut self, polled: &Polled) -> anyhow::Result<()> {
+        let Some(run) = &mut self.run else { return Ok(()) };
+        self.pacing.begin_tick(self.links.clock.now_us());
+        let (state, output, input) = run.tick(polled, self.screen.as_ref())?;
+        for event in &output.events {
+            self.events.push_back(event_text(output.tick, event));
+        }
+        let tick = output.tick;
+        self.input = input;
+        self.last = Some(output);
+        self.show_scene();
+        match state {
+            SessionState::Driving => {}
+            SessionState::Labelling(_) | SessionState::Done(Outcome::Missed) => self.ask()?,
+            SessionState::Done(_) => self.finish(None)?,
+        }
+        self.show_status(if tick.is_multiple_of(CENTRE_TICKS) { Some(Wake::Centre) } else { None });
+        Ok(())
+    }
+
+    /// Asks the operators for a label; a bot in the safety driver's seat knows it.
+    fn ask(&mut self) -> anyhow::Result<()> {
+        match self.run.as_ref().and_then(Run::bots_word) {
+            Some(annotation) => self.finish(Some(annotation)),
+            None => {
+                eprintln!("run {} has ended: label it in the control centre", self.number);
+                self.stage = Stage::Labelling(Dialog::default());
+                self.show_status(Some(Wake::All));
+                Ok(())
+            }
+        }
+    }
+
+    fn hear(&mut self, message: Message) -> anyhow::Result<Option<End>> {
+        match message {
+            Message::SeatKey(key, pressed) => self.seats.key(key, pressed),
+            Message::KeysReleased => self.seats.release_keys(),
+            Message::Press(press, repeated) => match self.stage.press(&press, repeated) {
+                Wish::Nothing => self.show_status(Some(Wake::Centre)),
+                Wish::Start => self.start()?,
+                Wish::Annotate(annotation) => self.finish(Some(annotation))?,
+                Wish::Quit => return Ok(Some(End::Asked)),
+            },
+            Message::Shown(view, presented_us) if view.run == self.number => {
+                self.screen = Some(Screen { view, presented_us });
+            }
+            Message::Shown(..) => {}
+            Message::Note(text) => self.note(text),
+            Message::Closed => return Ok(Some(End::Asked)),
+            Message::Failed(error) => return Err(error),
+        }
+        Ok(None)
+    }
+
+    /// Makes the world of the next run and shows it.
+    fn prepare(&mut self) -> anyhow::Result<()> {
+        self.number += 1;
+        let mut scenario = self.plan.scenario.clone();
+        if self.number > 1 {
+            scenario.seed = rng::bits(scenario.seed, Stream::Scenario, u64::from(self.number), 0) >> 32;
+        }
+        self.next = Some(World::new(&scenario, &self.plan.map.network)?);
+        eprintln!("run {} is ready: N starts it", self.number);
+        self.run = None;
+        self.screen = None;
+        self.last = None;
+        self.stage = Stage::Ready;
+        self.show_scene();
+        self.show_status(Some(Wake::All));
+        Ok(())
+    }
+
+    fn start(&mut self) -> anyhow::Result<()> {
+        let Some(units) = self.units.clone() else { return Ok(()) };
+        if let Some(waiting) = units.iter().find(|unit| unit.state != UnitState::Armed) {
+            self.note(format!("the run cannot start: {waiting}"));
+            return Ok(());
+        }
+        let Some(world) = self.next.take() else { return Ok(()) };
+        let Plan { map, provenance, record, seats, .. } = &self.plan;
+        let mut provenance = provenance.clone();
+        for (seat, unit) in ["semantic", "safety"].into_iter().zip(units) {
+            provenance.insert(seat.into(), unit.unit);
+        }
+        let manifest = Manifest::new(world.scenario(), &map.network, map.foreign.clone(), provenance);
+        let (path, file) = disk::create_next(record)?;
+        eprintln!("run {}: recording {}", self.number, path.display());
+        self.run = Some(Run::start(world, &manifest, Bots::new(seats), path, BackgroundFile::new(file))?);
+        self.pacing = Pacing::starting_at(self.links.clock.now_us());
+        self.events.clear();
+        self.stage = Stage::Driving;
+        self.show_status(Some(Wake::All));
+        Ok(())
+    }
+
+    /// Ends the run's recording; its case is cut while the next run waits.
+    fn finish(&mut self, annotation: Option<Annotation>) -> anyhow::Result<()> {
+        let Some(run) = self.run.take() else { return Ok(()) };
+        let world = run.world();
+        self.totals.runs += 1;
+        self.totals.odometer_mm += world.odometer_mm();
+        self.totals.ticks += world.tick();
+        self.totals.cases += u32::from(annotation.is_some());
+        let path = run.finish(annotation)?;
+        self.note(format!("recorded {}", path.display()));
+        self.cut(&path);
+        self.prepare()
+    }
+
+    fn cut(&mut self, path: &Path) {
+        let (path, outbox, json) = (path.to_owned(), self.links.outbox.clone(), self.plan.json);
+        self.helpers.push(std::thread::spawn(move || {
+            let said = match aftermath::figures_of(&path, json).and_then(|()| aftermath::cut(&path)) {
+                Ok(Some(case)) => Message::Note(format!("corner case {}", case.display())),
+                Ok(None) => return,
+                Err(error) => Message::Failed(error),
+            };
+            // When nobody listens any more the session is over, and the case is there all the same.
+            let _ = outbox.send(said);
+        }));
+    }
+
+    fn note(&mut self, text: String) {
+        self.events.push_back(text);
+        self.show_status(Some(Wake::Centre));
+    }
+
+    fn world(&self) -> Option<&World> {
+        self.run.as_ref().map(Run::world).or(self.next.as_ref())
+    }
+
+    fn show_scene(&self) {
+        let Some(world) = self.world() else { return };
+        let captured_us = self.links.clock.now_us();
+        self.links.board.scene.put(Look { run: self.number, scene: world.scene(), captured_us });
+    }
+
+    fn show_status(&mut self, wake: Option<Wake>) {
+        while self.events.len() > EVENTS {
+            self.events.pop_front();
+        }
+        if let Some(status) = self.status() {
+            self.links.board.status.put(status);
+        }
+        if let Some(wake) = wake {
+            (self.links.wake)(wake);
+        }
+    }
+
+    fn status(&self) -> Option<Status> {
+        let world = self.world()?;
+        let now_us = self.links.clock.now_us();
+        let applied = self.last.as_ref().map(|output| output.applied);
+        let seat = |by: Option<Seat>| by.unwrap_or(Seat::Semantic);
+        Some(Status {
+            stage: self.stage.clone(),
+            run: self.number,
+            tick: world.tick(),
+            hud: world.hud(),
+            phase: world.arbiter().phase,
+            steering: seat(applied.map(|a| a.steering)),
+            pedals: seat(applied.map(|a| a.pedals)),
+            is_reverse: applied.is_some_and(|a| a.controls.has(kernel::Controls::REVERSE)),
+            input: self.input,
+            odometer_mm: world.odometer_mm(),
+            totals: self.totals,
+            late_us: self.pacing.late_us(),
+            slowed_us: self.pacing.slowed_us(),
+            mask_age_us: self
+                .screen
+                .as_ref()
+                .filter(|_| self.stage == Stage::Driving)
+                .map(|s| now_us.saturating_sub(s.view.captured_us)),
+            events: self.events.clone(),
+            units: self.units.as_ref().map_or_else(Default::default, |units| units.each_ref().map(ToString::to_string)),
+            about: self.about.clone(),
+        })
+    }
+}

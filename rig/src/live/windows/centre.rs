@@ -1,0 +1,141 @@
+//! The control centre: both views, how the run is, and the dialog that labels a corner case.
+
+use std::sync::Arc;
+
+use egui::{Color32, Panel, Rect, RichText, Ui, Vec2};
+use kernel::time::TICK_HZ;
+use replay::Label;
+
+use super::driver::Picture;
+use crate::live::board::{Status, View};
+use crate::live::hud;
+use crate::live::stage::{Dialog, Stage};
+
+const ATTENTION: Color32 = Color32::from_rgb(255, 190, 60);
+/// Height of both views, points.
+const VIEWS_HEIGHT: f32 = 230.0;
+const FIGURES_WIDTH: f32 = 420.0;
+
+/// The control centre's own pictures.
+pub struct Centre {
+    semantic: Picture,
+    safety: Picture,
+}
+
+impl Default for Centre {
+    fn default() -> Self {
+        Self { semantic: Picture::sharp(), safety: Picture::smooth() }
+    }
+}
+
+impl Centre {
+    /// Paints the window; views are the semantic driver's and the safety driver's.
+    pub fn paint(&mut self, ui: &mut Ui, status: &Status, views: [Option<&Arc<View>>; 2]) {
+        Panel::top("stage").show(ui, |ui| headline(ui, status));
+        Panel::right("figures").exact_size(FIGURES_WIDTH).show(ui, |ui| figures(ui, status));
+        egui::CentralPanel::default().show(ui, |ui| {
+            self.views(ui, views);
+            ui.add_space(8.0);
+            match &status.stage {
+                Stage::Labelling(dialog) => label_dialog(ui, dialog),
+                Stage::Ready | Stage::Driving => events(ui, status),
+            }
+        });
+    }
+
+    fn views(&mut self, ui: &mut Ui, [semantic, safety]: [Option<&Arc<View>>; 2]) {
+        let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), VIEWS_HEIGHT), egui::Sense::hover());
+        let (left, right) = rect.split_left_right_at_fraction(0.5);
+        let inner = |rect: Rect| rect.shrink(2.0);
+        self.semantic.paint_view(ui, inner(left), semantic);
+        self.safety.paint_view(ui, inner(right), safety);
+    }
+}
+
+fn headline(ui: &mut Ui, status: &Status) {
+    let text = match &status.stage {
+        Stage::Ready => format!("Run {} is ready: N starts it", status.run),
+        Stage::Driving => format!("Run {}: {:?}", status.run, status.phase),
+        Stage::Labelling(_) => format!("Run {} has ended as a corner case", status.run),
+    };
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(text).size(22.0).strong());
+        ui.add_space(20.0);
+        ui.label(RichText::new(hud::control(status.steering, status.pedals)).size(22.0).color(ATTENTION));
+    });
+}
+
+fn figures(ui: &mut Ui, status: &Status) {
+    let mut lines = vec![
+        ("map", status.about.map.clone()),
+        ("checkpoint", status.about.checkpoint.clone()),
+        ("semantic driver", status.units[0].clone()),
+        ("safety driver", status.units[1].clone()),
+        ("speed", format!("{:.0} of {:.0} km/h", 3.6 * status.hud.speed_mps, 3.6 * status.hud.limit_mps)),
+        ("this run", exposure(status.odometer_mm, status.tick)),
+        (
+            "runs so far",
+            format!("{}, {}", status.totals.runs, exposure(status.totals.odometer_mm, status.totals.ticks)),
+        ),
+        ("corner cases so far", status.totals.cases.to_string()),
+        ("mask age", status.mask_age_us.map_or("no mask yet".into(), |us| format!("{} ms", us / 1000))),
+        ("last tick was late by", format!("{:.1} ms", status.late_us as f64 / 1e3)),
+    ];
+    if status.slowed_us > 0 {
+        lines.push(("slower than real time", format!("{:.2} s so far", status.slowed_us as f64 / 1e6)));
+    }
+    egui::Grid::new("figures").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
+        for (name, value) in lines {
+            ui.label(name);
+            ui.label(RichText::new(value).strong());
+            ui.end_row();
+        }
+        for (name, controls) in [("semantic", status.input.semantic), ("safety", status.input.safety)] {
+            ui.label(format!("{name} steer / throttle / brake"));
+            let (steer, throttle) = (controls.steer_fraction(), controls.throttle_fraction());
+            let text = format!("{steer:+.2} / {throttle:.2} / {:.2}", controls.brake_fraction());
+            ui.label(RichText::new(text).monospace());
+            ui.end_row();
+        }
+    });
+}
+
+fn exposure(odometer_mm: u64, ticks: u64) -> String {
+    format!("{:.2} km, {:.1} min", odometer_mm as f64 / 1e6, ticks as f64 / f64::from(60 * TICK_HZ))
+}
+
+fn events(ui: &mut Ui, status: &Status) {
+    let keys = "N starts a run   Q or Escape quits   F11 full screen   semantic driver: W A S D, space, R   \
+                safety driver: arrow keys";
+    ui.label(RichText::new(keys).weak());
+    for event in &status.events {
+        ui.label(RichText::new(event).monospace());
+    }
+}
+
+fn label_dialog(ui: &mut Ui, dialog: &Dialog) {
+    ui.label(RichText::new("What kind of corner case is it?").size(18.0).color(ATTENTION));
+    ui.horizontal(|ui| {
+        for (i, label) in Label::ALL.into_iter().enumerate() {
+            let text = RichText::new(format!(" {}  {} ", i + 1, words(label))).size(16.0);
+            let chosen = dialog.label == Some(label);
+            ui.label(if chosen { text.background_color(ATTENTION).color(Color32::BLACK) } else { text });
+        }
+    });
+    let help = match dialog.label {
+        None => "Press its number.",
+        Some(_) => "Type a comment; Enter saves, Backspace in an empty comment chooses another label.",
+    };
+    ui.label(RichText::new(help).weak());
+    ui.label(RichText::new(format!("Comment: {}_", dialog.comment)).size(16.0));
+}
+
+/// The four labels of the paper.
+fn words(label: Label) -> &'static str {
+    match label {
+        Label::Walker => "walker overlooked",
+        Label::Vehicle => "vehicle overlooked",
+        Label::Rules => "rules disregarded",
+        Label::Boredom => "boredom",
+    }
+}

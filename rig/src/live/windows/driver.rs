@@ -1,0 +1,131 @@
+//! A driver's window: the picture and the HUD over it, nothing else.
+
+use std::sync::Arc;
+
+use egui::{Align2, Color32, ColorImage, FontId, Painter, Pos2, Rect, Stroke, TextureHandle, TextureOptions, Vec2};
+use kernel::signals::LightPhase;
+
+use crate::live::board::View;
+use crate::live::hud::{self, HudText};
+
+const SHADE: Color32 = Color32::from_black_alpha(150);
+const WHITE: Color32 = Color32::WHITE;
+const OFF: Color32 = Color32::from_gray(60);
+
+/// A view as a texture.
+pub struct Picture {
+    options: TextureOptions,
+    loaded: Option<(Arc<View>, TextureHandle)>,
+}
+
+impl Picture {
+    /// For masks: every pixel keeps its class's colour.
+    pub fn sharp() -> Self {
+        Self { options: TextureOptions::NEAREST, loaded: None }
+    }
+
+    /// For images.
+    pub fn smooth() -> Self {
+        Self { options: TextureOptions::LINEAR, loaded: None }
+    }
+
+    /// Fills the window with the view, black where its proportions differ, and the HUD.
+    pub fn paint(&mut self, ui: &mut egui::Ui, view: Option<&Arc<View>>, hud: &HudText) {
+        let rect = self.paint_view(ui, ui.max_rect(), view);
+        paint_hud(ui.painter(), rect, hud);
+    }
+
+    /// Puts the view into the middle of a rectangle, as large as it fits, and says where.
+    pub fn paint_view(&mut self, ui: &egui::Ui, into: Rect, view: Option<&Arc<View>>) -> Rect {
+        let Some(view) = view else {
+            ui.painter().rect_filled(into, 0.0, Color32::BLACK);
+            return into;
+        };
+        let size = Vec2::new(view.width as f32, view.height as f32);
+        let scale = (into.width() / size.x).min(into.height() / size.y);
+        let rect = Rect::from_center_size(into.center(), scale * size);
+        let texture = self.texture(ui.ctx(), view);
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        ui.painter().image(texture, rect, whole, WHITE);
+        rect
+    }
+
+    fn texture(&mut self, context: &egui::Context, view: &Arc<View>) -> egui::TextureId {
+        if let Some((loaded, texture)) = &mut self.loaded {
+            if !Arc::ptr_eq(loaded, view) {
+                texture.set(image(view), self.options);
+                *loaded = view.clone();
+            }
+            return texture.id();
+        }
+        let texture = context.load_texture("view", image(view), self.options);
+        let id = texture.id();
+        self.loaded = Some((view.clone(), texture));
+        id
+    }
+}
+
+fn image(view: &View) -> ColorImage {
+    ColorImage::from_rgb([view.width, view.height], &view.rgb)
+}
+
+fn paint_hud(painter: &Painter, rect: Rect, hud: &HudText) {
+    let at = |[x, y]: [f32; 2]| rect.min + Vec2::new(x * rect.width(), y * rect.height());
+    let font = |size: f32| FontId::proportional(size * rect.height());
+    let write = |place, anchor: Align2, text: &str, size: f32| {
+        let galley = painter.layout_no_wrap(text.to_owned(), font(size), WHITE);
+        let box_ = anchor.anchor_size(at(place), galley.size());
+        painter.rect_filled(box_.expand(0.15 * size * rect.height()), 0.1 * size * rect.height(), SHADE);
+        painter.galley(box_.min, galley, WHITE);
+    };
+    write(hud::SPEED_AT, Align2::CENTER_CENTER, &format!("{} km/h", hud.speed), hud::SPEED_SIZE);
+    write(hud::GEAR_AT, Align2::LEFT_CENTER, &format!("{}   {}", hud.gear, hud.control), hud::TEXT_SIZE);
+    if !hud.note.is_empty() {
+        write(hud::NOTE_AT, Align2::CENTER_CENTER, &hud.note, hud::TEXT_SIZE);
+    }
+    paint_limit(painter, at(hud::LIMIT_AT), hud, rect.height());
+    paint_arrow(painter, at(hud::ARROW_AT), hud, rect.height());
+    if let Some(phase) = hud.light {
+        paint_light(painter, at(hud::LIGHT_AT), phase, rect.height());
+    }
+}
+
+/// The limit as its sign.
+fn paint_limit(painter: &Painter, at: Pos2, hud: &HudText, height: f32) {
+    let radius = 0.05 * height;
+    painter.circle_filled(at, radius, WHITE);
+    painter.circle_stroke(at, 0.88 * radius, Stroke::new(0.24 * radius, Color32::from_rgb(200, 20, 30)));
+    painter.text(at, Align2::CENTER_CENTER, &hud.limit, FontId::proportional(radius), Color32::BLACK);
+}
+
+/// Where the route leads.
+fn paint_arrow(painter: &Painter, at: Pos2, hud: &HudText, height: f32) {
+    let size = 0.045 * height;
+    painter.circle_filled(at, 1.4 * size, SHADE);
+    let turned = |x: f32, y: f32| {
+        let (sin, cos) = hud.arrow_rad.sin_cos();
+        at + size * Vec2::new(x * cos + y * sin, x * sin - y * cos)
+    };
+    let stroke = Stroke::new(0.28 * size, WHITE);
+    painter.line_segment([turned(0.0, -1.0), turned(0.0, 0.9)], stroke);
+    painter.line(vec![turned(-0.6, 0.3), turned(0.0, 1.0), turned(0.6, 0.3)], stroke);
+    let below = at + Vec2::new(2.0 * size, 0.0);
+    painter.text(below, Align2::LEFT_CENTER, &hud.arrow_m, FontId::proportional(hud::TEXT_SIZE * height), WHITE);
+}
+
+/// Three lamps, one of them lit.
+fn paint_light(painter: &Painter, at: Pos2, phase: LightPhase, height: f32) {
+    let radius = 0.035 * height;
+    let gap = 2.4 * radius;
+    let case = Rect::from_center_size(at, Vec2::new(1.4 * gap, 3.4 * gap));
+    painter.rect_filled(case, 0.4 * radius, Color32::from_black_alpha(220));
+    let lamps = [
+        (LightPhase::Red, Color32::from_rgb(255, 40, 40)),
+        (LightPhase::Yellow, Color32::from_rgb(255, 200, 0)),
+        (LightPhase::Green, Color32::from_rgb(40, 230, 90)),
+    ];
+    for (i, (lamp, colour)) in lamps.into_iter().enumerate() {
+        let centre = at + Vec2::new(0.0, (i as f32 - 1.0) * gap);
+        painter.circle_filled(centre, radius, if lamp == phase { colour } else { OFF });
+    }
+}

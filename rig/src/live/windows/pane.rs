@@ -1,0 +1,114 @@
+//! One window with what paints it. All windows share one graphics device.
+
+use std::num::NonZeroU32;
+use std::sync::Arc;
+
+use anyhow::Context;
+use egui::ViewportId;
+use egui_wgpu::winit::Painter;
+use egui_wgpu::{
+    RenderState, RendererOptions, SurfaceConfig, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew, WgpuSetupExisting,
+    wgpu,
+};
+use winit::dpi::{LogicalPosition, LogicalSize};
+use winit::event::WindowEvent;
+use winit::event_loop::ActiveEventLoop;
+use winit::window::{Window, WindowId};
+
+/// Present at once and wait for nobody: a window that is out of sight must not hold up the others.
+const SURFACE: SurfaceConfig =
+    SurfaceConfig { present_mode: wgpu::PresentMode::AutoNoVsync, desired_maximum_frame_latency: Some(1) };
+/// Behind everything.
+const BLACK: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
+/// A window and its painter.
+pub struct Pane {
+    window: Arc<Window>,
+    context: egui::Context,
+    input: egui_winit::State,
+    painter: Painter,
+}
+
+impl Pane {
+    /// Opens a window by title, place and size (logical pixels), on a device or a new one.
+    pub fn open(
+        events: &ActiveEventLoop,
+        (title, [x, y], [width, height]): (&str, [u32; 2], [u32; 2]),
+        device: Option<RenderState>,
+    ) -> anyhow::Result<Self> {
+        let attributes = Window::default_attributes()
+            .with_title(title)
+            .with_position(LogicalPosition::new(x, y))
+            .with_inner_size(LogicalSize::new(width, height));
+        let window = Arc::new(events.create_window(attributes).context("opening a window")?);
+        let context = egui::Context::default();
+        context.set_theme(egui::Theme::Dark);
+        let painter = pollster::block_on(painter(events, &context, &window, device)).context("drawing in a window")?;
+        let scale = Some(window.scale_factor() as f32);
+        let input =
+            egui_winit::State::new(context.clone(), ViewportId::ROOT, &window, scale, None, painter.max_texture_side());
+        Ok(Self { window, context, input, painter })
+    }
+
+    /// The device, for other windows.
+    pub fn device(&self) -> Option<RenderState> {
+        self.painter.render_state()
+    }
+
+    /// Which window it is.
+    pub fn id(&self) -> WindowId {
+        self.window.id()
+    }
+
+    /// The window itself.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// Asks for a new picture, as soon as the event loop comes to it.
+    pub fn redraw(&self) {
+        self.window.request_redraw();
+    }
+
+    /// Takes note of anything but keys.
+    pub fn event(&mut self, event: &WindowEvent) {
+        if let WindowEvent::Resized(size) = event
+            && let (Some(width), Some(height)) = (NonZeroU32::new(size.width), NonZeroU32::new(size.height))
+        {
+            self.painter.on_window_resized(ViewportId::ROOT, width, height);
+        }
+        if self.input.on_window_event(&self.window, event).repaint {
+            self.redraw();
+        }
+    }
+
+    /// Paints the window; the picture is on its way to the screen afterwards.
+    pub fn paint(&mut self, draw: impl FnMut(&mut egui::Ui)) {
+        let input = self.input.take_egui_input(&self.window);
+        let mut output = self.context.run_ui(input, draw);
+        self.input.handle_platform_output(&self.window, output.platform_output);
+        let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
+        let scale = output.pixels_per_point;
+        let textures = &mut output.textures_delta;
+        self.painter.paint_and_update_textures(ViewportId::ROOT, scale, BLACK, &shapes, textures, vec![], &self.window);
+        textures.clear();
+    }
+}
+
+async fn painter(
+    events: &ActiveEventLoop,
+    context: &egui::Context,
+    window: &Arc<Window>,
+    device: Option<RenderState>,
+) -> Result<Painter, egui_wgpu::WgpuError> {
+    let wgpu_setup = match device {
+        Some(RenderState { instance, adapter, device, queue, .. }) => {
+            WgpuSetup::Existing(WgpuSetupExisting { instance, adapter, device, queue })
+        }
+        None => WgpuSetup::CreateNew(WgpuSetupCreateNew::from_display_handle(events.owned_display_handle())),
+    };
+    let config = WgpuConfiguration { surface: SURFACE, wgpu_setup, ..Default::default() };
+    let mut painter = Painter::new(context.clone(), config, false, RendererOptions::default()).await;
+    painter.set_window(ViewportId::ROOT, Some(window.clone())).await?;
+    Ok(painter)
+}
