@@ -8,8 +8,9 @@ use kernel::events::Hud;
 use kernel::time::Tick;
 use kernel::{SceneSnapshot, Seat, TickInput};
 
-use super::newest::Newest;
 use super::stage::{Press, Stage};
+use crate::desktop::Image;
+use crate::newest::Newest;
 use crate::units::Key;
 
 /// The newest of everything that is looked at.
@@ -43,12 +44,8 @@ pub struct View {
     pub run: u32,
     /// The tick it is a picture of.
     pub tick: Tick,
-    /// Width in pixels.
-    pub width: usize,
-    /// Height in pixels.
-    pub height: usize,
-    /// 3 bytes a pixel: red, green, blue.
-    pub rgb: Vec<u8>,
+    /// The picture.
+    pub image: Arc<Image>,
     /// Tag ids and their digest, where the picture is a mask in class colours.
     pub mask: Option<ShownMask>,
     /// When its scene was captured, microseconds since the session began.

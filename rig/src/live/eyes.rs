@@ -7,8 +7,9 @@ use perception::Mask;
 use render::{Camera, Frame, RenderOptions, Renderer};
 
 use super::board::{Board, Look, ShownMask, View};
-use super::newest::Newest;
 use crate::clock::SessionClock;
+use crate::desktop::Image;
+use crate::newest::Newest;
 use crate::vision::{Eye, digest_of};
 
 /// Draws what the safety driver sees, at a size in pixels, until the scenes end. `show` is called
@@ -70,9 +71,7 @@ fn view(look: &Look, frame: &Frame, rgb: Vec<u8>, mask: Option<ShownMask>, ready
     View {
         run: look.run,
         tick: frame.tick,
-        width: frame.width as usize,
-        height: frame.height as usize,
-        rgb,
+        image: Arc::new(Image { width: frame.width as usize, height: frame.height as usize, rgb }),
         mask,
         captured_us: look.captured_us,
         ready_us,

@@ -8,7 +8,6 @@ mod board;
 mod disk;
 mod eyes;
 mod hud;
-mod newest;
 mod pacing;
 mod run;
 mod simulation;

@@ -55,8 +55,8 @@ pub struct Screen {
 
 impl Screen {
     fn mask(&self) -> Option<MaskView<'_>> {
-        let View { width, height, mask, .. } = &*self.view;
-        mask.as_ref().map(|mask| MaskView { width: *width, height: *height, ids: &mask.ids })
+        let View { image, mask, .. } = &*self.view;
+        mask.as_ref().map(|mask| MaskView { width: image.width, height: image.height, ids: &mask.ids })
     }
 
     /// What the recording says of it, for controls of a tick.

@@ -20,6 +20,9 @@ const IMPORTS: [(&str, &[&str]); 7] = [
     ("benches", &["kernel", "perception", "render", "replay", "rig", "tests"]),
 ];
 
+/// Where windows are made and painted.
+const WINDOWS: [&str; 2] = ["rig/src/desktop/", "rig/src/live/windows/"];
+
 /// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
 const NAMED_ONCE: [(&str, &[&str], &[&str]); 9] = [
     (
@@ -29,9 +32,9 @@ const NAMED_ONCE: [(&str, &[&str], &[&str]); 9] = [
     ),
     ("bincode::", &["kernel", "render", "perception", "replay", "rig"], &["replay/src/wire.rs"]),
     ("mcap::", &["kernel", "render", "perception", "rig"], &[]),
-    ("wgpu::", &["kernel", "perception", "replay", "rig"], &["rig/src/live/windows/"]),
-    ("winit::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/live/windows/"]),
-    ("egui::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/live/windows/"]),
+    ("wgpu::", &["kernel", "perception", "replay", "rig"], &WINDOWS),
+    ("winit::", &["kernel", "render", "perception", "replay", "rig"], &WINDOWS),
+    ("egui::", &["kernel", "render", "perception", "replay", "rig"], &WINDOWS),
     ("gilrs_core::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/units/hardware.rs"]),
     ("std::time", &["kernel", "render", "replay"], &[]),
     ("HashMap", &["kernel"], &[]),

@@ -6,9 +6,8 @@ use egui::{Color32, Panel, Rect, RichText, Ui, Vec2};
 use kernel::time::TICK_HZ;
 use replay::Label;
 
-use super::driver::Picture;
+use crate::desktop::{Picture, hud};
 use crate::live::board::{Status, View};
-use crate::live::hud;
 use crate::live::stage::{Dialog, Stage};
 
 const ATTENTION: Color32 = Color32::from_rgb(255, 190, 60);
@@ -47,8 +46,8 @@ impl Centre {
         let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), VIEWS_HEIGHT), egui::Sense::hover());
         let (left, right) = rect.split_left_right_at_fraction(0.5);
         let inner = |rect: Rect| rect.shrink(2.0);
-        self.semantic.paint_view(ui, inner(left), semantic);
-        self.safety.paint_view(ui, inner(right), safety);
+        self.semantic.paint(ui, inner(left), semantic.map(|view| &view.image));
+        self.safety.paint(ui, inner(right), safety.map(|view| &view.image));
     }
 }
 

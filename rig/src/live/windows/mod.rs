@@ -1,25 +1,22 @@
 //! The three windows: what each driver sees, and the control centre.
 
 mod centre;
-mod driver;
 mod keys;
-mod pane;
 
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
-use winit::window::{Fullscreen, WindowId};
+use winit::event_loop::{ActiveEventLoop, EventLoop, EventLoopProxy};
+use winit::window::WindowId;
 
 use super::board::{Board, Message, View, Wake};
-use super::hud::HudText;
+use super::hud;
 use crate::clock::SessionClock;
+use crate::desktop::{self, Pane, Picture};
 use centre::Centre;
-use driver::Picture;
-use pane::Pane;
 
 /// Titles, places and sizes (logical pixels) of the windows at first.
 const SEMANTIC: (&str, [u32; 2], [u32; 2]) = ("A-Eye: semantic driver", [0, 0], [640, 360]);
@@ -45,11 +42,7 @@ pub struct Windows {
 impl Windows {
     /// Finds the display.
     pub fn new() -> anyhow::Result<Self> {
-        let events = EventLoop::with_user_event().build();
-        let events = events.map_err(|e| {
-            anyhow!("no windows ({e}): expected a display, as DISPLAY names it; --headless drives without")
-        })?;
-        events.set_control_flow(ControlFlow::Wait);
+        let events = desktop::event_loop("--headless drives without")?;
         Ok(Self { events })
     }
 
@@ -115,11 +108,11 @@ impl Desk {
     fn paint(&mut self, id: WindowId) {
         let Self { board, panes: Some(panes), clock, outbox, .. } = self else { return };
         let Some(status) = board.status.get() else { return };
-        let hud = HudText::of(&status);
+        let hud = hud::text(&status);
         if panes.semantic.0.id() == id {
             let view = board.semantic.get().filter(|view| view.run == status.run);
             let (pane, picture) = &mut panes.semantic;
-            pane.paint(|ui| picture.paint(ui, view.as_ref(), &hud));
+            pane.paint(|ui| picture.paint_with_hud(ui, view.as_ref().map(|view| &view.image), &hud));
             let is_new = |view: &Arc<View>| panes.shown.as_ref().is_none_or(|shown| !Arc::ptr_eq(shown, view));
             if let Some(view) = view.filter(is_new) {
                 panes.shown = Some(view.clone());
@@ -128,7 +121,7 @@ impl Desk {
         } else if panes.safety.0.id() == id {
             let view = board.safety.get().filter(|view| view.run == status.run);
             let (pane, picture) = &mut panes.safety;
-            pane.paint(|ui| picture.paint(ui, view.as_ref(), &hud));
+            pane.paint(|ui| picture.paint_with_hud(ui, view.as_ref().map(|view| &view.image), &hud));
         } else {
             let views = [board.semantic.get(), board.safety.get()];
             let (pane, centre) = &mut panes.centre;
@@ -149,8 +142,7 @@ impl Desk {
         }
         if keys::is_full_screen(event) && !event.repeat {
             if let Some(pane) = self.panes.as_mut().and_then(|panes| panes.of(id)) {
-                let full = pane.window().fullscreen().is_none();
-                pane.window().set_fullscreen(full.then_some(Fullscreen::Borderless(None)));
+                pane.toggle_full_screen();
             }
         } else if let Some(press) = keys::press(event) {
             self.tell(Message::Press(press, event.repeat));

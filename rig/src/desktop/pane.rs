@@ -13,7 +13,7 @@ use egui_wgpu::{
 use winit::dpi::{LogicalPosition, LogicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::ActiveEventLoop;
-use winit::window::{Window, WindowId};
+use winit::window::{Fullscreen, Window, WindowId};
 
 /// Present at once and wait for nobody: a window that is out of sight must not hold up the others.
 const SURFACE: SurfaceConfig =
@@ -60,9 +60,10 @@ impl Pane {
         self.window.id()
     }
 
-    /// The window itself.
-    pub fn window(&self) -> &Window {
-        &self.window
+    /// Fills the monitor that the window is on, or goes back to its size.
+    pub fn toggle_full_screen(&self) {
+        let full = self.window.fullscreen().is_none();
+        self.window.set_fullscreen(full.then_some(Fullscreen::Borderless(None)));
     }
 
     /// Asks for a new picture, as soon as the event loop comes to it.

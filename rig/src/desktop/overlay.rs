@@ -1,75 +1,16 @@
-//! A driver's window: the picture and the HUD over it, nothing else.
+//! The HUD over a driver's picture.
 
-use std::sync::Arc;
-
-use egui::{Align2, Color32, ColorImage, FontId, Painter, Pos2, Rect, Stroke, TextureHandle, TextureOptions, Vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2};
 use kernel::signals::LightPhase;
 
-use crate::live::board::View;
-use crate::live::hud::{self, HudText};
+use super::hud::{self, HudText};
 
 const SHADE: Color32 = Color32::from_black_alpha(150);
 const WHITE: Color32 = Color32::WHITE;
 const OFF: Color32 = Color32::from_gray(60);
 
-/// A view as a texture.
-pub struct Picture {
-    options: TextureOptions,
-    loaded: Option<(Arc<View>, TextureHandle)>,
-}
-
-impl Picture {
-    /// For masks: every pixel keeps its class's colour.
-    pub fn sharp() -> Self {
-        Self { options: TextureOptions::NEAREST, loaded: None }
-    }
-
-    /// For images.
-    pub fn smooth() -> Self {
-        Self { options: TextureOptions::LINEAR, loaded: None }
-    }
-
-    /// Fills the window with the view, black where its proportions differ, and the HUD.
-    pub fn paint(&mut self, ui: &mut egui::Ui, view: Option<&Arc<View>>, hud: &HudText) {
-        let rect = self.paint_view(ui, ui.max_rect(), view);
-        paint_hud(ui.painter(), rect, hud);
-    }
-
-    /// Puts the view into the middle of a rectangle, as large as it fits, and says where.
-    pub fn paint_view(&mut self, ui: &egui::Ui, into: Rect, view: Option<&Arc<View>>) -> Rect {
-        let Some(view) = view else {
-            ui.painter().rect_filled(into, 0.0, Color32::BLACK);
-            return into;
-        };
-        let size = Vec2::new(view.width as f32, view.height as f32);
-        let scale = (into.width() / size.x).min(into.height() / size.y);
-        let rect = Rect::from_center_size(into.center(), scale * size);
-        let texture = self.texture(ui.ctx(), view);
-        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-        ui.painter().image(texture, rect, whole, WHITE);
-        rect
-    }
-
-    fn texture(&mut self, context: &egui::Context, view: &Arc<View>) -> egui::TextureId {
-        if let Some((loaded, texture)) = &mut self.loaded {
-            if !Arc::ptr_eq(loaded, view) {
-                texture.set(image(view), self.options);
-                *loaded = view.clone();
-            }
-            return texture.id();
-        }
-        let texture = context.load_texture("view", image(view), self.options);
-        let id = texture.id();
-        self.loaded = Some((view.clone(), texture));
-        id
-    }
-}
-
-fn image(view: &View) -> ColorImage {
-    ColorImage::from_rgb([view.width, view.height], &view.rgb)
-}
-
-fn paint_hud(painter: &Painter, rect: Rect, hud: &HudText) {
+/// Paints the HUD over a picture that fills a rectangle.
+pub fn paint(painter: &Painter, rect: Rect, hud: &HudText) {
     let at = |[x, y]: [f32; 2]| rect.min + Vec2::new(x * rect.width(), y * rect.height());
     let font = |size: f32| FontId::proportional(size * rect.height());
     let write = |place, anchor: Align2, text: &str, size: f32| {

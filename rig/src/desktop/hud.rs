@@ -1,0 +1,122 @@
+//! What is written over both drivers' pictures, and where. Sizes and places are fractions of the
+//! picture's height and of its width and height, so that they hold on every screen.
+
+use kernel::Seat;
+use kernel::events::{Hud, RouteArrow};
+use kernel::map::Turn;
+use kernel::signals::LightPhase;
+
+/// Height of the speed's digits, fraction of the picture's height.
+pub const SPEED_SIZE: f32 = 0.10;
+/// Height of everything else that is written.
+pub const TEXT_SIZE: f32 = 0.045;
+/// Upper centre: the speed (paper, section 2).
+pub const SPEED_AT: [f32; 2] = [0.5, 0.085];
+/// Beside it: the limit.
+pub const LIMIT_AT: [f32; 2] = [0.69, 0.085];
+/// Below it: the route arrow and its distance.
+pub const ARROW_AT: [f32; 2] = [0.5, 0.22];
+/// Upper right: the phase of the traffic light (paper, section 2).
+pub const LIGHT_AT: [f32; 2] = [0.945, 0.14];
+/// Upper left: gear, and who is in control.
+pub const GEAR_AT: [f32; 2] = [0.04, 0.08];
+/// Lower centre: what is to be done.
+pub const NOTE_AT: [f32; 2] = [0.5, 0.92];
+
+/// The words and colours of the HUD.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HudText {
+    /// Speed, km/h.
+    pub speed: String,
+    /// Limit, km/h.
+    pub limit: String,
+    /// `D` or `R`.
+    pub gear: char,
+    /// Who is in control.
+    pub control: String,
+    /// Phase of the traffic light ahead.
+    pub light: Option<LightPhase>,
+    /// Direction of the arrow, radians clockwise from straight on.
+    pub arrow_rad: f32,
+    /// Distance to the junction where the route turns; empty when it leads straight on.
+    pub arrow_m: String,
+    /// What is to be done; empty while driving.
+    pub note: String,
+}
+
+impl HudText {
+    /// What the kernel says, who steers and who has the pedals; nothing is to be done.
+    pub fn new(hud: &Hud, steering: Seat, pedals: Seat, is_reverse: bool) -> Self {
+        Self {
+            speed: kmh(hud.speed_mps.abs()),
+            limit: kmh(hud.limit_mps),
+            gear: if is_reverse { 'R' } else { 'D' },
+            control: control(steering, pedals).into(),
+            light: hud.light,
+            arrow_rad: arrow_rad(&hud.arrow),
+            arrow_m: if hud.arrow.turn == Turn::Straight {
+                String::new()
+            } else {
+                format!("{} m", hud.arrow.distance_m)
+            },
+            note: String::new(),
+        }
+    }
+}
+
+fn kmh(mps: f32) -> String {
+    format!("{:.0}", 3.6 * mps)
+}
+
+/// Who is in control, in words.
+pub fn control(steering: Seat, pedals: Seat) -> &'static str {
+    match (steering, pedals) {
+        (Seat::Semantic, Seat::Semantic) => "semantic driver",
+        (Seat::Safety, Seat::Safety) => "SAFETY DRIVER",
+        (Seat::Semantic, Seat::Safety) => "SAFETY DRIVER brakes",
+        (Seat::Safety, Seat::Semantic) => "SAFETY DRIVER steers",
+    }
+}
+
+/// Where a turn leads as long as it is ahead; near it, the bearing of the route itself.
+fn arrow_rad(arrow: &RouteArrow) -> f32 {
+    let at_junction = arrow.distance_m <= 5;
+    match arrow.turn {
+        Turn::Left if !at_junction => -core::f32::consts::FRAC_PI_2,
+        Turn::Right if !at_junction => core::f32::consts::FRAC_PI_2,
+        _ => f32::from(arrow.bearing_deg).to_radians(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_paper_has_the_light_upper_right_and_the_speed_upper_centre() {
+        const { assert!(LIGHT_AT[0] > 0.85 && LIGHT_AT[1] < 0.25) };
+        const { assert!(SPEED_AT[0] == 0.5 && SPEED_AT[1] < 0.15) };
+    }
+
+    #[test]
+    fn what_is_written_stays_in_the_picture_and_apart() {
+        for [x, y] in [SPEED_AT, LIMIT_AT, ARROW_AT, LIGHT_AT, GEAR_AT, NOTE_AT] {
+            assert!((0.03..0.97).contains(&x) && (0.05..0.95).contains(&y));
+        }
+        const { assert!(ARROW_AT[1] - SPEED_AT[1] > SPEED_SIZE) };
+        const { assert!(LIMIT_AT[0] - SPEED_AT[0] > SPEED_SIZE) };
+    }
+
+    #[test]
+    fn the_arrow_points_to_the_turn_and_then_along_it() {
+        let arrow = |turn, distance_m, bearing_deg| arrow_rad(&RouteArrow { turn, distance_m, bearing_deg });
+        assert!(arrow(Turn::Left, 40, 0) < -1.5 && arrow(Turn::Right, 40, 0) > 1.5);
+        assert_eq!(arrow(Turn::Straight, 40, 0), 0.0);
+        assert!((arrow(Turn::Left, 0, -30) + 0.52).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_braking_safety_driver_is_in_control_of_the_pedals_only() {
+        assert_eq!(control(Seat::Semantic, Seat::Safety), "SAFETY DRIVER brakes");
+    }
+}

@@ -1,0 +1,23 @@
+//! What every application with windows shares: windows that egui paints on one graphics device,
+//! pictures in them, and the HUD over a driver's picture.
+
+pub mod hud;
+pub mod overlay;
+pub mod pane;
+pub mod picture;
+
+pub use hud::HudText;
+pub use pane::Pane;
+pub use picture::{Image, Picture};
+
+use anyhow::anyhow;
+use winit::event_loop::{ControlFlow, EventLoop};
+
+/// Finds the display; `otherwise` says what can be done without one.
+pub fn event_loop<T: 'static>(otherwise: &str) -> anyhow::Result<EventLoop<T>> {
+    let events = EventLoop::with_user_event().build();
+    let events =
+        events.map_err(|e| anyhow!("no windows ({e}): expected a display, as DISPLAY names it; {otherwise}"))?;
+    events.set_control_flow(ControlFlow::Wait);
+    Ok(events)
+}
