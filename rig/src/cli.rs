@@ -53,7 +53,7 @@ pub enum Command {
     #[command(subcommand)]
     Wheel(WheelCommand),
     /// Say what this machine has and how fast it is.
-    Doctor,
+    Doctor(DoctorArgs),
 }
 
 /// What the semantic driver looks at.
@@ -108,9 +108,37 @@ pub struct DriveArgs {
     /// Longest simulated time, seconds; 4 to 86400, as `rules.max_seconds` of scenarios.
     #[arg(long, value_parser = clap::value_parser!(u32).range(4..=86_400))]
     pub seconds: Option<u32>,
+    /// Sizes of the pictures in windows.
+    #[command(flatten)]
+    pub sizes: SizeArgs,
     /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
     #[arg(long, value_name = "FILE.mcap")]
     pub record: PathBuf,
+}
+
+/// Sizes of the live rig's pictures.
+#[derive(Args, Clone, Debug)]
+pub struct SizeArgs {
+    /// Size of the safety driver's picture.
+    #[arg(long, default_value = "640x360", value_parser = size, value_name = "WxH")]
+    pub image_size: (u32, u32),
+    /// Size of the semantic driver's mask (default: the checkpoint's own, 256x128).
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub mask_size: Option<(u32, u32)>,
+}
+
+/// Arguments of `doctor`.
+#[derive(Args, Debug)]
+pub struct DoctorArgs {
+    /// How long bots drive in windows to measure real time, seconds of simulated time; 0: not at all.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    pub seconds: u32,
+    /// What the semantic driver sees there.
+    #[arg(long, default_value = "full", value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: CheckpointChoice,
+    /// Sizes of the pictures there.
+    #[command(flatten)]
+    pub sizes: SizeArgs,
 }
 
 /// Arguments of `campaign`.

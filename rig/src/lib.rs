@@ -1,6 +1,7 @@
 //! The application `aeye`: drivers and sessions, and the offline lab.
 
 pub mod campaign;
+mod chart;
 pub mod cli;
 pub mod clock;
 pub mod commands;
@@ -39,6 +40,6 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Report(args) => lab::report::run(args, json),
         Command::Demo(args) => lab::demo::run(args, json),
         Command::Wheel(command) => commands::wheel::run(command, json),
-        Command::Doctor => commands::doctor::run(json),
+        Command::Doctor(args) => commands::doctor::run(args, json),
     }
 }

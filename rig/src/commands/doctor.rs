@@ -7,9 +7,10 @@ use render::{Camera, RenderOptions, Renderer};
 use serde::Serialize;
 
 use super::wheel;
-use crate::cli::CheckpointChoice;
+use crate::cli::{CheckpointChoice, DoctorArgs};
 use crate::clock::seconds_of;
 use crate::exit::{Verdict, sentence};
+use crate::live::{self, LiveFigures};
 use crate::maps::Map;
 use crate::output;
 use crate::units::hardware::Hardware;
@@ -26,6 +27,10 @@ struct Findings {
     adapters: Vec<Adapter>,
     devices: Vec<String>,
     budgets: Vec<Budget>,
+    /// How well drives in windows keep real time, where there is a display.
+    live: Option<LiveFigures>,
+    /// What to use here.
+    advice: Vec<String>,
     /// What drives need and does not work, and what to do about it.
     problems: Vec<String>,
     /// What does not work and drives can do without.
@@ -51,12 +56,14 @@ struct Budget {
 }
 
 /// Runs `aeye doctor`.
-pub fn run(json: bool) -> anyhow::Result<Verdict> {
+pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
     let mut findings = Findings {
         cores: std::thread::available_parallelism().map_or(1, |n| n.get()),
         adapters: adapters(),
         devices: Vec::new(),
         budgets: Vec::new(),
+        live: None,
+        advice: Vec::new(),
         problems: Vec::new(),
         notes: Vec::new(),
     };
@@ -67,8 +74,27 @@ pub fn run(json: bool) -> anyhow::Result<Verdict> {
     if let Err(error) = measure(&mut findings.budgets) {
         findings.problems.push(sentence(&error));
     }
+    if args.seconds > 0 && findings.problems.is_empty() {
+        match live::trial(&args.checkpoint, &args.sizes, args.seconds) {
+            Ok(figures) => {
+                findings.advice = advice(&figures);
+                findings.live = Some(figures);
+            }
+            Err(error) => findings.notes.push(format!("real time was not measured: {}", sentence(&error))),
+        }
+    }
     output::print(json, &findings, || text(&findings))?;
     Ok(if findings.problems.is_empty() { Verdict::Ok } else { Verdict::CheckFailed })
+}
+
+/// What to do about what falls short of real time.
+fn advice(figures: &LiveFigures) -> Vec<String> {
+    let shortfalls = figures.shortfalls();
+    if shortfalls.is_empty() {
+        return vec!["these sizes and this checkpoint suit this machine".into()];
+    }
+    let smaller = "a smaller --image-size or --mask-size (or fewer other programs) would help".into();
+    shortfalls.into_iter().chain([smaller]).collect()
 }
 
 fn adapters() -> Vec<Adapter> {
@@ -124,6 +150,12 @@ fn text(findings: &Findings) -> String {
     }
     for b in &findings.budgets {
         line("measured", format!("{}: {:.3} ms, {:.1} times real time", b.what, b.ms, b.times_real_time));
+    }
+    if let Some(figures) = &findings.live {
+        line("measured", figures.to_string());
+    }
+    for advice in &findings.advice {
+        line("advice", advice.clone());
     }
     for problem in &findings.problems {
         line("problem", problem.clone());

@@ -9,6 +9,7 @@ use kernel::time::Tick;
 use kernel::{SceneSnapshot, Seat, TickInput};
 
 use super::stage::{Press, Stage};
+use super::traces::Traces;
 use crate::desktop::Image;
 use crate::newest::Newest;
 use crate::units::Key;
@@ -24,6 +25,8 @@ pub struct Board {
     pub safety: Newest<View>,
     /// How the session is.
     pub status: Newest<Status>,
+    /// What is plotted of the run.
+    pub traces: Newest<Traces>,
 }
 
 /// A scene to draw.
@@ -72,8 +75,8 @@ pub enum Message {
     KeysReleased,
     /// A key of the operators went down; `true` when it is held and repeats.
     Press(Press, bool),
-    /// A view came onto the semantic driver's screen, microseconds since the session began.
-    Shown(Arc<View>, u64),
+    /// A view came onto a driver's screen, microseconds since the session began.
+    Shown(Seat, Arc<View>, u64),
     /// A corner case was cut, or a run came to its figures.
     Note(String),
     /// A window was closed.

@@ -12,35 +12,74 @@ mod pacing;
 mod run;
 mod simulation;
 mod stage;
+mod timings;
+mod traces;
 mod windows;
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Sender};
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow};
+use kernel::time::{TICK_HZ, Tick};
 use kernel::{Scenario, World};
 use replay::Provenance;
 
-use crate::cli::DriveArgs;
+use crate::chart::Chart;
+use crate::cli::{CheckpointChoice, DriveArgs, SizeArgs};
 use crate::clock::SessionClock;
 use crate::exit::Verdict;
 use crate::maps::Map;
 use crate::progress::Interrupt;
+use crate::units::SeatChoice;
 use crate::vision::Eye;
 use board::{Board, Message, Wake};
 use simulation::{Links, Plan, Simulation};
-use windows::{Waker, Windows};
-
-/// Size of the safety driver's picture, pixels.
-const SAFETY_SIZE: (u32, u32) = (640, 360);
+pub use timings::LiveFigures;
+use timings::Timings;
+use windows::{Link, Waker, Windows};
 
 /// Runs `aeye drive` with windows.
 pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyhow::Result<Verdict> {
-    let windows = Windows::new()?;
-    World::new(&scenario, &map.network)?;
-    let eye = Eye::open(&args.checkpoint)?;
-    let renderers = [eyes::renderer(&map.network)?, eyes::renderer(&map.network)?];
+    let eye = open(&args.checkpoint, &args.sizes)?;
     let seats = [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default);
+    let provenance = provenance(&eye);
+    let plan = Plan { map, scenario, seats, record: args.record.clone(), provenance, json, unattended: None };
+    let timings = session(plan, eye, args.sizes.image_size)?;
+    if let Some(figures) = timings.figures() {
+        eprintln!("{figures}");
+        figures.shortfalls().iter().for_each(|said| eprintln!("{said}"));
+    }
+    Ok(Verdict::Ok)
+}
+
+/// How well this machine keeps real time: bots drive in windows for so long, as people would. Nothing
+/// of it is kept.
+pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyhow::Result<LiveFigures> {
+    let dir = tempfile::tempdir()?;
+    let map = Map::find(kernel::map::BUNDLED[0])?;
+    let eye = open(choice, sizes)?;
+    let plan = Plan {
+        scenario: map.scenario(1),
+        map,
+        seats: [SeatChoice::Bot, SeatChoice::Bot],
+        record: dir.path().join("trial.mcap"),
+        provenance: provenance(&eye),
+        json: false,
+        unattended: Some(Tick::from(seconds) * Tick::from(TICK_HZ)),
+    };
+    session(plan, eye, sizes.image_size)?.figures().context("no picture came onto the semantic driver's screen")
+}
+
+fn open(checkpoint: &CheckpointChoice, sizes: &SizeArgs) -> anyhow::Result<Eye> {
+    sizes.mask_size.map_or_else(|| Eye::open(checkpoint), |size| Eye::open_at(checkpoint, size))
+}
+
+/// Opens the windows and drives until the operators, or the plan, have had enough.
+fn session(plan: Plan, eye: Eye, image_size: (u32, u32)) -> anyhow::Result<Timings> {
+    let windows = Windows::new()?;
+    let network = plan.map.network.clone();
+    World::new(&plan.scenario, &network)?;
+    let [safety_renderer, semantic_renderer] = [eyes::renderer(&network)?, eyes::renderer(&network)?];
 
     let (outbox, inbox) = mpsc::channel();
     let (board, clock) = (Arc::new(Board::default()), SessionClock::starting_now());
@@ -54,37 +93,29 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
         clock,
         interrupt: Interrupt::listen()?,
     };
-    let provenance = provenance(&eye);
-    let plan = Plan { map, scenario, seats, record: args.record.clone(), provenance, json };
     let simulation = Simulation::new(plan, links, eye.name())?;
 
-    let [safety_renderer, semantic_renderer] = renderers;
     std::thread::scope(|scope| {
         scope.spawn({
-            let (board, waker, outbox) = (&*board, waker.clone(), outbox.clone());
-            let show = {
-                let waker = waker.clone();
-                move || waker.wake(Wake::Safety)
-            };
-            move || report(&outbox, eyes::watch_as_safety(board, safety_renderer, SAFETY_SIZE, clock, show))
+            let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Safety));
+            move || report(&outbox, eyes::watch_as_safety(board, safety_renderer, image_size, clock, show))
         });
         scope.spawn({
-            let (board, waker, outbox) = (&*board, waker.clone(), outbox.clone());
-            let show = move || waker.wake(Wake::Semantic);
+            let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Semantic));
             move || report(&outbox, eyes::watch_as_semantic(board, semantic_renderer, eye, clock, show))
         });
         let driving = scope.spawn(move || {
             let _over = Over(waker);
             simulation.drive()
         });
-        let shown = windows.show(board.clone(), outbox.clone(), clock);
+        let chart = Arc::new(Chart::of(&network));
+        let shown = windows.show(Link { board: board.clone(), outbox: outbox.clone(), clock, chart });
         // The windows are gone, by the simulation's word or by a failure of their own.
         let _ = outbox.send(Message::Closed);
         let driven = driving.join().unwrap_or_else(|_| Err(anyhow!("the simulation thread panicked")));
         board.scene.close();
-        driven.and(shown)
-    })?;
-    Ok(Verdict::Ok)
+        shown.and(driven)
+    })
 }
 
 /// Tells the simulation when an eye cannot go on; a simulation that is over needs no eyes.

@@ -14,12 +14,15 @@ pub struct Pacing {
     ticks: u64,
     late_us: u64,
     slowed_us: u64,
+    started_us: u64,
+    /// When the last tick began.
+    last_us: u64,
 }
 
 impl Pacing {
     /// The first tick is due one tick from now.
     pub fn starting_at(now_us: u64) -> Self {
-        Self { origin_us: now_us, ticks: 0, late_us: 0, slowed_us: 0 }
+        Self { origin_us: now_us, ticks: 0, late_us: 0, slowed_us: 0, started_us: now_us, last_us: now_us }
     }
 
     /// Time until the next tick is due, microseconds; 0 when it is.
@@ -34,6 +37,7 @@ impl Pacing {
         self.origin_us += lost_us;
         self.slowed_us += lost_us;
         self.ticks += 1;
+        self.last_us = now_us;
     }
 
     /// How late the last tick began, microseconds.
@@ -44,6 +48,11 @@ impl Pacing {
     /// By how much the run has fallen behind real time for good, microseconds.
     pub fn slowed_us(&self) -> u64 {
         self.slowed_us
+    }
+
+    /// Time from the start to the last tick, microseconds.
+    pub fn driven_us(&self) -> u64 {
+        self.last_us - self.started_us
     }
 
     fn due_us(&self) -> u64 {

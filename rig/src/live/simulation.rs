@@ -1,6 +1,7 @@
 //! The thread that drives: it paces the ticks, listens to everybody, and waits for nobody.
 
 use std::collections::VecDeque;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
@@ -10,15 +11,18 @@ use std::time::Duration;
 use anyhow::anyhow;
 use kernel::arbiter::Outcome;
 use kernel::rng::{self, Stream};
+use kernel::time::Tick;
 use kernel::{Scenario, Seat, TickInput, TickOutput, World};
 use replay::{Annotation, Manifest, Provenance};
 
 use super::aftermath;
-use super::board::{About, Board, Look, Message, Status, Totals, Wake};
+use super::board::{About, Board, Look, Message, Status, Totals, View, Wake};
 use super::disk::{self, BackgroundFile};
 use super::pacing::Pacing;
 use super::run::{Bots, Run, Screen, car_state, event_text};
 use super::stage::{Dialog, Stage, Wish};
+use super::timings::Timings;
+use super::traces::Traces;
 use crate::clock::SessionClock;
 use crate::maps::Map;
 use crate::progress::Interrupt;
@@ -46,6 +50,8 @@ pub struct Plan {
     pub provenance: Provenance,
     /// Whether figures are printed as JSON.
     pub json: bool,
+    /// Runs start by themselves until so much has been driven, ticks; then the session ends.
+    pub unattended: Option<Tick>,
 }
 
 /// The threads around the simulation.
@@ -75,6 +81,8 @@ pub struct Simulation {
     next: Option<World>,
     run: Option<Run>,
     pacing: Pacing,
+    timings: Timings,
+    traces: Traces,
     screen: Option<Screen>,
     input: TickInput,
     last: Option<TickOutput>,
@@ -105,6 +113,8 @@ impl Simulation {
             next: None,
             run: None,
             pacing: Pacing::starting_at(0),
+            timings: Timings::default(),
+            traces: Traces::default(),
             screen: None,
             input: TickInput::default(),
             last: None,
@@ -118,14 +128,16 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// Drives until the operators have had enough. The last recording is finished whatever happens.
-    pub fn drive(mut self) -> anyhow::Result<()> {
+    /// Drives until the operators have had enough, and says how well it kept real time. The last
+    /// recording is finished whatever happens.
+    pub fn drive(mut self) -> anyhow::Result<Timings> {
         let end = self.listen_and_tick();
-        let unfinished = self.run.take().map(|run| run.finish(None)).transpose();
+        let unfinished = self.end_run(None);
         for helper in std::mem::take(&mut self.helpers) {
             helper.join().map_err(|_| anyhow!("cutting a corner case failed"))?;
         }
-        if let (Ok(Some(path)), Ok(why)) = (&unfinished, &end) {
+        let is_attended = self.plan.unattended.is_none();
+        if let (Ok(Some(path)), Ok(why), true) = (&unfinished, &end, is_attended) {
             let why = if matches!(why, End::Signal) { "by Ctrl-C or SIGTERM" } else { "by the operators" };
             eprintln!("the run was ended {why}; its recording is complete: {}", path.display());
             aftermath::figures_of(path, self.plan.json)?;
@@ -133,7 +145,7 @@ impl Simulation {
         }
         end?;
         unfinished?;
-        Ok(())
+        Ok(self.timings)
     }
 
     fn listen_and_tick(&mut self) -> anyhow::Result<End> {
@@ -146,7 +158,12 @@ impl Simulation {
                         return Ok(end);
                     }
                 }
-                Err(RecvTimeoutError::Timeout) => self.turn()?,
+                Err(RecvTimeoutError::Timeout) => {
+                    self.turn()?;
+                    if self.unattended_over() {
+                        return Ok(End::Asked);
+                    }
+                }
                 Err(RecvTimeoutError::Disconnected) => return Ok(End::Asked),
             }
             if self.links.interrupt.is_raised() {
@@ -167,13 +184,14 @@ impl Simulation {
         for event in &polled.events {
             self.note(format!("{:?} driver's unit {}: {:?}", event.seat, event.unit, event.kind));
         }
-        if self.stage != Stage::Driving {
-            return Ok(());
+        match &self.stage {
+            Stage::Ready if self.plan.unattended.is_some() && self.screen.is_some() => self.start()?,
+            Stage::Driving => self.tick(&polled)?,
+            _ => return Ok(()),
         }
-        self.tick(&polled)?;
         let is_unwatched = |e: &UnitEvent| e.seat == Seat::Safety && e.kind == UnitEventKind::Lost;
         if self.stage == Stage::Driving && polled.events.iter().any(is_unwatched) {
-            eprintln!("run {} was ended: the safety driver's unit is lost", self.number);
+            self.say(format_args!("run {} was ended: the safety driver's unit is lost", self.number));
             self.finish(None)?;
         }
         Ok(())
@@ -182,7 +200,9 @@ impl Simulation {
     fn tick(&mut self, polled: &Polled) -> anyhow::Result<()> {
         let Some(run) = &mut self.run else { return Ok(()) };
         self.pacing.begin_tick(self.links.clock.now_us());
+        self.timings.tick(self.pacing.late_us());
         let (state, output, input) = run.tick(polled, self.screen.as_ref())?;
+        self.traces.tick(run.world(), &input, &output);
         for event in &output.events {
             self.events.push_back(event_text(output.tick, event));
         }
@@ -195,7 +215,11 @@ impl Simulation {
             SessionState::Labelling(_) | SessionState::Done(Outcome::Missed) => self.ask()?,
             SessionState::Done(_) => self.finish(None)?,
         }
-        self.show_status(if tick.is_multiple_of(CENTRE_TICKS) { Some(Wake::Centre) } else { None });
+        let is_due = tick.is_multiple_of(CENTRE_TICKS);
+        if is_due {
+            self.links.board.traces.put(self.traces.clone());
+        }
+        self.show_status(is_due.then_some(Wake::Centre));
         Ok(())
     }
 
@@ -204,7 +228,7 @@ impl Simulation {
         match self.run.as_ref().and_then(Run::bots_word) {
             Some(annotation) => self.finish(Some(annotation)),
             None => {
-                eprintln!("run {} has ended: label it in the control centre", self.number);
+                self.say(format_args!("run {} has ended: label it in the control centre", self.number));
                 self.stage = Stage::Labelling(Dialog::default());
                 self.show_status(Some(Wake::All));
                 Ok(())
@@ -222,15 +246,30 @@ impl Simulation {
                 Wish::Annotate(annotation) => self.finish(Some(annotation))?,
                 Wish::Quit => return Ok(Some(End::Asked)),
             },
-            Message::Shown(view, presented_us) if view.run == self.number => {
-                self.screen = Some(Screen { view, presented_us });
-            }
-            Message::Shown(..) => {}
+            Message::Shown(seat, view, presented_us) => self.shown(seat, view, presented_us),
             Message::Note(text) => self.note(text),
             Message::Closed => return Ok(Some(End::Asked)),
             Message::Failed(error) => return Err(error),
         }
         Ok(None)
+    }
+
+    /// Ages are those of the pictures that the drivers drove by; a picture of another run is none.
+    fn shown(&mut self, seat: Seat, view: Arc<View>, presented_us: u64) {
+        if view.run != self.number {
+            return;
+        }
+        if self.stage == Stage::Driving {
+            self.timings.shown(seat, presented_us.saturating_sub(view.captured_us));
+        }
+        if seat == Seat::Semantic {
+            self.screen = Some(Screen { view, presented_us });
+        }
+    }
+
+    fn unattended_over(&self) -> bool {
+        let driven = self.totals.ticks + self.run.as_ref().map_or(0, |run| run.world().tick());
+        self.plan.unattended.is_some_and(|ticks| driven >= ticks)
     }
 
     /// Makes the world of the next run and shows it.
@@ -240,8 +279,11 @@ impl Simulation {
         if self.number > 1 {
             scenario.seed = rng::bits(scenario.seed, Stream::Scenario, u64::from(self.number), 0) >> 32;
         }
-        self.next = Some(World::new(&scenario, &self.plan.map.network)?);
-        eprintln!("run {} is ready: N starts it", self.number);
+        let world = World::new(&scenario, &self.plan.map.network)?;
+        self.traces = Traces::of(&world);
+        self.links.board.traces.put(self.traces.clone());
+        self.next = Some(world);
+        self.say(format_args!("run {} is ready: N starts it", self.number));
         self.run = None;
         self.screen = None;
         self.last = None;
@@ -265,7 +307,7 @@ impl Simulation {
         }
         let manifest = Manifest::new(world.scenario(), &map.network, map.foreign.clone(), provenance);
         let (path, file) = disk::create_next(record)?;
-        eprintln!("run {}: recording {}", self.number, path.display());
+        self.say(format_args!("run {}: recording {}", self.number, path.display()));
         self.run = Some(Run::start(world, &manifest, Bots::new(seats), path, BackgroundFile::new(file))?);
         self.pacing = Pacing::starting_at(self.links.clock.now_us());
         self.events.clear();
@@ -276,16 +318,23 @@ impl Simulation {
 
     /// Ends the run's recording; its case is cut while the next run waits.
     fn finish(&mut self, annotation: Option<Annotation>) -> anyhow::Result<()> {
-        let Some(run) = self.run.take() else { return Ok(()) };
+        let Some(path) = self.end_run(annotation)? else { return Ok(()) };
+        self.note(format!("recorded {}", path.display()));
+        if self.plan.unattended.is_none() {
+            self.cut(&path);
+        }
+        self.prepare()
+    }
+
+    fn end_run(&mut self, annotation: Option<Annotation>) -> anyhow::Result<Option<PathBuf>> {
+        let Some(run) = self.run.take() else { return Ok(None) };
         let world = run.world();
         self.totals.runs += 1;
         self.totals.odometer_mm += world.odometer_mm();
         self.totals.ticks += world.tick();
         self.totals.cases += u32::from(annotation.is_some());
-        let path = run.finish(annotation)?;
-        self.note(format!("recorded {}", path.display()));
-        self.cut(&path);
-        self.prepare()
+        self.timings.run(self.pacing.driven_us(), self.pacing.slowed_us());
+        run.finish(annotation).map(Some)
     }
 
     fn cut(&mut self, path: &Path) {
@@ -299,6 +348,13 @@ impl Simulation {
             // When nobody listens any more the session is over, and the case is there all the same.
             let _ = outbox.send(said);
         }));
+    }
+
+    /// To the terminal, where somebody is there to read it.
+    fn say(&self, words: fmt::Arguments<'_>) {
+        if self.plan.unattended.is_none() {
+            eprintln!("{words}");
+        }
     }
 
     fn note(&mut self, text: String) {

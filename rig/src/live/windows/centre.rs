@@ -6,48 +6,66 @@ use egui::{Color32, Panel, Rect, RichText, Ui, Vec2};
 use kernel::time::TICK_HZ;
 use replay::Label;
 
+use super::map::MapView;
+use super::plots;
+use crate::chart::Chart;
 use crate::desktop::{Picture, hud};
-use crate::live::board::{Status, View};
+use crate::live::board::{Board, Status, Totals};
 use crate::live::stage::{Dialog, Stage};
+use crate::live::traces::Traces;
+use crate::stats;
 
 const ATTENTION: Color32 = Color32::from_rgb(255, 190, 60);
 /// Height of both views, points.
-const VIEWS_HEIGHT: f32 = 230.0;
-const FIGURES_WIDTH: f32 = 420.0;
+const VIEWS_HEIGHT: f32 = 210.0;
+const FIGURES_WIDTH: f32 = 430.0;
+const MAP_WIDTH: f32 = 330.0;
 
 /// The control centre's own pictures.
 pub struct Centre {
     semantic: Picture,
     safety: Picture,
-}
-
-impl Default for Centre {
-    fn default() -> Self {
-        Self { semantic: Picture::sharp(), safety: Picture::smooth() }
-    }
+    map: MapView,
 }
 
 impl Centre {
-    /// Paints the window; views are the semantic driver's and the safety driver's.
-    pub fn paint(&mut self, ui: &mut Ui, status: &Status, views: [Option<&Arc<View>>; 2]) {
+    /// On a map.
+    pub fn new(chart: Arc<Chart>) -> Self {
+        Self { semantic: Picture::sharp(), safety: Picture::smooth(), map: MapView::new(chart) }
+    }
+
+    /// Paints the window.
+    pub fn paint(&mut self, ui: &mut Ui, status: &Status, board: &Board) {
+        let traces = board.traces.get().unwrap_or_default();
         Panel::top("stage").show(ui, |ui| headline(ui, status));
-        Panel::right("figures").exact_size(FIGURES_WIDTH).show(ui, |ui| figures(ui, status));
+        Panel::right("figures").exact_size(FIGURES_WIDTH).show(ui, |ui| {
+            figures(ui, status);
+            ui.add_space(6.0);
+            plots::traces(ui, &traces);
+        });
         egui::CentralPanel::default().show(ui, |ui| {
-            self.views(ui, views);
-            ui.add_space(8.0);
-            match &status.stage {
-                Stage::Labelling(dialog) => label_dialog(ui, dialog),
-                Stage::Ready | Stage::Driving => events(ui, status),
-            }
+            self.views(ui, board);
+            plots::timeline(ui, &traces, status.tick);
+            ui.horizontal_top(|ui| self.map_and_words(ui, status, board, &traces));
         });
     }
 
-    fn views(&mut self, ui: &mut Ui, [semantic, safety]: [Option<&Arc<View>>; 2]) {
+    fn views(&mut self, ui: &mut Ui, board: &Board) {
         let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), VIEWS_HEIGHT), egui::Sense::hover());
         let (left, right) = rect.split_left_right_at_fraction(0.5);
         let inner = |rect: Rect| rect.shrink(2.0);
-        self.semantic.paint(ui, inner(left), semantic.map(|view| &view.image));
-        self.safety.paint(ui, inner(right), safety.map(|view| &view.image));
+        self.semantic.paint(ui, inner(left), board.semantic.get().as_ref().map(|view| &view.image));
+        self.safety.paint(ui, inner(right), board.safety.get().as_ref().map(|view| &view.image));
+    }
+
+    fn map_and_words(&mut self, ui: &mut Ui, status: &Status, board: &Board, traces: &Traces) {
+        let look = board.scene.get();
+        let size = Vec2::new(MAP_WIDTH, ui.available_height());
+        self.map.paint(ui, size, look.as_ref().map(|look| &look.scene), traces);
+        ui.vertical(|ui| match &status.stage {
+            Stage::Labelling(dialog) => label_dialog(ui, dialog),
+            Stage::Ready | Stage::Driving => events(ui, status),
+        });
     }
 }
 
@@ -76,7 +94,7 @@ fn figures(ui: &mut Ui, status: &Status) {
             "runs so far",
             format!("{}, {}", status.totals.runs, exposure(status.totals.odometer_mm, status.totals.ticks)),
         ),
-        ("corner cases so far", status.totals.cases.to_string()),
+        ("corner cases so far", cases(&status.totals)),
         ("mask age", status.mask_age_us.map_or("no mask yet".into(), |us| format!("{} ms", us / 1000))),
         ("last tick was late by", format!("{:.1} ms", status.late_us as f64 / 1e3)),
     ];
@@ -103,10 +121,28 @@ fn exposure(odometer_mm: u64, ticks: u64) -> String {
     format!("{:.2} km, {:.1} min", odometer_mm as f64 / 1e6, ticks as f64 / f64::from(60 * TICK_HZ))
 }
 
+/// Their number, and kilometres and minutes for each with the exact 95 % interval.
+fn cases(totals: &Totals) -> String {
+    let number = u64::from(totals.cases);
+    if number == 0 {
+        return "none".into();
+    }
+    let (low, high) = stats::poisson_interval(number);
+    let for_each = |exposure: f64, unit: &str| {
+        format!("{:.2} [{:.2}, {:.2}] {unit}", exposure / number as f64, exposure / high, exposure / low)
+    };
+    let minutes = totals.ticks as f64 / f64::from(60 * TICK_HZ);
+    format!("{number}: one in {}, {}", for_each(totals.odometer_mm as f64 / 1e6, "km"), for_each(minutes, "min"))
+}
+
 fn events(ui: &mut Ui, status: &Status) {
-    let keys = "N starts a run   Q or Escape quits   F11 full screen   semantic driver: W A S D, space, R   \
-                safety driver: arrow keys";
-    ui.label(RichText::new(keys).weak());
+    let keys = [
+        "N starts a run, Q or Escape quits, F11 full screen",
+        "semantic driver: W A S D, space, R; safety driver: arrow keys",
+    ];
+    for line in keys {
+        ui.label(RichText::new(line).weak());
+    }
     for event in &status.events {
         ui.label(RichText::new(event).monospace());
     }
@@ -114,13 +150,11 @@ fn events(ui: &mut Ui, status: &Status) {
 
 fn label_dialog(ui: &mut Ui, dialog: &Dialog) {
     ui.label(RichText::new("What kind of corner case is it?").size(18.0).color(ATTENTION));
-    ui.horizontal(|ui| {
-        for (i, label) in Label::ALL.into_iter().enumerate() {
-            let text = RichText::new(format!(" {}  {} ", i + 1, words(label))).size(16.0);
-            let chosen = dialog.label == Some(label);
-            ui.label(if chosen { text.background_color(ATTENTION).color(Color32::BLACK) } else { text });
-        }
-    });
+    for (i, label) in Label::ALL.into_iter().enumerate() {
+        let text = RichText::new(format!(" {}  {} ", i + 1, words(label))).size(16.0);
+        let is_chosen = dialog.label == Some(label);
+        ui.label(if is_chosen { text.background_color(ATTENTION).color(Color32::BLACK) } else { text });
+    }
     let help = match dialog.label {
         None => "Press its number.",
         Some(_) => "Type a comment; Enter saves, Backspace in an empty comment chooses another label.",

@@ -2,11 +2,14 @@
 
 mod centre;
 mod keys;
+mod map;
+mod plots;
 
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use anyhow::Context;
+use kernel::Seat;
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, EventLoop, EventLoopProxy};
@@ -14,6 +17,7 @@ use winit::window::WindowId;
 
 use super::board::{Board, Message, View, Wake};
 use super::hud;
+use crate::chart::Chart;
 use crate::clock::SessionClock;
 use crate::desktop::{self, Pane, Picture};
 use centre::Centre;
@@ -21,7 +25,7 @@ use centre::Centre;
 /// Titles, places and sizes (logical pixels) of the windows at first.
 const SEMANTIC: (&str, [u32; 2], [u32; 2]) = ("A-Eye: semantic driver", [0, 0], [640, 360]);
 const SAFETY: (&str, [u32; 2], [u32; 2]) = ("A-Eye: safety driver", [650, 0], [640, 360]);
-const CENTRE: (&str, [u32; 2], [u32; 2]) = ("A-Eye: control centre", [0, 400], [1290, 540]);
+const CENTRE: (&str, [u32; 2], [u32; 2]) = ("A-Eye: control centre", [0, 390], [1290, 560]);
 
 /// Speaks to the windows from other threads.
 #[derive(Clone)]
@@ -31,6 +35,12 @@ impl Waker {
     /// Draws windows anew, or ends them. Once they are gone there is nothing to wake.
     pub fn wake(&self, wake: Wake) {
         let _ = self.0.send_event(wake);
+    }
+
+    /// Draws a window anew each time it is called.
+    pub fn to(&self, wake: Wake) -> impl Fn() + Send + use<> {
+        let waker = self.clone();
+        move || waker.wake(wake)
     }
 }
 
@@ -52,46 +62,61 @@ impl Windows {
     }
 
     /// Shows the board until [`Wake::Over`].
-    pub fn show(self, board: Arc<Board>, outbox: Sender<Message>, clock: SessionClock) -> anyhow::Result<()> {
-        let mut desk = Desk { board, outbox, clock, panes: None, failure: None };
+    pub fn show(self, link: Link) -> anyhow::Result<()> {
+        let mut desk = Desk { link, panes: None, failure: None };
         self.events.run_app(&mut desk).context("the windows' event loop")?;
         desk.failure.map_or(Ok(()), Err)
     }
 }
 
+/// What the windows show, and whom they tell.
+pub struct Link {
+    /// What there is to see.
+    pub board: Arc<Board>,
+    /// To the simulation.
+    pub outbox: Sender<Message>,
+    /// Time since the session began.
+    pub clock: SessionClock,
+    /// The map from above.
+    pub chart: Arc<Chart>,
+}
+
 /// What the event loop drives.
 struct Desk {
-    board: Arc<Board>,
-    outbox: Sender<Message>,
-    clock: SessionClock,
+    link: Link,
     panes: Option<Panes>,
     failure: Option<anyhow::Error>,
 }
 
 struct Panes {
-    semantic: (Pane, Picture),
-    safety: (Pane, Picture),
+    semantic: Driver,
+    safety: Driver,
     centre: (Pane, Centre),
-    /// The view that was last on the semantic driver's screen.
+}
+
+/// A driver's window.
+struct Driver {
+    pane: Pane,
+    picture: Picture,
+    /// The view that was last on the screen.
     shown: Option<Arc<View>>,
 }
 
 impl Panes {
-    fn open(events: &ActiveEventLoop) -> anyhow::Result<Self> {
+    fn open(events: &ActiveEventLoop, chart: &Arc<Chart>) -> anyhow::Result<Self> {
         let semantic = Pane::open(events, SEMANTIC, None)?;
         let device = semantic.device();
         let safety = Pane::open(events, SAFETY, device.clone())?;
         let centre = Pane::open(events, CENTRE, device)?;
         Ok(Self {
-            semantic: (semantic, Picture::sharp()),
-            safety: (safety, Picture::smooth()),
-            centre: (centre, Centre::default()),
-            shown: None,
+            semantic: Driver { pane: semantic, picture: Picture::sharp(), shown: None },
+            safety: Driver { pane: safety, picture: Picture::smooth(), shown: None },
+            centre: (centre, Centre::new(chart.clone())),
         })
     }
 
     fn all(&mut self) -> [&mut Pane; 3] {
-        [&mut self.semantic.0, &mut self.safety.0, &mut self.centre.0]
+        [&mut self.semantic.pane, &mut self.safety.pane, &mut self.centre.0]
     }
 
     fn of(&mut self, id: WindowId) -> Option<&mut Pane> {
@@ -99,39 +124,47 @@ impl Panes {
     }
 }
 
-impl Desk {
+impl Driver {
+    /// Paints the newest view, and gives it when it is new on the screen.
+    fn paint(&mut self, view: Option<Arc<View>>, hud: &desktop::HudText) -> Option<Arc<View>> {
+        self.pane.paint(|ui| self.picture.paint_with_hud(ui, view.as_ref().map(|view| &view.image), hud));
+        let view = view?;
+        let is_new = self.shown.as_ref().is_none_or(|shown| !Arc::ptr_eq(shown, &view));
+        self.shown = Some(view.clone());
+        is_new.then_some(view)
+    }
+}
+
+impl Link {
     /// To the simulation; when it is gone, its last word ends the windows.
     fn tell(&self, message: Message) {
         let _ = self.outbox.send(message);
     }
+}
 
+impl Desk {
     fn paint(&mut self, id: WindowId) {
-        let Self { board, panes: Some(panes), clock, outbox, .. } = self else { return };
+        let Self { link, panes: Some(panes), .. } = self else { return };
+        let Link { board, clock, .. } = &*link;
         let Some(status) = board.status.get() else { return };
+        let of_this_run = |view: &Arc<View>| view.run == status.run;
         let hud = hud::text(&status);
-        if panes.semantic.0.id() == id {
-            let view = board.semantic.get().filter(|view| view.run == status.run);
-            let (pane, picture) = &mut panes.semantic;
-            pane.paint(|ui| picture.paint_with_hud(ui, view.as_ref().map(|view| &view.image), &hud));
-            let is_new = |view: &Arc<View>| panes.shown.as_ref().is_none_or(|shown| !Arc::ptr_eq(shown, view));
-            if let Some(view) = view.filter(is_new) {
-                panes.shown = Some(view.clone());
-                let _ = outbox.send(Message::Shown(view, clock.now_us()));
-            }
-        } else if panes.safety.0.id() == id {
-            let view = board.safety.get().filter(|view| view.run == status.run);
-            let (pane, picture) = &mut panes.safety;
-            pane.paint(|ui| picture.paint_with_hud(ui, view.as_ref().map(|view| &view.image), &hud));
+        let (seat, new) = if panes.semantic.pane.id() == id {
+            (Seat::Semantic, panes.semantic.paint(board.semantic.get().filter(of_this_run), &hud))
+        } else if panes.safety.pane.id() == id {
+            (Seat::Safety, panes.safety.paint(board.safety.get().filter(of_this_run), &hud))
         } else {
-            let views = [board.semantic.get(), board.safety.get()];
             let (pane, centre) = &mut panes.centre;
-            pane.paint(|ui| centre.paint(ui, &status, views.each_ref().map(Option::as_ref)));
+            return pane.paint(|ui| centre.paint(ui, &status, board));
+        };
+        if let Some(view) = new {
+            link.tell(Message::Shown(seat, view, clock.now_us()));
         }
     }
 
     fn seat_key(&self, event: &KeyEvent) {
         if let (Some(key), false) = (keys::seat_key(event.physical_key), event.repeat) {
-            self.tell(Message::SeatKey(key, event.state == ElementState::Pressed));
+            self.link.tell(Message::SeatKey(key, event.state == ElementState::Pressed));
         }
     }
 
@@ -145,7 +178,7 @@ impl Desk {
                 pane.toggle_full_screen();
             }
         } else if let Some(press) = keys::press(event) {
-            self.tell(Message::Press(press, event.repeat));
+            self.link.tell(Message::Press(press, event.repeat));
         }
     }
 }
@@ -155,7 +188,7 @@ impl ApplicationHandler<Wake> for Desk {
         if self.panes.is_some() {
             return;
         }
-        match Panes::open(events) {
+        match Panes::open(events, &self.link.chart) {
             Ok(panes) => self.panes = Some(panes),
             Err(error) => {
                 self.failure = Some(error);
@@ -170,8 +203,8 @@ impl ApplicationHandler<Wake> for Desk {
         }
         let Some(panes) = &mut self.panes else { return };
         match wake {
-            Wake::Semantic => panes.semantic.0.redraw(),
-            Wake::Safety => panes.safety.0.redraw(),
+            Wake::Semantic => panes.semantic.pane.redraw(),
+            Wake::Safety => panes.safety.pane.redraw(),
             Wake::Centre => panes.centre.0.redraw(),
             Wake::All | Wake::Over => panes.all().into_iter().for_each(|pane| pane.redraw()),
         }
@@ -183,8 +216,8 @@ impl ApplicationHandler<Wake> for Desk {
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } => return self.key(id, event),
             // A key that was down already when the window got the keyboard, or lost it.
             WindowEvent::KeyboardInput { event, .. } => return self.seat_key(event),
-            WindowEvent::CloseRequested => self.tell(Message::Closed),
-            WindowEvent::Focused(false) => self.tell(Message::KeysReleased),
+            WindowEvent::CloseRequested => self.link.tell(Message::Closed),
+            WindowEvent::Focused(false) => self.link.tell(Message::KeysReleased),
             _ => {}
         }
         if let Some(pane) = self.panes.as_mut().and_then(|panes| panes.of(id)) {
