@@ -93,6 +93,10 @@ pub struct DriveArgs {
     /// What the safety driver drives with.
     #[arg(long, value_name = "auto|keyboard|press|DEVICE|bot", conflicts_with = "headless")]
     pub safety: Option<SeatChoice>,
+    /// Calibrations of wheels and gamepads, chosen by the names of their devices; others are read by
+    /// presets.
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "headless")]
+    pub calibration: Vec<PathBuf>,
     /// A bundled map or an OpenDRIVE file.
     #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
     pub map: Option<String>,
@@ -111,6 +115,14 @@ pub struct DriveArgs {
     /// Sizes of the pictures in windows.
     #[command(flatten)]
     pub sizes: SizeArgs,
+    /// Brake of the safety driver beyond which it intervenes, 0.01 to 0.99 of the pedal, as
+    /// `rules.brake_threshold` of scenarios (default there: 0.1).
+    #[arg(long, value_parser = threshold, value_name = "FRACTION")]
+    pub brake_threshold: Option<f32>,
+    /// Steering of the safety driver beyond which it intervenes, 0.01 to 0.99 of full steering, as
+    /// `rules.steer_threshold` of scenarios (default there: 0.1).
+    #[arg(long, value_parser = threshold, value_name = "FRACTION")]
+    pub steer_threshold: Option<f32>,
     /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
     #[arg(long, value_name = "FILE.mcap")]
     pub record: PathBuf,
@@ -403,6 +415,11 @@ fn rate(text: &str) -> Result<f32, String> {
     rate.ok_or_else(|| "expected a number above 0 and up to 1, as in 0.002".into())
 }
 
+fn threshold(text: &str) -> Result<f32, String> {
+    let fraction = text.parse::<f32>().ok().filter(|f| (0.01..=0.99).contains(f));
+    fraction.ok_or_else(|| "expected a fraction of 0.01 to 0.99, as in 0.1".into())
+}
+
 fn frame_rate(text: &str) -> Result<u32, String> {
     let fps = text.parse::<u32>().ok().filter(|f| *f > 0 && TICK_HZ.is_multiple_of(*f));
     fps.ok_or_else(|| format!("expected a divisor of {TICK_HZ}, as in 10"))
@@ -425,6 +442,8 @@ mod tests {
         assert_eq!(duration("3s"), Ok(180));
         assert_eq!(duration("0.5"), Ok(30));
         assert!(duration("-1s").is_err() && duration("NaN").is_err());
+        assert_eq!(threshold("0.2"), Ok(0.2));
+        assert!(threshold("0").is_err() && threshold("1").is_err() && threshold("nan").is_err());
         assert!(frame_rate("7").is_err() && frame_rate("0").is_err());
     }
 

@@ -94,7 +94,10 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
         }
     };
     scenario.seed = args.seed.unwrap_or(scenario.seed);
-    scenario.rules.max_seconds = args.seconds.unwrap_or(scenario.rules.max_seconds);
+    let rules = &mut scenario.rules;
+    rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
+    rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
+    rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
     if args.headless { headless(args, &scenario, &map, json) } else { live::drive(args, scenario, map, json) }
 }
 

@@ -55,7 +55,10 @@ fn list(args: &WheelListArgs, json: bool) -> anyhow::Result<()> {
 
 /// What there is to say when nothing is plugged in.
 pub fn none_found() -> String {
-    String::from("none: plug a wheel or gamepad in; /dev/input needs read and write permission")
+    String::from(
+        "none: plug a wheel or gamepad in (on Linux it needs read and write permission on /dev/input/event*); \
+         aeye drive uses the keyboard then, or what --semantic and --safety say",
+    )
 }
 
 fn entry(own: &[Calibration], device: &DeviceInfo) -> Entry {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use kernel::arbiter::Phase;
 use kernel::events::Hud;
+use kernel::scenario::Rules;
 use kernel::time::Tick;
 use kernel::{SceneSnapshot, Seat, TickInput};
 
@@ -135,6 +136,10 @@ pub struct Status {
     pub events: VecDeque<String>,
     /// How the units of both seats are, semantic driver's first.
     pub units: [String; 2],
+    /// What the drivers have to do about their units; none while both are armed.
+    pub units_note: Option<String>,
+    /// What was found to drive with, what each seat uses, and how to change that, a line each.
+    pub setup: Arc<[String]>,
     /// What does not change.
     pub about: Arc<About>,
 }
@@ -159,4 +164,6 @@ pub struct About {
     pub checkpoint: String,
     /// Name of the map.
     pub map: String,
+    /// What counts as an intervention, among others.
+    pub rules: Rules,
 }

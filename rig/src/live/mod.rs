@@ -10,6 +10,7 @@ mod eyes;
 mod hud;
 mod pacing;
 mod run;
+mod seating;
 mod simulation;
 mod stage;
 mod timings;
@@ -43,7 +44,8 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
     let eye = open(&args.checkpoint, &args.sizes)?;
     let seats = [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default);
     let provenance = provenance(&eye);
-    let plan = Plan { map, scenario, seats, record: args.record.clone(), provenance, json, unattended: None };
+    let (calibrations, record) = (args.calibration.clone(), args.record.clone());
+    let plan = Plan { map, scenario, seats, calibrations, record, provenance, json, unattended: None };
     let timings = session(plan, eye, args.sizes.image_size)?;
     if let Some(figures) = timings.figures() {
         eprintln!("{figures}");
@@ -62,6 +64,7 @@ pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyho
         scenario: map.scenario(1),
         map,
         seats: [SeatChoice::Bot, SeatChoice::Bot],
+        calibrations: Vec::new(),
         record: dir.path().join("trial.mcap"),
         provenance: provenance(&eye),
         json: false,

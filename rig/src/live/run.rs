@@ -32,9 +32,9 @@ impl Bots {
     }
 
     /// Replaces the controls of their seats. The semantic bot looks at the mask on the screen; without
-    /// one it does nothing.
-    fn act(&mut self, world: &World, screen: Option<&Screen>, input: &mut TickInput) {
-        if let Some(bot) = &mut self.semantic {
+    /// one it does nothing. While the other seat's unit is not armed, what brakes the car stays.
+    fn act(&mut self, world: &World, screen: Option<&Screen>, ready: bool, input: &mut TickInput) {
+        if let (Some(bot), true) = (&mut self.semantic, ready) {
             let view = screen.and_then(Screen::mask).map(|mask| SemanticView { mask, hud: world.hud() });
             input.semantic = view.map_or_else(Controls::default, |view| bot.controls(&view));
         }
@@ -102,7 +102,7 @@ impl Run {
         screen: Option<&Screen>,
     ) -> anyhow::Result<(SessionState, TickOutput, TickInput)> {
         let mut input = polled.input();
-        self.bots.act(self.session.world(), screen, &mut input);
+        self.bots.act(self.session.world(), screen, polled.ready(), &mut input);
         let next = self.world().tick() + 1;
         for event in &polled.events {
             self.session.note(event.note(next));
@@ -141,4 +141,32 @@ pub fn event_text(tick: u64, event: &Event) -> String {
     let seconds = tick as f64 / f64::from(kernel::time::TICK_HZ);
     let actor = if event.actor == 0 { String::new() } else { format!(", actor {}", event.actor) };
     format!("{seconds:7.2} s  {:?} at {:.0} km/h{actor}", event.kind, 3.6 * event.speed_mps)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::desktop::Image;
+    use crate::live::board::ShownMask;
+    use crate::maps::Map;
+
+    #[test]
+    fn a_bot_drives_only_while_both_units_are_armed() {
+        let map = Map::find("rural").unwrap();
+        let world = World::new(&map.scenario(1), &map.network).unwrap();
+        let ids = vec![7; 128 * 64];
+        let mask = Some(ShownMask { digest: 0, ids });
+        let image = Arc::new(Image { width: 128, height: 64, rgb: Vec::new() });
+        let view = View { run: 1, tick: 0, image, mask, captured_us: 0, ready_us: 0 };
+        let screen = Screen { view: Arc::new(view), presented_us: 0 };
+        let mut bots = Bots::new(&[SeatChoice::Bot, SeatChoice::Keyboard]);
+        let braked = TickInput { semantic: Controls::from_fractions(0.0, 0.0, 0.6), safety: Controls::default() };
+        let mut act = |ready| {
+            let mut input = braked;
+            bots.act(&world, Some(&screen), ready, &mut input);
+            input
+        };
+        assert_eq!(act(false), braked);
+        assert_ne!(act(true), braked);
+    }
 }

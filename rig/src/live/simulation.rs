@@ -19,7 +19,8 @@ use super::aftermath;
 use super::board::{About, Board, Look, Message, Status, Totals, View, Wake};
 use super::disk::{self, BackgroundFile};
 use super::pacing::Pacing;
-use super::run::{Bots, Run, Screen, car_state, event_text};
+use super::run::{Run, Screen, car_state, event_text};
+use super::seating::{self, Seating};
 use super::stage::{Dialog, Stage, Wish};
 use super::timings::Timings;
 use super::traces::Traces;
@@ -27,7 +28,7 @@ use crate::clock::SessionClock;
 use crate::maps::Map;
 use crate::progress::Interrupt;
 use crate::session::SessionState;
-use crate::units::{Polled, SeatChoice, Seats, UnitEvent, UnitEventKind, UnitState, UnitStatus};
+use crate::units::{Polled, SeatChoice};
 
 /// While nothing drives, the units are asked this often, microseconds.
 const IDLE_US: u64 = 16_667;
@@ -44,6 +45,8 @@ pub struct Plan {
     pub scenario: Scenario,
     /// Who sits in the seats, semantic driver's first.
     pub seats: [SeatChoice; 2],
+    /// Files with calibrations of devices.
+    pub calibrations: Vec<PathBuf>,
     /// Where the recordings go.
     pub record: PathBuf,
     /// What the recordings say about themselves.
@@ -74,7 +77,7 @@ pub struct Links {
 pub struct Simulation {
     plan: Plan,
     links: Links,
-    seats: Seats,
+    seating: Seating,
     stage: Stage,
     number: u32,
     /// The world of a run that waits for its start.
@@ -86,7 +89,6 @@ pub struct Simulation {
     screen: Option<Screen>,
     input: TickInput,
     last: Option<TickOutput>,
-    units: Option<[UnitStatus; 2]>,
     events: VecDeque<String>,
     totals: Totals,
     about: Arc<About>,
@@ -102,12 +104,16 @@ enum End {
 impl Simulation {
     /// Takes the seats and makes the first world.
     pub fn new(plan: Plan, links: Links, checkpoint: &str) -> anyhow::Result<Self> {
-        let seats = Seats::new(plan.seats.clone())?;
-        let about = Arc::new(About { checkpoint: checkpoint.into(), map: plan.scenario.map.clone() });
+        let seating = Seating::new(plan.seats.clone(), &plan.calibrations)?;
+        if plan.unattended.is_none() {
+            seating.setup().iter().for_each(|line| eprintln!("{line}"));
+        }
+        let Scenario { map, rules, .. } = &plan.scenario;
+        let about = Arc::new(About { checkpoint: checkpoint.into(), map: map.clone(), rules: *rules });
         let mut simulation = Self {
             plan,
             links,
-            seats,
+            seating,
             stage: Stage::Ready,
             number: 0,
             next: None,
@@ -118,7 +124,6 @@ impl Simulation {
             screen: None,
             input: TickInput::default(),
             last: None,
-            units: None,
             events: VecDeque::new(),
             totals: Totals::default(),
             about,
@@ -175,22 +180,20 @@ impl Simulation {
     /// A tick is due; between runs, the units are looked after all the same.
     fn turn(&mut self) -> anyhow::Result<()> {
         let car = self.world().map(car_state).unwrap_or_default();
-        let polled = self.seats.poll(car);
-        let has_changed = self.units.as_ref() != Some(&polled.status);
-        self.units = Some(polled.status.clone());
-        if has_changed {
-            self.show_status(Some(Wake::Centre));
+        let (polled, is_news) = self.seating.poll(car);
+        if is_news {
+            self.show_status(Some(Wake::All));
         }
         for event in &polled.events {
-            self.note(format!("{:?} driver's unit {}: {:?}", event.seat, event.unit, event.kind));
+            self.note(seating::event_text(event));
         }
         match &self.stage {
             Stage::Ready if self.plan.unattended.is_some() && self.screen.is_some() => self.start()?,
             Stage::Driving => self.tick(&polled)?,
             _ => return Ok(()),
         }
-        let is_unwatched = |e: &UnitEvent| e.seat == Seat::Safety && e.kind == UnitEventKind::Lost;
-        if self.stage == Stage::Driving && polled.events.iter().any(is_unwatched) {
+        // After a takeover the car is braked to standstill instead, and the case asks for its label.
+        if self.stage == Stage::Driving && !car.taken_over && seating::is_unwatched(&polled) {
             self.say(format_args!("run {} was ended: the safety driver's unit is lost", self.number));
             self.finish(None)?;
         }
@@ -238,11 +241,12 @@ impl Simulation {
 
     fn hear(&mut self, message: Message) -> anyhow::Result<Option<End>> {
         match message {
-            Message::SeatKey(key, pressed) => self.seats.key(key, pressed),
-            Message::KeysReleased => self.seats.release_keys(),
+            Message::SeatKey(key, pressed) => self.seating.seats().key(key, pressed),
+            Message::KeysReleased => self.seating.seats().release_keys(),
             Message::Press(press, repeated) => match self.stage.press(&press, repeated) {
                 Wish::Nothing => self.show_status(Some(Wake::Centre)),
                 Wish::Start => self.start()?,
+                Wish::Swap => self.swap(),
                 Wish::Annotate(annotation) => self.finish(Some(annotation))?,
                 Wish::Quit => return Ok(Some(End::Asked)),
             },
@@ -294,26 +298,32 @@ impl Simulation {
     }
 
     fn start(&mut self) -> anyhow::Result<()> {
-        let Some(units) = self.units.clone() else { return Ok(()) };
-        if let Some(waiting) = units.iter().find(|unit| unit.state != UnitState::Armed) {
-            self.note(format!("the run cannot start: {waiting}"));
+        if !self.seating.is_ready() {
+            let why = self.seating.note();
+            self.note(format!("the run cannot start: {}", why.as_deref().unwrap_or("the units are not known yet")));
             return Ok(());
         }
         let Some(world) = self.next.take() else { return Ok(()) };
-        let Plan { map, provenance, record, seats, .. } = &self.plan;
+        let Plan { map, provenance, record, .. } = &self.plan;
         let mut provenance = provenance.clone();
-        for (seat, unit) in ["semantic", "safety"].into_iter().zip(units) {
-            provenance.insert(seat.into(), unit.unit);
-        }
+        provenance.extend(self.seating.provenance());
         let manifest = Manifest::new(world.scenario(), &map.network, map.foreign.clone(), provenance);
         let (path, file) = disk::create_next(record)?;
         self.say(format_args!("run {}: recording {}", self.number, path.display()));
-        self.run = Some(Run::start(world, &manifest, Bots::new(seats), path, BackgroundFile::new(file))?);
+        self.run = Some(Run::start(world, &manifest, self.seating.bots(), path, BackgroundFile::new(file))?);
         self.pacing = Pacing::starting_at(self.links.clock.now_us());
         self.events.clear();
         self.stage = Stage::Driving;
         self.show_status(Some(Wake::All));
         Ok(())
+    }
+
+    /// The units change seats, between runs.
+    fn swap(&mut self) {
+        let said = self.seating.swap();
+        self.say(format_args!("{said}"));
+        self.note(said);
+        self.show_status(Some(Wake::All));
     }
 
     /// Ends the run's recording; its case is cut while the next run waits.
@@ -409,7 +419,9 @@ impl Simulation {
                 .filter(|_| self.stage == Stage::Driving)
                 .map(|s| now_us.saturating_sub(s.view.captured_us)),
             events: self.events.clone(),
-            units: self.units.as_ref().map_or_else(Default::default, |units| units.each_ref().map(ToString::to_string)),
+            units: self.seating.words(),
+            units_note: self.seating.note(),
+            setup: self.seating.setup(),
             about: self.about.clone(),
         })
     }

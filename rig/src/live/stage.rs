@@ -45,6 +45,8 @@ pub enum Wish {
     Nothing,
     /// Start the run.
     Start,
+    /// Let the units change seats.
+    Swap,
     /// End the run with this said about it.
     Annotate(Annotation),
     /// End the session.
@@ -61,6 +63,7 @@ impl Stage {
             Self::Labelling(dialog) => dialog.press(press, repeated),
             _ if repeated => Wish::Nothing,
             Self::Ready if is(press, "n") => Wish::Start,
+            Self::Ready if is(press, "x") => Wish::Swap,
             _ if is(press, "q") => Wish::Quit,
             _ => Wish::Nothing,
         }
@@ -119,6 +122,14 @@ mod tests {
         assert_eq!(Stage::Ready.press(&text("n"), true), Wish::Nothing);
         assert_eq!(Stage::Ready.press(&text("w"), false), Wish::Nothing);
         assert_eq!(Stage::Driving.press(&text("n"), false), Wish::Nothing);
+    }
+
+    #[test]
+    fn seats_are_swapped_between_runs_only() {
+        assert_eq!(Stage::Ready.press(&text("X"), false), Wish::Swap);
+        assert_eq!(Stage::Driving.press(&text("x"), false), Wish::Nothing);
+        let mut stage = Stage::Labelling(Dialog::default());
+        assert_eq!(stage.press(&text("x"), false), Wish::Nothing);
     }
 
     #[test]

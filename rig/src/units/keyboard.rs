@@ -79,17 +79,11 @@ impl Key {
     }
 }
 
-/// The keys of a seat, for people to read.
-pub fn keys(seat: Seat) -> &'static str {
-    match seat {
-        Seat::Semantic => "W A S D, hand brake Space, gear R, hazard seen E",
-        Seat::Safety => "arrows, hand brake right Ctrl, gear Page Down, hazard seen right Shift",
-    }
-}
-
-/// One seat's half of the keyboard.
+/// One half of the keyboard, named by the seat whose keys these are unless the seats are swapped.
 #[derive(Clone, Debug)]
 pub struct Keyboard {
+    half: Seat,
+    /// The seat that it drives.
     seat: Seat,
     held: Vec<Action>,
     gear_asked: bool,
@@ -101,14 +95,47 @@ pub struct Keyboard {
 
 impl Keyboard {
     /// The half of a seat, with nothing pressed.
-    pub fn new(seat: Seat) -> Self {
-        Self { seat, held: Vec::new(), gear_asked: false, reverse: false, steer: 0.0, throttle: 0.0, brake: 0.0 }
+    pub fn new(half: Seat) -> Self {
+        Self {
+            half,
+            seat: half,
+            held: Vec::new(),
+            gear_asked: false,
+            reverse: false,
+            steer: 0.0,
+            throttle: 0.0,
+            brake: 0.0,
+        }
+    }
+
+    /// Drives another seat from now on, with the keys that it has.
+    pub fn sit(&mut self, seat: Seat) {
+        *self = Self { seat, ..Self::new(self.half) };
+    }
+
+    /// What tells it from the other half.
+    pub fn name(&self) -> &'static str {
+        match self.half {
+            Seat::Semantic => "W A S D",
+            Seat::Safety => "arrows",
+        }
+    }
+
+    /// Its keys, for people to read.
+    pub fn keys(&self) -> &'static str {
+        match self.half {
+            Seat::Semantic => "W throttle, S brake, A and D steer, hand brake Space, gear R, hazard seen E",
+            Seat::Safety => {
+                "up throttle, down brake, left and right steer, hand brake right Ctrl, gear Page Down, \
+                 hazard seen right Shift"
+            }
+        }
     }
 
     /// A key went down or up; keys of the other half are ignored.
     pub fn key(&mut self, key: Key, pressed: bool) {
-        let (seat, action) = key.meaning();
-        if seat != self.seat {
+        let (half, action) = key.meaning();
+        if half != self.half {
             return;
         }
         let held = self.is_held(action);

@@ -36,8 +36,11 @@ pub use status::{SeatChoice, UnitEvent, UnitEventKind, UnitState, UnitStatus};
 /// How hard a car without a driver brakes, fraction of the pedal.
 const STOP_BRAKE: f32 = 0.6;
 /// How a seat is given another unit.
-const HOW_TO_CHOOSE: &str = "choose with --semantic and --safety: auto, keyboard, press (a button on the wheel), \
-                                 bot, or a path such as /dev/input/event5";
+const HOW_TO_CHOOSE: &str = "to change that: --semantic and --safety take auto, keyboard, bot, press (a button on the \
+                             device) or a path such as /dev/input/event5; X swaps the seats between runs";
+/// What there is to say when no device is there.
+const NONE_FOUND: &str = "found no wheel or gamepad (one that is plugged in is found at the next start; on Linux it \
+                          needs read and write permission on /dev/input/event*)";
 const SEATS: [Seat; 2] = [Seat::Semantic, Seat::Safety];
 
 /// What the units need to know of the car; that of the tick before.
@@ -85,6 +88,8 @@ pub struct Seats {
     /// Steering that each seat gave last while it was armed.
     held_steer: [i16; 2],
     events: Vec<UnitEvent>,
+    /// Why no devices can be looked for, if so.
+    deaf: Option<String>,
 }
 
 impl Seats {
@@ -98,13 +103,12 @@ impl Seats {
     pub fn calibrated(choices: [SeatChoice; 2], files: &[PathBuf]) -> anyhow::Result<Self> {
         let calibrations = files.iter().map(|file| calibration::read(file)).collect::<anyhow::Result<_>>()?;
         let any = |wish: fn(&SeatChoice) -> bool| choices.iter().any(wish);
-        let source: Box<dyn InputSource> = match Hardware::open() {
-            _ if !any(|c| !matches!(c, SeatChoice::Bot | SeatChoice::Keyboard)) => Box::new(Simulated::default()),
-            Ok(hardware) => Box::new(hardware),
+        let (source, deaf): (Box<dyn InputSource>, _) = match Hardware::open() {
+            Ok(hardware) => (Box::new(hardware), None),
             Err(error) if any(|c| matches!(c, SeatChoice::Press | SeatChoice::Device(_))) => return Err(error),
-            Err(_) => Box::new(Simulated::default()),
+            Err(error) => (Box::new(Simulated::default()), Some(error.to_string())),
         };
-        Ok(Self::with_source(choices, calibrations, source))
+        Ok(Self { deaf, ..Self::with_source(choices, calibrations, source) })
     }
 
     /// Units for both seats, with devices from a source. A device is read by the calibration that
@@ -121,11 +125,24 @@ impl Seats {
                 other => later.push(other),
             }
         }
-        let usable = devices.iter().filter(|d| calibration_of(&calibrations, d).is_some()).count();
-        let units = settle(choices, usable);
-        let mut seats =
-            Self { source, units, devices: Vec::new(), calibrations, held_steer: [0; 2], events: Vec::new() };
-        devices.into_iter().map(RawEvent::Connected).chain(later).for_each(|event| seats.take(event));
+        let usable: Vec<_> = devices.iter().filter(|d| calibration_of(&calibrations, d).is_some()).cloned().collect();
+        let is_named = choices.iter().any(|c| matches!(c, SeatChoice::Device(_) | SeatChoice::Press));
+        let units = settle(choices, usable.len());
+        let mut seats = Self {
+            source,
+            units,
+            devices: Vec::new(),
+            calibrations,
+            held_steer: [0; 2],
+            events: Vec::new(),
+            deaf: None,
+        };
+        devices.into_iter().map(RawEvent::Connected).for_each(|event| seats.take(event));
+        if let ([only], false) = (&usable[..], is_named) {
+            // Nobody has to say whose it is.
+            seats.claim(only);
+        }
+        later.into_iter().for_each(|event| seats.take(event));
         seats
     }
 
@@ -141,11 +158,23 @@ impl Seats {
 
     /// What was found, what each seat uses, and how to change that, a line each.
     pub fn summary(&self) -> Vec<String> {
-        let found = self.devices.iter().map(|d| format!("found {} at {}", d.name, d.path));
-        let none = self.devices.is_empty().then(|| String::from("found no wheel or gamepad"));
+        let found = self.devices.iter().map(|d| found(&self.calibrations, d));
+        let none = self.devices.is_empty().then(|| match &self.deaf {
+            Some(reason) => format!("could not look for wheels and gamepads: {reason}"),
+            None => String::from(NONE_FOUND),
+        });
         let seats =
             SEATS.map(|seat| format!("{} driver: {}", slot::name(seat), self.units[seat as usize].summary(seat)));
         found.chain(none).chain(seats).chain([String::from(HOW_TO_CHOOSE)]).collect()
+    }
+
+    /// The units of the two seats change places.
+    pub fn swap(&mut self) {
+        self.units.swap(0, 1);
+        self.held_steer.swap(0, 1);
+        for (unit, seat) in self.units.iter_mut().zip(SEATS) {
+            unit.sit(seat);
+        }
     }
 
     /// The devices that are there.
@@ -215,12 +244,18 @@ impl Seats {
 
     /// A button of a device without a seat: its driver claims it.
     fn pressed_on(&mut self, id: DeviceId) {
-        let Some(device) = self.devices.iter().find(|d| d.id == id).cloned() else { return };
+        if let Some(device) = self.devices.iter().find(|d| d.id == id).cloned() {
+            self.claim(&device);
+        }
+    }
+
+    /// Gives a device to the seat that misses its make, else to the first that waits for any.
+    fn claim(&mut self, device: &DeviceInfo) {
         let waiting: Vec<Seat> =
             SEATS.into_iter().filter(|seat| self.binding(*seat).is_some_and(|b| b.waits())).collect();
-        let missed = waiting.iter().find(|seat| self.binding(**seat).is_some_and(|b| b.misses_make(&device)));
+        let missed = waiting.iter().find(|seat| self.binding(**seat).is_some_and(|b| b.misses_make(device)));
         if let Some(seat) = missed.or(waiting.first()) {
-            self.bind(*seat, &device);
+            self.bind(*seat, device);
         }
     }
 
@@ -267,6 +302,21 @@ impl Seats {
 pub fn calibration_of(calibrations: &[Calibration], device: &DeviceInfo) -> Option<Calibration> {
     let own = calibrations.iter().find(|c| c.device == device.name).cloned();
     own.or_else(|| presets::preset(device))
+}
+
+/// A device that was found, and how it would be read, in words.
+fn found(calibrations: &[Calibration], device: &DeviceInfo) -> String {
+    let DeviceInfo { name, path, .. } = device;
+    let read = match calibration_of(calibrations, device) {
+        Some(_) if calibrations.iter().any(|c| c.device == *name) => "read by its calibration file".into(),
+        Some(_) if presets::is_known_wheel(device) => "a wheel that is known".into(),
+        Some(_) => "read as a gamepad: left stick steers, right trigger is throttle, left trigger brake".into(),
+        None => format!(
+            "of no use before aeye wheel calibrate --device {path} --calibration FILE.toml, \
+             and --calibration FILE.toml here"
+        ),
+    };
+    format!("found {name} at {path}, {read}")
 }
 
 /// The units of the seats when so many devices are there.

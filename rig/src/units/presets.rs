@@ -87,7 +87,7 @@ fn wheel(device: &str, rotation_deg: f32, pedal_max: i32, throttle: u16, brake: 
 /// The calibration of a device that nobody has calibrated: its preset, or that of a gamepad. `None`
 /// when it lacks one of the axes.
 pub fn preset(device: &DeviceInfo) -> Option<Calibration> {
-    let known = WHEELS.iter().find(|(vendor, product, _)| (*vendor, *product) == (device.vendor, device.product));
+    let known = known_wheel(device);
     let mut calibration = known.map_or_else(gamepad, |(_, _, wheel)| wheel());
     if known.is_none() && device.axis(ABS_GAS).is_some() && device.axis(ABS_BRAKE).is_some() {
         (calibration.throttle.axis, calibration.brake.axis) = (ABS_GAS, ABS_BRAKE);
@@ -98,6 +98,15 @@ pub fn preset(device: &DeviceInfo) -> Option<Calibration> {
         fit(axis, range.min, range.max);
     }
     calibration.problem().is_none().then_some(calibration)
+}
+
+/// Whether a device is a wheel that has a preset of its own.
+pub fn is_known_wheel(device: &DeviceInfo) -> bool {
+    known_wheel(device).is_some()
+}
+
+fn known_wheel(device: &DeviceInfo) -> Option<&'static Preset> {
+    WHEELS.iter().find(|(vendor, product, _)| (*vendor, *product) == (device.vendor, device.product))
 }
 
 /// Gives an axis other ends; its rest stays at the same end or in the middle.

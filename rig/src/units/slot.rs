@@ -4,7 +4,7 @@ use kernel::{Controls, Seat};
 
 use super::calibration::Calibration;
 use super::device::DeviceUnit;
-use super::keyboard::{self, Keyboard};
+use super::keyboard::Keyboard;
 use super::source::{DeviceId, DeviceInfo};
 use super::status::{UnitState, UnitStatus};
 
@@ -85,9 +85,10 @@ impl Binding {
 
     fn status(&self, seat: Seat) -> UnitStatus {
         let Some(Bound { info, unit, present }) = self.bound.as_deref() else {
-            let waits_for =
-                self.path.clone().unwrap_or_else(|| format!("a button of the {} driver's wheel", name(seat)));
-            return UnitStatus { unit: String::from("device"), state: UnitState::Waiting { waits_for } };
+            let any = || format!("a button press on the wheel or gamepad of the {} driver", name(seat));
+            let waits_for = self.path.clone().unwrap_or_else(any);
+            let state = UnitState::Waiting { waits_for };
+            return UnitStatus { unit: String::from("device"), place: String::new(), state };
         };
         let to_do = unit.to_do();
         let state = match (present, to_do.is_empty()) {
@@ -95,7 +96,7 @@ impl Binding {
             (true, true) => UnitState::Armed,
             (true, false) => UnitState::Arming { to_do },
         };
-        UnitStatus { unit: info.name.clone(), state }
+        UnitStatus { unit: info.name.clone(), place: info.path.clone(), state }
     }
 }
 
@@ -109,10 +110,17 @@ impl Unit {
         }
     }
 
+    /// Drives another seat from now on.
+    pub fn sit(&mut self, seat: Seat) {
+        if let Self::Keyboard(keyboard) = self {
+            keyboard.sit(seat);
+        }
+    }
+
     /// What it is, with the keys of a keyboard.
     pub fn summary(&self, seat: Seat) -> String {
         match self {
-            Self::Keyboard(_) => format!("keyboard ({})", keyboard::keys(seat)),
+            Self::Keyboard(keyboard) => format!("keyboard ({})", keyboard.keys()),
             Self::Bot => String::from("bot"),
             Self::Device(_) => self.status(seat).to_string(),
         }
@@ -120,10 +128,11 @@ impl Unit {
 
     /// How it is.
     pub fn status(&self, seat: Seat) -> UnitStatus {
-        let armed = |unit: &str| UnitStatus { unit: unit.into(), state: UnitState::Armed };
+        let armed =
+            |unit: &str, place: &str| UnitStatus { unit: unit.into(), place: place.into(), state: UnitState::Armed };
         match self {
-            Self::Bot => armed("bot"),
-            Self::Keyboard(_) => armed("keyboard"),
+            Self::Bot => armed("bot", ""),
+            Self::Keyboard(keyboard) => armed("keyboard", keyboard.name()),
             Self::Device(binding) => binding.status(seat),
         }
     }

@@ -11,8 +11,9 @@ use replay::{Note, NoteKind};
 /// What a seat is to be driven with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SeatChoice {
-    /// What is there: with one device it goes to the semantic driver (or to the only seat that asks);
-    /// with more, each seat takes the one on which its driver presses a button; else the keyboard.
+    /// What is there at the start: with one device it goes to the semantic driver (or to the only seat
+    /// that asks); with more, each seat takes the one on which its driver presses a button; else the
+    /// keyboard.
     #[default]
     Auto,
     /// Half of the keyboard: the letters for the semantic driver, the arrows for the safety driver.
@@ -64,19 +65,27 @@ pub enum UnitState {
 pub struct UnitStatus {
     /// Name of the device.
     pub unit: String,
+    /// Where it is: the device's path, or the keys of its half of the keyboard; empty for a bot.
+    pub place: String,
     /// How it is.
     pub state: UnitState,
 }
 
+impl UnitStatus {
+    /// What its driver has to do or to wait for, if it is not armed.
+    pub fn trouble(&self) -> Option<String> {
+        match &self.state {
+            UnitState::Armed => None,
+            UnitState::Waiting { waits_for } => Some(format!("waiting for {waits_for}")),
+            UnitState::Arming { to_do } => Some(format!("to arm it, {}", to_do.join(", "))),
+            UnitState::Lost => Some("lost, plug it in again".into()),
+        }
+    }
+}
+
 impl fmt::Display for UnitStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: ", self.unit)?;
-        match &self.state {
-            UnitState::Waiting { waits_for } => write!(f, "waiting for {waits_for}"),
-            UnitState::Arming { to_do } => write!(f, "to arm it, {}", to_do.join(", ")),
-            UnitState::Armed => f.write_str("armed"),
-            UnitState::Lost => f.write_str("lost, plug it in again"),
-        }
+        write!(f, "{}: {}", self.unit, self.trouble().as_deref().unwrap_or("armed"))
     }
 }
 

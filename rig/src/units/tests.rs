@@ -59,14 +59,15 @@ fn two_people_share_a_keyboard() {
 
 #[test]
 fn a_bot_has_no_unit() {
-    let mut seats = Seats::new([SeatChoice::Bot, SeatChoice::Keyboard]).unwrap();
+    let choices = [SeatChoice::Bot, SeatChoice::Keyboard];
+    let mut seats = Seats::with_source(choices, Vec::new(), Box::new(Simulated::default()));
     seats.key(Key::W, true);
     let polled = seats.poll(CarState::default());
     assert_eq!(polled.semantic, Controls::default());
     assert_eq!(polled.status[0].to_string(), "bot: armed");
     let summary = seats.summary();
-    assert_eq!(summary[..2], ["found no wheel or gamepad", "semantic driver: bot"]);
-    assert!(summary[2].starts_with("safety driver: keyboard (arrows,") && summary[3].contains("--safety"));
+    assert!(summary[0].starts_with("found no wheel or gamepad") && summary[1] == "semantic driver: bot");
+    assert!(summary[2].starts_with("safety driver: keyboard (up throttle") && summary[3].contains("--safety"));
 }
 
 #[test]
@@ -96,7 +97,6 @@ fn what_is_there_is_taken() {
     let mut one = Simulated::default();
     one.push(RawEvent::Connected(device(0, "/dev/input/event5")));
     let mut seats = Seats::with_source([SeatChoice::Auto, SeatChoice::Auto], Vec::new(), Box::new(one.clone()));
-    press(&one, 0);
     arm(&one, 0);
     let polled = seats.poll(CarState::default());
     assert!(polled.ready());
@@ -111,7 +111,8 @@ fn what_is_there_is_taken() {
 fn a_button_claims_a_wheel_for_the_semantic_driver_first() {
     let (mut seats, devices) = simulated([SeatChoice::Auto, SeatChoice::Press]);
     let status = seats.poll(CarState::default()).status;
-    assert_eq!(status[0].to_string(), "device: waiting for a button of the semantic driver's wheel");
+    let expected = "device: waiting for a button press on the wheel or gamepad of the semantic driver";
+    assert_eq!(status[0].to_string(), expected);
     press(&devices, 1);
     press(&devices, 0);
     press(&devices, 1);
@@ -139,6 +140,28 @@ fn two_equal_wheels_that_come_back_elsewhere_are_claimed_by_a_button() {
     devices.push(RawEvent::Connected(device(3, "/dev/input/event9")));
     let polled = seats.poll(CarState::default());
     assert_eq!(kinds(&polled), [(Seat::Semantic, UnitEventKind::Returned), (Seat::Safety, UnitEventKind::Returned)]);
+}
+
+#[test]
+fn a_device_that_nothing_is_known_of_says_how_to_calibrate_it() {
+    let odd = Simulated::default();
+    let mut pedals = device(0, "/dev/input/event5");
+    pedals.axes.truncate(1);
+    odd.push(RawEvent::Connected(pedals));
+    let seats = Seats::with_source(Default::default(), Vec::new(), Box::new(odd));
+    let summary = seats.summary();
+    assert!(summary[0].contains("aeye wheel calibrate --device /dev/input/event5"), "{summary:?}");
+    assert!(summary[1].starts_with("semantic driver: keyboard"), "{summary:?}");
+}
+
+#[test]
+fn halves_of_the_keyboard_keep_their_keys_when_the_seats_are_swapped() {
+    let mut seats = Seats::with_source(Default::default(), Vec::new(), Box::new(Simulated::default()));
+    seats.swap();
+    seats.key(Key::W, true);
+    let polled = (0..60).map(|_| seats.poll(CarState::default())).last().unwrap();
+    assert_eq!((polled.semantic.throttle, polled.safety.throttle), (0, 65_535));
+    assert_eq!(polled.status.each_ref().map(|s| s.place.as_str()), ["arrows", "W A S D"]);
 }
 
 #[test]

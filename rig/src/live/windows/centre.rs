@@ -88,6 +88,7 @@ fn figures(ui: &mut Ui, status: &Status) {
         ("checkpoint", status.about.checkpoint.clone()),
         ("semantic driver", status.units[0].clone()),
         ("safety driver", status.units[1].clone()),
+        ("intervention from", thresholds(status)),
         ("speed", format!("{:.0} of {:.0} km/h", 3.6 * status.hud.speed_mps, 3.6 * status.hud.limit_mps)),
         ("this run", exposure(status.odometer_mm, status.tick)),
         (
@@ -117,6 +118,13 @@ fn figures(ui: &mut Ui, status: &Status) {
     });
 }
 
+/// What the safety driver has to do to take over.
+fn thresholds(status: &Status) -> String {
+    let percent = |fraction: f32| 100.0 * fraction;
+    let rules = &status.about.rules;
+    format!("brake {:.0} %, steering {:.0} %", percent(rules.brake_threshold), percent(rules.steer_threshold))
+}
+
 fn exposure(odometer_mm: u64, ticks: u64) -> String {
     format!("{:.2} km, {:.1} min", odometer_mm as f64 / 1e6, ticks as f64 / f64::from(60 * TICK_HZ))
 }
@@ -136,12 +144,11 @@ fn cases(totals: &Totals) -> String {
 }
 
 fn events(ui: &mut Ui, status: &Status) {
-    let keys = [
-        "N starts a run, Q or Escape quits, F11 full screen",
-        "semantic driver: W A S D, space, R; safety driver: arrow keys",
-    ];
-    for line in keys {
-        ui.label(RichText::new(line).weak());
+    ui.label(RichText::new("N starts a run, X swaps the seats before it, Q or Escape quits, F11 full screen").weak());
+    if status.stage == Stage::Ready {
+        for line in status.setup.iter() {
+            ui.label(line);
+        }
     }
     for event in &status.events {
         ui.label(RichText::new(event).monospace());
