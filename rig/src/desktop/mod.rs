@@ -1,6 +1,7 @@
 //! What every application with windows shares: windows that egui paints on one graphics device,
 //! pictures in them, and the HUD over a driver's picture.
 
+mod blit;
 pub mod hud;
 pub mod overlay;
 pub mod pane;

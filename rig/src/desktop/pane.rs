@@ -15,11 +15,13 @@ use winit::event::WindowEvent;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::{Fullscreen, Window, WindowId};
 
+use super::blit;
+
 /// Present at once and wait for nobody: a window that is out of sight must not hold up the others.
 const SURFACE: SurfaceConfig =
     SurfaceConfig { present_mode: wgpu::PresentMode::AutoNoVsync, desired_maximum_frame_latency: Some(1) };
 /// Behind everything.
-const BLACK: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+const GROUND: [f32; 4] = [0.01, 0.01, 0.012, 1.0];
 
 /// A window and its painter.
 pub struct Pane {
@@ -91,7 +93,15 @@ impl Pane {
         let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         let scale = output.pixels_per_point;
         let textures = &mut output.textures_delta;
-        self.painter.paint_and_update_textures(ViewportId::ROOT, scale, BLACK, &shapes, textures, vec![], &self.window);
+        self.painter.paint_and_update_textures(
+            ViewportId::ROOT,
+            scale,
+            GROUND,
+            &shapes,
+            textures,
+            vec![],
+            &self.window,
+        );
         textures.clear();
     }
 }
@@ -109,7 +119,14 @@ async fn painter(
         None => WgpuSetup::CreateNew(WgpuSetupCreateNew::from_display_handle(events.owned_display_handle())),
     };
     let config = WgpuConfiguration { surface: SURFACE, wgpu_setup, ..Default::default() };
-    let mut painter = Painter::new(context.clone(), config, false, RendererOptions::default()).await;
+    let mut painter = Painter::new(
+        context.clone(),
+        config,
+        false,
+        RendererOptions { dithering: false, ..RendererOptions::default() },
+    )
+    .await;
     painter.set_window(ViewportId::ROOT, Some(window.clone())).await?;
+    painter.render_state().iter().for_each(blit::install);
     Ok(painter)
 }

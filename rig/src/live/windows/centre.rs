@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Panel, Rect, RichText, Ui, Vec2};
+use egui::{Color32, Frame, Margin, Panel, Rect, RichText, Ui, Vec2};
 use kernel::time::TICK_HZ;
 use replay::Label;
 
@@ -21,6 +21,11 @@ const VIEWS_HEIGHT: f32 = 210.0;
 const FIGURES_WIDTH: f32 = 430.0;
 const MAP_WIDTH: f32 = 330.0;
 
+/// Panels are not filled, since the window is: filling it again is most of the work on a CPU.
+fn bare() -> Frame {
+    Frame::NONE.inner_margin(Margin::symmetric(8, 2))
+}
+
 /// The control centre's own pictures.
 pub struct Centre {
     semantic: Picture,
@@ -37,13 +42,13 @@ impl Centre {
     /// Paints the window.
     pub fn paint(&mut self, ui: &mut Ui, status: &Status, board: &Board) {
         let traces = board.traces.get().unwrap_or_default();
-        Panel::top("stage").show(ui, |ui| headline(ui, status));
-        Panel::right("figures").exact_size(FIGURES_WIDTH).show(ui, |ui| {
+        Panel::top("stage").frame(bare()).show(ui, |ui| headline(ui, status));
+        Panel::right("figures").frame(bare()).exact_size(FIGURES_WIDTH).show(ui, |ui| {
             figures(ui, status);
             ui.add_space(6.0);
             plots::traces(ui, &traces);
         });
-        egui::CentralPanel::default().show(ui, |ui| {
+        egui::CentralPanel::default().frame(bare()).show(ui, |ui| {
             self.views(ui, board);
             plots::timeline(ui, &traces, status.tick);
             ui.horizontal_top(|ui| self.map_and_words(ui, status, board, &traces));
