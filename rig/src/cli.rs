@@ -97,6 +97,9 @@ pub struct DriveArgs {
     /// presets.
     #[arg(long, value_name = "FILE.toml", conflicts_with = "headless")]
     pub calibration: Vec<PathBuf>,
+    /// Greatest force of wheels and gamepads, 0 (off) to 1 (all that they can).
+    #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION")]
+    pub force: f32,
     /// A bundled map or an OpenDRIVE file.
     #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
     pub map: Option<String>,
@@ -415,6 +418,11 @@ fn rate(text: &str) -> Result<f32, String> {
     rate.ok_or_else(|| "expected a number above 0 and up to 1, as in 0.002".into())
 }
 
+fn force(text: &str) -> Result<f32, String> {
+    let fraction = text.parse::<f32>().ok().filter(|f| (0.0..=1.0).contains(f));
+    fraction.ok_or_else(|| "expected a fraction of 0 to 1, as in 0.6".into())
+}
+
 fn threshold(text: &str) -> Result<f32, String> {
     let fraction = text.parse::<f32>().ok().filter(|f| (0.01..=0.99).contains(f));
     fraction.ok_or_else(|| "expected a fraction of 0.01 to 0.99, as in 0.1".into())
@@ -443,6 +451,8 @@ mod tests {
         assert_eq!(duration("0.5"), Ok(30));
         assert!(duration("-1s").is_err() && duration("NaN").is_err());
         assert_eq!(threshold("0.2"), Ok(0.2));
+        assert_eq!((force("0"), force("1")), (Ok(0.0), Ok(1.0)));
+        assert!(force("1.1").is_err() && force("-0.1").is_err() && force("nan").is_err());
         assert!(threshold("0").is_err() && threshold("1").is_err() && threshold("nan").is_err());
         assert!(frame_rate("7").is_err() && frame_rate("0").is_err());
     }

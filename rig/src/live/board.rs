@@ -140,6 +140,8 @@ pub struct Status {
     pub units_note: Option<String>,
     /// What was found to drive with, what each seat uses, and how to change that, a line each.
     pub setup: Arc<[String]>,
+    /// How force feedback is.
+    pub force: String,
     /// What does not change.
     pub about: Arc<About>,
 }

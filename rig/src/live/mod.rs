@@ -7,12 +7,15 @@ mod aftermath;
 mod board;
 mod disk;
 mod eyes;
+mod force;
 mod hud;
 mod pacing;
 mod run;
 mod seating;
 mod simulation;
 mod stage;
+#[cfg(test)]
+mod tests;
 mod timings;
 mod traces;
 mod windows;
@@ -34,6 +37,7 @@ use crate::progress::Interrupt;
 use crate::units::SeatChoice;
 use crate::vision::Eye;
 use board::{Board, Message, Wake};
+use seating::Seating;
 use simulation::{Links, Plan, Simulation};
 pub use timings::LiveFigures;
 use timings::Timings;
@@ -44,9 +48,10 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
     let eye = open(&args.checkpoint, &args.sizes)?;
     let seats = [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default);
     let provenance = provenance(&eye);
-    let (calibrations, record) = (args.calibration.clone(), args.record.clone());
-    let plan = Plan { map, scenario, seats, calibrations, record, provenance, json, unattended: None };
-    let timings = session(plan, eye, args.sizes.image_size)?;
+    let (record, force) = (args.record.clone(), args.force);
+    let plan = Plan { map, scenario, force, record, provenance, json, unattended: None };
+    let seating = Seating::new(seats, &args.calibration)?;
+    let timings = session(plan, seating, eye, args.sizes.image_size)?;
     if let Some(figures) = timings.figures() {
         eprintln!("{figures}");
         figures.shortfalls().iter().for_each(|said| eprintln!("{said}"));
@@ -63,14 +68,16 @@ pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyho
     let plan = Plan {
         scenario: map.scenario(1),
         map,
-        seats: [SeatChoice::Bot, SeatChoice::Bot],
-        calibrations: Vec::new(),
+        force: 0.0,
         record: dir.path().join("trial.mcap"),
         provenance: provenance(&eye),
         json: false,
         unattended: Some(Tick::from(seconds) * Tick::from(TICK_HZ)),
     };
-    session(plan, eye, sizes.image_size)?.figures().context("no picture came onto the semantic driver's screen")
+    let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[])?;
+    session(plan, seating, eye, sizes.image_size)?
+        .figures()
+        .context("no picture came onto the semantic driver's screen")
 }
 
 fn open(checkpoint: &CheckpointChoice, sizes: &SizeArgs) -> anyhow::Result<Eye> {
@@ -78,7 +85,7 @@ fn open(checkpoint: &CheckpointChoice, sizes: &SizeArgs) -> anyhow::Result<Eye> 
 }
 
 /// Opens the windows and drives until the operators, or the plan, have had enough.
-fn session(plan: Plan, eye: Eye, image_size: (u32, u32)) -> anyhow::Result<Timings> {
+fn session(plan: Plan, seating: Seating, eye: Eye, image_size: (u32, u32)) -> anyhow::Result<Timings> {
     let windows = Windows::new()?;
     let network = plan.map.network.clone();
     World::new(&plan.scenario, &network)?;
@@ -96,7 +103,7 @@ fn session(plan: Plan, eye: Eye, image_size: (u32, u32)) -> anyhow::Result<Timin
         clock,
         interrupt: Interrupt::listen()?,
     };
-    let simulation = Simulation::new(plan, links, eye.name())?;
+    let simulation = Simulation::new(plan, seating, links, eye.name())?;
 
     std::thread::scope(|scope| {
         scope.spawn({

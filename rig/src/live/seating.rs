@@ -29,7 +29,8 @@ impl Seating {
         Ok(Self::of(Seats::calibrated(choices.clone(), calibrations)?, choices))
     }
 
-    fn of(seats: Seats, choices: [SeatChoice; 2]) -> Self {
+    /// With seats that are taken already, by what was chosen.
+    pub fn of(seats: Seats, choices: [SeatChoice; 2]) -> Self {
         let (setup, devices) = (seats.summary().into(), seats.devices().to_vec());
         Self { seats, choices, is_swapped: false, status: None, devices, setup }
     }
@@ -66,6 +67,11 @@ impl Seating {
     fn refresh(&mut self) {
         self.devices = self.seats.devices().to_vec();
         self.setup = self.seats.summary().into();
+    }
+
+    /// Paths of the devices in the seats, where they are armed.
+    pub fn armed_devices(&self) -> [Option<&str>; 2] {
+        self.seats.armed_devices()
     }
 
     /// What was found, what each seat uses, and how to change that, a line each.
@@ -208,6 +214,7 @@ mod tests {
         arm(&devices, 0);
         let (polled, _) = seating.poll(CarState::default());
         assert!(polled.ready());
+        assert_eq!(seating.armed_devices(), [Some("/dev/input/event0"), None]);
         let at = |s: &Seating, key: &str| s.provenance().get(key).cloned();
         assert_eq!(at(&seating, "semantic_at").as_deref(), Some("/dev/input/event0"));
         let said = seating.swap();
@@ -223,6 +230,7 @@ mod tests {
         devices.push(RawEvent::Lost(0));
         let (polled, _) = seating.poll(CarState::default());
         assert!(is_unwatched(&polled), "{polled:?}");
+        assert_eq!(seating.armed_devices(), [None, None]);
         seating.swap();
         assert_eq!(at(&seating, "seats_swapped").as_deref(), Some("false"));
     }

@@ -18,6 +18,7 @@ use replay::{Annotation, Manifest, Provenance};
 use super::aftermath;
 use super::board::{About, Board, Look, Message, Status, Totals, View, Wake};
 use super::disk::{self, BackgroundFile};
+use super::force::Force;
 use super::pacing::Pacing;
 use super::run::{Run, Screen, car_state, event_text};
 use super::seating::{self, Seating};
@@ -28,7 +29,7 @@ use crate::clock::SessionClock;
 use crate::maps::Map;
 use crate::progress::Interrupt;
 use crate::session::SessionState;
-use crate::units::{Polled, SeatChoice};
+use crate::units::Polled;
 
 /// While nothing drives, the units are asked this often, microseconds.
 const IDLE_US: u64 = 16_667;
@@ -43,10 +44,8 @@ pub struct Plan {
     pub map: Map,
     /// The scenario of the first run; the others follow from its seed.
     pub scenario: Scenario,
-    /// Who sits in the seats, semantic driver's first.
-    pub seats: [SeatChoice; 2],
-    /// Files with calibrations of devices.
-    pub calibrations: Vec<PathBuf>,
+    /// Greatest force of wheels, [0, 1].
+    pub force: f32,
     /// Where the recordings go.
     pub record: PathBuf,
     /// What the recordings say about themselves.
@@ -78,6 +77,7 @@ pub struct Simulation {
     plan: Plan,
     links: Links,
     seating: Seating,
+    force: Force,
     stage: Stage,
     number: u32,
     /// The world of a run that waits for its start.
@@ -103,17 +103,18 @@ enum End {
 
 impl Simulation {
     /// Takes the seats and makes the first world.
-    pub fn new(plan: Plan, links: Links, checkpoint: &str) -> anyhow::Result<Self> {
-        let seating = Seating::new(plan.seats.clone(), &plan.calibrations)?;
+    pub fn new(plan: Plan, seating: Seating, links: Links, checkpoint: &str) -> anyhow::Result<Self> {
         if plan.unattended.is_none() {
             seating.setup().iter().for_each(|line| eprintln!("{line}"));
         }
+        let force = Force::new(plan.force, &links.outbox);
         let Scenario { map, rules, .. } = &plan.scenario;
         let about = Arc::new(About { checkpoint: checkpoint.into(), map: map.clone(), rules: *rules });
         let mut simulation = Self {
             plan,
             links,
             seating,
+            force,
             stage: Stage::Ready,
             number: 0,
             next: None,
@@ -190,14 +191,26 @@ impl Simulation {
         match &self.stage {
             Stage::Ready if self.plan.unattended.is_some() && self.screen.is_some() => self.start()?,
             Stage::Driving => self.tick(&polled)?,
-            _ => return Ok(()),
+            _ => {}
         }
         // After a takeover the car is braked to standstill instead, and the case asks for its label.
         if self.stage == Stage::Driving && !car.taken_over && seating::is_unwatched(&polled) {
             self.say(format_args!("run {} was ended: the safety driver's unit is lost", self.number));
             self.finish(None)?;
         }
+        self.feel();
         Ok(())
+    }
+
+    /// The drivers' hands feel what the car does.
+    fn feel(&mut self) {
+        match (&self.stage, &self.run, &self.last) {
+            (Stage::Driving, Some(run), Some(last)) => {
+                let speed_mps = run.world().hud().speed_mps;
+                self.force.drive(speed_mps, &last.events, self.seating.armed_devices());
+            }
+            _ => self.force.rest(),
+        }
     }
 
     fn tick(&mut self, polled: &Polled) -> anyhow::Result<()> {
@@ -247,6 +260,10 @@ impl Simulation {
                 Wish::Nothing => self.show_status(Some(Wake::Centre)),
                 Wish::Start => self.start()?,
                 Wish::Swap => self.swap(),
+                Wish::Force => {
+                    self.force.toggle();
+                    self.show_status(Some(Wake::Centre));
+                }
                 Wish::Annotate(annotation) => self.finish(Some(annotation))?,
                 Wish::Quit => return Ok(Some(End::Asked)),
             },
@@ -422,6 +439,7 @@ impl Simulation {
             units: self.seating.words(),
             units_note: self.seating.note(),
             setup: self.seating.setup(),
+            force: self.force.words(),
             about: self.about.clone(),
         })
     }

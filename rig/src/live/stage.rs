@@ -47,6 +47,8 @@ pub enum Wish {
     Start,
     /// Let the units change seats.
     Swap,
+    /// Switch force feedback off or on.
+    Force,
     /// End the run with this said about it.
     Annotate(Annotation),
     /// End the session.
@@ -64,6 +66,7 @@ impl Stage {
             _ if repeated => Wish::Nothing,
             Self::Ready if is(press, "n") => Wish::Start,
             Self::Ready if is(press, "x") => Wish::Swap,
+            _ if is(press, "f") => Wish::Force,
             _ if is(press, "q") => Wish::Quit,
             _ => Wish::Nothing,
         }
@@ -122,6 +125,14 @@ mod tests {
         assert_eq!(Stage::Ready.press(&text("n"), true), Wish::Nothing);
         assert_eq!(Stage::Ready.press(&text("w"), false), Wish::Nothing);
         assert_eq!(Stage::Driving.press(&text("n"), false), Wish::Nothing);
+    }
+
+    #[test]
+    fn forces_are_switched_off_at_any_time_but_not_by_a_comment() {
+        assert_eq!(Stage::Driving.press(&text("f"), false), Wish::Force);
+        assert_eq!(Stage::Driving.press(&text("f"), true), Wish::Nothing);
+        let mut stage = Stage::Labelling(Dialog::default());
+        enter(&mut stage, "1off");
     }
 
     #[test]

@@ -82,6 +82,11 @@ impl DeviceUnit {
         now
     }
 
+    /// Whether its controls are its driver's.
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
     /// What its driver has still to do before it is armed.
     pub fn to_do(&self) -> Vec<&'static str> {
         if self.armed {

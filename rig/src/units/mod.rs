@@ -177,6 +177,11 @@ impl Seats {
         }
     }
 
+    /// Paths of the devices in the seats, semantic driver's first, where they are armed.
+    pub fn armed_devices(&self) -> [Option<&str>; 2] {
+        self.units.each_ref().map(Unit::armed_device)
+    }
+
     /// The devices that are there.
     pub fn devices(&self) -> &[DeviceInfo] {
         &self.devices

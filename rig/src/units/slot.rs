@@ -110,6 +110,16 @@ impl Unit {
         }
     }
 
+    /// Path of its device, if it has one that is armed.
+    pub fn armed_device(&self) -> Option<&str> {
+        match self {
+            Self::Device(Binding { bound: Some(bound), .. }) if bound.present && bound.unit.is_armed() => {
+                Some(&bound.info.path)
+            }
+            _ => None,
+        }
+    }
+
     /// Drives another seat from now on.
     pub fn sit(&mut self, seat: Seat) {
         if let Self::Keyboard(keyboard) = self {

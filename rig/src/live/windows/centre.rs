@@ -94,6 +94,7 @@ fn figures(ui: &mut Ui, status: &Status) {
         ("semantic driver", status.units[0].clone()),
         ("safety driver", status.units[1].clone()),
         ("intervention from", thresholds(status)),
+        ("force feedback", status.force.clone()),
         ("speed", format!("{:.0} of {:.0} km/h", 3.6 * status.hud.speed_mps, 3.6 * status.hud.limit_mps)),
         ("this run", exposure(status.odometer_mm, status.tick)),
         (
