@@ -89,15 +89,9 @@ impl Decoder {
             return coarse;
         }
         let mut out = vec![0; self.width * self.height];
-        let at = |x: usize, y: usize| y * self.grid.width + x;
         for row in &self.rows {
             for column in &self.columns {
-                let corners = [
-                    at(column.left, row.left),
-                    at(column.right, row.left),
-                    at(column.left, row.right),
-                    at(column.right, row.right),
-                ];
+                let corners = self.corners(row, column);
                 let class = coarse[corners[0]];
                 if corners.iter().all(|&corner| coarse[corner] == class) {
                     for y in row.pixels.clone() {
@@ -109,6 +103,36 @@ impl Decoder {
             }
         }
         out
+    }
+
+    /// The softmax of the highest score at every pixel, with the scores as logits: 1 over the number of
+    /// classes where all are equal, 1 where one stands alone.
+    pub fn confidence(&self, scores: &[f32]) -> Vec<f32> {
+        let (step, stride) = (self.grid.pixel_stride(), self.grid.channel_stride());
+        let mut out = vec![0.0; self.width * self.height];
+        let mut mixed = vec![0.0; self.grid.channels];
+        for row in &self.rows {
+            for column in &self.columns {
+                let corners = self.corners(row, column).map(|corner| &scores[corner * step..]);
+                for (y, &down) in row.pixels.clone().zip(&row.weights) {
+                    for (x, &along) in column.pixels.clone().zip(&column.weights) {
+                        for (channel, mixed) in mixed.iter_mut().enumerate() {
+                            let [a, b, c, d] = corners.map(|scores| scores[channel * stride]);
+                            let (left, right) = (a + (c - a) * down, b + (d - b) * down);
+                            *mixed = left + (right - left) * along;
+                        }
+                        out[y * self.width + x] = highest_softmax(&mixed);
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// The four source pixels around a cell: upper left and right, lower left and right.
+    fn corners(&self, row: &Span, column: &Span) -> [usize; 4] {
+        let at = |x: usize, y: usize| y * self.grid.width + x;
+        [at(column.left, row.left), at(column.right, row.left), at(column.left, row.right), at(column.right, row.right)]
     }
 
     /// A class map as it is, resized to the picture: every pixel takes the nearest source pixel.
@@ -169,6 +193,11 @@ fn argmax(grid: &Grid, scores: &[f32]) -> Vec<u8> {
         }
     }
     class
+}
+
+fn highest_softmax(scores: &[f32]) -> f32 {
+    let highest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    1.0 / scores.iter().map(|score| (score - highest).exp()).sum::<f32>()
 }
 
 #[cfg(test)]
@@ -232,6 +261,29 @@ mod tests {
                 assert!(classes.iter().any(|c| *c != classes[0]), "the scores must form several areas");
             }
         }
+    }
+
+    #[test]
+    fn confidence_agrees_with_the_textbook() {
+        for (interleaved, align, (width, height)) in
+            [(false, false, (17, 11)), (true, true, (17, 11)), (true, false, (5, 3))]
+        {
+            let grid = Grid { channels: 16, width: 5, height: 3, interleaved };
+            let decoder = Decoder::new(grid, width, height, align);
+            let scores: Vec<f32> = scores(&grid, 7).iter().map(|score| 9.0 * score).collect();
+            for (i, &got) in decoder.confidence(&scores).iter().enumerate() {
+                let sums = upsampled(&decoder, &scores, align, i % width, i / width);
+                let highest = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                let expected = highest.exp() / sums.iter().map(|s| s.exp()).sum::<f64>();
+                assert!((f64::from(got) - expected).abs() < 1e-4, "pixel {i}: {got}, expected {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn equal_scores_are_the_least_confidence() {
+        let grid = Grid { channels: 4, width: 2, height: 2, interleaved: false };
+        assert_eq!(Decoder::new(grid, 3, 3, false).confidence(&[800.0; 16]), [0.25; 9]);
     }
 
     #[test]

@@ -71,6 +71,23 @@ impl Segmenter {
 
     /// The class of every pixel.
     pub fn run(&mut self, image: RgbView<'_>) -> Result<Mask, PerceptionError> {
+        let output = self.output(image)?;
+        self.mask(&output)
+    }
+
+    /// The class of every pixel, and how sure the network is of it: the softmax of its scores, (0, 1].
+    /// `None` for a network that gives classes only.
+    pub fn run_with_confidence(&mut self, image: RgbView<'_>) -> Result<(Mask, Option<Vec<f32>>), PerceptionError> {
+        let output = self.output(image)?;
+        let confidence = match &output {
+            Output::Scores(scores) => Some(self.decoder.confidence(scores)),
+            Output::Ids(_) => None,
+        };
+        Ok((self.mask(&output)?, confidence))
+    }
+
+    /// What the network gives for a picture.
+    fn output(&mut self, image: RgbView<'_>) -> Result<Output, PerceptionError> {
         if (image.width(), image.height()) != (self.width, self.height) {
             let (width, height) = (self.width, self.height);
             return Err(PerceptionError::ImageSize { bytes: image.bytes().len(), width, height, channels: 3 });
@@ -88,11 +105,15 @@ impl Segmenter {
             Element::Byte => Pixels::Byte(&self.bytes),
         };
         let fail = |reason| PerceptionError::Inference { path: self.path.clone(), reason };
-        let tags = match self.engine.run(pixels).map_err(fail)? {
+        self.engine.run(pixels).map_err(fail)
+    }
+
+    fn mask(&self, output: &Output) -> Result<Mask, PerceptionError> {
+        let tags = match output {
             Output::Scores(scores) => {
-                self.decoder.classes(&scores).into_iter().map(|class| self.tags[usize::from(class)]).collect()
+                self.decoder.classes(scores).into_iter().map(|class| self.tags[usize::from(class)]).collect()
             }
-            Output::Ids(ids) => self.decoder.nearest(&ids).into_iter().map(|id| self.tag_of_id(id)).collect(),
+            Output::Ids(ids) => self.decoder.nearest(ids).into_iter().map(|id| self.tag_of_id(id)).collect(),
         };
         Mask::new(self.width, self.height, tags)
     }
@@ -212,6 +233,20 @@ mod tests {
         let mask = mask(&toy, (96, 64));
         assert_eq!((mask.width, mask.height, mask.ids.len()), (96, 64, 96 * 64));
         assert!(mask.ids.iter().any(|id| *id != mask.ids[0]));
+    }
+
+    #[test]
+    fn confidence_comes_with_the_same_mask_and_only_from_scores() {
+        for (tail, has_scores) in [(Tail::None, true), (Tail::Upsample, true), (Tail::Argmax, false)] {
+            let dir = tempfile::tempdir().unwrap();
+            let checkpoint = Checkpoint::load(Toy { tail, ..Toy::default() }.write(dir.path())).unwrap();
+            let mut segmenter = Segmenter::new(&checkpoint, SIZE.0, SIZE.1).unwrap();
+            let rgb = toy::picture(SIZE.0, SIZE.1);
+            let image = RgbView::new(SIZE.0, SIZE.1, &rgb).unwrap();
+            let (mask, confidence) = segmenter.run_with_confidence(image).unwrap();
+            assert_eq!(mask, segmenter.run(image).unwrap());
+            assert_eq!(confidence.map(|c| c.len()), has_scores.then_some(SIZE.0 * SIZE.1));
+        }
     }
 
     #[test]
