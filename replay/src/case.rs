@@ -29,7 +29,8 @@ impl Case {
     }
 
     /// Cuts a window out of a recording by replaying it; every tick is compared on the way. The
-    /// scenes kept are those of the window's first tick and of every `CLIP_STRIDE_TICKS` after it.
+    /// scenes kept are those of the window's first tick and of every `CLIP_STRIDE_TICKS` after it. A case
+    /// without the intervention has no annotation.
     pub fn cut(recording: &Recording, network: &Arc<RoadNetwork>, window: RangeInclusive<Tick>) -> Result<Self, Error> {
         let log = recording.log();
         let (from, to) = (*window.start(), *window.end());
@@ -83,6 +84,7 @@ fn cut_log(replayer: &Replayer<'_>, info: &CaseInfo, scenes: Vec<SceneSnapshot>)
     let mark = Mark { tick: end, hash: world.hash(), parts: world.part_hashes(), odometer_mm: world.odometer_mm() };
     let (arbiter, mut manifest) = (world.arbiter(), log.manifest.clone());
     manifest.case = Some(info.clone());
+    let holds_its_end = Case::window(log).is_none_or(|window| inside(*window.end()));
     Log {
         manifest,
         keyframes: log.keyframes.iter().filter(|k| k.tick == start || inside(k.tick)).cloned().collect(),
@@ -93,7 +95,7 @@ fn cut_log(replayer: &Replayer<'_>, info: &CaseInfo, scenes: Vec<SceneSnapshot>)
         intervention: log.intervention.filter(|i| inside(i.tick)),
         masks: log.masks.iter().filter(|m| inside(m.tick_shown)).copied().collect(),
         notes: log.notes.iter().filter(|n| inside(n.tick)).copied().collect(),
-        annotation: log.annotation.clone(),
+        annotation: log.annotation.clone().filter(|_| holds_its_end),
         summary: Some(RunSummary {
             ticks: end,
             odometer_mm: world.odometer_mm(),

@@ -67,7 +67,8 @@ pub struct CaseInfo {
     pub source: [u8; 32],
     /// First tick of the window.
     pub from: Tick,
-    /// Last tick of the window: the intervention, or the collision of a missed one.
+    /// Last tick of the window: the intervention, the collision of a missed one, or where an operator
+    /// ended it.
     pub to: Tick,
 }
 

@@ -90,6 +90,15 @@ fn a_window_beyond_the_recording_is_refused() {
 }
 
 #[test]
+fn a_cut_that_ends_long_before_the_intervention_knows_nothing_of_it() {
+    let case = Case::cut(&RECORDING, &CITY.network, 300..=400).expect("a window of the recording");
+    let log = case.log();
+    assert_eq!((log.intervention, &log.annotation, log.last_tick()), (None, &None, 700));
+    let report = verify(log, &CITY.network).expect("a log that can be simulated");
+    assert_eq!((report.divergence, case.scenes().len()), (None, 17));
+}
+
+#[test]
 fn a_foreign_map_travels_in_the_log() {
     let mut log = RECORDING.log().clone();
     log.manifest.foreign_map = Some("<OpenDRIVE>".to_owned());
