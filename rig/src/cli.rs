@@ -36,6 +36,8 @@ pub enum Command {
     Verify(VerifyArgs),
     /// Say what is in recordings or cases.
     Inspect(InspectArgs),
+    /// Look at a recording or case in a window, tick by tick.
+    View(ViewArgs),
     /// Render the window of recordings or cases through checkpoints.
     Rerender(RerenderArgs),
     /// Make datasets.
@@ -214,6 +216,39 @@ pub struct InspectArgs {
     /// Recordings or cases.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
+}
+
+/// What `view --help` says about the window.
+const VIEW_KEYS: &str = "\
+One window shows two views side by side, so that layers can be compared, over the facts of the tick,
+the events, and a timeline to click and drag on. Keys:
+  Space                 play, stop
+  Left, Right           one tick back or on; with Shift one frame (6 ticks)
+  Up, Down              faster, slower (0.1 to 8 times real time)
+  Page Up, Page Down    event before, next event; Home, End: first and last tick
+  1 to 6                left view: seen mask, RGB, truth, prediction, difference, confidence;
+                        with Shift the right view
+  V, K                  next camera (driver, chase, from above), next checkpoint
+  I, O, C               mark the first and the last tick of a range, cut it as a case
+  S                     screenshot of both views
+  H, F11, Q or Escape   HUD on and off, full screen, quit
+Cases and screenshots go beside FILE, under names with their ticks that are free.";
+
+/// Arguments of `view`.
+#[derive(Args, Debug)]
+#[command(after_help = VIEW_KEYS)]
+pub struct ViewArgs {
+    /// A recording or case; one that was cut off is shown as far as it goes.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// A checkpoint to look through; may be given several times (default: the bundled ones). The one
+    /// that the run was driven through is among them when it is bundled.
+    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Opens no window: makes every mask that was shown again and compares its digest with the logged
+    /// one; exit code 3 if any differs. Equal digests are promised on the adapter that made them.
+    #[arg(long)]
+    pub digests: bool,
 }
 
 /// Arguments of `rerender`.

@@ -20,6 +20,7 @@ pub mod session;
 pub mod simulate;
 pub mod stats;
 pub mod units;
+mod view;
 pub mod vision;
 
 use cli::{Cli, Command, DatasetCommand};
@@ -33,6 +34,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Campaign(args) => commands::campaign::run(args, json),
         Command::Verify(args) => commands::verify::run(args, json),
         Command::Inspect(args) => commands::inspect::run(args, json),
+        Command::View(args) => view::run(args, json),
         Command::Rerender(args) => lab::rerender::run(args, json),
         Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
         Command::Train(args) => lab::train::run(args, json),

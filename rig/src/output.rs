@@ -38,12 +38,34 @@ pub fn print<T: Serialize>(json: bool, value: &T, text: impl FnOnce() -> String)
 
 /// Writes a file in one step: under a temporary name beside it, then renamed.
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    temporary(path, bytes)?.persist(path).with_context(|| path.display().to_string())?;
+    Ok(())
+}
+
+/// Writes a file in one step under the first of `STEM.ENDING`, `STEM-2.ENDING`, `STEM-3.ENDING` ... that
+/// is free, and gives its name. Nothing is ever overwritten.
+pub fn write_new(stem: &Path, ending: &str, bytes: &[u8]) -> anyhow::Result<PathBuf> {
+    let mut file = temporary(stem, bytes)?;
+    for number in 1..100_000 {
+        let mut path = stem.as_os_str().to_owned();
+        path.push(if number == 1 { format!(".{ending}") } else { format!("-{number}.{ending}") });
+        let path = PathBuf::from(path);
+        file = match file.persist_noclobber(&path) {
+            Ok(_) => return Ok(path),
+            Err(e) if e.error.kind() == std::io::ErrorKind::AlreadyExists => e.file,
+            Err(e) => return Err(e.error).with_context(|| path.display().to_string()),
+        };
+    }
+    bail!("{}: no number is free", stem.display())
+}
+
+/// A file beside a path, with its content, that disappears unless it gets a name.
+fn temporary(path: &Path, bytes: &[u8]) -> anyhow::Result<tempfile::NamedTempFile> {
     let folder = folder_of(path);
     let mut file = tempfile::NamedTempFile::new_in(&folder).with_context(|| folder.display().to_string())?;
     file.as_file_mut().write_all(bytes).with_context(|| path.display().to_string())?;
     make_readable(file.path(), 0o644)?;
-    file.persist(path).with_context(|| path.display().to_string())?;
-    Ok(())
+    Ok(file)
 }
 
 /// Refuses a place where no file can be written, before the work whose result it is for.
@@ -139,6 +161,18 @@ mod tests {
         pending.finish().expect("renamed");
         assert_eq!(fs::read_to_string(path.join("a")).expect("there"), "b");
         assert!(PendingFolder::new(&path).is_err());
+    }
+
+    #[test]
+    fn a_new_file_takes_the_first_name_that_is_free() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let stem = dir.path().join("run.1");
+        for (content, name) in [("a", "run.1.png"), ("b", "run.1-2.png"), ("c", "run.1-3.png")] {
+            let path = write_new(&stem, "png", content.as_bytes()).expect("writable");
+            assert_eq!(path, dir.path().join(name));
+        }
+        assert_eq!(fs::read_to_string(dir.path().join("run.1.png")).expect("there"), "a");
+        assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 3, "nothing temporary remains");
     }
 
     #[test]

@@ -90,6 +90,17 @@ impl Eye {
             Self::Network { segmenter, .. } => Ok(segmenter.run(RgbView::new(width, height, &frame.rgb)?)?),
         }
     }
+
+    /// As [`Eye::see`], and how sure it is of every pixel, (0, 1]; `None` where it gives classes only.
+    pub fn see_with_confidence(&mut self, frame: &Frame) -> anyhow::Result<(Mask, Option<Vec<f32>>)> {
+        let (width, height) = (frame.width as usize, frame.height as usize);
+        match self {
+            Self::Truth => Ok((Mask::new(width, height, frame.class_ids.clone())?, None)),
+            Self::Network { segmenter, .. } => {
+                Ok(segmenter.run_with_confidence(RgbView::new(width, height, &frame.rgb)?)?)
+            }
+        }
+    }
 }
 
 fn load(path: &Path) -> anyhow::Result<Checkpoint> {

@@ -21,7 +21,7 @@ const IMPORTS: [(&str, &[&str]); 7] = [
 ];
 
 /// Where windows are made and painted.
-const WINDOWS: [&str; 2] = ["rig/src/desktop/", "rig/src/live/windows/"];
+const WINDOWS: [&str; 3] = ["rig/src/desktop/", "rig/src/live/windows/", "rig/src/view/windows/"];
 
 /// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
 const NAMED_ONCE: [(&str, &[&str], &[&str]); 10] = [
