@@ -1,6 +1,7 @@
 //! The command line of `aeye`.
 
 use std::convert::Infallible;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -8,6 +9,7 @@ use clap::{Args, Parser, Subcommand};
 use kernel::time::{CLIP_FPS, TICK_HZ, Tick};
 use perception::BUNDLED;
 
+use crate::live::foxglove;
 use crate::units::SeatChoice;
 
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
@@ -102,6 +104,9 @@ pub struct DriveArgs {
     /// Greatest force of wheels and gamepads, 0 (off) to 1 (all that they can).
     #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION")]
     pub force: f32,
+    /// Shows the drive to Foxglove at this port of this machine, or at this address.
+    #[arg(long, value_parser = foxglove::address, value_name = "PORT|ADDRESS:PORT")]
+    pub foxglove: Option<SocketAddr>,
     /// A bundled map or an OpenDRIVE file.
     #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
     pub map: Option<String>,

@@ -1,6 +1,6 @@
 //! The only file that reads the clock.
 
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// Says once a second of wall time that a second has passed.
 #[derive(Debug)]
@@ -42,12 +42,22 @@ pub fn seconds_of<T>(work: impl FnOnce() -> T) -> (T, f64) {
 #[derive(Clone, Copy, Debug)]
 pub struct SessionClock {
     start: Instant,
+    /// When that was by the calendar, nanoseconds since 1970.
+    start_unix_ns: u64,
 }
 
 impl SessionClock {
     /// The session begins now.
     pub fn starting_now() -> Self {
-        Self { start: Instant::now() }
+        // A calendar before 1970 is as good as none.
+        let start_unix_ns = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
+        Self { start: Instant::now(), start_unix_ns }
+    }
+
+    /// A moment of the session, microseconds since it began, as nanoseconds since 1970. It never goes
+    /// back, whatever happens to the calendar.
+    pub fn unix_ns(&self, session_us: u64) -> u64 {
+        self.start_unix_ns + 1000 * session_us
     }
 
     /// Microseconds since the session began.

@@ -14,6 +14,7 @@ use crate::cli::DriveArgs;
 use crate::clock::EverySecond;
 use crate::exit::Verdict;
 use crate::live;
+use crate::live::foxglove::Publisher;
 use crate::maps::{Map, read_scenario};
 use crate::output;
 use crate::progress::Interrupt;
@@ -106,11 +107,13 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
     World::new(scenario, &map.network)?;
 
+    let mut publisher = args.foxglove.map(Publisher::bind).transpose()?;
     let path = &args.record;
     let file = File::create(path).with_context(|| path.display().to_string())?;
     let interrupt = Interrupt::listen()?;
     let mut second = EverySecond::new();
     let keep_on = |world: &World| {
+        publisher.iter_mut().for_each(|publisher| publisher.show(world));
         if second.is_due() {
             eprintln!("tick {}", world.tick());
         }

@@ -1,6 +1,5 @@
 //! What the threads of a live drive show each other. Nobody waits for a reader.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 use kernel::arbiter::Phase;
@@ -9,6 +8,8 @@ use kernel::scenario::Rules;
 use kernel::time::Tick;
 use kernel::{SceneSnapshot, Seat, TickInput};
 
+use super::events::Events;
+use super::foxglove::Telemetry;
 use super::stage::{Press, Stage};
 use super::traces::Traces;
 use crate::desktop::Image;
@@ -28,6 +29,8 @@ pub struct Board {
     pub status: Newest<Status>,
     /// What is plotted of the run.
     pub traces: Newest<Traces>,
+    /// What remote control centres show.
+    pub telemetry: Newest<Telemetry>,
 }
 
 /// A scene to draw.
@@ -133,7 +136,7 @@ pub struct Status {
     /// Age of the mask on the semantic driver's screen, microseconds.
     pub mask_age_us: Option<u64>,
     /// The latest events, newest last.
-    pub events: VecDeque<String>,
+    pub events: Events,
     /// How the units of both seats are, semantic driver's first.
     pub units: [String; 2],
     /// What the drivers have to do about their units; none while both are armed.

@@ -6,8 +6,10 @@
 mod aftermath;
 mod board;
 mod disk;
+mod events;
 mod eyes;
 mod force;
+pub mod foxglove;
 mod hud;
 mod pacing;
 mod run;
@@ -37,6 +39,7 @@ use crate::progress::Interrupt;
 use crate::units::SeatChoice;
 use crate::vision::Eye;
 use board::{Board, Message, Wake};
+use foxglove::Server;
 use seating::Seating;
 use simulation::{Links, Plan, Simulation};
 pub use timings::LiveFigures;
@@ -49,7 +52,7 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
     let seats = [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default);
     let provenance = provenance(&eye);
     let (record, force) = (args.record.clone(), args.force);
-    let plan = Plan { map, scenario, force, record, provenance, json, unattended: None };
+    let plan = Plan { map, scenario, force, foxglove: args.foxglove, record, provenance, json, unattended: None };
     let seating = Seating::new(seats, &args.calibration)?;
     let timings = session(plan, seating, eye, args.sizes.image_size)?;
     if let Some(figures) = timings.figures() {
@@ -69,6 +72,7 @@ pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyho
         scenario: map.scenario(1),
         map,
         force: 0.0,
+        foxglove: None,
         record: dir.path().join("trial.mcap"),
         provenance: provenance(&eye),
         json: false,
@@ -93,6 +97,7 @@ fn session(plan: Plan, seating: Seating, eye: Eye, image_size: (u32, u32)) -> an
 
     let (outbox, inbox) = mpsc::channel();
     let (board, clock) = (Arc::new(Board::default()), SessionClock::starting_now());
+    let _server = plan.foxglove.map(|at| Server::bind(at, board.clone(), clock)).transpose()?;
     let waker = windows.waker();
     let wake = waker.clone();
     let links = Links {

@@ -1,7 +1,7 @@
 //! The thread that drives: it paces the ticks, listens to everybody, and waits for nobody.
 
-use std::collections::VecDeque;
 use std::fmt;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
@@ -18,7 +18,9 @@ use replay::{Annotation, Manifest, Provenance};
 use super::aftermath;
 use super::board::{About, Board, Look, Message, Status, Totals, View, Wake};
 use super::disk::{self, BackgroundFile};
+use super::events::Events;
 use super::force::Force;
+use super::foxglove::Telemetry;
 use super::pacing::Pacing;
 use super::run::{Run, Screen, car_state, event_text};
 use super::seating::{self, Seating};
@@ -35,8 +37,6 @@ use crate::units::Polled;
 const IDLE_US: u64 = 16_667;
 /// The control centre is drawn anew after so many ticks.
 const CENTRE_TICKS: u64 = 6;
-/// Events that the control centre shows.
-const EVENTS: usize = 12;
 
 /// What a session is about.
 pub struct Plan {
@@ -46,6 +46,8 @@ pub struct Plan {
     pub scenario: Scenario,
     /// Greatest force of wheels, [0, 1].
     pub force: f32,
+    /// Where remote control centres are served.
+    pub foxglove: Option<SocketAddr>,
     /// Where the recordings go.
     pub record: PathBuf,
     /// What the recordings say about themselves.
@@ -89,7 +91,7 @@ pub struct Simulation {
     screen: Option<Screen>,
     input: TickInput,
     last: Option<TickOutput>,
-    events: VecDeque<String>,
+    events: Events,
     totals: Totals,
     about: Arc<About>,
     helpers: Vec<JoinHandle<()>>,
@@ -125,7 +127,7 @@ impl Simulation {
             screen: None,
             input: TickInput::default(),
             last: None,
-            events: VecDeque::new(),
+            events: Events::default(),
             totals: Totals::default(),
             about,
             helpers: Vec::new(),
@@ -220,7 +222,7 @@ impl Simulation {
         let (state, output, input) = run.tick(polled, self.screen.as_ref())?;
         self.traces.tick(run.world(), &input, &output);
         for event in &output.events {
-            self.events.push_back(event_text(output.tick, event));
+            self.events.push(event_text(output.tick, event));
         }
         let tick = output.tick;
         self.input = input;
@@ -385,7 +387,7 @@ impl Simulation {
     }
 
     fn note(&mut self, text: String) {
-        self.events.push_back(text);
+        self.events.push(text);
         self.show_status(Some(Wake::Centre));
     }
 
@@ -400,10 +402,8 @@ impl Simulation {
     }
 
     fn show_status(&mut self, wake: Option<Wake>) {
-        while self.events.len() > EVENTS {
-            self.events.pop_front();
-        }
         if let Some(status) = self.status() {
+            self.links.board.telemetry.put(Telemetry::of(&status));
             self.links.board.status.put(status);
         }
         if let Some(wake) = wake {

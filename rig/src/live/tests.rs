@@ -60,6 +60,7 @@ impl Bench {
             scenario: map.scenario(1),
             map,
             force: 0.0,
+            foxglove: None,
             record: dir.path().join("drive.mcap"),
             provenance: Default::default(),
             json: true,

@@ -24,7 +24,7 @@ const IMPORTS: [(&str, &[&str]); 7] = [
 const WINDOWS: [&str; 3] = ["rig/src/desktop/", "rig/src/live/windows/", "rig/src/view/windows/"];
 
 /// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str], &[&str]); 10] = [
+const NAMED_ONCE: [(&str, &[&str], &[&str]); 11] = [
     (
         "rapier3d::",
         &["kernel", "render", "perception", "replay", "rig"],
@@ -36,6 +36,11 @@ const NAMED_ONCE: [(&str, &[&str], &[&str]); 10] = [
     ("winit::", &["kernel", "render", "perception", "replay", "rig"], &WINDOWS),
     ("egui::", &["kernel", "render", "perception", "replay", "rig"], &WINDOWS),
     ("gilrs_core::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/units/hardware.rs"]),
+    (
+        "tungstenite::",
+        &["kernel", "render", "perception", "replay", "rig"],
+        &["rig/src/live/foxglove/client.rs", "rig/src/live/foxglove/tests.rs"],
+    ),
     ("evdev::", &["kernel", "render", "perception", "replay", "rig"], &["rig/src/live/force/linux.rs"]),
     ("std::time", &["kernel", "render", "replay"], &[]),
     ("HashMap", &["kernel"], &[]),

@@ -156,7 +156,7 @@ fn events(ui: &mut Ui, status: &Status) {
             ui.label(line);
         }
     }
-    for event in &status.events {
+    for event in status.events.lines() {
         ui.label(RichText::new(event).monospace());
     }
 }

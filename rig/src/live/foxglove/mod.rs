@@ -1,0 +1,58 @@
+//! A drive for remote control centres: poses, figures, events and both drivers' pictures over
+//! Foxglove's WebSocket protocol. Clients only read.
+//!
+//! Each client has a thread of its own that looks at the board from time to time, so that a slow or
+//! hostile one delays nobody but itself.
+
+mod client;
+mod images;
+mod protocol;
+mod server;
+mod telemetry;
+#[cfg(test)]
+mod tests;
+mod topics;
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::sync::Arc;
+
+use kernel::World;
+
+use super::board::{Board, Look};
+use super::events::Events;
+use super::run::event_text;
+use crate::clock::SessionClock;
+pub use server::Server;
+pub use telemetry::Telemetry;
+
+/// `PORT` of this machine alone, or `ADDRESS:PORT`.
+pub fn address(text: &str) -> Result<SocketAddr, String> {
+    let loopback = |port| SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port);
+    let port = text.parse::<u16>().ok().map(loopback);
+    port.or_else(|| text.parse().ok())
+        .ok_or_else(|| "expected PORT, as in 8765, or ADDRESS:PORT, as in 0.0.0.0:8765 or [::1]:8765".into())
+}
+
+/// Publishes a drive without windows.
+pub struct Publisher {
+    board: Arc<Board>,
+    clock: SessionClock,
+    events: Events,
+    _server: Server,
+}
+
+impl Publisher {
+    /// Serves at an address.
+    pub fn bind(at: SocketAddr) -> anyhow::Result<Self> {
+        let (board, clock) = (Arc::new(Board::default()), SessionClock::starting_now());
+        let server = Server::bind(at, board.clone(), clock)?;
+        Ok(Self { board, clock, events: Events::default(), _server: server })
+    }
+
+    /// Shows the world at its last tick.
+    pub fn show(&mut self, world: &World) {
+        world.last_events().iter().for_each(|event| self.events.push(event_text(world.tick(), event)));
+        self.board.scene.put(Look { run: 1, scene: world.scene(), captured_us: self.clock.now_us() });
+        self.board.telemetry.put(Telemetry { events: self.events.clone(), ..Telemetry::of_world(world, 1) });
+    }
+}
