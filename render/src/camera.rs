@@ -43,6 +43,17 @@ impl Camera {
         Self { mount: Mount::Ego, position, ..Self::level(width, height) }
     }
 
+    /// The driver's cameras for three screens side by side, left one first: 60 degrees each, which
+    /// together see 180 degrees.
+    pub fn driver_row(width: u32, height: u32) -> [Self; 3] {
+        let turn_rad = core::f32::consts::FRAC_PI_3;
+        [turn_rad, 0.0, -turn_rad].map(|yaw_rad| Self {
+            rotation: Quat::from_rotation_z(yaw_rad),
+            fov_x_rad: turn_rad,
+            ..Self::driver(width, height)
+        })
+    }
+
     /// Behind and above the ego car, which is in the picture.
     pub fn chase(width: u32, height: u32) -> Self {
         let position = Vec3::new(-6.5, 0.0, 3.2);

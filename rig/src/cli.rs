@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use kernel::time::{CLIP_FPS, TICK_HZ, Tick};
 use perception::BUNDLED;
 
@@ -147,6 +147,21 @@ pub struct SizeArgs {
     /// Size of the semantic driver's mask (default: the checkpoint's own, 256x128).
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub mask_size: Option<(u32, u32)>,
+    /// Monitors that the safety driver's view is spread over: 3 show 60 degrees each, every one of
+    /// `--image-size`.
+    #[arg(long, default_value = "1")]
+    pub screens: Screens,
+}
+
+/// Monitors that a view is spread over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Screens {
+    /// One.
+    #[value(name = "1")]
+    One,
+    /// Three side by side.
+    #[value(name = "3")]
+    Three,
 }
 
 /// Arguments of `doctor`.

@@ -3,11 +3,13 @@
 
 mod blit;
 pub mod hud;
+pub mod layout;
 pub mod overlay;
 pub mod pane;
 pub mod picture;
 
 pub use hud::HudText;
+pub use layout::Layout;
 pub use pane::Pane;
 pub use picture::{Image, Picture};
 

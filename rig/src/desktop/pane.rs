@@ -10,18 +10,19 @@ use egui_wgpu::{
     RenderState, RendererOptions, SurfaceConfig, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew, WgpuSetupExisting,
     wgpu,
 };
-use winit::dpi::{LogicalPosition, LogicalSize};
+use winit::dpi::{LogicalPosition, LogicalSize, PhysicalPosition, PhysicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::{Fullscreen, Window, WindowId};
 
 use super::blit;
+use super::layout::Placement;
 
 /// Present at once and wait for nobody: a window that is out of sight must not hold up the others.
 const SURFACE: SurfaceConfig =
     SurfaceConfig { present_mode: wgpu::PresentMode::AutoNoVsync, desired_maximum_frame_latency: Some(1) };
 /// Behind everything.
-const GROUND: [f32; 4] = [0.01, 0.01, 0.012, 1.0];
+const GROUND: [f32; 4] = [0.06, 0.063, 0.07, 1.0];
 
 /// A window and its painter.
 pub struct Pane {
@@ -66,6 +67,54 @@ impl Pane {
     pub fn toggle_full_screen(&self) {
         let full = self.window.fullscreen().is_none();
         self.window.set_fullscreen(full.then_some(Fullscreen::Borderless(None)));
+    }
+
+    /// Goes to the next monitor, in the order in which the system names them.
+    pub fn to_next_monitor(&self) {
+        let monitors: Vec<_> = self.window.available_monitors().collect();
+        let here = self.window.current_monitor();
+        let at = monitors.iter().position(|monitor| Some(monitor) == here.as_ref()).unwrap_or(0);
+        let Some(next) = monitors.get((at + 1) % monitors.len().max(1)) else { return };
+        self.window.set_outer_position(next.position());
+        if self.window.fullscreen().is_some() {
+            self.window.set_fullscreen(Some(Fullscreen::Borderless(Some(next.clone()))));
+        }
+    }
+
+    /// Covers all monitors, which stand in a row.
+    pub fn span_monitors(&self) {
+        let corners = self.window.available_monitors().map(|monitor| (monitor.position(), monitor.size()));
+        let corners: Vec<_> = corners.collect();
+        let left = corners.iter().map(|(at, _)| at.x).min().unwrap_or(0);
+        let top = corners.iter().map(|(at, _)| at.y).min().unwrap_or(0);
+        let right = corners.iter().map(|(at, size)| at.x + size.width as i32).max().unwrap_or(0);
+        let height = corners.iter().map(|(_, size)| size.height).min().unwrap_or(0);
+        if right > left && height > 0 {
+            self.window.set_decorations(false);
+            self.window.set_outer_position(PhysicalPosition::new(left, top));
+            let _ = self.window.request_inner_size(PhysicalSize::new((right - left) as u32, height));
+        }
+    }
+
+    /// Goes where it was.
+    pub fn place(&self, placement: &Placement) {
+        let Placement { position: [x, y], size: [width, height], full_screen } = *placement;
+        self.window.set_outer_position(PhysicalPosition::new(x, y));
+        // The answer is an event like any other.
+        let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
+        if full_screen {
+            self.window.set_fullscreen(Some(Fullscreen::Borderless(None)));
+        }
+    }
+
+    /// Where it is; unknown where the system does not say.
+    pub fn placement(&self) -> Option<Placement> {
+        let (position, size) = (self.window.outer_position().ok()?, self.window.inner_size());
+        Some(Placement {
+            position: position.into(),
+            size: size.into(),
+            full_screen: self.window.fullscreen().is_some(),
+        })
     }
 
     /// Asks for a new picture, as soon as the event loop comes to it.

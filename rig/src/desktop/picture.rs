@@ -25,6 +25,8 @@ pub struct Picture {
     filter: Filter,
     /// Its texture's number.
     slot: u64,
+    /// Screens side by side that the image is spread over.
+    screens: usize,
 }
 
 impl Picture {
@@ -38,15 +40,21 @@ impl Picture {
         Self::new(Filter::Smooth)
     }
 
+    /// The same for an image that is spread over so many screens: the HUD is on the middle one.
+    pub fn over(self, screens: usize) -> Self {
+        Self { screens, ..self }
+    }
+
     fn new(filter: Filter) -> Self {
         static PICTURES: AtomicU64 = AtomicU64::new(0);
-        Self { filter, slot: PICTURES.fetch_add(1, Ordering::Relaxed) }
+        Self { filter, slot: PICTURES.fetch_add(1, Ordering::Relaxed), screens: 1 }
     }
 
     /// Fills the window with the image, black where its proportions differ, and the HUD.
     pub fn paint_with_hud(&self, ui: &egui::Ui, image: Option<&Arc<Image>>, hud: &HudText) {
         let rect = self.paint(ui, ui.max_rect(), image);
-        overlay::paint(ui.painter(), rect, hud);
+        let middle = Vec2::new(rect.width() / self.screens as f32, rect.height());
+        overlay::paint(ui.painter(), Rect::from_center_size(rect.center(), middle), hud);
     }
 
     /// Puts the image into the middle of a rectangle, as large as it fits, and says where.

@@ -12,20 +12,32 @@ use crate::desktop::Image;
 use crate::newest::Newest;
 use crate::vision::{Eye, digest_of};
 
-/// Draws what the safety driver sees, at a size in pixels, until the scenes end. `show` is called
-/// after every picture.
+/// Draws what the safety driver sees through cameras side by side, left one first, until the scenes
+/// end. `show` is called after every picture.
 pub fn watch_as_safety(
     board: &Board,
     mut renderer: Renderer,
-    size: (u32, u32),
+    cameras: &[Camera],
     clock: SessionClock,
     show: impl Fn(),
 ) -> anyhow::Result<()> {
-    let camera = Camera::driver(size.0, size.1);
     watch(&board.scene, &board.safety, show, |look| {
-        let frame = renderer.draw(&look.scene, &camera)?;
-        Ok(view(look, &frame, frame.rgb.clone(), None, clock.now_us()))
+        let frames: Vec<Frame> =
+            cameras.iter().map(|camera| renderer.draw(&look.scene, camera)).collect::<Result<_, _>>()?;
+        Ok(view(look, side_by_side(&frames), None, clock.now_us()))
     })
+}
+
+/// One picture of several that are equally high.
+fn side_by_side(frames: &[Frame]) -> Image {
+    let width = frames.iter().map(|frame| frame.width as usize).sum();
+    let height = frames.first().map_or(0, |frame| frame.height as usize);
+    let row = |frame: &Frame, y: usize| 3 * frame.width as usize * y..3 * frame.width as usize * (y + 1);
+    let mut rgb = Vec::with_capacity(3 * width * height);
+    for y in 0..height {
+        frames.iter().for_each(|frame| rgb.extend_from_slice(&frame.rgb[row(frame, y)]));
+    }
+    Image { width, height, rgb }
 }
 
 /// Draws what the semantic driver sees: the prediction of the eye, in class colours.
@@ -40,10 +52,11 @@ pub fn watch_as_semantic(
     let camera = Camera::driver(width, height);
     watch(&board.scene, &board.semantic, show, |look| {
         let frame = renderer.draw(&look.scene, &camera)?;
-        let Mask { ids, .. } = eye.see(frame.clone())?;
+        let Mask { ids, .. } = eye.see(frame)?;
         let rgb = ids.iter().flat_map(|id| render::tags::colour(*id)).collect();
+        let image = Image { width: width as usize, height: height as usize, rgb };
         let mask = ShownMask { digest: digest_of(&ids), ids };
-        Ok(view(look, &frame, rgb, Some(mask), clock.now_us()))
+        Ok(view(look, image, Some(mask), clock.now_us()))
     })
 }
 
@@ -67,13 +80,6 @@ fn watch(
     Ok(())
 }
 
-fn view(look: &Look, frame: &Frame, rgb: Vec<u8>, mask: Option<ShownMask>, ready_us: u64) -> View {
-    View {
-        run: look.run,
-        tick: frame.tick,
-        image: Arc::new(Image { width: frame.width as usize, height: frame.height as usize, rgb }),
-        mask,
-        captured_us: look.captured_us,
-        ready_us,
-    }
+fn view(look: &Look, image: Image, mask: Option<ShownMask>, ready_us: u64) -> View {
+    View { run: look.run, tick: look.scene.tick, image: Arc::new(image), mask, captured_us: look.captured_us, ready_us }
 }

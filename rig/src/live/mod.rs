@@ -22,16 +22,18 @@ mod timings;
 mod traces;
 mod windows;
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Sender};
 
 use anyhow::{Context, anyhow};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{Scenario, World};
+use render::Camera;
 use replay::Provenance;
 
 use crate::chart::Chart;
-use crate::cli::{CheckpointChoice, DriveArgs, SizeArgs};
+use crate::cli::{CheckpointChoice, DriveArgs, Screens, SizeArgs};
 use crate::clock::SessionClock;
 use crate::exit::Verdict;
 use crate::maps::Map;
@@ -54,7 +56,7 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
     let (record, force) = (args.record.clone(), args.force);
     let plan = Plan { map, scenario, force, foxglove: args.foxglove, record, provenance, json, unattended: None };
     let seating = Seating::new(seats, &args.calibration)?;
-    let timings = session(plan, seating, eye, args.sizes.image_size)?;
+    let timings = session(plan, seating, eye, &args.sizes)?;
     if let Some(figures) = timings.figures() {
         eprintln!("{figures}");
         figures.shortfalls().iter().for_each(|said| eprintln!("{said}"));
@@ -79,9 +81,7 @@ pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyho
         unattended: Some(Tick::from(seconds) * Tick::from(TICK_HZ)),
     };
     let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[])?;
-    session(plan, seating, eye, sizes.image_size)?
-        .figures()
-        .context("no picture came onto the semantic driver's screen")
+    session(plan, seating, eye, sizes)?.figures().context("no picture came onto the semantic driver's screen")
 }
 
 fn open(checkpoint: &CheckpointChoice, sizes: &SizeArgs) -> anyhow::Result<Eye> {
@@ -89,7 +89,7 @@ fn open(checkpoint: &CheckpointChoice, sizes: &SizeArgs) -> anyhow::Result<Eye> 
 }
 
 /// Opens the windows and drives until the operators, or the plan, have had enough.
-fn session(plan: Plan, seating: Seating, eye: Eye, image_size: (u32, u32)) -> anyhow::Result<Timings> {
+fn session(plan: Plan, seating: Seating, eye: Eye, sizes: &SizeArgs) -> anyhow::Result<Timings> {
     let windows = Windows::new()?;
     let network = plan.map.network.clone();
     World::new(&plan.scenario, &network)?;
@@ -110,10 +110,16 @@ fn session(plan: Plan, seating: Seating, eye: Eye, image_size: (u32, u32)) -> an
     };
     let simulation = Simulation::new(plan, seating, links, eye.name())?;
 
+    let (width, height) = sizes.image_size;
+    let cameras = match sizes.screens {
+        Screens::Three => Camera::driver_row(width, height).to_vec(),
+        Screens::One => vec![Camera::driver(width, height)],
+    };
     std::thread::scope(|scope| {
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Safety));
-            move || report(&outbox, eyes::watch_as_safety(board, safety_renderer, image_size, clock, show))
+            let cameras = cameras.clone();
+            move || report(&outbox, eyes::watch_as_safety(board, safety_renderer, &cameras, clock, show))
         });
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Semantic));
@@ -124,7 +130,10 @@ fn session(plan: Plan, seating: Seating, eye: Eye, image_size: (u32, u32)) -> an
             simulation.drive()
         });
         let chart = Arc::new(Chart::of(&network));
-        let shown = windows.show(Link { board: board.clone(), outbox: outbox.clone(), clock, chart });
+        let link = Link { board: board.clone(), outbox: outbox.clone(), clock, chart, screens: cameras.len() };
+        // A window that the system takes away makes winit panic; the recording is to be finished all the same.
+        let shown = catch_unwind(AssertUnwindSafe(|| windows.show(link)));
+        let shown = shown.unwrap_or_else(|_| Err(anyhow!("a window was taken away; the session is over")));
         // The windows are gone, by the simulation's word or by a failure of their own.
         let _ = outbox.send(Message::Closed);
         let driven = driving.join().unwrap_or_else(|_| Err(anyhow!("the simulation thread panicked")));

@@ -11,7 +11,7 @@ use std::time::Duration;
 use anyhow::anyhow;
 use kernel::arbiter::Outcome;
 use kernel::rng::{self, Stream};
-use kernel::time::Tick;
+use kernel::time::{TICK_HZ, Tick};
 use kernel::{Scenario, Seat, TickInput, TickOutput, World};
 use replay::{Annotation, Manifest, Provenance};
 
@@ -100,7 +100,18 @@ pub struct Simulation {
 /// Why a session ends.
 enum End {
     Asked,
+    Closed,
     Signal,
+}
+
+impl End {
+    fn words(&self) -> &'static str {
+        match self {
+            Self::Asked => "the operators ended it",
+            Self::Closed => "a window was closed",
+            Self::Signal => "it was ended by Ctrl-C or SIGTERM",
+        }
+    }
 }
 
 impl Simulation {
@@ -146,8 +157,7 @@ impl Simulation {
         }
         let is_attended = self.plan.unattended.is_none();
         if let (Ok(Some(path)), Ok(why), true) = (&unfinished, &end, is_attended) {
-            let why = if matches!(why, End::Signal) { "by Ctrl-C or SIGTERM" } else { "by the operators" };
-            eprintln!("the run was ended {why}; its recording is complete: {}", path.display());
+            eprintln!("the run is over: {}; its recording is complete: {}", why.words(), path.display());
             aftermath::figures_of(path, self.plan.json)?;
             aftermath::cut(path)?;
         }
@@ -233,6 +243,9 @@ impl Simulation {
             SessionState::Labelling(_) | SessionState::Done(Outcome::Missed) => self.ask()?,
             SessionState::Done(_) => self.finish(None)?,
         }
+        if tick.is_multiple_of(Tick::from(TICK_HZ)) {
+            self.say(format_args!("tick {tick}"));
+        }
         let is_due = tick.is_multiple_of(CENTRE_TICKS);
         if is_due {
             self.links.board.traces.put(self.traces.clone());
@@ -271,7 +284,7 @@ impl Simulation {
             },
             Message::Shown(seat, view, presented_us) => self.shown(seat, view, presented_us),
             Message::Note(text) => self.note(text),
-            Message::Closed => return Ok(Some(End::Asked)),
+            Message::Closed => return Ok(Some(End::Closed)),
             Message::Failed(error) => return Err(error),
         }
         Ok(None)

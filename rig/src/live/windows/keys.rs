@@ -3,6 +3,7 @@
 use winit::event::KeyEvent;
 use winit::keyboard::{Key as Logical, KeyCode, NamedKey, PhysicalKey};
 
+use crate::desktop::Pane;
 use crate::live::stage::Press;
 use crate::units::Key;
 
@@ -38,7 +39,12 @@ pub fn press(event: &KeyEvent) -> Option<Press> {
     }
 }
 
-/// Whether it is F11.
-pub fn is_full_screen(event: &KeyEvent) -> bool {
-    event.logical_key == Logical::Named(NamedKey::F11)
+/// What a key does to the window that has the keyboard.
+pub fn window_key(event: &KeyEvent) -> Option<fn(&Pane)> {
+    match event.logical_key {
+        Logical::Named(NamedKey::F9) => Some(Pane::span_monitors),
+        Logical::Named(NamedKey::F10) => Some(Pane::to_next_monitor),
+        Logical::Named(NamedKey::F11) => Some(Pane::toggle_full_screen),
+        _ => None,
+    }
 }

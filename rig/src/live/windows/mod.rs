@@ -19,7 +19,7 @@ use super::board::{Board, Message, View, Wake};
 use super::hud;
 use crate::chart::Chart;
 use crate::clock::SessionClock;
-use crate::desktop::{self, Pane, Picture};
+use crate::desktop::{self, Layout, Pane, Picture};
 use centre::Centre;
 
 /// Titles, places and sizes (logical pixels) of the windows at first.
@@ -65,6 +65,7 @@ impl Windows {
     pub fn show(self, link: Link) -> anyhow::Result<()> {
         let mut desk = Desk { link, panes: None, failure: None };
         self.events.run_app(&mut desk).context("the windows' event loop")?;
+        desk.panes.iter().for_each(Panes::keep_places);
         desk.failure.map_or(Ok(()), Err)
     }
 }
@@ -79,6 +80,8 @@ pub struct Link {
     pub clock: SessionClock,
     /// The map from above.
     pub chart: Arc<Chart>,
+    /// Monitors that the safety driver's view is spread over.
+    pub screens: usize,
 }
 
 /// What the event loop drives.
@@ -103,16 +106,32 @@ struct Driver {
 }
 
 impl Panes {
-    fn open(events: &ActiveEventLoop, chart: &Arc<Chart>) -> anyhow::Result<Self> {
-        let semantic = Pane::open(events, SEMANTIC, None)?;
+    fn open(events: &ActiveEventLoop, link: &Link) -> anyhow::Result<Self> {
+        let layout = Layout::of_user();
+        let open = |window: (&str, _, _), device| -> anyhow::Result<Pane> {
+            let pane = Pane::open(events, window, device)?;
+            layout.get(window.0).iter().for_each(|placement| pane.place(placement));
+            Ok(pane)
+        };
+        let semantic = open(SEMANTIC, None)?;
         let device = semantic.device();
-        let safety = Pane::open(events, SAFETY, device.clone())?;
-        let centre = Pane::open(events, CENTRE, device)?;
+        let safety = open(SAFETY, device.clone())?;
+        let centre = open(CENTRE, device)?;
         Ok(Self {
             semantic: Driver { pane: semantic, picture: Picture::sharp(), shown: None },
-            safety: Driver { pane: safety, picture: Picture::smooth(), shown: None },
-            centre: (centre, Centre::new(chart.clone())),
+            safety: Driver { pane: safety, picture: Picture::smooth().over(link.screens), shown: None },
+            centre: (centre, Centre::new(link.chart.clone())),
         })
+    }
+
+    /// For the next session.
+    fn keep_places(&self) {
+        let mut layout = Layout::of_user();
+        let panes = [(SEMANTIC.0, &self.semantic.pane), (SAFETY.0, &self.safety.pane), (CENTRE.0, &self.centre.0)];
+        for (title, pane) in panes {
+            pane.placement().into_iter().for_each(|placement| layout.set(title, placement));
+        }
+        layout.keep();
     }
 
     fn all(&mut self) -> [&mut Pane; 3] {
@@ -173,9 +192,9 @@ impl Desk {
         if event.state == ElementState::Released {
             return;
         }
-        if keys::is_full_screen(event) && !event.repeat {
-            if let Some(pane) = self.panes.as_mut().and_then(|panes| panes.of(id)) {
-                pane.toggle_full_screen();
+        if let Some(act) = keys::window_key(event) {
+            if let (Some(pane), false) = (self.panes.as_mut().and_then(|panes| panes.of(id)), event.repeat) {
+                act(pane);
             }
         } else if let Some(press) = keys::press(event) {
             self.link.tell(Message::Press(press, event.repeat));
@@ -188,7 +207,7 @@ impl ApplicationHandler<Wake> for Desk {
         if self.panes.is_some() {
             return;
         }
-        match Panes::open(events, &self.link.chart) {
+        match Panes::open(events, &self.link) {
             Ok(panes) => self.panes = Some(panes),
             Err(error) => {
                 self.failure = Some(error);
@@ -216,7 +235,7 @@ impl ApplicationHandler<Wake> for Desk {
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } => return self.key(id, event),
             // A key that was down already when the window got the keyboard, or lost it.
             WindowEvent::KeyboardInput { event, .. } => return self.seat_key(event),
-            WindowEvent::CloseRequested => self.link.tell(Message::Closed),
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => self.link.tell(Message::Closed),
             WindowEvent::Focused(false) => self.link.tell(Message::KeysReleased),
             _ => {}
         }

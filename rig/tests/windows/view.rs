@@ -1,8 +1,6 @@
 //! The replay viewer as people use it: the check of mask digests as a command, the window on a virtual
 //! display with real keys and a real pointer.
 
-mod display;
-
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -11,11 +9,12 @@ use std::sync::OnceLock;
 use std::sync::mpsc::{self, Receiver};
 use std::time::Duration;
 
-use display::Display;
 use replay::{Case, Log, Recording};
 use serde_json::Value;
 
-const AEYE: &str = env!("CARGO_BIN_EXE_aeye");
+use crate::display::Display;
+use crate::rig::AEYE;
+
 /// Nothing takes this long; without it a test that waits in vain would never end.
 const PATIENCE: Duration = Duration::from_secs(240);
 /// Length of the drive, ticks: a keyframe lies in it.

@@ -34,6 +34,11 @@ impl Display {
         Self { server, name: format!(":{}", number.trim()), pixels: folder.join("Xvfb_screen0") }
     }
 
+    /// Where its pixels are, and whatever else lasts as long.
+    pub fn folder(&self) -> &Path {
+        self.pixels.parent().expect("a file in a folder")
+    }
+
     /// As DISPLAY has it.
     pub fn name(&self) -> &str {
         &self.name

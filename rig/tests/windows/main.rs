@@ -1,0 +1,7 @@
+//! The windows as people use them: a virtual display, real keys.
+
+mod display;
+mod drive;
+mod ends;
+mod rig;
+mod view;
