@@ -10,6 +10,7 @@ use kernel::time::{CLIP_FPS, TICK_HZ, Tick};
 use perception::BUNDLED;
 
 use crate::live::foxglove;
+use crate::study::StudyArgs;
 use crate::units::SeatChoice;
 
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
@@ -31,7 +32,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Drive in windows, or one run without, and record it.
-    Drive(DriveArgs),
+    Drive(Box<DriveArgs>),
     /// Simulated drives, headless, until so many runs, kilometres or corner cases.
     Campaign(CampaignArgs),
     /// Simulate recordings again and compare every tick.
@@ -40,6 +41,8 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Look at a recording or case in a window, tick by tick.
     View(ViewArgs),
+    /// Attach answers that were given after a drive.
+    Questionnaire(QuestionnaireArgs),
     /// Render the window of recordings or cases through checkpoints.
     Rerender(RerenderArgs),
     /// Make datasets.
@@ -136,6 +139,9 @@ pub struct DriveArgs {
     /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
     #[arg(long, value_name = "FILE.mcap")]
     pub record: PathBuf,
+    /// What makes it part of a study with people.
+    #[command(flatten, next_help_heading = "Study")]
+    pub study: StudyArgs,
 }
 
 /// Sizes of the live rig's pictures.
@@ -236,6 +242,20 @@ pub struct InspectArgs {
     /// Recordings or cases.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    /// Tell which checkpoint drove blind drives.
+    #[arg(long)]
+    pub reveal: bool,
+}
+
+/// Arguments of `questionnaire`.
+#[derive(Args, Debug)]
+pub struct QuestionnaireArgs {
+    /// Recordings.
+    #[arg(required = true, value_name = "RECORDING")]
+    pub files: Vec<PathBuf>,
+    /// The drivers' answers.
+    #[arg(long, value_name = "FILE.toml")]
+    pub answers: PathBuf,
 }
 
 /// What `view --help` says about the window.
@@ -269,6 +289,9 @@ pub struct ViewArgs {
     /// one; exit code 3 if any differs. Equal digests are promised on the adapter that made them.
     #[arg(long)]
     pub digests: bool,
+    /// Show a blind drive all the same, with its checkpoint.
+    #[arg(long)]
+    pub reveal: bool,
 }
 
 /// Arguments of `rerender`.

@@ -12,6 +12,7 @@ pub mod exit;
 pub mod lab;
 mod live;
 pub mod maps;
+pub mod measures;
 mod newest;
 pub mod output;
 pub mod progress;
@@ -19,6 +20,7 @@ pub mod quiet;
 pub mod session;
 pub mod simulate;
 pub mod stats;
+pub mod study;
 pub mod units;
 mod view;
 pub mod vision;
@@ -35,6 +37,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Verify(args) => commands::verify::run(args, json),
         Command::Inspect(args) => commands::inspect::run(args, json),
         Command::View(args) => view::run(args, json),
+        Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Rerender(args) => lab::rerender::run(args, json),
         Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
         Command::Train(args) => lab::train::run(args, json),

@@ -43,11 +43,23 @@ pub fn drive<W: Write>(
     map: &Map,
     vision: Vision,
     out: W,
+    keep_on: impl FnMut(&World) -> bool,
+) -> anyhow::Result<(W, Vision)> {
+    let manifest = manifest(scenario, map, vision.eye());
+    drive_as(&manifest, map, vision, out, keep_on)
+}
+
+/// As [`drive`], with what the recording is to say about itself.
+pub fn drive_as<W: Write>(
+    manifest: &Manifest,
+    map: &Map,
+    vision: Vision,
+    out: W,
     mut keep_on: impl FnMut(&World) -> bool,
 ) -> anyhow::Result<(W, Vision)> {
-    let world = World::new(scenario, &map.network)?;
+    let world = World::new(&manifest.scenario, &map.network)?;
     let mut keyframes = vec![world.initial_keyframe()];
-    let mut session = Session::new(world, &manifest(scenario, map, vision.eye()), out)?;
+    let mut session = Session::new(world, manifest, out)?;
     let mut crew = Crew::new(vision);
     let mut ended = false;
     while !ended && keep_on(session.world()) {

@@ -19,7 +19,8 @@ use crate::maps::{Map, read_scenario};
 use crate::output;
 use crate::progress::Interrupt;
 use crate::simulate;
-use crate::vision::{Eye, Vision};
+use crate::study::{self, Lineup};
+use crate::vision::Vision;
 
 /// Map of a drive when none is named.
 const DEFAULT_MAP: &str = "city";
@@ -37,6 +38,8 @@ pub struct RunFigures {
     pub minutes: f64,
     /// `intervened`, `missed`, `censored`, or `stopped` when it was ended from outside.
     pub outcome: &'static str,
+    /// Whether it was a drive to get used to the rig, which does not count.
+    pub familiarisation: bool,
     /// What kind of corner case, if it is one.
     pub label: Option<&'static str>,
     /// What is to be seen in the corner case.
@@ -58,6 +61,7 @@ impl RunFigures {
             km: odometer_mm.unwrap_or(0) as f64 / 1e6,
             minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
             outcome: outcome_name(outcome),
+            familiarisation: study::is_familiarisation(&log.manifest.provenance),
             label: annotation.map(|a| Label::name(a.label)),
             comment: annotation.map(|a| a.comment.clone()),
             perception_caused: annotation.and_then(|a| a.perception_caused),
@@ -70,8 +74,9 @@ impl RunFigures {
     pub fn print(&self, path: &Path, json: bool) -> anyhow::Result<()> {
         output::print(json, self, || {
             let label = self.label.map(|l| format!(" ({l})")).unwrap_or_default();
+            let practice = if self.familiarisation { ", familiarisation: does not count" } else { "" };
             let Self { km, minutes, outcome, .. } = self;
-            format!("{}: {km:.3} km in {minutes:.1} min, {outcome}{label}", path.display())
+            format!("{}: {km:.3} km in {minutes:.1} min, {outcome}{label}{practice}", path.display())
         })
     }
 }
@@ -103,7 +108,12 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
 }
 
 fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<Verdict> {
-    let eye = Eye::open(&args.checkpoint)?;
+    let about = args.study.provenance()?;
+    let mut lineup = Lineup::open(&args.study, &args.checkpoint, None, scenario.seed)?;
+    let eye = lineup.of_run(1).clone();
+    let mut manifest = simulate::manifest(scenario, map, &eye);
+    manifest.provenance.extend(lineup.cast().provenance_of_run(1).clone());
+    manifest.provenance.extend(about);
     let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
     World::new(scenario, &map.network)?;
 
@@ -119,7 +129,7 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
         }
         !interrupt.is_raised()
     };
-    simulate::drive(scenario, map, vision, file, keep_on).with_context(|| path.display().to_string())?;
+    simulate::drive_as(&manifest, map, vision, file, keep_on).with_context(|| path.display().to_string())?;
     RunFigures::of(&Recording::open(path)?).print(path, json)?;
     Ok(Verdict::Ok)
 }

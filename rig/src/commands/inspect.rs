@@ -1,7 +1,6 @@
 //! Says what is in a recording or case.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 
 use anyhow::Context;
@@ -12,7 +11,9 @@ use serde::Serialize;
 use super::drive::RunFigures;
 use crate::cli::InspectArgs;
 use crate::exit::Verdict;
+use crate::measures::{self, Measures, Tally};
 use crate::output;
+use crate::study::{self, Questionnaire};
 
 /// What is printed for a file.
 #[derive(Debug, Serialize)]
@@ -22,6 +23,7 @@ struct Contents {
     bytes: u64,
     kernel: String,
     finished: bool,
+    blind: bool,
     first_tick: Tick,
     last_tick: Tick,
     keyframes: usize,
@@ -31,11 +33,24 @@ struct Contents {
     map_digest: String,
     embedded_map: bool,
     provenance: BTreeMap<String, String>,
+    questionnaire: Questionnaire,
     intervention: Option<Takeover>,
     window: Option<Window>,
     events: Vec<EventLine>,
     notes: Vec<NoteLine>,
+    measures: Option<Measures>,
+    /// Why there are no measures.
+    unmeasured: Option<String>,
     scenario: String,
+}
+
+/// What is printed after several files.
+#[derive(Serialize)]
+struct Overall {
+    kind: &'static str,
+    files: usize,
+    #[serde(flatten)]
+    tally: Tally,
 }
 
 /// The intervention.
@@ -81,15 +96,27 @@ impl NoteLine {
 
 /// Runs `aeye inspect`.
 pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
+    let mut seen = Vec::new();
     for file in &args.files {
-        let contents = read(file)?;
+        let recording = Recording::open(file)?;
+        let contents = read(file, &recording, args.reveal)?;
         output::print(json, &contents, || text(&contents))?;
+        seen.push((recording, contents.measures));
+    }
+    if seen.len() > 1 {
+        let tally = Tally::of(seen.iter().map(|(recording, measures)| (recording, measures.as_ref())));
+        let overall = Overall { kind: "overall", files: seen.len(), tally };
+        output::print(json, &overall, || paragraph(overall.tally.lines()))?;
     }
     Ok(Verdict::Ok)
 }
 
-fn read(file: &Path) -> anyhow::Result<Contents> {
-    let recording = Recording::open(file)?;
+/// The measures of a recording, or why there are none.
+fn measure(recording: &Recording) -> Result<Measures, replay::Error> {
+    Measures::of(recording.log(), &recording.network()?)
+}
+
+fn read(file: &Path, recording: &Recording, reveal: bool) -> anyhow::Result<Contents> {
     let bytes = std::fs::metadata(file).with_context(|| file.display().to_string())?.len();
     let log = recording.log();
     let manifest = &log.manifest;
@@ -111,34 +138,42 @@ fn read(file: &Path) -> anyhow::Result<Contents> {
         actor: e.actor,
         speed_mps: e.speed_mps,
     });
+    let measured = measure(recording);
     Ok(Contents {
         file: file.display().to_string(),
         kind: if window.is_some() { "case" } else { "recording" },
         bytes,
         kernel: manifest.kernel.clone(),
         finished: recording.finished(),
+        blind: study::is_blind(&manifest.provenance),
         first_tick: log.first_tick(),
         last_tick: log.last_tick(),
         keyframes: log.keyframes.len(),
         masks: log.masks.len(),
-        figures: RunFigures::of(&recording),
+        figures: RunFigures::of(recording),
         map_digest: format!("{:032x}", manifest.map_digest),
         embedded_map: manifest.foreign_map.is_some(),
-        provenance: manifest.provenance.clone(),
+        provenance: study::tellable(&manifest.provenance, reveal),
+        questionnaire: study::answers_of(file, recording)?,
         intervention,
         window,
         events: events.collect(),
         notes: log.notes.iter().map(NoteLine::of).collect(),
+        unmeasured: measured.as_ref().err().map(ToString::to_string),
+        measures: measured.ok(),
         scenario: manifest.scenario.to_toml(),
     })
 }
 
+/// Names and values as lines.
+fn paragraph(lines: Vec<(impl AsRef<str>, String)>) -> String {
+    let lines: Vec<String> = lines.iter().map(|(name, value)| format!("{:<12} {value}", name.as_ref())).collect();
+    lines.join("\n")
+}
+
 fn text(c: &Contents) -> String {
-    let mut text = String::new();
-    // Writing to a string cannot fail.
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<12} {value}");
-    };
+    let mut lines: Vec<(String, String)> = Vec::new();
+    let mut line = |name: &str, value: String| lines.push((name.to_owned(), value));
     let at = |tick: Tick| format!("tick {tick} ({:.2} s)", tick as f64 / f64::from(TICK_HZ));
     line("file", format!("{} ({}, {} bytes)", c.file, c.kind, c.bytes));
     line("map", format!("{}{}", c.figures.map, if c.embedded_map { " (embedded)" } else { "" }));
@@ -148,6 +183,12 @@ fn text(c: &Contents) -> String {
     line("holds", format!("{} keyframes, {} masks, {} events", c.keyframes, c.masks, c.events.len()));
     for (name, value) in &c.provenance {
         line(name, value.clone());
+    }
+    if c.figures.familiarisation {
+        line("counts", "no: a drive to get used to the rig".into());
+    }
+    for (question, answer) in c.questionnaire.answers() {
+        line("answer", format!("{question} = {answer}"));
     }
     if let Some(i) = &c.intervention {
         line("takeover", format!("{} at {:.1} km/h", at(i.tick), 3.6 * i.speed_mps));
@@ -170,6 +211,9 @@ fn text(c: &Contents) -> String {
     for n in &c.notes {
         line("note", format!("{}: {} ({} driver)", at(n.tick), n.kind, n.seat));
     }
-    text.truncate(text.trim_end().len());
-    text
+    match (&c.measures, &c.unmeasured) {
+        (Some(measures), _) => measures::lines(measures).into_iter().for_each(|(name, value)| line(name, value)),
+        (None, why) => line("measures", format!("none: {}", why.as_deref().unwrap_or_default())),
+    }
+    paragraph(lines)
 }

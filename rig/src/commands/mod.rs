@@ -4,5 +4,6 @@ pub mod campaign;
 pub mod doctor;
 pub mod drive;
 pub mod inspect;
+pub mod questionnaire;
 pub mod verify;
 pub mod wheel;

@@ -6,7 +6,7 @@ use kernel::arbiter::Phase;
 use kernel::events::Hud;
 use kernel::scenario::Rules;
 use kernel::time::Tick;
-use kernel::{SceneSnapshot, Seat, TickInput};
+use kernel::{SceneSnapshot, Seat, TickInput, World};
 
 use super::events::Events;
 use super::foxglove::Telemetry;
@@ -162,13 +162,27 @@ pub struct Totals {
     pub cases: u32,
 }
 
+impl Totals {
+    /// Adds a run that has ended.
+    pub fn add(&mut self, world: &World, is_case: bool) {
+        self.runs += 1;
+        self.odometer_mm += world.odometer_mm();
+        self.ticks += world.tick();
+        self.cases += u32::from(is_case);
+    }
+}
+
 /// What does not change in a session.
 #[derive(Clone, Debug)]
 pub struct About {
-    /// Name of the checkpoint.
+    /// Name of the checkpoint; in a blind session, that it is one.
     pub checkpoint: String,
     /// Name of the map.
     pub map: String,
     /// What counts as an intervention, among others.
     pub rules: Rules,
+    /// Pseudonyms of the operators, first of whoever began as the semantic driver.
+    pub operators: [Option<String>; 2],
+    /// Whether the drives are to get used to the rig and do not count.
+    pub is_familiarisation: bool,
 }

@@ -10,7 +10,8 @@ use super::board::{Board, Look, ShownMask, View};
 use crate::clock::SessionClock;
 use crate::desktop::Image;
 use crate::newest::Newest;
-use crate::vision::{Eye, digest_of};
+use crate::study::Lineup;
+use crate::vision::digest_of;
 
 /// Draws what the safety driver sees through cameras side by side, left one first, until the scenes
 /// end. `show` is called after every picture.
@@ -40,19 +41,19 @@ fn side_by_side(frames: &[Frame]) -> Image {
     Image { width, height, rgb }
 }
 
-/// Draws what the semantic driver sees: the prediction of the eye, in class colours.
+/// Draws what the semantic driver sees: the prediction of the run's eye, in class colours.
 pub fn watch_as_semantic(
     board: &Board,
     mut renderer: Renderer,
-    mut eye: Eye,
+    mut lineup: Lineup,
     clock: SessionClock,
     show: impl Fn(),
 ) -> anyhow::Result<()> {
-    let (width, height) = eye.size();
+    let (width, height) = lineup.size();
     let camera = Camera::driver(width, height);
     watch(&board.scene, &board.semantic, show, |look| {
         let frame = renderer.draw(&look.scene, &camera)?;
-        let Mask { ids, .. } = eye.see(frame)?;
+        let Mask { ids, .. } = lineup.of_run(look.run).see(frame)?;
         let rgb = ids.iter().flat_map(|id| render::tags::colour(*id)).collect();
         let image = Image { width: width as usize, height: height as usize, rgb };
         let mask = ShownMask { digest: digest_of(&ids), ids };

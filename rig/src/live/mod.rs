@@ -30,7 +30,6 @@ use anyhow::{Context, anyhow};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{Scenario, World};
 use render::Camera;
-use replay::Provenance;
 
 use crate::chart::Chart;
 use crate::cli::{CheckpointChoice, DriveArgs, Screens, SizeArgs};
@@ -38,9 +37,9 @@ use crate::clock::SessionClock;
 use crate::exit::Verdict;
 use crate::maps::Map;
 use crate::progress::Interrupt;
+use crate::study::{Lineup, StudyArgs};
 use crate::units::SeatChoice;
-use crate::vision::Eye;
-use board::{Board, Message, Wake};
+use board::{About, Board, Message, Wake};
 use foxglove::Server;
 use seating::Seating;
 use simulation::{Links, Plan, Simulation};
@@ -50,13 +49,22 @@ use windows::{Link, Waker, Windows};
 
 /// Runs `aeye drive` with windows.
 pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyhow::Result<Verdict> {
-    let eye = open(&args.checkpoint, &args.sizes)?;
+    let lineup = Lineup::open(&args.study, &args.checkpoint, args.sizes.mask_size, scenario.seed)?;
     let seats = [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default);
-    let provenance = provenance(&eye);
-    let (record, force) = (args.record.clone(), args.force);
-    let plan = Plan { map, scenario, force, foxglove: args.foxglove, record, provenance, json, unattended: None };
+    let plan = Plan {
+        about: about(&args.study, &lineup, &scenario),
+        map,
+        scenario,
+        force: args.force,
+        foxglove: args.foxglove,
+        record: args.record.clone(),
+        provenance: args.study.provenance()?,
+        cast: lineup.cast().clone(),
+        json,
+        unattended: None,
+    };
     let seating = Seating::new(seats, &args.calibration)?;
-    let timings = session(plan, seating, eye, &args.sizes)?;
+    let timings = session(plan, seating, lineup, &args.sizes)?;
     if let Some(figures) = timings.figures() {
         eprintln!("{figures}");
         figures.shortfalls().iter().for_each(|said| eprintln!("{said}"));
@@ -69,27 +77,26 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
 pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyhow::Result<LiveFigures> {
     let dir = tempfile::tempdir()?;
     let map = Map::find(kernel::map::BUNDLED[0])?;
-    let eye = open(choice, sizes)?;
+    let (study, scenario) = (StudyArgs::default(), map.scenario(1));
+    let lineup = Lineup::open(&study, choice, sizes.mask_size, scenario.seed)?;
     let plan = Plan {
-        scenario: map.scenario(1),
+        about: about(&study, &lineup, &scenario),
+        scenario,
         map,
         force: 0.0,
         foxglove: None,
         record: dir.path().join("trial.mcap"),
-        provenance: provenance(&eye),
+        provenance: study.provenance()?,
+        cast: lineup.cast().clone(),
         json: false,
         unattended: Some(Tick::from(seconds) * Tick::from(TICK_HZ)),
     };
     let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[])?;
-    session(plan, seating, eye, sizes)?.figures().context("no picture came onto the semantic driver's screen")
-}
-
-fn open(checkpoint: &CheckpointChoice, sizes: &SizeArgs) -> anyhow::Result<Eye> {
-    sizes.mask_size.map_or_else(|| Eye::open(checkpoint), |size| Eye::open_at(checkpoint, size))
+    session(plan, seating, lineup, sizes)?.figures().context("no picture came onto the semantic driver's screen")
 }
 
 /// Opens the windows and drives until the operators, or the plan, have had enough.
-fn session(plan: Plan, seating: Seating, eye: Eye, sizes: &SizeArgs) -> anyhow::Result<Timings> {
+fn session(plan: Plan, seating: Seating, lineup: Lineup, sizes: &SizeArgs) -> anyhow::Result<Timings> {
     let windows = Windows::new()?;
     let network = plan.map.network.clone();
     World::new(&plan.scenario, &network)?;
@@ -108,7 +115,7 @@ fn session(plan: Plan, seating: Seating, eye: Eye, sizes: &SizeArgs) -> anyhow::
         clock,
         interrupt: Interrupt::listen()?,
     };
-    let simulation = Simulation::new(plan, seating, links, eye.name())?;
+    let simulation = Simulation::new(plan, seating, links)?;
 
     let (width, height) = sizes.image_size;
     let cameras = match sizes.screens {
@@ -123,7 +130,7 @@ fn session(plan: Plan, seating: Seating, eye: Eye, sizes: &SizeArgs) -> anyhow::
         });
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Semantic));
-            move || report(&outbox, eyes::watch_as_semantic(board, semantic_renderer, eye, clock, show))
+            move || report(&outbox, eyes::watch_as_semantic(board, semantic_renderer, lineup, clock, show))
         });
         let driving = scope.spawn(move || {
             let _over = Over(waker);
@@ -158,14 +165,13 @@ impl Drop for Over {
     }
 }
 
-/// What the recordings say about the semantic driver's eye.
-fn provenance(eye: &Eye) -> Provenance {
-    let (width, height) = eye.size();
-    let entries = [
-        ("checkpoint", eye.name().to_owned()),
-        ("checkpoint_digest", eye.digest()),
-        ("camera", format!("driver {width}x{height}")),
-        ("live", "true".to_owned()),
-    ];
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+/// What may be shown of a session while it lasts.
+fn about(study: &StudyArgs, lineup: &Lineup, scenario: &Scenario) -> Arc<About> {
+    Arc::new(About {
+        checkpoint: lineup.cast().public_name().to_owned(),
+        map: scenario.map.clone(),
+        rules: scenario.rules,
+        operators: study.names(),
+        is_familiarisation: study.familiarisation,
+    })
 }

@@ -64,6 +64,11 @@ impl Seating {
         format!("the seats are swapped: semantic driver {semantic}, safety driver {safety}")
     }
 
+    /// Whether the units have changed seats since the session began.
+    pub fn is_swapped(&self) -> bool {
+        self.is_swapped
+    }
+
     fn refresh(&mut self) {
         self.devices = self.seats.devices().to_vec();
         self.setup = self.seats.summary().into();

@@ -10,7 +10,6 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use kernel::arbiter::Outcome;
-use kernel::rng::{self, Stream};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{Scenario, Seat, TickInput, TickOutput, World};
 use replay::{Annotation, Manifest, Provenance};
@@ -31,6 +30,7 @@ use crate::clock::SessionClock;
 use crate::maps::Map;
 use crate::progress::Interrupt;
 use crate::session::SessionState;
+use crate::study::{self, Cast};
 use crate::units::Polled;
 
 /// While nothing drives, the units are asked this often, microseconds.
@@ -50,8 +50,12 @@ pub struct Plan {
     pub foxglove: Option<SocketAddr>,
     /// Where the recordings go.
     pub record: PathBuf,
-    /// What the recordings say about themselves.
+    /// What the recordings say about themselves, the checkpoint aside.
     pub provenance: Provenance,
+    /// Which seed and which checkpoint a run has.
+    pub cast: Cast,
+    /// What may be shown of all that.
+    pub about: Arc<About>,
     /// Whether figures are printed as JSON.
     pub json: bool,
     /// Runs start by themselves until so much has been driven, ticks; then the session ends.
@@ -93,7 +97,6 @@ pub struct Simulation {
     last: Option<TickOutput>,
     events: Events,
     totals: Totals,
-    about: Arc<About>,
     helpers: Vec<JoinHandle<()>>,
 }
 
@@ -116,13 +119,11 @@ impl End {
 
 impl Simulation {
     /// Takes the seats and makes the first world.
-    pub fn new(plan: Plan, seating: Seating, links: Links, checkpoint: &str) -> anyhow::Result<Self> {
+    pub fn new(plan: Plan, seating: Seating, links: Links) -> anyhow::Result<Self> {
         if plan.unattended.is_none() {
             seating.setup().iter().for_each(|line| eprintln!("{line}"));
         }
         let force = Force::new(plan.force, &links.outbox);
-        let Scenario { map, rules, .. } = &plan.scenario;
-        let about = Arc::new(About { checkpoint: checkpoint.into(), map: map.clone(), rules: *rules });
         let mut simulation = Self {
             plan,
             links,
@@ -140,7 +141,6 @@ impl Simulation {
             last: None,
             events: Events::default(),
             totals: Totals::default(),
-            about,
             helpers: Vec::new(),
         };
         simulation.prepare()?;
@@ -311,10 +311,8 @@ impl Simulation {
     /// Makes the world of the next run and shows it.
     fn prepare(&mut self) -> anyhow::Result<()> {
         self.number += 1;
-        let mut scenario = self.plan.scenario.clone();
-        if self.number > 1 {
-            scenario.seed = rng::bits(scenario.seed, Stream::Scenario, u64::from(self.number), 0) >> 32;
-        }
+        let seed = self.plan.cast.seed_of_run(self.number);
+        let scenario = Scenario { seed, ..self.plan.scenario.clone() };
         let world = World::new(&scenario, &self.plan.map.network)?;
         self.traces = Traces::of(&world);
         self.links.board.traces.put(self.traces.clone());
@@ -336,8 +334,11 @@ impl Simulation {
             return Ok(());
         }
         let Some(world) = self.next.take() else { return Ok(()) };
-        let Plan { map, provenance, record, .. } = &self.plan;
-        let mut provenance = provenance.clone();
+        let Plan { map, record, cast, .. } = &self.plan;
+        let swapped = || study::swapped(&self.plan.provenance);
+        let mut provenance = if self.seating.is_swapped() { swapped() } else { self.plan.provenance.clone() };
+        provenance.insert("live".into(), "true".into());
+        provenance.extend(cast.provenance_of_run(self.number).clone());
         provenance.extend(self.seating.provenance());
         let manifest = Manifest::new(world.scenario(), &map.network, map.foreign.clone(), provenance);
         let (path, file) = disk::create_next(record)?;
@@ -370,11 +371,9 @@ impl Simulation {
 
     fn end_run(&mut self, annotation: Option<Annotation>) -> anyhow::Result<Option<PathBuf>> {
         let Some(run) = self.run.take() else { return Ok(None) };
-        let world = run.world();
-        self.totals.runs += 1;
-        self.totals.odometer_mm += world.odometer_mm();
-        self.totals.ticks += world.tick();
-        self.totals.cases += u32::from(annotation.is_some());
+        if !self.plan.about.is_familiarisation {
+            self.totals.add(run.world(), annotation.is_some());
+        }
         self.timings.run(self.pacing.driven_us(), self.pacing.slowed_us());
         run.finish(annotation).map(Some)
     }
@@ -424,6 +423,18 @@ impl Simulation {
         }
     }
 
+    /// Who sits in the seats, as far as that is to be known, and how their units are.
+    fn operators(&self) -> [String; 2] {
+        let mut names = self.plan.about.operators.clone();
+        if self.seating.is_swapped() {
+            names.swap(0, 1);
+        }
+        let [semantic, safety] = self.seating.words();
+        let [named, other] = names;
+        let with = |name: Option<String>, unit: String| name.map_or(unit.clone(), |name| format!("{name}, {unit}"));
+        [with(named, semantic), with(other, safety)]
+    }
+
     fn status(&self) -> Option<Status> {
         let world = self.world()?;
         let now_us = self.links.clock.now_us();
@@ -449,11 +460,11 @@ impl Simulation {
                 .filter(|_| self.stage == Stage::Driving)
                 .map(|s| now_us.saturating_sub(s.view.captured_us)),
             events: self.events.clone(),
-            units: self.seating.words(),
+            units: self.operators(),
             units_note: self.seating.note(),
             setup: self.seating.setup(),
             force: self.force.words(),
-            about: self.about.clone(),
+            about: self.plan.about.clone(),
         })
     }
 }

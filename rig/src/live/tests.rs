@@ -8,13 +8,16 @@ use kernel::Seat;
 use replay::{NoteKind, Recording};
 use tempfile::TempDir;
 
+use super::about;
 use super::board::{Board, Message, Status};
 use super::seating::Seating;
 use super::simulation::{Links, Plan, Simulation};
 use super::stage::{Press, Stage};
+use crate::cli::CheckpointChoice;
 use crate::clock::SessionClock;
 use crate::maps::Map;
 use crate::progress::Interrupt;
+use crate::study::{Lineup, StudyArgs};
 use crate::units::source::{AxisRange, DeviceInfo, RawEvent, Simulated};
 use crate::units::{SeatChoice, Seats};
 
@@ -56,8 +59,12 @@ impl Bench {
         let choices = [0, 1].map(|id| SeatChoice::Device(path(id)));
         let seats = Seats::with_source(choices.clone(), Vec::new(), Box::new(devices.clone()));
         let map = Map::find("rural").unwrap();
+        let (study, scenario) = (StudyArgs::default(), map.scenario(1));
+        let lineup = Lineup::open(&study, &CheckpointChoice::Truth, None, scenario.seed).unwrap();
         let plan = Plan {
-            scenario: map.scenario(1),
+            about: about(&study, &lineup, &scenario),
+            cast: lineup.cast().clone(),
+            scenario,
             map,
             force: 0.0,
             foxglove: None,
@@ -76,7 +83,7 @@ impl Bench {
             clock: SessionClock::starting_now(),
             interrupt: Interrupt::listen().unwrap(),
         };
-        let simulation = Simulation::new(plan, Seating::of(seats, choices), links, "truth").unwrap();
+        let simulation = Simulation::new(plan, Seating::of(seats, choices), links).unwrap();
         let driving = std::thread::spawn(move || simulation.drive().map(drop));
         let bench = Self { devices, board, outbox, driving, dir };
         (0..2).for_each(|id| bench.arm(id));

@@ -1,7 +1,6 @@
 //! Makes every mask of a log again and compares its digest with the one that was logged.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use kernel::time::Tick;
@@ -54,9 +53,8 @@ pub fn hex(digest: u64) -> String {
 }
 
 /// Runs `aeye view FILE --digests`.
-pub fn run(path: &Path, choices: &[CheckpointChoice], json: bool) -> anyhow::Result<Verdict> {
-    let film = Film::open(path)?;
-    match compare(&film, choices).with_context(|| path.display().to_string()) {
+pub fn run(film: &Film, choices: &[CheckpointChoice], json: bool) -> anyhow::Result<Verdict> {
+    match compare(film, choices).with_context(|| film.path.display().to_string()) {
         Ok(digests) => {
             output::print(json, &digests, || text(&digests))?;
             Ok(if digests.different == 0 { Verdict::Ok } else { Verdict::CheckFailed })

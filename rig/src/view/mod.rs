@@ -21,8 +21,9 @@ use std::collections::BTreeSet;
 use std::sync::mpsc;
 
 use crate::cli::{CheckpointChoice, ViewArgs};
-use crate::exit::Verdict;
+use crate::exit::{Usage, Verdict};
 use crate::newest::Newest;
+use crate::study;
 use crate::vision::Eye;
 use film::Film;
 use projector::Projector;
@@ -31,10 +32,14 @@ use windows::{Links, Window, Word};
 
 /// Runs `aeye view`.
 pub fn run(args: &ViewArgs, json: bool) -> anyhow::Result<Verdict> {
-    if args.digests {
-        return digests::run(&args.file, &args.checkpoint, json);
-    }
     let film = Film::open(&args.file)?;
+    if study::is_blind(&film.log().manifest.provenance) && !args.reveal {
+        let file = args.file.display();
+        return Err(Usage(format!("{file}: a blind drive; expected --reveal, which tells its checkpoint")).into());
+    }
+    if args.digests {
+        return digests::run(&film, &args.checkpoint, json);
+    }
     let window = Window::new()?;
     let recorded = film.eye.find(&args.checkpoint)?;
     let eyes = eyes(&film, recorded.as_ref(), &args.checkpoint)?;

@@ -4,4 +4,5 @@ mod display;
 mod drive;
 mod ends;
 mod rig;
+mod study;
 mod view;

@@ -47,7 +47,11 @@ pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Hazar
         .or_else(|| leaving_lane(world, scene))
 }
 
-/// The actor or parked car that the ego car will touch first.
+/// The actor or parked car that the ego car is predicted to touch first, within 2 s.
+pub fn predicted_encroachment(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Hazard> {
+    encroachment(world, scene, &EgoWay::new(world, &scene.ego, looks.ego_mps2()), looks)
+}
+
 fn encroachment(world: &World, scene: &SceneSnapshot, way: &EgoWay, looks: &Looks) -> Option<Hazard> {
     if scene.ego.speed_mps < 0.5 {
         return None;

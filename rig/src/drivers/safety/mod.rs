@@ -10,8 +10,8 @@ use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Controls, World, ego, ops};
 
 use super::Driver;
-pub use hazard::{Hazard, label_of};
-use looks::{LOOK_TICKS, Looks};
+pub use hazard::{Hazard, label_of, predicted_encroachment};
+pub use looks::{LOOK_TICKS, Looks};
 
 /// Reaction times are log-normal with this mean (Dixit et al. 2016), seconds, and spread.
 const REACTION_MEAN_S: f32 = 0.83;
@@ -19,7 +19,7 @@ const REACTION_SIGMA: f32 = 0.35;
 /// Shortest and longest reaction, seconds.
 const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
 /// A hazard that is gone for this long is over.
-const FORGET_TICKS: Tick = 12;
+pub const FORGET_TICKS: Tick = 12;
 /// Standing without a red light ahead gets boring after this time.
 pub const BORING_TICKS: Tick = seconds(60);
 /// Deceleration of the full brake is asked for at once.

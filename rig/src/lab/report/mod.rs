@@ -1,6 +1,7 @@
 //! One self-contained page about corner cases: what the camera saw, what was there, what each
 //! checkpoint made of it, and where it happened.
 
+mod drive;
 mod map;
 mod page;
 mod story;
@@ -9,7 +10,7 @@ mod strip;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use perception::ConfusionMatrix;
 use replay::Recording;
@@ -19,9 +20,12 @@ use super::footage::Footage;
 use super::looks::{Studio, look, open_eyes};
 use crate::cli::{CheckpointChoice, ReportArgs};
 use crate::exit::Verdict;
+use crate::measures::Tally;
 use crate::output;
 use crate::progress;
+use crate::study;
 
+use drive::Drive;
 use page::{CasePart, Page};
 use story::Story;
 use strip::{Seen, Strip};
@@ -45,14 +49,20 @@ pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
 }
 
 /// The page about these corner cases, each drawn at `size` and looked at through each checkpoint.
-/// Kilometres and minutes are those of all recordings that lie beside the cases.
+/// Kilometres and minutes are those of all recordings that lie beside the cases. Drives to get used
+/// to the rig do not count.
 pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<String> {
     let mut eyes = open_eyes(choices, size)?;
     let mut studio = Studio::new(size)?;
     let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
-    let (mut cases, mut seen) = (Vec::new(), Seen::nothing());
+    let (mut cases, mut drives, mut seen) = (Vec::new(), Vec::new(), Seen::nothing());
     let bar = progress::bar("report", files.len() as u64);
     for path in files {
+        let drive = Drive::of(path)?;
+        if drive.is_familiarisation() {
+            eprintln!("{}: left out, a drive to get used to the rig", path.display());
+            continue;
+        }
         let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
         let mut strip = Strip::new(&eyes, &footage);
         for scene in &footage.scenes {
@@ -61,12 +71,17 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
             strip.add(&frame, &masks, &mut seen)?;
         }
         overall.iter_mut().zip(strip.matrices()).for_each(|(sum, matrix)| sum.merge(matrix));
-        let story = Story::of(path, &footage)?;
+        let story = Story::of(&drive, &footage)?;
         cases.push(CasePart::new(&footage.name, story, strip));
+        drives.push(drive);
         bar.inc(1);
     }
     bar.finish_and_clear();
-    Page::new(&eyes, &overall, &seen, &exposure(files)?, cases).render()
+    if cases.is_empty() {
+        bail!("no case is left: expected one of a drive that counts");
+    }
+    let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
+    Page::new(&eyes, &overall, &seen, (&exposure(files)?, &tally), cases).render()
 }
 
 /// What was driven.
@@ -89,6 +104,9 @@ fn exposure(cases: &[PathBuf]) -> anyhow::Result<Exposure> {
         for path in paths.iter().filter(|path| is_recording(path)) {
             let recording = Recording::open(path)?;
             let log = recording.log();
+            if study::is_familiarisation(&log.manifest.provenance) {
+                continue;
+            }
             sum.recordings += 1;
             sum.km += log.marks.last().map_or(0.0, |mark| mark.odometer_mm as f64 / 1e6);
             sum.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);

@@ -10,6 +10,7 @@ use super::super::figures::{Figures, decimal};
 use super::Exposure;
 use super::story::{Fact, Story};
 use super::strip::{Moment, PictureRow, Seen, Strip};
+use crate::measures::{Spread, Tally};
 use crate::vision::Eye;
 
 const TEMPLATE: &str = include_str!("template.html");
@@ -114,7 +115,7 @@ impl Page {
         eyes: &[Eye],
         overall: &[ConfusionMatrix],
         seen: &Seen,
-        exposure: &Exposure,
+        (exposure, tally): (&Exposure, &Tally),
         cases: Vec<CasePart>,
     ) -> Self {
         let tile = |name, value| Tile { name, value };
@@ -124,6 +125,12 @@ impl Page {
             tiles.push(tile("kilometres driven", format!("{:.2}", exposure.km)));
             tiles.push(tile("minutes driven", format!("{:.1}", exposure.minutes)));
             tiles.push(tile("km per corner case", format!("{:.2}", exposure.km / cases.len().max(1) as f64)));
+        }
+        if tally.labelled > 0 {
+            tiles.push(tile("takeovers out of boredom", format!("{} of {}", tally.boredom, tally.labelled)));
+        }
+        if let Some(Spread { median, n, .. }) = tally.intervention_ms {
+            tiles.push(tile("median from hazard to takeover", format!("{median:.0} ms (n = {n})")));
         }
         let class = |tag: &render::SemanticTag| {
             let [r, g, b] = tag.colour();

@@ -1,14 +1,14 @@
 //! How a corner case came about: the drive up to it, and what is known of it.
 
-use std::path::{Path, PathBuf};
-
 use glam::Vec2;
 use kernel::arbiter::Outcome;
 use kernel::time::{TICK_HZ, Tick};
-use replay::{KERNEL_VERSION, Log, Recording, Replayer};
+use replay::{KERNEL_VERSION, Log, Replayer};
 
 use super::super::footage::Footage;
+use super::drive::Drive;
 use super::map;
+use crate::study;
 
 /// Ticks from one point of the drawn route to the next.
 const ROUTE_TICKS: Tick = TICK_HZ as Tick / 2;
@@ -35,26 +35,17 @@ pub struct Story {
 }
 
 impl Story {
-    /// That of a case; the drive before it is taken from the recording beside it, if that is there.
-    pub fn of(path: &Path, footage: &Footage) -> anyhow::Result<Self> {
-        let log = &footage.log;
-        let recording = recording_beside(path, log);
-        let whole = recording.as_ref().map_or(log, Recording::log);
+    /// That of a case and its drive.
+    pub fn of(drive: &Drive, footage: &Footage) -> anyhow::Result<Self> {
+        let (log, whole) = (&footage.log, drive.recording.log());
         let at = footage.scenes.last().map_or(log.last_tick(), |scene| scene.tick);
         let (route, odometer_mm) = route(whole, footage, at)?;
         let annotation = log.annotation.as_ref();
         let label = annotation.map_or("not labelled".into(), |a| a.label.to_string());
         let comment = annotation.map_or(String::new(), |a| a.comment.clone());
-        Ok(Self { label, comment, facts: facts(log, at, odometer_mm), map_svg: map::svg(&footage.network, &route) })
+        let facts = [facts(log, at, odometer_mm), drive.facts()].concat();
+        Ok(Self { label, comment, facts, map_svg: map::svg(&footage.network, &route) })
     }
-}
-
-/// `NAME.mcap` beside `NAME.case.mcap`, if the case was cut from it.
-fn recording_beside(path: &Path, log: &Log) -> Option<Recording> {
-    let name = path.file_name()?.to_str()?.strip_suffix(".case.mcap")?;
-    let beside: PathBuf = path.with_file_name(format!("{name}.mcap"));
-    let recording = Recording::open(&beside).ok()?;
-    (recording.digest() == log.manifest.case.as_ref()?.source).then_some(recording)
 }
 
 /// Places of the ego car from the log's start to a tick, seen from above, and the way driven,
@@ -103,7 +94,8 @@ fn facts(log: &Log, at: Tick, odometer_mm: Option<u64>) -> Vec<Fact> {
         (None, _) => {}
     }
     if let Some(checkpoint) = log.manifest.provenance.get("checkpoint") {
-        add("Driven through", checkpoint.clone());
+        let blind = if study::is_blind(&log.manifest.provenance) { ", and the drivers did not know it" } else { "" };
+        add("Driven through", format!("{checkpoint}{blind}"));
     }
     add("Map and seed", format!("{}, {}", scenario.map, scenario.seed));
     add(

@@ -84,6 +84,9 @@ fn headline(ui: &mut Ui, status: &Status) {
         ui.label(RichText::new(text).size(22.0).strong());
         ui.add_space(20.0);
         ui.label(RichText::new(hud::control(status.steering, status.pedals)).size(22.0).color(ATTENTION));
+        if status.about.is_familiarisation {
+            ui.label(RichText::new("familiarisation: does not count").size(22.0));
+        }
     });
 }
 

@@ -1,0 +1,31 @@
+//! Attaches answers that were given after a drive to its recordings.
+
+use replay::Recording;
+use serde::Serialize;
+
+use crate::cli::QuestionnaireArgs;
+use crate::exit::Verdict;
+use crate::output;
+use crate::study::{Questionnaire, attached};
+
+/// What is printed for a recording.
+#[derive(Serialize)]
+struct Attached {
+    recording: String,
+    answers: String,
+}
+
+/// Runs `aeye questionnaire`.
+pub fn run(args: &QuestionnaireArgs, json: bool) -> anyhow::Result<Verdict> {
+    let answers = Questionnaire::read(&args.answers)?;
+    let recordings = args.files.iter().map(|path| Recording::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let files = args.files.iter().zip(&recordings);
+    let texts = files.map(|(path, recording)| attached(path, recording, answers.clone()));
+    // Every file is checked before any is written.
+    for (path, (beside, text)) in args.files.iter().zip(texts.collect::<anyhow::Result<Vec<_>>>()?) {
+        output::write_file(&beside, text.as_bytes())?;
+        let said = Attached { recording: path.display().to_string(), answers: beside.display().to_string() };
+        output::print(json, &said, || format!("{}: answers in {}", said.recording, said.answers))?;
+    }
+    Ok(Verdict::Ok)
+}

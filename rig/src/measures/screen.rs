@@ -1,0 +1,129 @@
+//! How old the mask on the semantic driver's screen was, at every tick at which the car moves: a log
+//! holds a new mask only when it differs from the one before, so that age means nothing at standstill.
+
+use kernel::time::{TICK_HZ, Tick};
+use replay::{Log, MaskShown};
+use serde::Serialize;
+
+/// Length of a tick in real time, microseconds.
+const TICK_US: f64 = 1e6 / TICK_HZ as f64;
+
+/// Age of the mask on the screen, over all ticks that have one and at which the car moves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ScreenAge {
+    /// From the tick that it is a picture of to the tick whose controls were given with it in view.
+    pub ticks: Spread,
+    /// The same in wall-clock time; live drives only.
+    pub ms: Option<Spread>,
+    /// From capture to screen, once for each mask of the drive; live drives only.
+    pub frame_to_screen_ms: Option<Spread>,
+}
+
+/// A distribution in short.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Number of values.
+    pub n: usize,
+    /// Half of the values are not greater.
+    pub median: f64,
+    /// 99 % of the values are not greater.
+    pub p99: f64,
+    /// The greatest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// That of some values by nearest rank; `None` of none.
+    pub fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_by(f64::total_cmp);
+        let n = values.len();
+        let rank = |percent: usize| values.get((percent * n).div_ceil(100).max(1) - 1).copied();
+        Some(Self { n, median: rank(50)?, p99: rank(99)?, max: rank(100)? })
+    }
+}
+
+/// That of a log; `moving` says for each tick after the first whether the car moves, up to where the
+/// measure ends. `None` where there is no such tick with a mask.
+pub fn age(log: &Log, moving: &[bool]) -> Option<ScreenAge> {
+    let clock = WallClock::of(log);
+    let shown = |tick: Tick| {
+        let at = log.masks.partition_point(|mask| mask.tick_shown <= tick);
+        at.checked_sub(1).map(|at| (tick, &log.masks[at]))
+    };
+    let ticks = (log.first_tick() + 1..).zip(moving).filter_map(|(tick, moves)| moves.then_some(tick));
+    let seen: Vec<(Tick, &MaskShown)> = ticks.filter_map(shown).collect();
+    let ticks = Spread::of(seen.iter().map(|(tick, mask)| tick.saturating_sub(mask.tick_of_frame) as f64).collect())?;
+    let ms = |tick: Tick, mask: &MaskShown| Some((clock.us(tick)? - clock.us(mask.tick_of_frame)?) / 1e3);
+    let latency_ms = |mask: &MaskShown| {
+        let times = mask.times.filter(|_| mask.tick_of_frame > log.first_tick())?;
+        Some(times.present_us.saturating_sub(times.capture_us) as f64 / 1e3)
+    };
+    Some(ScreenAge {
+        ticks,
+        ms: Spread::of(seen.iter().filter_map(|(tick, mask)| ms(*tick, mask)).collect()),
+        frame_to_screen_ms: Spread::of(log.masks.iter().filter_map(latency_ms).collect()),
+    })
+}
+
+/// When the ticks of a live drive happened: at the capture of each frame, and evenly in between. The
+/// frame of the first tick says nothing, since it waits for the start.
+struct WallClock {
+    captures: Vec<(Tick, f64)>,
+}
+
+impl WallClock {
+    fn of(log: &Log) -> Self {
+        let live = log.masks.iter().filter(|mask| mask.tick_of_frame > log.first_tick());
+        let mut captures: Vec<(Tick, f64)> =
+            live.filter_map(|mask| Some((mask.tick_of_frame, mask.times?.capture_us as f64))).collect();
+        captures.dedup_by_key(|(tick, _)| *tick);
+        Self { captures }
+    }
+
+    /// Microseconds since the session began; `None` in simulated drives.
+    fn us(&self, tick: Tick) -> Option<f64> {
+        let next = self.captures.partition_point(|(t, _)| *t < tick);
+        let after = self.captures.get(next);
+        let before = next.checked_sub(1).map(|at| &self.captures[at]);
+        let since = |a: Tick, b: Tick| b as f64 - a as f64;
+        match (before, after) {
+            (Some((t0, us0)), Some((t1, us1))) => Some(us0 + (us1 - us0) * since(*t0, tick) / since(*t0, *t1)),
+            (Some((t, us)), None) | (None, Some((t, us))) => Some(us + TICK_US * since(*t, tick)),
+            (None, None) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn ranks_are_values_that_occurred() {
+        assert_eq!(Spread::of(Vec::new()), None);
+        assert_eq!(Spread::of(vec![4.0]), Some(Spread { n: 1, median: 4.0, p99: 4.0, max: 4.0 }));
+        let hundred = (1..=200).rev().map(f64::from).collect();
+        assert_eq!(Spread::of(hundred), Some(Spread { n: 200, median: 100.0, p99: 198.0, max: 200.0 }));
+    }
+
+    proptest! {
+        #[test]
+        fn so_many_values_are_not_greater(values in prop::collection::vec(0u8..30, 1..300)) {
+            let spread = Spread::of(values.iter().map(|v| f64::from(*v)).collect()).expect("values");
+            let share = |limit: f64| values.iter().filter(|v| f64::from(**v) <= limit).count() as f64 / values.len() as f64;
+            prop_assert!(share(spread.median) >= 0.5 && share(spread.median - 1.0) < 0.5);
+            prop_assert!(share(spread.p99) >= 0.99 && share(spread.p99 - 1.0) < 0.99);
+            prop_assert!(share(spread.max) == 1.0 && share(spread.max - 1.0) < 1.0);
+        }
+    }
+
+    #[test]
+    fn ticks_between_captures_are_spread_evenly() {
+        let clock = WallClock { captures: vec![(10, 1000.0), (20, 3000.0)] };
+        let us = [5, 10, 15, 20, 26].map(|tick| clock.us(tick).expect("a time").round());
+        assert_eq!(us, [1000.0 - 83_333.0, 1000.0, 2000.0, 3000.0, 103_000.0]);
+        assert_eq!(WallClock { captures: Vec::new() }.us(5), None);
+    }
+}
