@@ -111,6 +111,13 @@ pub struct MaskShown {
     pub times: Option<LiveTimes>,
 }
 
+impl MaskShown {
+    /// How old the mask's picture is at a tick, ticks.
+    pub fn age_at(&self, tick: Tick) -> Tick {
+        tick.saturating_sub(self.tick_of_frame)
+    }
+}
+
 /// What kind of corner case an intervention was (paper, section 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]

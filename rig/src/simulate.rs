@@ -5,13 +5,13 @@ use std::io::Write;
 use kernel::arbiter::{Outcome, Phase};
 use kernel::time::{CLIP_TICKS, Tick, seconds};
 use kernel::{Keyframe, Scenario, World};
-use replay::{Annotation, Label, Manifest, Provenance};
+use replay::{Annotation, Label, Manifest};
 
 use crate::crew::Crew;
 use crate::drivers::safety::BORING_TICKS;
 use crate::maps::Map;
 use crate::session::{Session, SessionState};
-use crate::vision::{Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
+use crate::vision::{self, Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
 
 /// A fork starts at least this long before the intervention, so that nothing is decided yet.
 fn fork_before_ticks(label: Label) -> Tick {
@@ -22,17 +22,14 @@ const FORK_AFTER_TICKS: Tick = seconds(5);
 
 /// The manifest of a simulated run: bots in both seats, what the semantic one sees, and when.
 pub fn manifest(scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
-    let (width, height) = eye.size();
     let entries = [
         ("semantic", "bot".to_owned()),
         ("safety", "bot".to_owned()),
-        ("checkpoint", eye.name().to_owned()),
-        ("checkpoint_digest", eye.digest()),
-        ("camera", format!("driver {width}x{height}")),
         ("frame_ticks", FRAME_TICKS.to_string()),
         ("latency_ticks", LATENCY_TICKS.to_string()),
     ];
-    let provenance: Provenance = entries.into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
+    let mut provenance = vision::provenance(eye, eye.size());
+    provenance.extend(entries.map(|(name, value)| (name.to_owned(), value)));
     Manifest::new(scenario, &map.network, map.foreign.clone(), provenance)
 }
 

@@ -7,8 +7,8 @@ use anyhow::{Context, bail};
 use kernel::World;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
 use perception::{BUNDLED, Checkpoint, Mask, RgbView, Segmenter};
-use render::{Camera, Frame, Renderer};
-use replay::MaskShown;
+use render::{Camera, Frame, RenderOptions, Renderer};
+use replay::{MaskShown, Provenance};
 
 use crate::cli::CheckpointChoice;
 use crate::drivers::MaskView;
@@ -113,6 +113,24 @@ fn load(path: &Path) -> anyhow::Result<Checkpoint> {
         bail!("{sentence}");
     }
     Err(Usage(sentence).into())
+}
+
+/// What recordings say about how their masks came about: through which checkpoint, from pictures of
+/// which size, drawn by which adapter with which driver.
+pub fn provenance(eye: &Eye, (width, height): (u32, u32)) -> Provenance {
+    let entries = [
+        ("checkpoint", eye.name().to_owned()),
+        ("checkpoint_digest", eye.digest()),
+        ("camera", format!("driver {width}x{height}")),
+        ("adapter", adapter()),
+    ];
+    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// Name and driver of the adapter that draws for drivers; empty where there is none.
+pub fn adapter() -> String {
+    let found = RenderOptions::default().adapter.find();
+    found.map_or_else(|_| String::new(), |adapter| format!("{}, {}", adapter.name, adapter.driver))
 }
 
 /// First 8 bytes of the blake3 digest of a mask's tag ids, as recordings hold it.

@@ -5,7 +5,7 @@ use replay::Provenance;
 
 use super::{BLIND, CANDIDATES, StudyArgs};
 use crate::cli::CheckpointChoice;
-use crate::vision::{DEFAULT_SIZE, Eye};
+use crate::vision::{self, DEFAULT_SIZE, Eye};
 
 /// The entity of the draw among the random numbers of drivers; bots count theirs from 0.
 const DRAW: u64 = u64::MAX;
@@ -94,17 +94,12 @@ fn public_name(eyes: &[Eye]) -> String {
     }
 }
 
-fn provenances(eyes: &[Eye], (width, height): (u32, u32)) -> Vec<Provenance> {
+fn provenances(eyes: &[Eye], size: (u32, u32)) -> Vec<Provenance> {
     let names: Vec<&str> = eyes.iter().map(Eye::name).collect();
     let of = |eye: &Eye| {
-        let known = [
-            ("checkpoint", eye.name().to_owned()),
-            ("checkpoint_digest", eye.digest()),
-            ("camera", format!("driver {width}x{height}")),
-        ];
         let blind = [(BLIND, format!("one of {} checkpoints", names.len())), (CANDIDATES, names.join(", "))];
-        let blind = blind.into_iter().filter(|_| names.len() > 1);
-        known.into_iter().chain(blind).map(|(key, value)| (key.to_owned(), value)).collect()
+        let blind = blind.into_iter().filter(|_| names.len() > 1).map(|(key, value)| (key.to_owned(), value));
+        vision::provenance(eye, size).into_iter().chain(blind).collect()
     };
     eyes.iter().map(of).collect()
 }

@@ -15,7 +15,7 @@ use crate::exit::{Verdict, sentence};
 use crate::lab::footage::is_divergence;
 use crate::output;
 use crate::progress;
-use crate::vision::{Eye, digest_of};
+use crate::vision::{self, Eye, digest_of};
 
 /// What the comparison came to.
 #[derive(Debug, Serialize)]
@@ -25,8 +25,10 @@ struct Digests {
     checkpoint_digest: String,
     /// Size of the pictures, as in `256x128`.
     camera: String,
-    /// What drew them now.
+    /// What draws them now: adapter and driver.
     adapter: String,
+    /// What drew them when they were shown; empty when the recording does not say.
+    recorded_adapter: String,
     /// Masks in the log.
     masks: usize,
     /// Frames that were drawn and looked at again for them.
@@ -76,7 +78,6 @@ fn compare(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<Digests>
         bail!("the mask of tick {} is of camera {}; expected 0, the driver's", mask.tick_shown, mask.camera);
     }
     let mut eye = film.eye.find(choices)?.ok_or_else(|| stranger(film))?;
-    let adapter = RenderOptions::default().adapter.find()?;
     let rebuilt = rebuild(film, &mut eye)?;
     let logged = |mask: &&MaskShown| rebuilt.get(&mask.tick_of_frame).is_some_and(|digest| *digest == mask.digest);
     let found = |mask: &&MaskShown| rebuilt.contains_key(&mask.tick_of_frame);
@@ -92,7 +93,8 @@ fn compare(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<Digests>
         checkpoint: eye.name().to_owned(),
         checkpoint_digest: eye.digest(),
         camera: format!("{width}x{height}"),
-        adapter: adapter.name,
+        adapter: vision::adapter(),
+        recorded_adapter: film.eye.adapter.clone(),
         masks: masks.len(),
         frames: rebuilt.len(),
         equal,
@@ -136,16 +138,22 @@ fn rebuild(film: &Film, eye: &mut Eye) -> anyhow::Result<BTreeMap<Tick, u64>> {
 
 fn text(digests: &Digests) -> String {
     let Digests { file, checkpoint, masks, frames, equal, different, before_start, .. } = digests;
-    let mut text = format!(
-        "{file}: {masks} masks of {frames} frames through {checkpoint}, drawn by {}: {equal} equal, {different} different",
-        digests.adapter
-    );
+    let mut text =
+        format!("{file}: {masks} masks of {frames} frames through {checkpoint}: {equal} equal, {different} different");
     if *before_start > 0 {
         text += &format!(", {before_start} of frames from before the file's first tick");
     }
     if let Some(Difference { tick_shown, tick_of_frame, logged, rebuilt }) = &digests.first_difference {
         text += &format!(
             "\nfirst difference at tick {tick_shown}: the mask of frame {tick_of_frame} was logged as {logged}, but is {rebuilt}"
+        );
+    }
+    if digests.different > 0 && digests.adapter != digests.recorded_adapter {
+        let drew =
+            if digests.recorded_adapter.is_empty() { "an adapter it does not name" } else { &digests.recorded_adapter };
+        text += &format!(
+            "\nequal masks are promised on one adapter: it was drawn by {drew}, and now by {}",
+            digests.adapter
         );
     }
     text

@@ -62,6 +62,8 @@ pub struct RecordedEye {
     pub digest: String,
     /// Width and height of the pictures it looked at, pixels.
     pub size: (u32, u32),
+    /// Adapter and driver that drew them; empty when nothing is said.
+    pub adapter: String,
 }
 
 impl RecordedEye {
@@ -72,7 +74,7 @@ impl RecordedEye {
             Some(camera) => camera_size(camera)
                 .ok_or_else(|| anyhow!("provenance \"camera\" is {camera:?}; expected as in \"driver 256x128\""))?,
         };
-        Ok(Self { name: said("checkpoint"), digest: said("checkpoint_digest"), size })
+        Ok(Self { name: said("checkpoint"), digest: said("checkpoint_digest"), size, adapter: said("adapter") })
     }
 
     /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest.
@@ -109,7 +111,12 @@ mod tests {
 
     #[test]
     fn the_eye_is_found_by_its_digest() {
-        let eye = |digest: &str| RecordedEye { name: "some".into(), digest: digest.into(), size: (32, 16) };
+        let eye = |digest: &str| RecordedEye {
+            name: "some".into(),
+            digest: digest.into(),
+            size: (32, 16),
+            adapter: String::new(),
+        };
         let found = |digest: &str| eye(digest).find(&[]).expect("readable").map(|eye| eye.name().to_owned());
         let early = perception::bundled("early").expect("bundled").expect("readable");
         assert_eq!(found(early.digest().to_hex().as_str()).as_deref(), Some("early"));

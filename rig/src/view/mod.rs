@@ -13,12 +13,15 @@ mod projector;
 mod range;
 mod reel;
 mod seen;
+mod staleness;
 mod timeline;
 mod viewing;
 mod windows;
 
 use std::collections::BTreeSet;
 use std::sync::mpsc;
+
+use anyhow::Context;
 
 use crate::cli::{CheckpointChoice, ViewArgs};
 use crate::exit::{Usage, Verdict};
@@ -44,7 +47,7 @@ pub fn run(args: &ViewArgs, json: bool) -> anyhow::Result<Verdict> {
     let recorded = film.eye.find(&args.checkpoint)?;
     let eyes = eyes(&film, recorded.as_ref(), &args.checkpoint)?;
     let viewing = Viewing::new(film.log(), eyes.iter().map(|eye| eye.name().to_owned()).collect());
-    let projector = Projector::new(&film, eyes, recorded)?;
+    let projector = Projector::new(&film, eyes, recorded).with_context(|| args.file.display().to_string())?;
     show(&film, window, viewing, projector)?;
     Ok(Verdict::Ok)
 }

@@ -85,3 +85,67 @@ impl<'a> Reel<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kernel::time::KEYFRAME_TICKS;
+    use kernel::{Controls, World};
+    use proptest::prelude::*;
+    use replay::{Manifest, Provenance, Recorder, Recording};
+    use std::sync::OnceLock;
+
+    use crate::maps::Map;
+
+    const LAST: Tick = 2 * KEYFRAME_TICKS + 90;
+
+    /// A drive over three keyframes, and what was to be seen at every tick of it.
+    fn drive() -> &'static (Recording, Arc<RoadNetwork>, Vec<SceneSnapshot>) {
+        static DRIVE: OnceLock<(Recording, Arc<RoadNetwork>, Vec<SceneSnapshot>)> = OnceLock::new();
+        DRIVE.get_or_init(|| {
+            let map = Map::find("rural").expect("bundled");
+            let scenario = map.scenario(4);
+            let manifest = Manifest::new(&scenario, &map.network, None, Provenance::default());
+            let mut world = World::new(&scenario, &map.network).expect("a world");
+            let mut recorder = Recorder::new(Vec::new(), &manifest, &world.initial_keyframe()).expect("a recording");
+            let mut scenes = vec![world.scene()];
+            while world.tick() < LAST {
+                let steer = (world.tick() as f32 / 50.0).sin() * 0.1;
+                let semantic = Controls::from_fractions(steer, 0.3, 0.0);
+                let input = TickInput { semantic, ..TickInput::default() };
+                let output = world.step(&input);
+                recorder.tick(&input, &output, &world.part_hashes()).expect("a tick");
+                scenes.push(world.scene());
+            }
+            let bytes = recorder.finish(None).expect("its end");
+            (Recording::from_bytes(&bytes).expect("a recording"), map.network, scenes)
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(12))]
+        #[test]
+        fn wherever_one_goes_there_is_what_was_there(ticks in prop::collection::vec(0..=LAST, 1..6)) {
+            let (recording, network, scenes) = drive();
+            let mut reel = Reel::new(recording.log(), network).expect("a log");
+            for tick in ticks {
+                let moment = reel.at(tick).expect("a tick of the log");
+                prop_assert!(moment.scene == scenes[tick as usize], "tick {}", tick);
+                prop_assert_eq!(moment.applied.is_some(), tick > 0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_log_that_was_changed_is_told_and_the_rest_of_it_can_still_be_seen() {
+        let (recording, network, scenes) = drive();
+        let mut log = recording.log().clone();
+        log.inputs[99].semantic.steer ^= 1;
+        let mut reel = Reel::new(&log, network).expect("a log");
+        assert!(matches!(reel.at(130), Err(Error::Diverged(found)) if found.tick == 100));
+        assert!(matches!(reel.at(LAST + 1), Err(Error::Unsuited(_))));
+        for tick in [99, 0, LAST] {
+            assert!(reel.at(tick).expect("as it was").scene == scenes[tick as usize], "tick {tick}");
+        }
+    }
+}

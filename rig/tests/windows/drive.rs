@@ -54,6 +54,8 @@ fn two_people_drive_intervene_label_and_go_on() {
     assert_eq!((&contents["outcome"], &contents["intervention"]["by_brake"]), (&"intervened".into(), &true.into()));
     assert!(contents["km"].as_f64().expect("a number") > 0.001, "the car has moved: {contents}");
     check_masks(&record);
+    let digests = aeye(&["view", "--digests"], &record);
+    assert_eq!((&digests["different"], &digests["equal"]), (&0.into(), &digests["masks"]), "{digests}");
     assert_eq!(aeye(&["inspect"], &case)["comment"], "seen too late");
     assert_eq!(aeye(&["inspect"], &second)["outcome"], "stopped");
 }

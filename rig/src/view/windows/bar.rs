@@ -1,9 +1,12 @@
-//! The timeline: drag on it to go anywhere.
+//! The timeline: drag on it to go anywhere. Its curve is the age of the mask on the semantic driver's
+//! screen.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 use kernel::time::{TICK_HZ, Tick};
 
 use super::face::{ATTENTION, WRONG};
+use crate::view::film::Film;
+use crate::view::staleness::greatest_ages;
 use crate::view::timeline::{MarkKind, Timeline, seconds};
 use crate::view::viewing::{Action, Viewing};
 
@@ -19,11 +22,16 @@ const LABEL_WIDTH: f32 = 60.0;
 const GROUND: Color32 = Color32::from_gray(38);
 const RANGE: Color32 = Color32::from_rgb(40, 95, 60);
 const RANGE_END: Color32 = Color32::from_rgb(110, 220, 120);
+/// The curve has no finer steps, points.
+const CURVE_STEP: f32 = 2.0;
+/// The age that fills the height: half a second.
+const FULL_HEIGHT_TICKS: f32 = 0.5 * TICK_HZ as f32;
+const CURVE: Color32 = Color32::from_rgb(95, 120, 150);
 const SCALE: Color32 = Color32::from_gray(110);
 const NOTE: Color32 = Color32::from_rgb(110, 170, 255);
 
 /// Paints the timeline; where it is clicked or dragged is sought.
-pub fn paint(ui: &mut Ui, viewing: &Viewing, actions: &mut Vec<Action>) {
+pub fn paint(ui: &mut Ui, viewing: &Viewing, film: &Film, actions: &mut Vec<Action>) {
     let size = Vec2::new(ui.available_width(), HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let place = Place { timeline: &viewing.timeline, rect: rect.shrink2(Vec2::new(6.0, 2.0)) };
@@ -36,12 +44,13 @@ pub fn paint(ui: &mut Ui, viewing: &Viewing, actions: &mut Vec<Action>) {
     let painter = ui.painter();
     painter.rect_filled(place.track(), 3.0, GROUND);
     range(painter, &place, viewing);
+    ages(painter, &place, film);
     scale(painter, &place);
     marks(painter, &place);
     let x = place.x_of(viewing.playback.tick());
     painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
     if let Some(pointer) = response.hover_pos() {
-        hint(painter, &place, pointer);
+        hint(painter, &place, film, pointer);
     }
 }
 
@@ -77,6 +86,16 @@ fn range(painter: &Painter, place: &Place<'_>, viewing: &Viewing) {
     for tick in [viewing.range.from, viewing.range.to].into_iter().flatten() {
         painter.vline(place.x_of(tick), place.track().y_range(), Stroke::new(1.5, RANGE_END));
     }
+}
+
+fn ages(painter: &Painter, place: &Place<'_>, film: &Film) {
+    let track = place.track();
+    let ages = greatest_ages(&film.log().masks, place.timeline, (track.width() / CURVE_STEP) as usize);
+    let height = |age: Tick| (age as f32 / FULL_HEIGHT_TICKS).min(1.0) * track.height();
+    let step = track.width() / ages.len().max(1) as f32;
+    let point =
+        |(i, age): (usize, &Tick)| Pos2::new(track.left() + (i as f32 + 0.5) * step, track.bottom() - height(*age));
+    painter.line(ages.iter().enumerate().map(point).collect(), Stroke::new(1.0, CURVE));
 }
 
 fn scale(painter: &Painter, place: &Place<'_>) {
@@ -115,13 +134,14 @@ pub fn colour(kind: MarkKind) -> Color32 {
 }
 
 /// The time below the pointer, and what happened there.
-fn hint(painter: &Painter, place: &Place<'_>, pointer: Pos2) {
+fn hint(painter: &Painter, place: &Place<'_>, film: &Film, pointer: Pos2) {
     let tick = place.tick_at(pointer.x);
     let near = |tick: Tick| (place.x_of(tick) - pointer.x).abs() <= NEAR;
     let marks = place.timeline.marks.iter().filter(|mark| near(mark.tick)).take(3);
-    let texts: Vec<&str> = marks.map(|mark| mark.text.as_str()).collect();
-    let text = format!("{:.2} s  {}", seconds(tick), texts.join("; "));
-    let galley = painter.layout_no_wrap(text.trim_end().to_owned(), FontId::proportional(12.0), Color32::WHITE);
+    let mut texts = vec![format!("{:.2} s", seconds(tick))];
+    texts.extend(film.mask_at(tick).map(|mask| format!("mask {:.0} ms old", 1e3 * seconds(mask.age_at(tick)))));
+    texts.extend(marks.map(|mark| mark.text.clone()));
+    let galley = painter.layout_no_wrap(texts.join("   "), FontId::proportional(12.0), Color32::WHITE);
     let half = 0.5 * galley.size().x + 4.0;
     let x = pointer.x.clamp(place.rect.left() + half, (place.rect.right() - half).max(place.rect.left() + half));
     let at = Rect::from_center_size(Pos2::new(x, place.track().center().y), galley.size());

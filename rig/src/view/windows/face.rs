@@ -44,9 +44,8 @@ impl Face {
         Panel::top("headline").show(ui, |ui| headline(ui, viewing, film));
         Panel::bottom("timeline").show(ui, |ui| {
             buttons(ui, viewing, actions);
-            bar::paint(ui, viewing, actions);
-            let said = if viewing.said.is_empty() { HELP } else { &viewing.said };
-            ui.label(RichText::new(said).weak());
+            bar::paint(ui, viewing, film, actions);
+            ui.label(if viewing.said.is_empty() { RichText::new(HELP).weak() } else { RichText::new(&viewing.said) });
         });
         Panel::bottom("facts").exact_size(FACTS_HEIGHT).show(ui, |ui| facts::paint(ui, viewing, film, shown, actions));
         egui::CentralPanel::default().show(ui, |ui| {

@@ -95,7 +95,7 @@ fn on_screen(ui: &mut Ui, film: &Film, shown: &Shown) {
 
 /// Only changes of the mask are logged: where the picture stood still, the true age is less.
 fn age(logged: &MaskShown, tick: Tick) -> String {
-    let ticks = tick.saturating_sub(logged.tick_of_frame);
+    let ticks = logged.age_at(tick);
     format!("{ticks} ticks, {:.0} ms", 1000.0 * ticks as f64 / f64::from(TICK_HZ))
 }
 
