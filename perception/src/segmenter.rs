@@ -237,7 +237,8 @@ mod tests {
 
     #[test]
     fn confidence_comes_with_the_same_mask_and_only_from_scores() {
-        for (tail, has_scores) in [(Tail::None, true), (Tail::Upsample, true), (Tail::Argmax, false)] {
+        let tails = [(Tail::None, true), (Tail::Upsample, true), (Tail::Argmax, true), (Tail::CoarseArgmax, false)];
+        for (tail, has_scores) in tails {
             let dir = tempfile::tempdir().unwrap();
             let checkpoint = Checkpoint::load(Toy { tail, ..Toy::default() }.write(dir.path())).unwrap();
             let mut segmenter = Segmenter::new(&checkpoint, SIZE.0, SIZE.1).unwrap();

@@ -11,6 +11,7 @@ use kernel::{SceneSnapshot, Seat, TickInput, World};
 use super::events::Events;
 use super::foxglove::Telemetry;
 use super::stage::{Press, Stage};
+use super::strip::Strip;
 use super::traces::Traces;
 use crate::desktop::Image;
 use crate::newest::Newest;
@@ -27,6 +28,8 @@ pub struct Board {
     pub safety: Newest<View>,
     /// How the session is.
     pub status: Newest<Status>,
+    /// The corner case that was cut last.
+    pub strip: Newest<Strip>,
     /// What is plotted of the run.
     pub traces: Newest<Traces>,
     /// What remote control centres show.

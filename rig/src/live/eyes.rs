@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use perception::Mask;
-use render::{Camera, Frame, RenderOptions, Renderer};
+use render::{Camera, RenderOptions, Renderer};
 
 use super::board::{Board, Look, ShownMask, View};
 use crate::clock::SessionClock;
@@ -23,22 +23,10 @@ pub fn watch_as_safety(
     show: impl Fn(),
 ) -> anyhow::Result<()> {
     watch(&board.scene, &board.safety, show, |look| {
-        let frames: Vec<Frame> =
-            cameras.iter().map(|camera| renderer.draw(&look.scene, camera)).collect::<Result<_, _>>()?;
-        Ok(view(look, side_by_side(&frames), None, clock.now_us()))
+        let images = cameras.iter().map(|camera| Ok(Image::of(renderer.draw(&look.scene, camera)?)));
+        let images: Vec<Image> = images.collect::<anyhow::Result<_>>()?;
+        Ok(view(look, Image::side_by_side(&images), None, clock.now_us()))
     })
-}
-
-/// One picture of several that are equally high.
-fn side_by_side(frames: &[Frame]) -> Image {
-    let width = frames.iter().map(|frame| frame.width as usize).sum();
-    let height = frames.first().map_or(0, |frame| frame.height as usize);
-    let row = |frame: &Frame, y: usize| 3 * frame.width as usize * y..3 * frame.width as usize * (y + 1);
-    let mut rgb = Vec::with_capacity(3 * width * height);
-    for y in 0..height {
-        frames.iter().for_each(|frame| rgb.extend_from_slice(&frame.rgb[row(frame, y)]));
-    }
-    Image { width, height, rgb }
 }
 
 /// Draws what the semantic driver sees: the prediction of the run's eye, in class colours.

@@ -16,6 +16,7 @@ mod run;
 mod seating;
 mod simulation;
 mod stage;
+mod strip;
 #[cfg(test)]
 mod tests;
 mod timings;

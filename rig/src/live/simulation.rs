@@ -24,6 +24,7 @@ use super::pacing::Pacing;
 use super::run::{Run, Screen, car_state, event_text};
 use super::seating::{self, Seating};
 use super::stage::{Dialog, Stage, Wish};
+use super::strip::Strip;
 use super::timings::Timings;
 use super::traces::Traces;
 use crate::clock::SessionClock;
@@ -380,8 +381,15 @@ impl Simulation {
 
     fn cut(&mut self, path: &Path) {
         let (path, outbox, json) = (path.to_owned(), self.links.outbox.clone(), self.plan.json);
+        let board = self.links.board.clone();
         self.helpers.push(std::thread::spawn(move || {
-            let said = match aftermath::figures_of(&path, json).and_then(|()| aftermath::cut(&path)) {
+            let done = || -> anyhow::Result<Option<PathBuf>> {
+                aftermath::figures_of(&path, json)?;
+                let case = aftermath::cut(&path)?;
+                case.iter().try_for_each(|case| Strip::of(case).map(|strip| board.strip.put(strip)))?;
+                Ok(case)
+            };
+            let said = match done() {
                 Ok(Some(case)) => Message::Note(format!("corner case {}", case.display())),
                 Ok(None) => return,
                 Err(error) => Message::Failed(error),

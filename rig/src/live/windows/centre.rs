@@ -12,6 +12,7 @@ use crate::chart::Chart;
 use crate::desktop::{Picture, hud};
 use crate::live::board::{Board, Status, Totals};
 use crate::live::stage::{Dialog, Stage};
+use crate::live::strip::Strip;
 use crate::live::traces::Traces;
 use crate::stats;
 
@@ -20,6 +21,7 @@ const ATTENTION: Color32 = Color32::from_rgb(255, 190, 60);
 const VIEWS_HEIGHT: f32 = 210.0;
 const FIGURES_WIDTH: f32 = 430.0;
 const MAP_WIDTH: f32 = 330.0;
+const KEYS: &str = "N starts a run, X swaps the seats before it, Q or Escape quits; F9 all monitors, F10 next monitor, F11 full screen";
 
 /// Panels are not filled, since the window is: filling it again is most of the work on a CPU.
 fn bare() -> Frame {
@@ -30,13 +32,19 @@ fn bare() -> Frame {
 pub struct Centre {
     semantic: Picture,
     safety: Picture,
+    strip: Picture,
     map: MapView,
 }
 
 impl Centre {
     /// On a map.
     pub fn new(chart: Arc<Chart>) -> Self {
-        Self { semantic: Picture::sharp(), safety: Picture::smooth(), map: MapView::new(chart) }
+        Self {
+            semantic: Picture::sharp(),
+            safety: Picture::smooth(),
+            strip: Picture::smooth(),
+            map: MapView::new(chart),
+        }
     }
 
     /// Paints the window.
@@ -69,8 +77,24 @@ impl Centre {
         self.map.paint(ui, size, look.as_ref().map(|look| &look.scene), traces);
         ui.vertical(|ui| match &status.stage {
             Stage::Labelling(dialog) => label_dialog(ui, dialog),
-            Stage::Ready | Stage::Driving => events(ui, status),
+            Stage::Ready | Stage::Driving => {
+                ui.label(RichText::new(KEYS).weak());
+                let strip = board.strip.get();
+                if strip.is_none() && status.stage == Stage::Ready {
+                    status.setup.iter().for_each(|line| drop(ui.label(line)));
+                }
+                strip.iter().for_each(|strip| self.last_case(ui, strip));
+                status.events.lines().for_each(|event| drop(ui.label(RichText::new(event).monospace())));
+            }
         });
+    }
+
+    fn last_case(&self, ui: &mut Ui, strip: &Strip) {
+        ui.label(RichText::new(format!("{}: 3 s, images and true classes", strip.name)).color(ATTENTION));
+        let proportion = strip.image.height as f32 / strip.image.width as f32;
+        let width = ui.available_width();
+        let (rect, _) = ui.allocate_exact_size(Vec2::new(width, proportion * width), egui::Sense::hover());
+        self.strip.paint(ui, rect, Some(&strip.image));
     }
 }
 
@@ -104,10 +128,13 @@ fn figures(ui: &mut Ui, status: &Status) {
             "runs so far",
             format!("{}, {}", status.totals.runs, exposure(status.totals.odometer_mm, status.totals.ticks)),
         ),
-        ("corner cases so far", cases(&status.totals)),
+        ("corner cases so far", status.totals.cases.to_string()),
         ("mask age", status.mask_age_us.map_or("no mask yet".into(), |us| format!("{} ms", us / 1000))),
         ("last tick was late by", format!("{:.1} ms", status.late_us as f64 / 1e3)),
     ];
+    if status.totals.cases > 0 {
+        lines.extend(rates(&status.totals));
+    }
     if status.slowed_us > 0 {
         lines.push(("slower than real time", format!("{:.2} s so far", status.slowed_us as f64 / 1e6)));
     }
@@ -138,30 +165,14 @@ fn exposure(odometer_mm: u64, ticks: u64) -> String {
     format!("{:.2} km, {:.1} min", odometer_mm as f64 / 1e6, ticks as f64 / f64::from(60 * TICK_HZ))
 }
 
-/// Their number, and kilometres and minutes for each with the exact 95 % interval.
-fn cases(totals: &Totals) -> String {
+/// Kilometres and minutes for each corner case, with exact 95 % intervals.
+fn rates(totals: &Totals) -> [(&'static str, String); 2] {
     let number = u64::from(totals.cases);
-    if number == 0 {
-        return "none".into();
-    }
     let (low, high) = stats::poisson_interval(number);
-    let for_each = |exposure: f64, unit: &str| {
-        format!("{:.2} [{:.2}, {:.2}] {unit}", exposure / number as f64, exposure / high, exposure / low)
-    };
+    let for_each =
+        |exposure: f64| format!("{:.2} [{:.2}, {:.2}]", exposure / number as f64, exposure / high, exposure / low);
     let minutes = totals.ticks as f64 / f64::from(60 * TICK_HZ);
-    format!("{number}: one in {}, {}", for_each(totals.odometer_mm as f64 / 1e6, "km"), for_each(minutes, "min"))
-}
-
-fn events(ui: &mut Ui, status: &Status) {
-    ui.label(RichText::new("N starts a run, X swaps the seats before it, Q or Escape quits, F11 full screen").weak());
-    if status.stage == Stage::Ready {
-        for line in status.setup.iter() {
-            ui.label(line);
-        }
-    }
-    for event in status.events.lines() {
-        ui.label(RichText::new(event).monospace());
-    }
+    [("km for each", for_each(totals.odometer_mm as f64 / 1e6)), ("minutes for each", for_each(minutes))]
 }
 
 fn label_dialog(ui: &mut Ui, dialog: &Dialog) {
