@@ -40,7 +40,7 @@ fn two_people_drive_intervene_label_and_go_on() {
     let case = dir.path().join("drive.case.mcap");
     wait_until(|| case.exists());
     // The strip of the case: true classes, the road's among them, where it was black before.
-    wait_until(|| display.picture().share([128, 64, 128], [360, 800], [500, 140]) > 0.05);
+    wait_until(|| display.picture().share([128, 64, 128], [360, 780], [480, 50]) > 0.1);
     display.keep("strip");
     display.keys(&["key", "n"]);
     let second = dir.path().join("drive-2.mcap");
