@@ -3,6 +3,9 @@
 # drive them. Needs what `make test` installs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+pictures=$(mktemp -d)
+trap 'rm -rf "$pictures"' EXIT
 for test in drive::two_people_drive_intervene_label_and_go_on view::one_looks_at; do
-	AEYE_SCREENSHOTS=$PWD/docs cargo test --release --workspace --test windows "$test"
+	AEYE_SCREENSHOTS=$pictures cargo test --release --workspace --test windows "$test"
 done
+cp "$pictures"/{drive,view}.png docs/
