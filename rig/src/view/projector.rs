@@ -222,6 +222,10 @@ fn image(frame: &Frame, rgb: Vec<u8>) -> Arc<Image> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::CheckpointChoice;
+    use crate::maps::Map;
+    use crate::simulate;
+    use crate::vision::Vision;
 
     #[test]
     fn images_are_a_multiple_of_what_the_eye_takes() {
@@ -234,5 +238,62 @@ mod tests {
     fn viewpoints_go_round() {
         let round = Viewpoint::Driver.next().next().next();
         assert_eq!(round, Viewpoint::Driver);
+    }
+
+    const EARLY: CheckpointChoice = CheckpointChoice::Bundled("early");
+
+    /// A few seconds driven through `early`.
+    fn film(folder: &std::path::Path) -> Film {
+        let map = Map::find("rural").expect("bundled");
+        let renderer = Renderer::new(&map.network, &RenderOptions::default()).expect("an adapter");
+        let vision = Vision::new(renderer, Eye::open(&EARLY).expect("bundled"));
+        let path = folder.join("drive.mcap");
+        let file = std::fs::File::create(&path).expect("writable");
+        simulate::drive(&map.scenario(2), &map, vision, file, |world| world.tick() < 130).expect("a drive");
+        Film::open(&path).expect("a recording")
+    }
+
+    fn ask(tick: Tick, viewpoint: Viewpoint, layers: [Layer; 2], checkpoint: usize) -> Request {
+        Request { tick, viewpoint, layers, checkpoint }
+    }
+
+    #[test]
+    #[cfg_attr(no_windows, ignore = "needs Xvfb, xdotool and a Vulkan driver")]
+    fn what_was_seen_is_what_the_checkpoint_predicts_of_its_frame_in_whatever_order() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let film = film(dir.path());
+        let early = || Eye::open(&EARLY).expect("bundled");
+        let mut projector = Projector::new(&film, vec![early()], Some(early())).expect("a projector");
+        for tick in [100, 30, 31, 130, 7, 0, 55] {
+            let shown = projector.show(&ask(tick, Viewpoint::Top, [Layer::Seen, Layer::Truth], 0)).expect("shown");
+            let Seen { logged, rebuilt } = shown.seen.expect("a mask from the first tick on");
+            assert_eq!(rebuilt, Some(logged.digest), "tick {tick}");
+            let frame = ask(logged.tick_of_frame, Viewpoint::Driver, [Layer::Prediction, Layer::Rgb], 0);
+            let predicted = projector.show(&frame).expect("shown");
+            assert_eq!(shown.views[0], predicted.views[0], "tick {tick}");
+            assert_ne!(shown.views[0], predicted.views[1], "tick {tick}");
+        }
+    }
+
+    #[test]
+    #[cfg_attr(no_windows, ignore = "needs Xvfb, xdotool and a Vulkan driver")]
+    fn every_layer_is_shown_from_everywhere_or_says_why_not() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let film = film(dir.path());
+        let eyes = vec![Eye::open(&EARLY).expect("bundled"), Eye::Truth];
+        let mut projector = Projector::new(&film, eyes, None).expect("a projector");
+        for viewpoint in [Viewpoint::Driver, Viewpoint::Chase, Viewpoint::Top] {
+            for layers in [[Layer::Rgb, Layer::Truth], [Layer::Prediction, Layer::Difference]] {
+                let views = projector.show(&ask(90, viewpoint, layers, 0)).expect("shown").views;
+                assert!(views.iter().all(Result::is_ok) && views[0] != views[1], "{viewpoint:?} {layers:?}");
+            }
+        }
+        let views =
+            projector.show(&ask(90, Viewpoint::Driver, [Layer::Confidence, Layer::Seen], 0)).expect("shown").views;
+        assert!(views[0].is_ok() && views[1].as_ref().is_err_and(|why| why.contains("--checkpoint")));
+        let shown =
+            projector.show(&ask(90, Viewpoint::Driver, [Layer::Confidence, Layer::Difference], 1)).expect("shown");
+        assert!(shown.views[0].as_ref().is_err_and(|why| why.contains("classes only")));
+        assert_eq!(shown.accuracy, Some(1.0), "ground truth is right");
     }
 }

@@ -227,6 +227,10 @@ fn one_looks_at_a_recording_steps_jumps_plays_cuts_and_keeps_pictures() {
     display.keys(&["mousemove", "645", "742", "click", "1"]);
     let (middle, _) = viewer.screenshot();
     assert!(middle.abs_diff(LAST / 2) < 20, "{middle}");
+    display.keys(&["mousedown", "1"]);
+    display.keys(&["mousemove", "330", "742"]);
+    wait_until(|| viewer.screenshot().0.abs_diff(LAST / 4) < 20);
+    display.keys(&["mouseup", "1"]);
     viewer.keys(&["Up", "Up", "Up", "space"]);
     wait_until(|| viewer.screenshot().0 == LAST);
     viewer.keys(&["q"]);
