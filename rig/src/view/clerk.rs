@@ -24,18 +24,25 @@ pub enum Errand {
     Screenshot(Arc<Shown>),
 }
 
-/// Does errands until there are no more; says of each where it went, or why it did not.
+/// Does errands until there are no more; says of each how the file beside the film is called, or why
+/// there is none. Where the file is goes to stderr.
 pub fn work(film: &Film, errands: &Receiver<Errand>, say: impl Fn(String)) {
     for errand in errands {
-        let done = match &errand {
-            Errand::Case(ticks) => keep_case(film, ticks).map(|path| format!("corner case {}", path.display())),
-            Errand::Screenshot(shown) => {
-                keep_screenshot(film, shown).map(|path| format!("screenshot {}", path.display()))
-            }
+        let (what, kept) = match &errand {
+            Errand::Case(ticks) => ("corner case", keep_case(film, ticks)),
+            Errand::Screenshot(shown) => ("screenshot", keep_screenshot(film, shown)),
         };
-        let said = done.unwrap_or_else(|error| format!("error: {}", sentence(&error)));
-        eprintln!("{said}");
-        say(said);
+        match kept {
+            Ok(path) => {
+                eprintln!("{what} {}", path.display());
+                say(format!("{what} {}", path.file_name().unwrap_or_default().to_string_lossy()));
+            }
+            Err(error) => {
+                let said = format!("error: {}", sentence(&error));
+                eprintln!("{said}");
+                say(said);
+            }
+        }
     }
 }
 

@@ -79,10 +79,10 @@ impl Display {
         Picture { width, height, rgb }
     }
 
-    /// Keeps a picture of the display, if a folder is named for that.
+    /// Keeps a picture of the windows on the display, if a folder is named for that.
     pub fn keep(&self, name: &str) {
         let Some(folder) = std::env::var_os(KEEP) else { return };
-        let picture = self.picture();
+        let picture = self.picture().without_ground();
         let file = fs::File::create(Path::new(&folder).join(format!("{name}.png"))).expect("writable");
         let mut encoder = png::Encoder::new(file, picture.width as u32, picture.height as u32);
         encoder.set_color(png::ColorType::Rgb);
@@ -106,6 +106,14 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Without the black rows and columns below and to the right of everything.
+    fn without_ground(&self) -> Self {
+        let places = self.rgb.iter().enumerate().filter(|(_, pixel)| **pixel != [0; 3]);
+        let ends = places.map(|(i, _)| (i % self.width + 1, i / self.width + 1));
+        let (width, height) = ends.fold((1, 1), |(x, y), (right, bottom)| (x.max(right), y.max(bottom)));
+        Self { width, height, rgb: self.part([0, 0], [width, height]).collect() }
+    }
+
     fn part(&self, [x, y]: [usize; 2], [width, height]: [usize; 2]) -> impl Iterator<Item = [u8; 3]> + '_ {
         (y..y + height).flat_map(move |y| self.rgb[y * self.width + x..][..width].iter().copied())
     }
