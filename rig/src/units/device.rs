@@ -25,6 +25,8 @@ pub(super) struct DeviceUnit {
     seen: bool,
     reverse: bool,
     gear_asked: bool,
+    /// "I see it" went down since the last tick.
+    seen_asked: bool,
 }
 
 impl DeviceUnit {
@@ -40,6 +42,7 @@ impl DeviceUnit {
             seen: false,
             reverse: false,
             gear_asked: false,
+            seen_asked: false,
         }
     }
 
@@ -71,6 +74,7 @@ impl DeviceUnit {
         }
         if is(buttons.seen) {
             self.seen = pressed;
+            self.seen_asked |= pressed;
         }
         self.gear_asked |= pressed && is(buttons.reverse);
     }
@@ -106,6 +110,7 @@ impl DeviceUnit {
     /// The controls of the next tick, once it is armed.
     pub fn tick(&mut self, speed_mps: f32) -> Option<Controls> {
         let gear_asked = std::mem::take(&mut self.gear_asked);
+        let seen = std::mem::take(&mut self.seen_asked) || self.seen;
         if !self.armed {
             return None;
         }
@@ -113,7 +118,7 @@ impl DeviceUnit {
         let [steer, throttle, brake] = self.fractions();
         let mut controls = Controls::from_fractions(steer, throttle, brake);
         for (on, flag) in
-            [(self.pulled, Controls::HAND_BRAKE), (self.reverse, Controls::REVERSE), (self.seen, Controls::SEEN)]
+            [(self.pulled, Controls::HAND_BRAKE), (self.reverse, Controls::REVERSE), (seen, Controls::SEEN)]
         {
             controls.flags |= if on { flag } else { 0 };
         }

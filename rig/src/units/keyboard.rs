@@ -87,6 +87,8 @@ pub struct Keyboard {
     seat: Seat,
     held: Vec<Action>,
     gear_asked: bool,
+    /// "I see it" went down since the last tick.
+    seen_asked: bool,
     reverse: bool,
     steer: f32,
     throttle: f32,
@@ -101,6 +103,7 @@ impl Keyboard {
             seat: half,
             held: Vec::new(),
             gear_asked: false,
+            seen_asked: false,
             reverse: false,
             steer: 0.0,
             throttle: 0.0,
@@ -144,6 +147,7 @@ impl Keyboard {
             self.held.push(action);
             // Systems repeat a key that is held.
             self.gear_asked |= action == Action::Gear && !held;
+            self.seen_asked |= action == Action::Seen;
         }
     }
 
@@ -164,10 +168,11 @@ impl Keyboard {
         self.throttle = pedal(self.throttle, self.is_held(Action::Throttle));
         self.brake = pedal(self.brake, self.is_held(Action::Brake));
         let mut controls = Controls::from_fractions(self.steer, self.throttle, self.brake);
+        let seen_asked = std::mem::take(&mut self.seen_asked);
         let flag = |on: bool, flag: u8| if on { flag } else { 0 };
         controls.flags = flag(self.is_held(Action::HandBrake), Controls::HAND_BRAKE)
             | flag(self.reverse, Controls::REVERSE)
-            | flag(self.is_held(Action::Seen), Controls::SEEN);
+            | flag(self.is_held(Action::Seen) || seen_asked, Controls::SEEN);
         controls
     }
 
@@ -244,6 +249,14 @@ mod tests {
         let mut both = Keyboard::new(Seat::Semantic);
         both.key(Key::A, true);
         assert_eq!(hold(&mut both, Key::D, 30, 5.0).steer, 0, "both sides are none");
+    }
+
+    #[test]
+    fn a_tap_between_two_ticks_is_seen_in_one() {
+        let mut keyboard = Keyboard::new(Seat::Semantic);
+        keyboard.key(Key::E, true);
+        keyboard.key(Key::E, false);
+        assert_eq!([0; 3].map(|_| keyboard.tick(5.0).has(Controls::SEEN)), [true, false, false]);
     }
 
     #[test]

@@ -108,6 +108,7 @@ fn a_blind_live_drive_for_familiarisation_tells_nothing_and_leaves_no_case() {
     wait_for_tick(&record, 240);
     display.keep("study");
     display.focus(&safety);
+    display.keys(&["key", "Shift_R"]);
     display.keys(&["keydown", "Down"]);
     wait_until(|| Recording::open(&record).is_ok_and(|recording| recording.log().intervention.is_some()));
     display.keys(&["keyup", "Down"]);
@@ -123,4 +124,9 @@ fn a_blind_live_drive_for_familiarisation_tells_nothing_and_leaves_no_case() {
     check(dir.path(), "run.mcap");
     let provenance = &Recording::open(&record).expect("a recording").log().manifest.provenance.clone();
     assert_eq!((&*provenance["semantic_name"], &*provenance["safety_name"]), ("P07", "P03"));
+    let contents = crate::rig::aeye(&["inspect"], &record);
+    let (seen, age) = (&contents["measures"]["seen"], &contents["measures"]["mask_age"]);
+    assert_eq!((seen.as_array().map(Vec::len), &seen[0]["seat"]), (Some(1), &"safety".into()), "{contents}");
+    let [ticks, ms, screen_ms] = ["ticks", "ms", "frame_to_screen_ms"].map(|unit| age[unit]["median"].as_f64());
+    assert!(ticks >= Some(1.0) && ms > Some(0.0) && screen_ms > Some(0.0), "{age}");
 }
