@@ -151,7 +151,7 @@ fn name(seat: Seat) -> &'static str {
 
 /// The last tick at which the semantic driver drives.
 fn end_of_driving(log: &Log) -> Tick {
-    log.intervention.map_or(log.last_tick(), |i| i.tick)
+    log.intervention.map_or(log.last_tick(), |i| i.tick.clamp(log.first_tick(), log.last_tick()))
 }
 
 /// Ticks as milliseconds, rounded.

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use clap::Parser;
-use kernel::arbiter::{Outcome, Phase};
+use kernel::arbiter::{Intervention, Outcome, Phase};
 use kernel::events::EventKind;
-use kernel::{TickInput, World};
+use kernel::{Controls, TickInput, World};
 use replay::{Annotation, Case, Label, Manifest, Provenance, Recorder, Recording};
 use rig::cli::{CheckpointChoice, Cli};
 use rig::drivers::Driver;
@@ -123,6 +123,16 @@ fn a_recording_that_was_changed_has_no_measures() {
     let mut log = Recording::from_bytes(&record(&scene, 300, ALONE)).expect("a recording").into_log();
     log.inputs[200].semantic.steer ^= 1;
     assert!(Measures::of(&log, &scene.network).is_err());
+}
+
+#[test]
+fn an_intervention_that_the_log_does_not_hold_ends_nothing() {
+    let scene = scene("map = \"rural\"\nseed = 7\n");
+    let recording = Recording::from_bytes(&record(&scene, 300, ALONE)).expect("a recording");
+    let mut log = recording.log().clone();
+    let (controls, by_brake, by_steering, speed_mps) = (Controls::default(), true, false, 0.0);
+    log.intervention = Some(Intervention { tick: 10_000, controls, by_brake, by_steering, speed_mps });
+    assert_eq!(Measures::of(&log, &scene.network).expect("ticks are compared"), measures(&recording, &scene));
 }
 
 /// A recording with a label, of a drive with the given provenance; the seed tells drives apart.

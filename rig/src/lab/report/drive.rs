@@ -45,8 +45,11 @@ impl Drive {
             add("Questionnaire", answers.join("; "));
         }
         let Some(measures) = &self.measures else { return facts };
-        let decisive = measures.decisive().map(|hazard| hazard.words());
-        add("Hazard", decisive.unwrap_or_else(|| "none was predicted before the end".into()));
+        let hazard = match self.recording.log().intervention {
+            Some(_) => measures.decisive(),
+            None => measures.hazards.last(),
+        };
+        add("Hazard", hazard.map_or_else(|| "none was predicted then".into(), |hazard| hazard.words()));
         for (name, value) in measures::lines(measures) {
             match name {
                 "mask age" => add("Mask age", value),
