@@ -41,7 +41,7 @@ pub fn watch_as_semantic(
     let camera = Camera::driver(width, height);
     watch(&board.scene, &board.semantic, show, |look| {
         let frame = renderer.draw(&look.scene, &camera)?;
-        let Mask { ids, .. } = lineup.of_run(look.run).see(frame)?;
+        let Mask { ids, .. } = lineup.see(look.run, frame)?;
         let rgb = ids.iter().flat_map(|id| render::tags::colour(*id)).collect();
         let image = Image { width: width as usize, height: height as usize, rgb };
         let mask = ShownMask { digest: digest_of(&ids), ids };

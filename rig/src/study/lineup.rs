@@ -1,6 +1,9 @@
 //! Which checkpoint drives which run, where that is not to be known.
 
+use anyhow::anyhow;
 use kernel::rng::{self, Stream};
+use perception::Mask;
+use render::Frame;
 use replay::Provenance;
 
 use super::{BLIND, CANDIDATES, StudyArgs};
@@ -79,6 +82,15 @@ impl Lineup {
     /// Width and height of the pictures, pixels.
     pub fn size(&self) -> (u32, u32) {
         self.size
+    }
+
+    /// What the eye that drives a run makes of a frame. The failure of a blind one does not tell which.
+    pub fn see(&mut self, run: u32, frame: Frame) -> anyhow::Result<Mask> {
+        let seen = self.of_run(run).see(frame);
+        if self.eyes.len() == 1 {
+            return seen;
+        }
+        seen.map_err(|_| anyhow!("inference failed in the checkpoint that was drawn; `aeye inspect --reveal` names it"))
     }
 
     /// The eye that drives a run.
