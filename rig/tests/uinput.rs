@@ -8,7 +8,7 @@ use evdev::{
     AbsInfo, AbsoluteAxisCode, AbsoluteAxisEvent, AttributeSet, BusType, InputId, KeyCode, KeyEvent, UinputAbsSetup,
 };
 use kernel::Seat;
-use rig::units::{CarState, Polled, SeatChoice, Seats, UnitEventKind};
+use rig::units::{CarState, Polled, SeatChoice, Seats, UnitEventKind, UnitState, UnitStatus};
 
 /// A device and the axes of its wheel, throttle and brake: code, greatest value, rest.
 struct Make {
@@ -97,7 +97,8 @@ fn real_devices_are_armed_lost_and_given_back() {
     let (mut wheel, mut pad) = (WHEEL.plug_in(), PAD.plug_in());
     let choices = [SeatChoice::Device(path(&mut wheel)), SeatChoice::Device(path(&mut pad))];
     let mut seats = Seats::new(choices).expect("devices can be looked for");
-    until(&mut seats, |polled| polled.status.iter().all(|status| status.unit != "device"));
+    let is_there = |status: &UnitStatus| matches!(status.state, UnitState::Arming { .. });
+    until(&mut seats, |polled| polled.status.iter().all(is_there));
     let summary = seats.summary().join("\n");
     assert!(summary.contains("a wheel that is known") && summary.contains("read as a gamepad"), "{summary}");
 

@@ -7,6 +7,8 @@ use super::hud::{self, HudText};
 
 const SHADE: Color32 = Color32::from_black_alpha(150);
 const WHITE: Color32 = Color32::WHITE;
+/// Words that are wider are broken into lines, fraction of the picture's width.
+const MOST_WIDTH: f32 = 0.9;
 const OFF: Color32 = Color32::from_gray(60);
 
 /// Paints the HUD over a picture that fills a rectangle.
@@ -14,7 +16,7 @@ pub fn paint(painter: &Painter, rect: Rect, hud: &HudText) {
     let at = |[x, y]: [f32; 2]| rect.min + Vec2::new(x * rect.width(), y * rect.height());
     let font = |size: f32| FontId::proportional(size * rect.height());
     let write = |place, anchor: Align2, text: &str, size: f32| {
-        let galley = painter.layout_no_wrap(text.to_owned(), font(size), WHITE);
+        let galley = painter.layout(text.to_owned(), font(size), WHITE, MOST_WIDTH * rect.width());
         let box_ = anchor.anchor_size(at(place), galley.size());
         painter.rect_filled(box_.expand(0.15 * size * rect.height()), 0.1 * size * rect.height(), SHADE);
         painter.galley(box_.min, galley, WHITE);

@@ -106,7 +106,7 @@ impl Seating {
             .zip(NAMES)
             .filter_map(|(s, name)| Some(format!("{name} driver's {}: {}", s.unit, s.trouble()?)))
             .collect();
-        (!troubles.is_empty()).then(|| troubles.join("; "))
+        (!troubles.is_empty()).then(|| troubles.join("\n"))
     }
 
     /// Whether both units are armed.
@@ -200,7 +200,7 @@ mod tests {
         assert!(setup[0].starts_with("found plain pad at /dev/input/event0, read as a gamepad: left stick steers"));
         assert_eq!(
             setup[1],
-            "semantic driver: plain pad: to arm it, turn the wheel, press the accelerator, press the brake"
+            "semantic driver: plain pad: to arm it, move the left stick aside, pull the right trigger, pull the left trigger"
         );
         assert!(setup[2].starts_with("safety driver: keyboard (up throttle"));
         assert!(seating.note().is_some_and(|n| n.starts_with("semantic driver's plain pad: to arm it")));

@@ -138,7 +138,7 @@ fn lost_wheels_stop_the_car_are_said_and_end_the_run_when_they_are_the_safety_dr
     let said = bench.wait(|status| status.hud.speed_mps < 0.1).units_note.clone().unwrap();
     assert_eq!(said, "semantic driver's simulated wheel: lost, plug it in again");
     bench.devices.push(device(0));
-    bench.wait(|status| status.units_note.as_ref().is_some_and(|said| said.contains("to arm it, turn the wheel")));
+    bench.wait(|status| status.units_note.as_ref().is_some_and(|said| said.contains("to arm it, move the left stick")));
     bench.arm(0);
     bench.axis(0, THROTTLE, 255);
     bench.wait(|status| status.hud.speed_mps > 2.0);

@@ -11,12 +11,38 @@ const WHEEL_MOVED: f32 = 0.2;
 /// Within this of its rest a control counts as released; below every sensible threshold of a takeover.
 const RELEASED: f32 = 0.05;
 
+/// What a driver holds, which has other words for the same movements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Make {
+    Wheel,
+    Gamepad,
+}
+
+impl Make {
+    /// How steering, throttle and brake are moved, and let go of.
+    fn words(self) -> [[&'static str; 2]; 3] {
+        match self {
+            Self::Wheel => [
+                ["turn the wheel", "centre the wheel"],
+                ["press the accelerator", "release the accelerator"],
+                ["press the brake", "release the brake"],
+            ],
+            Self::Gamepad => [
+                ["move the left stick aside", "let go of the left stick"],
+                ["pull the right trigger", "release the right trigger"],
+                ["pull the left trigger", "release the left trigger"],
+            ],
+        }
+    }
+}
+
 /// A device in a seat. It is armed once the wheel and each pedal have moved and all are released
 /// again: pedals report garbage until they are first moved, and a pedal that is down at that moment
 /// would act at once.
 #[derive(Clone, Debug)]
 pub(super) struct DeviceUnit {
     calibration: Calibration,
+    make: Make,
     /// Raw values of wheel, accelerator and brake.
     raw: [i32; 3],
     moved: [bool; 3],
@@ -31,10 +57,11 @@ pub(super) struct DeviceUnit {
 
 impl DeviceUnit {
     /// A device that nobody has touched yet.
-    pub fn new(calibration: Calibration) -> Self {
+    pub fn new(calibration: Calibration, make: Make) -> Self {
         let raw = [calibration.steering.rest, calibration.throttle.rest, calibration.brake.rest];
         Self {
             calibration,
+            make,
             raw,
             moved: [false; 3],
             armed: false,
@@ -48,7 +75,7 @@ impl DeviceUnit {
 
     /// Forgets where everything stood: the device has to be armed again.
     pub fn disarm(&mut self) {
-        *self = Self::new(self.calibration.clone());
+        *self = Self::new(self.calibration.clone(), self.make);
     }
 
     /// An axis moved.
@@ -96,15 +123,12 @@ impl DeviceUnit {
         if self.armed {
             return Vec::new();
         }
-        let mut to_do = Vec::new();
-        let [steer, throttle, brake] = self.fractions();
-        let mut need = |moved: bool, released: bool, move_it: &'static str, release_it: &'static str| {
-            to_do.extend((!moved).then_some(move_it).or((!released).then_some(release_it)));
-        };
-        need(self.moved[0], steer.abs() <= RELEASED, "turn the wheel", "centre the wheel");
-        need(self.moved[1], throttle <= RELEASED, "press the accelerator", "release the accelerator");
-        need(self.moved[2], brake <= RELEASED, "press the brake", "release the brake");
-        to_do
+        let parts = self.moved.into_iter().zip(self.fractions()).zip(self.make.words());
+        let to_do = parts.filter_map(|((moved, fraction), [move_it, release_it])| {
+            let is_released = fraction.abs() <= RELEASED;
+            (!moved).then_some(move_it).or((!is_released).then_some(release_it))
+        });
+        to_do.collect()
     }
 
     /// The controls of the next tick, once it is armed.
@@ -142,7 +166,7 @@ mod tests {
 
     #[test]
     fn it_is_armed_when_all_has_moved_and_is_released() {
-        let mut unit = DeviceUnit::new(g29());
+        let mut unit = DeviceUnit::new(g29(), Make::Wheel);
         assert_eq!(unit.to_do(), ["turn the wheel", "press the accelerator", "press the brake"]);
         for (code, value) in [(0, 0), (2, 0), (5, 0)] {
             unit.axis(code, value);
@@ -174,7 +198,7 @@ mod tests {
     }
 
     fn armed() -> DeviceUnit {
-        let mut unit = DeviceUnit::new(g29());
+        let mut unit = DeviceUnit::new(g29(), Make::Wheel);
         for (code, value) in [(0, 0), (2, 0), (5, 0), (0, 32_768), (2, 255), (5, 255)] {
             unit.axis(code, value);
         }

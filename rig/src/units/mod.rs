@@ -26,6 +26,7 @@ use std::path::PathBuf;
 use kernel::{Controls, Seat, TickInput};
 
 use calibration::Calibration;
+use device::{DeviceUnit, Make};
 use hardware::Hardware;
 pub use keyboard::Key;
 use keyboard::Keyboard;
@@ -39,8 +40,7 @@ const STOP_BRAKE: f32 = 0.6;
 const HOW_TO_CHOOSE: &str = "to change that: --semantic and --safety take auto, keyboard, bot, press (a button on the \
                              device) or a path such as /dev/input/event5; X swaps the seats between runs";
 /// What there is to say when no device is there.
-const NONE_FOUND: &str = "found no wheel or gamepad (one that is plugged in is found at the next start; on Linux it \
-                          needs read and write permission on /dev/input/event*)";
+const PERMISSION: &str = "(on Linux one needs read and write permission on /dev/input/event*)";
 const SEATS: [Seat; 2] = [Seat::Semantic, Seat::Safety];
 
 /// What the units need to know of the car; that of the tick before.
@@ -161,10 +161,12 @@ impl Seats {
         let found = self.devices.iter().map(|d| found(&self.calibrations, d));
         let none = self.devices.is_empty().then(|| match &self.deaf {
             Some(reason) => format!("could not look for wheels and gamepads: {reason}"),
-            None => String::from(NONE_FOUND),
+            None if self.units.iter().any(|unit| matches!(unit, Unit::Device(_))) => {
+                format!("found no wheel or gamepad yet {PERMISSION}")
+            }
+            None => format!("found no wheel or gamepad {PERMISSION}; one plugged in now is found at the next start"),
         });
-        let seats =
-            SEATS.map(|seat| format!("{} driver: {}", slot::name(seat), self.units[seat as usize].summary(seat)));
+        let seats = SEATS.map(|seat| format!("{} driver: {}", slot::name(seat), self.units[seat as usize].summary()));
         found.chain(none).chain(seats).chain([String::from(HOW_TO_CHOOSE)]).collect()
     }
 
@@ -199,7 +201,7 @@ impl Seats {
         let stop = self.held_steer.map(|steer| Controls { steer, ..Controls::from_fractions(0.0, 0.0, STOP_BRAKE) });
         let semantic = own[0].filter(|_| own[1].is_some()).unwrap_or(stop[0]);
         let safety = own[1].unwrap_or(if car.taken_over { stop[1] } else { Controls::default() });
-        let status = SEATS.map(|seat| self.units[seat as usize].status(seat));
+        let status = SEATS.map(|seat| self.units[seat as usize].status());
         Polled { semantic, safety, events: std::mem::take(&mut self.events), status }
     }
 
@@ -266,8 +268,10 @@ impl Seats {
 
     fn bind(&mut self, seat: Seat, device: &DeviceInfo) {
         let Some(calibration) = calibration_of(&self.calibrations, device) else { return };
+        let is_known = presets::is_known_wheel(device) || self.calibrations.iter().any(|c| c.device == device.name);
+        let make = if is_known { Make::Wheel } else { Make::Gamepad };
         let Some(binding) = self.binding(seat) else { return };
-        let returned = binding.bind(device.clone(), calibration);
+        let returned = binding.bind(device.clone(), DeviceUnit::new(calibration, make));
         let kind = if returned { UnitEventKind::Returned } else { UnitEventKind::Bound };
         self.events.push(UnitEvent { seat, kind, unit: device.name.clone() });
     }
@@ -286,7 +290,7 @@ impl Seats {
         let Some(unit) = self.binding(seat).and_then(Binding::unit) else { return };
         unit.axis(code, value);
         if unit.arm() {
-            let unit = self.units[seat as usize].status(seat).unit;
+            let unit = self.units[seat as usize].status().unit;
             self.events.push(UnitEvent { seat, kind: UnitEventKind::Armed, unit });
         }
     }

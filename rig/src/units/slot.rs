@@ -2,7 +2,6 @@
 
 use kernel::{Controls, Seat};
 
-use super::calibration::Calibration;
 use super::device::DeviceUnit;
 use super::keyboard::Keyboard;
 use super::source::{DeviceId, DeviceInfo};
@@ -65,8 +64,7 @@ impl Binding {
     }
 
     /// Takes a device; true if the seat had lost one, which is back or replaced now.
-    pub fn bind(&mut self, info: DeviceInfo, calibration: Calibration) -> bool {
-        let unit = DeviceUnit::new(calibration);
+    pub fn bind(&mut self, info: DeviceInfo, unit: DeviceUnit) -> bool {
         self.bound.replace(Box::new(Bound { info, unit, present: true })).is_some()
     }
 
@@ -83,12 +81,11 @@ impl Binding {
         self.bound.as_mut().filter(|b| b.present).map(|b| &mut b.unit)
     }
 
-    fn status(&self, seat: Seat) -> UnitStatus {
+    fn status(&self) -> UnitStatus {
         let Some(Bound { info, unit, present }) = self.bound.as_deref() else {
-            let any = || format!("a button press on the wheel or gamepad of the {} driver", name(seat));
-            let waits_for = self.path.clone().unwrap_or_else(any);
+            let waits_for = self.path.clone().unwrap_or_else(|| "the press of one of its buttons".into());
             let state = UnitState::Waiting { waits_for };
-            return UnitStatus { unit: String::from("device"), place: String::new(), state };
+            return UnitStatus { unit: "wheel or gamepad".into(), place: String::new(), state };
         };
         let to_do = unit.to_do();
         let state = match (present, to_do.is_empty()) {
@@ -128,22 +125,22 @@ impl Unit {
     }
 
     /// What it is, with the keys of a keyboard.
-    pub fn summary(&self, seat: Seat) -> String {
+    pub fn summary(&self) -> String {
         match self {
             Self::Keyboard(keyboard) => format!("keyboard ({})", keyboard.keys()),
             Self::Bot => String::from("bot"),
-            Self::Device(_) => self.status(seat).to_string(),
+            Self::Device(_) => self.status().to_string(),
         }
     }
 
     /// How it is.
-    pub fn status(&self, seat: Seat) -> UnitStatus {
+    pub fn status(&self) -> UnitStatus {
         let armed =
             |unit: &str, place: &str| UnitStatus { unit: unit.into(), place: place.into(), state: UnitState::Armed };
         match self {
             Self::Bot => armed("bot", ""),
             Self::Keyboard(keyboard) => armed("keyboard", keyboard.name()),
-            Self::Device(binding) => binding.status(seat),
+            Self::Device(binding) => binding.status(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Frame, Margin, Panel, Rect, RichText, Ui, Vec2};
+use egui::{Color32, Frame, Label as Words, Margin, Panel, Rect, RichText, Ui, Vec2};
 use kernel::time::TICK_HZ;
 use replay::Label;
 
@@ -100,6 +100,7 @@ impl Centre {
 
 fn headline(ui: &mut Ui, status: &Status) {
     let text = match &status.stage {
+        Stage::Ready if status.units_note.is_some() => format!("Run {} waits for both units", status.run),
         Stage::Ready => format!("Run {} is ready: N starts it", status.run),
         Stage::Driving => format!("Run {}: {:?}", status.run, status.phase),
         Stage::Labelling(_) => format!("Run {} has ended as a corner case", status.run),
@@ -138,10 +139,11 @@ fn figures(ui: &mut Ui, status: &Status) {
     if status.slowed_us > 0 {
         lines.push(("slower than real time", format!("{:.2} s so far", status.slowed_us as f64 / 1e6)));
     }
-    egui::Grid::new("figures").num_columns(2).spacing([16.0, 4.0]).show(ui, |ui| {
+    let grid = egui::Grid::new("figures").num_columns(2).spacing([16.0, 4.0]);
+    grid.max_col_width(0.5 * FIGURES_WIDTH).show(ui, |ui| {
         for (name, value) in lines {
             ui.label(name);
-            ui.label(RichText::new(value).strong());
+            ui.add(Words::new(RichText::new(value).strong()).truncate());
             ui.end_row();
         }
         for (name, controls) in [("semantic", status.input.semantic), ("safety", status.input.safety)] {
