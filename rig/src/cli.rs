@@ -45,6 +45,8 @@ pub enum Command {
     Questionnaire(QuestionnaireArgs),
     /// Render the window of recordings or cases through checkpoints.
     Rerender(RerenderArgs),
+    /// Drive corner cases on from before the intervention: was it necessary?
+    Redrive(RedriveArgs),
     /// Make datasets.
     #[command(subcommand)]
     Dataset(DatasetCommand),
@@ -313,6 +315,33 @@ pub struct RerenderArgs {
     #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
     /// Folder of the results; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `redrive`.
+#[derive(Args, Debug)]
+#[command(group = clap::ArgGroup::new("counterfactual").required(true).args(["without_intervention", "checkpoint"]))]
+pub struct RedriveArgs {
+    /// Recordings or cases with an intervention.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// The safety driver does nothing from the tick of the intervention on; the semantic driver is a bot
+    /// that looks through the recorded checkpoint. What would have happened?
+    #[arg(long)]
+    pub without_intervention: bool,
+    /// Bots drive from the first tick at hand, at least 3 s before the intervention, the semantic one
+    /// looking through this checkpoint. Is there an intervention again?
+    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Option<CheckpointChoice>,
+    /// Further forks of each file with other weather of the paper's ranges and, without the
+    /// intervention, with the safety driver gone 0.1 s earlier each.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=30))]
+    pub vary: u16,
+    /// How long after the intervention a fork goes on, seconds.
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=60))]
+    pub seconds: u16,
+    /// Folder of the forks' recordings and of `redrive.jsonl`; must not exist or be empty.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

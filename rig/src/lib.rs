@@ -17,6 +17,7 @@ mod newest;
 pub mod output;
 pub mod progress;
 pub mod quiet;
+mod recorded_eye;
 pub mod session;
 pub mod simulate;
 pub mod stats;
@@ -40,6 +41,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Rerender(args) => lab::rerender::run(args, json),
         Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
+        Command::Redrive(args) => lab::redrive::run(args, json),
         Command::Train(args) => lab::train::run(args, json),
         Command::Eval(args) => lab::eval::run(args, json),
         Command::Report(args) => lab::report::run(args, json),

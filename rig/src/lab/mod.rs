@@ -9,6 +9,7 @@ pub mod footage;
 pub mod looks;
 pub mod natural;
 pub mod png;
+pub mod redrive;
 pub mod report;
 pub mod rerender;
 mod spread;

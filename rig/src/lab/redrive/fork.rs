@@ -1,0 +1,180 @@
+//! A run that leaves the recorded one: the same ticks up to a fork, then other controls.
+
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+use kernel::arbiter::Phase;
+use kernel::events::{Event, EventKind};
+use kernel::scene::{ActorKind, Weather};
+use kernel::time::{CLIP_TICKS, TICK_HZ, Tick};
+use kernel::{Controls, Keyframe, RoadNetwork, TickInput, World};
+use replay::{Log, Recorder, Replayer};
+use serde::Serialize;
+
+use crate::crew::Crew;
+use crate::vision::Vision;
+
+/// What is done otherwise than in the recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Otherwise {
+    /// The safety driver does nothing from so many ticks before the intervention on, and a bot gives
+    /// the semantic controls; until then both are as recorded.
+    NoIntervention {
+        /// 0: from the tick of the intervention on.
+        earlier_ticks: Tick,
+    },
+    /// Bots give all controls from the first tick.
+    OtherEye,
+}
+
+/// A fork: what is done otherwise, in which weather, and how long after the intervention it ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fork {
+    /// What is done otherwise.
+    pub otherwise: Otherwise,
+    /// Other weather than recorded. It changes pictures and nothing else.
+    pub weather: Option<Weather>,
+    /// Ticks from the recorded intervention to the end.
+    pub after_ticks: Tick,
+}
+
+/// What came of a fork.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// Its recording.
+    pub recording: Vec<u8>,
+    /// First tick that may differ from the recorded run.
+    pub fork_tick: Tick,
+    /// The first thing that went wrong from then on.
+    pub harm: Option<Harm>,
+    /// Tick of an intervention, which there is only with a safety bot.
+    pub intervention: Option<Tick>,
+}
+
+/// Something that went wrong.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Harm {
+    /// When.
+    pub tick: Tick,
+    /// `collision`, `red light`, `wrong way` or `off road`.
+    pub what: &'static str,
+    /// With what kind of road user a collision was; `scenery` stands for everything else.
+    pub with: Option<String>,
+    /// Speed of the ego car, km/h.
+    pub speed_kmh: f64,
+}
+
+impl Fork {
+    /// Drives it from the last keyframe that is at least 3 s before the intervention (the first one if
+    /// there is none). Vision is that of the semantic bot.
+    pub fn drive(&self, log: &Log, network: &Arc<RoadNetwork>, vision: Vision) -> anyhow::Result<(Course, Vision)> {
+        let at = log.intervention.context("holds no intervention")?.tick;
+        let start = start_of(log, at)?;
+        let fork_tick = match self.otherwise {
+            Otherwise::NoIntervention { earlier_ticks } => at.saturating_sub(earlier_ticks).max(start.tick + 1),
+            Otherwise::OtherEye => start.tick + 1,
+        };
+        let mut manifest = log.manifest.clone();
+        manifest.case = None;
+        manifest.scenario.weather = self.weather.unwrap_or(manifest.scenario.weather);
+        manifest.provenance.extend(self.provenance(fork_tick, &vision));
+        let mut world = World::resume(&manifest.scenario, network, start)?;
+        let mut recorder = Recorder::new(Vec::new(), &manifest, start)?;
+        let mut crew = Crew::new(vision);
+        let mut harm = None;
+        while world.tick() < at + self.after_ticks && world.arbiter().phase != Phase::Done {
+            // The bots look on before the fork, too: their memory is then that of the drive.
+            let (bots, shown) = crew.act(&world)?;
+            let tick = world.tick() + 1;
+            if tick == fork_tick {
+                check(log, network, &world)?;
+            }
+            let input = if tick < fork_tick { logged(log, tick)? } else { self.controls(bots) };
+            recorder.mask_shown(shown);
+            let output = world.step(&input);
+            recorder.tick(&input, &output, &world.part_hashes())?;
+            if tick >= fork_tick {
+                harm = harm.or_else(|| output.events.iter().find_map(|event| Harm::of(tick, event, &world)));
+            }
+        }
+        let intervention = world.arbiter().intervention.map(|i| i.tick);
+        let recording = recorder.finish(world.arbiter().outcome)?;
+        Ok((Course { recording, fork_tick, harm, intervention }, crew.into_vision()))
+    }
+
+    fn controls(&self, bots: TickInput) -> TickInput {
+        match self.otherwise {
+            Otherwise::NoIntervention { .. } => TickInput { safety: Controls::default(), ..bots },
+            Otherwise::OtherEye => bots,
+        }
+    }
+
+    fn provenance(&self, fork_tick: Tick, vision: &Vision) -> Vec<(String, String)> {
+        let said = match self.otherwise {
+            Otherwise::NoIntervention { .. } => "without the intervention",
+            Otherwise::OtherEye => "through another checkpoint",
+        };
+        let mut entries = vec![
+            ("fork".to_owned(), said.to_owned()),
+            ("fork_tick".to_owned(), fork_tick.to_string()),
+            ("semantic".to_owned(), "bot".to_owned()),
+        ];
+        entries.extend(crate::vision::provenance(vision.eye(), vision.eye().size()));
+        entries
+    }
+}
+
+fn start_of(log: &Log, at: Tick) -> anyhow::Result<&Keyframe> {
+    let early = log.keyframes.iter().rev().find(|keyframe| keyframe.tick + CLIP_TICKS <= at);
+    early.or(log.keyframes.first()).context("holds no keyframe to start from")
+}
+
+fn logged(log: &Log, tick: Tick) -> anyhow::Result<TickInput> {
+    log.input(tick).copied().with_context(|| format!("holds no controls of tick {tick}"))
+}
+
+/// The fork must start from the recorded run, every tick of which is compared on the way.
+fn check(log: &Log, network: &Arc<RoadNetwork>, world: &World) -> anyhow::Result<()> {
+    let mut replayer = Replayer::new(log, network.clone())?;
+    replayer.seek(world.tick())?;
+    if replayer.world().hash() != world.hash() {
+        bail!("tick {}: the fork is not the recorded run", world.tick());
+    }
+    Ok(())
+}
+
+impl Harm {
+    fn of(tick: Tick, event: &Event, world: &World) -> Option<Self> {
+        let what = match event.kind {
+            EventKind::CollisionActor | EventKind::CollisionScenery => "collision",
+            EventKind::RedLight => "red light",
+            EventKind::WrongWay => "wrong way",
+            EventKind::OffRoad => "off road",
+            _ => return None,
+        };
+        let with = match event.kind {
+            EventKind::CollisionActor => {
+                world.scene().actors.iter().find(|a| a.id == event.actor).map(|a| name(a.kind))
+            }
+            EventKind::CollisionScenery => Some("scenery"),
+            _ => None,
+        };
+        Some(Self { tick, what, with: with.map(str::to_owned), speed_kmh: 3.6 * f64::from(event.speed_mps) })
+    }
+
+    /// Seconds from a tick.
+    pub fn seconds_after(&self, tick: Tick) -> f64 {
+        self.tick.saturating_sub(tick) as f64 / f64::from(TICK_HZ)
+    }
+}
+
+fn name(kind: ActorKind) -> &'static str {
+    match kind {
+        ActorKind::Car => "car",
+        ActorKind::Truck => "truck",
+        ActorKind::Bus => "bus",
+        ActorKind::Motorcycle => "motorcycle",
+        ActorKind::Bicycle => "bicycle",
+        ActorKind::Pedestrian => "pedestrian",
+    }
+}

@@ -1,0 +1,155 @@
+//! Counterfactuals: corner cases driven on from before the intervention.
+//!
+//! `OUT/NAME.mcap` for each file (`NAME.1.mcap` and so on for variations), recordings that verify as
+//! any other, and `OUT/redrive.jsonl`, a line for each.
+
+mod fork;
+mod verdict;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+use kernel::time::{TICK_HZ, Tick};
+use kernel::{RoadNetwork, Scenario};
+use render::{RenderOptions, Renderer};
+use replay::{Log, Recording};
+use serde::Serialize;
+
+use self::fork::{Fork, Harm, Otherwise};
+use self::verdict::Verdict;
+use crate::cli::RedriveArgs;
+use crate::exit;
+use crate::output::{self, PendingFolder, json_line};
+use crate::progress;
+use crate::recorded_eye::RecordedEye;
+use crate::vision::{Eye, Vision};
+
+/// A variation lets the safety driver go so much earlier than the one before.
+const VARIATION_TICKS: Tick = TICK_HZ as Tick / 10;
+
+/// A line of `redrive.jsonl`.
+#[derive(Serialize)]
+struct Line {
+    file: String,
+    /// 0 is the case itself.
+    variation: u16,
+    recording: String,
+    /// What the semantic bot looked through.
+    checkpoint: String,
+    intervention_tick: Tick,
+    fork_tick: Tick,
+    verdict: Verdict,
+    harm: Option<Harm>,
+    /// From the recorded intervention to the harm, seconds.
+    harm_after_s: Option<f64>,
+    /// Tick of an intervention in the fork.
+    intervention_again: Option<Tick>,
+}
+
+#[derive(Serialize)]
+struct Summary {
+    out: String,
+    forks: Vec<Line>,
+    verdicts: BTreeMap<&'static str, usize>,
+}
+
+/// Runs `aeye redrive`.
+pub fn run(args: &RedriveArgs, json: bool) -> anyhow::Result<exit::Verdict> {
+    let out = PendingFolder::new(&args.out)?;
+    let mut forks = Vec::new();
+    let bar = progress::bar("files", args.files.len() as u64);
+    for path in &args.files {
+        forks.extend(redrive(args, path, out.path()).with_context(|| path.display().to_string())?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let lines = forks.iter().map(json_line).collect::<anyhow::Result<Vec<_>>>()?;
+    let path = out.path().join("redrive.jsonl");
+    fs::write(&path, lines.join("\n") + "\n").with_context(|| path.display().to_string())?;
+    out.finish()?;
+    let mut verdicts = BTreeMap::new();
+    forks.iter().for_each(|line| *verdicts.entry(line.verdict.name()).or_insert(0) += 1);
+    let summary = Summary { out: args.out.display().to_string(), forks, verdicts };
+    output::print(json, &summary, || text(&summary))?;
+    Ok(exit::Verdict::Ok)
+}
+
+/// All forks of a file.
+fn redrive(args: &RedriveArgs, path: &Path, out: &Path) -> anyhow::Result<Vec<Line>> {
+    let recording = Recording::open(path)?;
+    let network = recording.network()?;
+    let log = recording.into_log();
+    let at = log.intervention.context("holds no intervention, from which to go another way")?.tick;
+    let eye = eye_of(args, &log)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.strip_suffix(".mcap").unwrap_or(&name);
+    let mut vision = Vision::new(Renderer::new(&network, &RenderOptions::default())?, eye.clone());
+    let mut lines = Vec::new();
+    for variation in 0..=args.vary {
+        let fork = variant(args, &log, &network, variation);
+        let (course, after) = fork.drive(&log, &network, vision)?;
+        vision = after.with_eye(eye.clone());
+        let file = if variation == 0 { format!("{name}.mcap") } else { format!("{name}.{variation}.mcap") };
+        let to = out.join(&file);
+        if to.exists() {
+            bail!("two files are named {name}; expected names that differ");
+        }
+        fs::write(&to, &course.recording).with_context(|| to.display().to_string())?;
+        lines.push(Line {
+            file: path.display().to_string(),
+            variation,
+            recording: file,
+            checkpoint: eye.name().to_owned(),
+            intervention_tick: at,
+            fork_tick: course.fork_tick,
+            verdict: Verdict::of(&course, fork.otherwise, at),
+            harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
+            harm: course.harm,
+            intervention_again: course.intervention,
+        });
+    }
+    Ok(lines)
+}
+
+/// What the semantic bot looks through.
+fn eye_of(args: &RedriveArgs, log: &Log) -> anyhow::Result<Eye> {
+    if let Some(choice) = &args.checkpoint {
+        return Eye::open(choice);
+    }
+    let recorded = RecordedEye::of(&log.manifest.provenance)?;
+    let found = recorded.find(&[])?;
+    found.with_context(|| format!("was driven through {:?}, which does not come with the program", recorded.name))
+}
+
+/// The fork itself, or a variation of it; both follow from the file and the number alone.
+fn variant(args: &RedriveArgs, log: &Log, network: &Arc<RoadNetwork>, variation: u16) -> Fork {
+    let otherwise = if args.without_intervention {
+        Otherwise::NoIntervention { earlier_ticks: Tick::from(variation) * VARIATION_TICKS }
+    } else {
+        Otherwise::OtherEye
+    };
+    let seed = log.manifest.scenario.seed.wrapping_add(variation.into());
+    let weather = (variation > 0).then(|| Scenario::default_for(&network.name, seed).weather);
+    Fork { otherwise, weather, after_ticks: Tick::from(args.seconds) * Tick::from(TICK_HZ) }
+}
+
+fn text(summary: &Summary) -> String {
+    let mut lines: Vec<String> = summary.forks.iter().map(Line::words).collect();
+    let counts: Vec<_> = summary.verdicts.iter().map(|(name, count)| format!("{count} {name}")).collect();
+    lines.push(format!("{}: {}", summary.out, counts.join(", ")));
+    lines.join("\n")
+}
+
+impl Line {
+    fn words(&self) -> String {
+        let variation = if self.variation == 0 { String::new() } else { format!(" (variation {})", self.variation) };
+        let harm = self.harm.as_ref().zip(self.harm_after_s).map(|(harm, after_s)| {
+            let with = harm.with.as_ref().map(|with| format!(" with {with}")).unwrap_or_default();
+            format!(": {}{with} at {:.0} km/h, {after_s:.1} s after the takeover", harm.what, harm.speed_kmh)
+        });
+        format!("{}{variation}: {}{}", self.file, self.verdict.name(), harm.unwrap_or_default())
+    }
+}

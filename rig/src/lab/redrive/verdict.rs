@@ -1,0 +1,83 @@
+//! What a fork says about the intervention.
+
+use kernel::time::{Tick, seconds};
+use serde::Serialize;
+
+use super::fork::{Course, Otherwise};
+
+/// An intervention is early when harm would have come later than this after it.
+const EARLY_TICKS: Tick = seconds(3);
+
+/// Verdict on an intervention.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Without it, harm comes within 3 s: a collision, a red light, the wrong way, or off the road.
+    Necessary,
+    /// Without it, harm comes later.
+    Early,
+    /// Without it, no harm comes as long as the fork goes on.
+    Needless,
+    /// Through the other checkpoint there is an intervention, or a collision that nobody prevents.
+    Again,
+    /// Through the other checkpoint there is none.
+    Avoided,
+}
+
+impl Verdict {
+    /// Of a fork of a run with an intervention at a tick.
+    pub fn of(course: &Course, otherwise: Otherwise, at: Tick) -> Self {
+        match otherwise {
+            Otherwise::NoIntervention { .. } => match &course.harm {
+                Some(harm) if harm.tick <= at + EARLY_TICKS => Self::Necessary,
+                Some(_) => Self::Early,
+                None => Self::Needless,
+            },
+            Otherwise::OtherEye => {
+                let collides = course.harm.as_ref().is_some_and(|harm| harm.what == "collision");
+                if collides || course.intervention.is_some() { Self::Again } else { Self::Avoided }
+            }
+        }
+    }
+
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Necessary => "necessary",
+            Self::Early => "early",
+            Self::Needless => "needless",
+            Self::Again => "again",
+            Self::Avoided => "avoided",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::redrive::fork::Harm;
+
+    fn course(harm: Option<(Tick, &'static str)>, intervention: Option<Tick>) -> Course {
+        let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
+        Course { recording: Vec::new(), fork_tick: 1, harm, intervention }
+    }
+
+    #[test]
+    fn harm_soon_after_makes_an_intervention_necessary() {
+        let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
+        let verdict = |harm| Verdict::of(&course(harm, None), otherwise, 1000);
+        assert_eq!(verdict(Some((1000, "collision"))), Verdict::Necessary);
+        assert_eq!(verdict(Some((1180, "red light"))), Verdict::Necessary);
+        assert_eq!(verdict(Some((1181, "collision"))), Verdict::Early);
+        assert_eq!(verdict(None), Verdict::Needless);
+    }
+
+    #[test]
+    fn another_eye_avoids_it_only_without_takeover_and_collision() {
+        let verdict = |harm, taken_over| Verdict::of(&course(harm, taken_over), Otherwise::OtherEye, 1000);
+        assert_eq!(verdict(None, None), Verdict::Avoided);
+        assert_eq!(verdict(Some((900, "off road")), None), Verdict::Avoided);
+        assert_eq!(verdict(Some((900, "collision")), None), Verdict::Again);
+        assert_eq!(verdict(None, Some(990)), Verdict::Again);
+    }
+}

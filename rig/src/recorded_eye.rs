@@ -1,0 +1,80 @@
+//! The eye behind the masks of a recording, found again.
+
+use anyhow::anyhow;
+use replay::Provenance;
+
+use crate::cli::CheckpointChoice;
+use crate::vision::{DEFAULT_SIZE, Eye};
+
+/// What a recording says about the eye behind its masks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordedEye {
+    /// Name of the checkpoint; empty when nothing is said.
+    pub name: String,
+    /// Its digest in hexadecimal digits, or `truth`; empty when nothing is said.
+    pub digest: String,
+    /// Width and height of the pictures it looked at, pixels.
+    pub size: (u32, u32),
+    /// Adapter and driver that drew them; empty when nothing is said.
+    pub adapter: String,
+}
+
+impl RecordedEye {
+    /// As the provenance of a recording has it.
+    pub fn of(provenance: &Provenance) -> anyhow::Result<Self> {
+        let said = |name: &str| provenance.get(name).cloned().unwrap_or_default();
+        let size = match provenance.get("camera") {
+            None => DEFAULT_SIZE,
+            Some(camera) => camera_size(camera)
+                .ok_or_else(|| anyhow!("provenance \"camera\" is {camera:?}; expected as in \"driver 256x128\""))?,
+        };
+        Ok(Self { name: said("checkpoint"), digest: said("checkpoint_digest"), size, adapter: said("adapter") })
+    }
+
+    /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest.
+    pub fn find(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<Eye>> {
+        let bundled = perception::BUNDLED.map(CheckpointChoice::Bundled);
+        for choice in choices.iter().chain(&bundled).chain(&[CheckpointChoice::Truth]) {
+            let eye = Eye::open_at(choice, self.size)?;
+            if eye.digest() == self.digest {
+                return Ok(Some(eye));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// `driver WxH`.
+fn camera_size(camera: &str) -> Option<(u32, u32)> {
+    let (width, height) = camera.strip_prefix("driver ")?.split_once('x')?;
+    let side = |text: &str| text.parse().ok().filter(|pixels| (1..=8192).contains(pixels));
+    Some((side(width)?, side(height)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_has_a_size() {
+        assert_eq!(camera_size("driver 256x128"), Some((256, 128)));
+        for wrong in ["", "driver", "driver 256", "driver 0x128", "driver 256x128x3", "roof 256x128"] {
+            assert_eq!(camera_size(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn the_eye_is_found_by_its_digest() {
+        let eye = |digest: &str| RecordedEye {
+            name: "some".into(),
+            digest: digest.into(),
+            size: (32, 16),
+            adapter: String::new(),
+        };
+        let found = |digest: &str| eye(digest).find(&[]).expect("readable").map(|eye| eye.name().to_owned());
+        let early = perception::bundled("early").expect("bundled").expect("readable");
+        assert_eq!(found(early.digest().to_hex().as_str()).as_deref(), Some("early"));
+        assert_eq!(found("truth").as_deref(), Some("truth"));
+        assert_eq!(found(""), None);
+    }
+}

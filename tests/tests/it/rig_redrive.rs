@@ -1,0 +1,96 @@
+//! Counterfactuals: forks are functions of the case, share its past, and are recordings like any other.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use kernel::Controls;
+use replay::{Case, Recording, verify};
+use rig::cli::{CheckpointChoice, RedriveArgs};
+use rig::lab::redrive;
+use serde_json::Value;
+use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
+use tests::scenes::busy_city;
+
+/// A case of the city, said to be driven with true masks, in a folder.
+fn case(folder: &Path) -> PathBuf {
+    let scene = busy_city();
+    let mut log = Recording::from_bytes(&record(&scene, TAKEOVER + 60, WITH_TAKEOVER)).unwrap().into_log();
+    log.manifest.provenance.insert("checkpoint_digest".into(), "truth".into());
+    let recording = Recording::from_bytes(&log.encode().unwrap()).unwrap();
+    let window = Case::window(recording.log()).expect("an intervention");
+    let path = folder.join("a.case.mcap");
+    fs::write(&path, Case::cut(&recording, &scene.network, window).unwrap().encode().unwrap()).unwrap();
+    path
+}
+
+fn args(file: PathBuf, checkpoint: Option<CheckpointChoice>, out: PathBuf) -> RedriveArgs {
+    let without_intervention = checkpoint.is_none();
+    RedriveArgs { files: vec![file], without_intervention, checkpoint, vary: 1, seconds: 4, out }
+}
+
+fn lines(out: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(out.join("redrive.jsonl")).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn without_the_intervention_the_past_is_the_same_and_the_fork_is_made_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = case(dir.path());
+    let case = Recording::open(&path).unwrap();
+    for name in ["first", "second"] {
+        redrive::run(&args(path.clone(), None, dir.path().join(name)), true).unwrap();
+    }
+    let read = |name: &str, file: &str| fs::read(dir.path().join(name).join(file)).unwrap();
+    for file in ["a.case.mcap", "a.case.1.mcap", "redrive.jsonl"] {
+        assert_eq!(read("first", file), read("second", file), "{file}");
+    }
+    for (line, earlier) in lines(&dir.path().join("first")).iter().zip([0, 6]) {
+        let fork_tick = TAKEOVER - earlier;
+        assert_eq!(line["fork_tick"], fork_tick);
+        let fork = Recording::open(&dir.path().join("first").join(line["recording"].as_str().unwrap())).unwrap();
+        verify(fork.log(), &case.network().unwrap()).unwrap();
+        let first = fork.log().first_tick();
+        assert!(first + 180 <= fork_tick, "{first}");
+        for tick in first + 1..fork_tick {
+            assert_eq!(fork.log().input(tick), case.log().input(tick));
+            assert_eq!(fork.log().hash(tick), case.log().hash(tick));
+        }
+        assert_ne!(case.log().input(TAKEOVER).unwrap().safety, Controls::default());
+        let rest = fork_tick..=fork.log().last_tick();
+        assert!(
+            rest.clone().count() > 10
+                && rest.clone().all(|t| fork.log().input(t).unwrap().safety == Controls::default())
+        );
+        assert_eq!(fork.log().intervention, None);
+    }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn through_another_checkpoint_the_verdict_is_what_the_recording_shows() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    redrive::run(&args(case(dir.path()), Some(CheckpointChoice::Truth), out.clone()), true).unwrap();
+    let line = &lines(&out)[0];
+    let fork = Recording::open(&out.join("a.case.mcap")).unwrap();
+    verify(fork.log(), &fork.network().unwrap()).unwrap();
+    assert_eq!(line["intervention_again"].as_u64(), fork.log().intervention.map(|i| i.tick));
+    assert_eq!(line["verdict"] == "again", fork.log().intervention.is_some() || !line["harm"].is_null());
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn what_cannot_be_driven_again_is_said_and_leaves_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let (calm, unknown) = (dir.path().join("calm.mcap"), dir.path().join("unknown.mcap"));
+    fs::write(&calm, record(&busy_city(), 300, ALONE)).unwrap();
+    fs::write(&unknown, record(&busy_city(), TAKEOVER + 60, WITH_TAKEOVER)).unwrap();
+    for (file, words) in [(calm, "calm.mcap: holds no intervention"), (unknown, "unknown.mcap: was driven through")] {
+        let out = dir.path().join("out");
+        let said = format!("{:#}", redrive::run(&args(file, None, out.clone()), true).unwrap_err());
+        assert!(said.starts_with(dir.path().to_str().unwrap()) && said.contains(words), "{said}");
+        assert!(!out.exists());
+    }
+}
