@@ -351,6 +351,25 @@ pub struct RedriveArgs {
 pub enum DatasetCommand {
     /// Frames with ground truth from simulated drives.
     Natural(NaturalArgs),
+    /// The last 3 s of corner cases at 10 frames a second, with ground truth.
+    Cases(CasesArgs),
+}
+
+/// Arguments of `dataset cases`.
+#[derive(Args, Debug)]
+pub struct CasesArgs {
+    /// Corner cases.
+    #[arg(required = true, value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Which split they become.
+    #[arg(long, default_value = "train", value_parser = ["train", "val", "test"])]
+    pub split: String,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Folder of the dataset; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 /// Arguments of `dataset natural`.

@@ -40,6 +40,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::View(args) => view::run(args, json),
         Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Rerender(args) => lab::rerender::run(args, json),
+        Command::Dataset(DatasetCommand::Cases(args)) => lab::cases::run(args, json),
         Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
         Command::Redrive(args) => lab::redrive::run(args, json),
         Command::Train(args) => lab::train::run(args, json),

@@ -96,6 +96,16 @@ pub fn write(dir: &Path, place: &Place<'_>, frame: &Frame) -> anyhow::Result<()>
     Ok(())
 }
 
+/// BLAKE3 over colour, tags and instances of a frame, in hexadecimal digits.
+pub fn digest(frame: &Frame) -> String {
+    let mut pixels = blake3::Hasher::new();
+    pixels.update(&frame.rgb).update(&frame.class_ids);
+    frame.instance_ids.iter().for_each(|id| {
+        pixels.update(&id.to_le_bytes());
+    });
+    pixels.finalize().to_hex().to_string()
+}
+
 /// `tag * 1000 + n` for the n-th instance of the picture (by id), the tag alone for all else.
 fn instances(frame: &Frame) -> Vec<u16> {
     let mut ids: Vec<u16> = frame.instance_ids.iter().copied().filter(|id| *id != 0).collect();

@@ -1,5 +1,6 @@
 //! The offline lab: pictures, datasets, checkpoints and reports made from recordings.
 
+pub mod cases;
 pub mod cityscapes;
 pub mod demo;
 pub mod eval;

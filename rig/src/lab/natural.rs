@@ -298,11 +298,6 @@ impl Studio<'_> {
         let place = Place { split: scene.split, city: map, scene: scene.number, frame: number };
         cityscapes::write(self.out, &place, frame)?;
         self.bar.inc(1);
-        let mut pixels = blake3::Hasher::new();
-        pixels.update(&frame.rgb).update(&frame.class_ids);
-        frame.instance_ids.iter().for_each(|id| {
-            pixels.update(&id.to_le_bytes());
-        });
         Ok(serde_json::to_string(&FrameLine {
             image: place.path(Kind::Image),
             labels: place.path(Kind::TrainIds),
@@ -315,7 +310,7 @@ impl Studio<'_> {
             tick: frame.tick,
             speed_mps: world.hud().speed_mps,
             weather: world.scenario().weather.into(),
-            pixels: pixels.finalize().to_hex().to_string(),
+            pixels: cityscapes::digest(frame),
         })?)
     }
 }

@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use replay::{Annotation, Case, Label, Recording};
-use rig::cli::{CheckpointChoice, EvalArgs, NaturalArgs, RerenderArgs};
+use rig::cli::{CasesArgs, CheckpointChoice, EvalArgs, NaturalArgs, RerenderArgs};
 use rig::exit::Verdict;
-use rig::lab::{eval, natural, report, rerender};
+use rig::lab::{cases, eval, natural, report, rerender};
 use rig::progress::Interrupt;
 use tests::recordings::{TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
@@ -156,4 +156,40 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
     assert!(natural::make(&natural_args(a.clone(), 1), &interrupt).is_err(), "it is complete");
     let eval_args = EvalArgs { checkpoint: CheckpointChoice::Truth, dataset: a, split: "val".into() };
     assert_eq!(eval::run(&eval_args, true).unwrap(), Verdict::Ok);
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn cases_become_a_dataset_whose_labels_are_the_truth() {
+    let dir = tempfile::tempdir().unwrap();
+    let (recording, case) = recorded(dir.path());
+    let args = |files: &[&Path], name: &str| CasesArgs {
+        files: files.iter().map(|file| file.to_path_buf()).collect(),
+        split: "train".into(),
+        size: (128, 64),
+        out: dir.path().join(name),
+    };
+    for name in ["first", "second"] {
+        cases::run(&args(&[&case], name), true).unwrap();
+    }
+    let first = contents(&dir.path().join("first"));
+    assert_eq!(first, contents(&dir.path().join("second")));
+    assert_eq!(first.len(), 30 * 5 + 2, "30 frames of 5 pictures, and what they are");
+    let lines = String::from_utf8(first[Path::new("frames.jsonl")].clone()).unwrap();
+    for line in lines.lines() {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        let counted: u64 = line["class_pixels"].as_object().unwrap().values().map(|n| n.as_u64().unwrap()).sum();
+        assert!(counted > 7_000 && counted <= 128 * 64, "{line}");
+        assert!(first.contains_key(Path::new(line["image"].as_str().unwrap())), "{line}");
+        assert!(line["state_hash"].is_string() && line["tick"].as_u64().unwrap() <= TAKEOVER, "{line}");
+    }
+
+    let copy = dir.path().join("copy.case.mcap");
+    fs::copy(&case, &copy).unwrap();
+    for (files, words) in
+        [(&[case.as_path(), &copy][..], "the same case as"), (&[&recording], "expected a corner case")]
+    {
+        let said = format!("{:#}", cases::run(&args(files, "third"), true).unwrap_err());
+        assert!(said.contains(words) && !dir.path().join("third").exists(), "{said}");
+    }
 }
