@@ -19,8 +19,12 @@ use winit::event_loop::{ControlFlow, EventLoop};
 /// Finds the display; `otherwise` says what can be done without one.
 pub fn event_loop<T: 'static>(otherwise: &str) -> anyhow::Result<EventLoop<T>> {
     let events = EventLoop::with_user_event().build();
-    let events =
-        events.map_err(|e| anyhow!("no windows ({e}): expected a display, as DISPLAY names it; {otherwise}"))?;
+    let events = events.map_err(|error| {
+        // Before the reason stands a place in winit's source.
+        let error = error.to_string();
+        let reason = error.rsplit(": ").next().unwrap_or(&error);
+        anyhow!("no windows ({reason}): expected a display, as DISPLAY names it; {otherwise}")
+    })?;
     events.set_control_flow(ControlFlow::Wait);
     Ok(events)
 }
