@@ -1,5 +1,6 @@
 //! Rates by exposure, with exact intervals: corner cases are rare.
 
+use serde::Serialize;
 use statrs::distribution::{Binomial, ContinuousCDF, Discrete, Gamma};
 
 /// Exact 95 % interval of a Poisson mean after `events` (Garwood 1936).
@@ -23,9 +24,55 @@ pub fn same_rate_p(events: (u64, u64), exposure: (f64, f64)) -> Option<f64> {
     Some(as_unlikely.sum::<f64>().min(1.0))
 }
 
+/// How values spread.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Number of values.
+    pub n: usize,
+    /// Half of the values are not greater.
+    pub median: f64,
+    /// 99 % of the values are not greater.
+    pub p99: f64,
+    /// 99.9 % of the values are not greater.
+    pub p999: f64,
+    /// The greatest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// That of some values by nearest rank; `None` of none.
+    pub fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_by(f64::total_cmp);
+        let n = values.len();
+        let rank = |permille: usize| values.get((permille * n).div_ceil(1000).max(1) - 1).copied();
+        Some(Self { n, median: rank(500)?, p99: rank(990)?, p999: rank(999)?, max: rank(1000)? })
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+
+    proptest! {
+        #[test]
+        fn so_many_values_are_not_greater(values in prop::collection::vec(0u8..30, 1..300)) {
+            let spread = Spread::of(values.iter().map(|v| f64::from(*v)).collect()).expect("values");
+            let share = |limit: f64| values.iter().filter(|v| f64::from(**v) <= limit).count() as f64 / values.len() as f64;
+            prop_assert!(share(spread.median) >= 0.5 && share(spread.median - 1.0) < 0.5);
+            prop_assert!(share(spread.p99) >= 0.99 && share(spread.p99 - 1.0) < 0.99);
+            prop_assert!(share(spread.max) == 1.0 && share(spread.max - 1.0) < 1.0);
+        }
+    }
+
+    #[test]
+    fn quantiles_are_of_the_nearest_rank() {
+        let all = Spread::of((1..=1000).rev().map(f64::from).collect());
+        assert_eq!(all, Some(Spread { n: 1000, median: 500.0, p99: 990.0, p999: 999.0, max: 1000.0 }));
+        assert_eq!(Spread::of(vec![7.0]), Some(Spread { n: 1, median: 7.0, p99: 7.0, p999: 7.0, max: 7.0 }));
+        assert_eq!(Spread::of(Vec::new()), None);
+    }
 
     #[test]
     fn the_papers_figures_come_out() {

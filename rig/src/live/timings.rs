@@ -6,6 +6,8 @@ use kernel::Seat;
 use kernel::time::TICK_HZ;
 use serde::Serialize;
 
+use crate::stats::Spread;
+
 /// What was measured while driving. Grows by 12 bytes a tick: 2.6 MB an hour.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Timings {
@@ -18,19 +20,6 @@ pub struct Timings {
     /// From the tick of a frame to its picture on the screen, for each picture of the semantic driver
     /// and of the safety driver, microseconds.
     age_us: [Vec<u32>; 2],
-}
-
-/// Quantiles of a time, milliseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
-    /// Half of all are at most this.
-    pub median: f64,
-    /// 99 % are at most this.
-    pub p99: f64,
-    /// 99.9 % are at most this.
-    pub p999: f64,
-    /// None is more.
-    pub max: f64,
 }
 
 /// What a session came to.
@@ -51,9 +40,9 @@ pub struct LiveFigures {
     /// Pictures a second on the safety driver's screen.
     pub safety_fps: f64,
     /// From the tick of a frame to its mask on the screen, milliseconds.
-    pub mask_age_ms: Spread,
+    pub mask_age_ms: Option<Spread>,
     /// From the tick of a frame to its image on the screen, milliseconds.
-    pub image_age_ms: Spread,
+    pub image_age_ms: Option<Spread>,
 }
 
 impl Timings {
@@ -75,6 +64,7 @@ impl Timings {
 
     /// What it comes to; `None` before the first run has ended.
     pub fn figures(&self) -> Option<LiveFigures> {
+        let lateness_ms = spread(&self.lateness_us)?;
         let seconds = self.driven_us as f64 / 1e6;
         let a_second = |count: usize| count as f64 / seconds;
         let [semantic, safety] = &self.age_us;
@@ -82,36 +72,31 @@ impl Timings {
             seconds,
             ticks: self.lateness_us.len(),
             ticks_per_second: a_second(self.lateness_us.len()),
-            lateness_ms: Spread::of_us(&self.lateness_us),
+            lateness_ms,
             slowed_s: self.slowed_us as f64 / 1e6,
             semantic_fps: a_second(semantic.len()),
             safety_fps: a_second(safety.len()),
-            mask_age_ms: Spread::of_us(semantic),
-            image_age_ms: Spread::of_us(safety),
+            mask_age_ms: spread(semantic),
+            image_age_ms: spread(safety),
         })
     }
 }
 
-impl Spread {
-    /// That of times in microseconds (nearest rank); zeros without any.
-    pub fn of_us(times_us: &[u32]) -> Self {
-        let mut sorted = times_us.to_vec();
-        sorted.sort_unstable();
-        let rank = |share: f64| (share * sorted.len() as f64).ceil() as usize;
-        let at = |share: f64| sorted.get(rank(share).saturating_sub(1)).map_or(0.0, |us| f64::from(*us) / 1e3);
-        Self { median: at(0.5), p99: at(0.99), p999: at(0.999), max: at(1.0) }
-    }
+/// Of times in microseconds, milliseconds.
+fn spread(times_us: &[u32]) -> Option<Spread> {
+    Spread::of(times_us.iter().map(|us| f64::from(*us) / 1e3).collect())
 }
 
 impl fmt::Display for LiveFigures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { seconds, ticks_per_second, lateness_ms, mask_age_ms, semantic_fps, safety_fps, .. } = self;
-        write!(
-            f,
-            "real time: {ticks_per_second:.2} ticks/s over {seconds:.0} s (late by {:.1} ms median, {:.1} ms p99.9); \
-             {semantic_fps:.1} masks/s of age {:.0} ms median, {:.0} ms p99; {safety_fps:.1} images/s",
-            lateness_ms.median, lateness_ms.p999, mask_age_ms.median, mask_age_ms.p99
-        )
+        let Self { seconds, ticks_per_second, lateness_ms, semantic_fps, safety_fps, .. } = self;
+        let Spread { median, p999, .. } = lateness_ms;
+        write!(f, "real time: {ticks_per_second:.2} ticks/s over {seconds:.0} s ")?;
+        write!(f, "(late by {median:.1} ms median, {p999:.1} ms p99.9); {semantic_fps:.1} masks/s")?;
+        if let Some(Spread { median, p99, .. }) = self.mask_age_ms {
+            write!(f, " of age {median:.0} ms median, {p99:.0} ms p99")?;
+        }
+        write!(f, "; {safety_fps:.1} images/s")
     }
 }
 
@@ -130,8 +115,9 @@ impl LiveFigures {
                 said.push(format!("the {who} driver sees {fps:.0} pictures a second, fewer than {MIN_FPS:.0}"));
             }
         }
-        let Spread { median, p99, .. } = self.mask_age_ms;
-        if median > MAX_MASK_AGE_MS || p99 > MAX_MASK_AGE_P99_MS {
+        if let Some(Spread { median, p99, .. }) = self.mask_age_ms
+            && (median > MAX_MASK_AGE_MS || p99 > MAX_MASK_AGE_P99_MS)
+        {
             said.push(format!("masks are {median:.0} ms old (99 %: {p99:.0} ms) when they come onto the screen"));
         }
         said
@@ -154,14 +140,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quantiles_are_of_the_nearest_rank() {
-        let times: Vec<u32> = (1..=1000).rev().map(|ms| 1000 * ms).collect();
-        assert_eq!(Spread::of_us(&times), Spread { median: 500.0, p99: 990.0, p999: 999.0, max: 1000.0 });
-        assert_eq!(Spread::of_us(&[7_000]), Spread { median: 7.0, p99: 7.0, p999: 7.0, max: 7.0 });
-        assert_eq!(Spread::of_us(&[]), Spread::default());
-    }
-
-    #[test]
     fn a_good_minute_has_no_shortfall_and_each_fault_is_said() {
         let minute = |late_us: u64, age_us: u64, frames: usize, slowed_us: u64| {
             let mut timings = Timings::default();
@@ -173,7 +151,10 @@ mod tests {
             timings.figures().expect("a run has ended")
         };
         let good = minute(1_000, 60_000, 1200, 0);
-        assert_eq!((good.ticks_per_second, good.safety_fps, good.mask_age_ms.median), (60.0, 20.0, 60.0));
+        assert_eq!(
+            (good.ticks_per_second, good.safety_fps, good.mask_age_ms.map(|age| age.median)),
+            (60.0, 20.0, Some(60.0))
+        );
         assert!(good.shortfalls().is_empty());
         let faults = [
             (minute(1_000, 60_000, 1200, 1), "fell behind"),

@@ -20,8 +20,9 @@ use kernel::{Controls, RoadNetwork, Seat, TickInput};
 use replay::{Error, Log};
 use serde::Serialize;
 
+pub use crate::stats::Spread;
 pub use reactions::Response;
-pub use screen::{ScreenAge, Spread};
+pub use screen::ScreenAge;
 pub use tally::Tally;
 pub use text::lines;
 pub use truth::{Episode, Truth};

@@ -5,6 +5,8 @@ use kernel::time::{TICK_HZ, Tick};
 use replay::{Log, MaskShown};
 use serde::Serialize;
 
+use crate::stats::Spread;
+
 /// Length of a tick in real time, microseconds.
 const TICK_US: f64 = 1e6 / TICK_HZ as f64;
 
@@ -17,29 +19,6 @@ pub struct ScreenAge {
     pub ms: Option<Spread>,
     /// From capture to screen, once for each mask of the drive; live drives only.
     pub frame_to_screen_ms: Option<Spread>,
-}
-
-/// A distribution in short.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
-    /// Number of values.
-    pub n: usize,
-    /// Half of the values are not greater.
-    pub median: f64,
-    /// 99 % of the values are not greater.
-    pub p99: f64,
-    /// The greatest.
-    pub max: f64,
-}
-
-impl Spread {
-    /// That of some values by nearest rank; `None` of none.
-    pub fn of(mut values: Vec<f64>) -> Option<Self> {
-        values.sort_by(f64::total_cmp);
-        let n = values.len();
-        let rank = |percent: usize| values.get((percent * n).div_ceil(100).max(1) - 1).copied();
-        Some(Self { n, median: rank(50)?, p99: rank(99)?, max: rank(100)? })
-    }
 }
 
 /// That of a log; `moving` says for each tick after the first whether the car moves, up to where the
@@ -96,28 +75,7 @@ impl WallClock {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
-
     use super::*;
-
-    #[test]
-    fn ranks_are_values_that_occurred() {
-        assert_eq!(Spread::of(Vec::new()), None);
-        assert_eq!(Spread::of(vec![4.0]), Some(Spread { n: 1, median: 4.0, p99: 4.0, max: 4.0 }));
-        let hundred = (1..=200).rev().map(f64::from).collect();
-        assert_eq!(Spread::of(hundred), Some(Spread { n: 200, median: 100.0, p99: 198.0, max: 200.0 }));
-    }
-
-    proptest! {
-        #[test]
-        fn so_many_values_are_not_greater(values in prop::collection::vec(0u8..30, 1..300)) {
-            let spread = Spread::of(values.iter().map(|v| f64::from(*v)).collect()).expect("values");
-            let share = |limit: f64| values.iter().filter(|v| f64::from(**v) <= limit).count() as f64 / values.len() as f64;
-            prop_assert!(share(spread.median) >= 0.5 && share(spread.median - 1.0) < 0.5);
-            prop_assert!(share(spread.p99) >= 0.99 && share(spread.p99 - 1.0) < 0.99);
-            prop_assert!(share(spread.max) == 1.0 && share(spread.max - 1.0) < 1.0);
-        }
-    }
 
     #[test]
     fn ticks_between_captures_are_spread_evenly() {

@@ -42,21 +42,19 @@ impl Response {
 impl ScreenAge {
     /// Median, 99th percentile and greatest.
     pub fn words(&self) -> String {
-        let mut text = self.ticks.words("ticks");
+        let mut text = spread_words(&self.ticks, "ticks");
         if let Some(ms) = &self.ms {
-            text = format!("{text}; {}", ms.words("ms"));
+            text = format!("{text}; {}", spread_words(ms, "ms"));
         }
         if let Some(ms) = &self.frame_to_screen_ms {
-            text = format!("{text}; frame to screen {}", ms.words("ms"));
+            text = format!("{text}; frame to screen {}", spread_words(ms, "ms"));
         }
         text
     }
 }
 
-impl Spread {
-    fn words(&self, unit: &str) -> String {
-        format!("median {:.0}, p99 {:.0}, max {:.0} {unit}", self.median, self.p99, self.max)
-    }
+fn spread_words(spread: &Spread, unit: &str) -> String {
+    format!("median {:.0}, p99 {:.0}, max {:.0} {unit}", spread.median, spread.p99, spread.max)
 }
 
 impl Tally {
