@@ -11,7 +11,7 @@ use super::Actuator;
 use super::effects::Effects;
 
 /// A push or rumble ends by itself after so long, ms, should nobody end it.
-const LONGEST_MS: u16 = 500;
+const LONGEST_MS: u16 = 1000;
 /// Period of the vibration that stands for rumble on wheels, ms.
 const RUMBLE_PERIOD_MS: u16 = 40;
 /// Directions in the units of Linux: a quarter is 0x4000, counter-clockwise from down; this is right.
@@ -46,7 +46,9 @@ enum Spring {
 struct Playing {
     kind: fn(f32) -> FFEffectKind,
     effect: Option<FFEffect>,
+    /// 0: until it is ended.
     longest_ms: u16,
+    is_on: bool,
 }
 
 impl Motors {
@@ -89,7 +91,7 @@ impl Actuator for Motors {
                 Spring::BuiltIn => device.set_ff_autocenter(unsigned(effects.spring))?,
             }
         }
-        // These end by themselves: they are renewed for as long as they are felt.
+        // These end by themselves, lest they stay should the program hang; each order renews them.
         for (playing, force, before) in [(push, effects.push, now.push), (rumble, effects.rumble, now.rumble)] {
             if let (Some(playing), true) = (playing, force != 0.0 || before != 0.0) {
                 playing.set(device, force)?;
@@ -102,7 +104,7 @@ impl Actuator for Motors {
 
 impl Playing {
     fn new(kind: fn(f32) -> FFEffectKind, longest_ms: u16) -> Self {
-        Self { kind, effect: None, longest_ms }
+        Self { kind, effect: None, longest_ms, is_on: false }
     }
 
     fn set(&mut self, device: &mut Device, force: f32) -> io::Result<()> {
@@ -112,8 +114,11 @@ impl Playing {
             replay: FFReplay { length: self.longest_ms, delay: 0 },
             kind: (self.kind)(force),
         };
+        let was_on = std::mem::replace(&mut self.is_on, force != 0.0);
+        let goes_on = was_on && self.longest_ms == 0;
         match &mut self.effect {
             Some(effect) if force == 0.0 => effect.stop(),
+            Some(effect) if goes_on => effect.update(data),
             Some(effect) => effect.update(data).and_then(|()| effect.play(1)),
             None if force == 0.0 => Ok(()),
             None => self.effect.insert(device.upload_ff_effect(data)?).play(1),

@@ -2,6 +2,7 @@
 //! JSON, and telemetry of our own.
 
 use glam::{Quat, Vec3};
+use kernel::ego::{CENTRE_M, SIZE_M};
 use kernel::scene::{ActorKind, ActorScene, SceneSnapshot};
 use serde_json::{Value, json};
 
@@ -9,9 +10,6 @@ use super::telemetry::Telemetry;
 
 /// How long an actor stays in sight after it was told of last, nanoseconds.
 const LIFETIME_NS: u64 = 500_000_000;
-/// Length, width and height of the ego car, metres, and how far its middle is before the rear axle.
-const EGO_SIZE_M: Vec3 = Vec3::new(4.5, 1.85, 1.5);
-const EGO_MIDDLE_M: f32 = 1.3;
 /// The frame of everything that stands still, and that of the car.
 const MAP: &str = "map";
 const EGO: &str = "ego";
@@ -161,13 +159,13 @@ pub fn transform(scene: &SceneSnapshot, time_ns: u64) -> Value {
 /// Every road user as a box.
 pub fn scene(scene: &SceneSnapshot, time_ns: u64) -> Value {
     let ego = scene.ego;
-    let forward = ego.rotation * Vec3::X * EGO_MIDDLE_M;
-    let cube = cube(ego.position + forward, ego.rotation, EGO_SIZE_M, [0.9, 0.2, 0.2]);
-    let entities: Vec<Value> = std::iter::once(entity("ego".into(), cube, time_ns))
+    let cube = cube(ego.position + ego.rotation * CENTRE_M, ego.rotation, SIZE_M, [0.9, 0.2, 0.2]);
+    let entities: Vec<Value> = std::iter::once(entity(EGO.into(), cube, time_ns))
         .chain(scene.actors.iter().map(|actor| {
             let ActorScene { position, rotation, .. } = *actor;
-            let id = format!("{:?} {}", actor.kind, actor.id);
-            entity(id, self::cube(position, rotation, actor.kind.size_m(), colour(actor.kind)), time_ns)
+            let (id, size) = (format!("{:?} {}", actor.kind, actor.id), actor.kind.size_m());
+            let middle = position + rotation * Vec3::Z * (size.z / 2.0);
+            entity(id, self::cube(middle, rotation, size, colour(actor.kind)), time_ns)
         }))
         .collect();
     json!({ "deletions": [], "entities": entities })
@@ -181,9 +179,7 @@ fn entity(id: String, cube: Value, time_ns: u64) -> Value {
     })
 }
 
-/// A box that stands at a place on the ground.
-fn cube(position: Vec3, rotation: Quat, size: Vec3, [r, g, b]: [f32; 3]) -> Value {
-    let middle = position + rotation * Vec3::Z * (size.z / 2.0);
+fn cube(middle: Vec3, rotation: Quat, size: Vec3, [r, g, b]: [f32; 3]) -> Value {
     json!({
         "pose": { "position": vector(middle), "orientation": self::rotation(rotation) },
         "size": vector(size), "color": { "r": r, "g": g, "b": b, "a": 1.0 },
