@@ -334,6 +334,12 @@ pub struct RedriveArgs {
     /// looking through this checkpoint. Is there an intervention again?
     #[arg(long, value_name = "early|full|truth|FILE.onnx")]
     pub checkpoint: Option<CheckpointChoice>,
+    /// Where the recorded checkpoint may be found, if it does not come with the program.
+    #[arg(long, value_name = "FILE.onnx")]
+    pub recorded: Vec<CheckpointChoice>,
+    /// Tell the checkpoint of blind drives.
+    #[arg(long)]
+    pub reveal: bool,
     /// Further forks of each file with other weather of the paper's ranges and, without the
     /// intervention, with the safety driver gone 0.1 s earlier each.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=30))]

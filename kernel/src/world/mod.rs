@@ -22,7 +22,7 @@ use crate::signals::{self, LightPhase};
 use crate::state::{DecodeError, StateHash};
 use crate::time::{KEYFRAME_TICKS, Tick, seconds};
 use crate::traffic::{Obstacle, Surroundings, Traffic};
-use crate::watch::{self, Log};
+use crate::watch::{self, Log, Watch};
 
 use snapshot::Parts;
 
@@ -310,6 +310,11 @@ impl World {
     /// What the HUD shows.
     pub fn hud(&self) -> Hud {
         self.parts.ego.route.hud(&self.network, &self.scenario, self.tick(), &self.parts.ego.car)
+    }
+
+    /// What goes on around the ego car; its beginnings are the events.
+    pub fn watch_state(&self) -> &Watch {
+        &self.parts.run.watch
     }
 
     /// Where the run stands.

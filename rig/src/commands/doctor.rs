@@ -20,6 +20,13 @@ use crate::vision::{DEFAULT_SIZE, Eye};
 const TICKS: u32 = 600;
 const FRAMES: u32 = 20;
 
+/// Sizes of the safety driver's picture, largest first.
+const SIZES: [(u32, u32); 5] = [(1280, 720), (960, 540), (640, 360), (480, 270), (320, 180)];
+/// Pictures a second that leave room for a busy street.
+const ENOUGH_FPS: f64 = 18.0;
+/// Median age of masks from which on they should be made quicker, milliseconds.
+const OLD_MASK_MS: f64 = 100.0;
+
 /// What this machine has.
 #[derive(Debug, Serialize)]
 struct Findings {
@@ -77,7 +84,7 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
     if args.seconds > 0 && findings.problems.is_empty() {
         match live::trial(&args.checkpoint, &args.sizes, args.seconds) {
             Ok(figures) => {
-                findings.advice = advice(&figures);
+                findings.advice = advice(args, &figures);
                 findings.live = Some(figures);
             }
             Err(error) => findings.notes.push(format!("real time was not measured: {}", sentence(&error))),
@@ -87,14 +94,25 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
     Ok(if findings.problems.is_empty() { Verdict::Ok } else { Verdict::CheckFailed })
 }
 
-/// What to do about what falls short of real time.
-fn advice(figures: &LiveFigures) -> Vec<String> {
-    let shortfalls = figures.shortfalls();
-    if shortfalls.is_empty() {
-        return vec!["these sizes and this checkpoint suit this machine".into()];
-    }
-    let smaller = "a smaller --image-size or --mask-size (or fewer other programs) would help".into();
-    shortfalls.into_iter().chain([smaller]).collect()
+/// What to use here, from how it went with these sizes: pictures of the largest of [`SIZES`] that should
+/// come often enough, and masks that should be young enough.
+fn advice(args: &DoctorArgs, figures: &LiveFigures) -> Vec<String> {
+    let pixels = |(width, height): (u32, u32)| f64::from(width * height);
+    // As if the time of a picture went with its pixels, which overstates what smaller ones bring.
+    let fps = |size| figures.safety_fps * pixels(args.sizes.image_size) / pixels(size);
+    let size = SIZES.into_iter().find(|size| fps(*size) >= ENOUGH_FPS).unwrap_or(SIZES[SIZES.len() - 1]);
+    let mut said = figures.shortfalls();
+    said.push(match size == args.sizes.image_size {
+        true => "the safety driver's pictures suit this machine".into(),
+        false => format!("drive with --image-size {}x{}", size.0, size.1),
+    });
+    let masks_are_old =
+        figures.mask_age_ms.is_none_or(|age| age.median > OLD_MASK_MS) || figures.semantic_fps < ENOUGH_FPS;
+    said.push(match masks_are_old {
+        true => "for younger masks: a smaller --mask-size or checkpoint, and no other window over the drivers'".into(),
+        false => "masks of this checkpoint and size suit this machine, with all three windows".into(),
+    });
+    said
 }
 
 fn adapters() -> Vec<Adapter> {

@@ -1,5 +1,6 @@
 //! One window with what paints it. All windows share one graphics device.
 
+use std::cell::Cell;
 use std::num::NonZeroU32;
 use std::sync::Arc;
 
@@ -30,6 +31,8 @@ pub struct Pane {
     context: egui::Context,
     input: egui_winit::State,
     painter: Painter,
+    /// Where it was before it filled its monitor.
+    windowed: Cell<Option<Placement>>,
 }
 
 impl Pane {
@@ -50,7 +53,7 @@ impl Pane {
         let scale = Some(window.scale_factor() as f32);
         let input =
             egui_winit::State::new(context.clone(), ViewportId::ROOT, &window, scale, None, painter.max_texture_side());
-        Ok(Self { window, context, input, painter })
+        Ok(Self { window, context, input, painter, windowed: Cell::new(None) })
     }
 
     /// The device, for other windows.
@@ -66,6 +69,9 @@ impl Pane {
     /// Fills the monitor that the window is on, or goes back to its size.
     pub fn toggle_full_screen(&self) {
         let full = self.window.fullscreen().is_none();
+        if full {
+            self.windowed.set(self.placement());
+        }
         self.window.set_fullscreen(full.then_some(Fullscreen::Borderless(None)));
     }
 
@@ -81,8 +87,14 @@ impl Pane {
         }
     }
 
-    /// Covers all monitors, which stand in a row.
+    /// Covers all monitors, which stand in a row, or goes back to its place.
     pub fn span_monitors(&self) {
+        if !self.window.is_decorated() {
+            self.window.set_decorations(true);
+            self.windowed.take().iter().for_each(|placement| self.place(placement));
+            return;
+        }
+        self.windowed.set(self.placement());
         let corners = self.window.available_monitors().map(|monitor| (monitor.position(), monitor.size()));
         let corners: Vec<_> = corners.collect();
         let left = corners.iter().map(|(at, _)| at.x).min().unwrap_or(0);
@@ -99,22 +111,33 @@ impl Pane {
     /// Goes where it was.
     pub fn place(&self, placement: &Placement) {
         let Placement { position: [x, y], size: [width, height], full_screen } = *placement;
+        let is_seen = |at: PhysicalPosition<i32>, size: PhysicalSize<u32>| {
+            let overlaps = |at: i32, side: u32, from: i32, length: u32| {
+                from < at + side as i32 && at < from.saturating_add(length as i32)
+            };
+            overlaps(at.x, size.width, x, width) && overlaps(at.y, size.height, y, height)
+        };
+        // A monitor that is gone must not take the window with it.
+        if !self.window.available_monitors().any(|monitor| is_seen(monitor.position(), monitor.size())) {
+            return;
+        }
         self.window.set_outer_position(PhysicalPosition::new(x, y));
         // The answer is an event like any other.
         let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
         if full_screen {
+            self.windowed.set(Some(*placement));
             self.window.set_fullscreen(Some(Fullscreen::Borderless(None)));
         }
     }
 
     /// Where it is; unknown where the system does not say.
     pub fn placement(&self) -> Option<Placement> {
+        let full_screen = self.window.fullscreen().is_some();
+        if let (true, Some(windowed)) = (full_screen, self.windowed.get()) {
+            return Some(Placement { full_screen, ..windowed });
+        }
         let (position, size) = (self.window.outer_position().ok()?, self.window.inner_size());
-        Some(Placement {
-            position: position.into(),
-            size: size.into(),
-            full_screen: self.window.fullscreen().is_some(),
-        })
+        Some(Placement { position: position.into(), size: size.into(), full_screen })
     }
 
     /// Asks for a new picture, as soon as the event loop comes to it.

@@ -78,8 +78,10 @@ pub struct ShownMask {
 pub enum Message {
     /// A key of one of the seats went down or up.
     SeatKey(Key, bool),
-    /// No window has the keyboard any more.
+    /// A window lost the keyboard, and with it the keys that are held.
     KeysReleased,
+    /// Whether one of the windows has the keyboard.
+    Focus(bool),
     /// A key of the operators went down; `true` when it is held and repeats.
     Press(Press, bool),
     /// A view came onto a driver's screen, microseconds since the session began.

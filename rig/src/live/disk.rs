@@ -37,6 +37,14 @@ impl BackgroundFile {
     }
 }
 
+impl Drop for BackgroundFile {
+    /// What was handed over is written, also when the run ends by an error.
+    fn drop(&mut self) {
+        self.bytes = None;
+        self.writer.take().into_iter().for_each(|writer| drop(writer.join()));
+    }
+}
+
 impl Write for BackgroundFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.pending.extend_from_slice(bytes);
@@ -59,10 +67,13 @@ fn write_all(mut file: File, inbox: &Receiver<Vec<u8>>) -> io::Result<()> {
 }
 
 /// Opens a new file for the next run: the name given, or the first of `NAME-2`, `NAME-3` ... that is
-/// free. Nothing is ever overwritten.
+/// free, with the name of its case. Nothing is ever overwritten.
 pub fn create_next(record: &Path) -> anyhow::Result<(PathBuf, File)> {
     for number in 1..100_000 {
         let path = numbered(record, number);
+        if case_path(&path).exists() {
+            continue;
+        }
         match OpenOptions::new().write(true).create_new(true).open(&path) {
             Ok(file) => return Ok((path, file)),
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
@@ -74,7 +85,8 @@ pub fn create_next(record: &Path) -> anyhow::Result<(PathBuf, File)> {
 
 /// The path of a corner case beside its recording.
 pub fn case_path(recording: &Path) -> PathBuf {
-    recording.with_extension("case.mcap")
+    let name = recording.file_name().unwrap_or_default().to_string_lossy();
+    recording.with_file_name(format!("{}.case.mcap", name.strip_suffix(".mcap").unwrap_or(&name)))
 }
 
 fn numbered(record: &Path, number: u32) -> PathBuf {
@@ -99,6 +111,9 @@ mod tests {
         assert_eq!(names, expected);
         assert_eq!(case_path(&expected[1]), dir.path().join("drive-2.case.mcap"));
         assert!(create_next(&dir.path().join("absent/drive.mcap")).is_err());
+        assert_ne!(case_path(Path::new("run.1")), case_path(Path::new("run.2")));
+        std::fs::write(dir.path().join("old.case.mcap"), "a case whose recording is elsewhere").expect("written");
+        assert_eq!(create_next(&dir.path().join("old.mcap")).expect("free").0, dir.path().join("old-2.mcap"));
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod seating;
 mod simulation;
 mod stage;
 mod strip;
+mod terminal;
 #[cfg(test)]
 mod tests;
 mod timings;
@@ -127,11 +128,11 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, sizes: &SizeArgs) -> an
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Safety));
             let cameras = cameras.clone();
-            move || report(&outbox, eyes::watch_as_safety(board, safety_renderer, &cameras, clock, show))
+            move || report(&outbox, || eyes::watch_as_safety(board, safety_renderer, &cameras, clock, show))
         });
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Semantic));
-            move || report(&outbox, eyes::watch_as_semantic(board, semantic_renderer, lineup, clock, show))
+            move || report(&outbox, || eyes::watch_as_semantic(board, semantic_renderer, lineup, clock, show))
         });
         let driving = scope.spawn(move || {
             let _over = Over(waker);
@@ -151,8 +152,9 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, sizes: &SizeArgs) -> an
 }
 
 /// Tells the simulation when an eye cannot go on; a simulation that is over needs no eyes.
-fn report(outbox: &Sender<Message>, result: anyhow::Result<()>) {
-    if let Err(error) = result {
+fn report(outbox: &Sender<Message>, watch: impl FnOnce() -> anyhow::Result<()>) {
+    let watched = catch_unwind(AssertUnwindSafe(watch)).unwrap_or_else(|_| Err(anyhow!("drawing a view panicked")));
+    if let Err(error) = watched {
         let _ = outbox.send(Message::Failed(error));
     }
 }

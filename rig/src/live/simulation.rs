@@ -25,6 +25,7 @@ use super::run::{Run, Screen, car_state, event_text};
 use super::seating::{self, Seating};
 use super::stage::{Dialog, Stage, Wish};
 use super::strip::Strip;
+use super::terminal::Terminal;
 use super::timings::Timings;
 use super::traces::Traces;
 use crate::clock::SessionClock;
@@ -36,6 +37,8 @@ use crate::units::Polled;
 
 /// While nothing drives, the units are asked this often, microseconds.
 const IDLE_US: u64 = 16_667;
+/// An unattended session that takes three times as long as it should, and this, has failed, microseconds.
+const PATIENCE_US: u64 = 30_000_000;
 /// The control centre is drawn anew after so many ticks.
 const CENTRE_TICKS: u64 = 6;
 
@@ -85,6 +88,7 @@ pub struct Simulation {
     links: Links,
     seating: Seating,
     force: Force,
+    terminal: Terminal,
     stage: Stage,
     number: u32,
     /// The world of a run that waits for its start.
@@ -98,7 +102,7 @@ pub struct Simulation {
     last: Option<TickOutput>,
     events: Events,
     totals: Totals,
-    helpers: Vec<JoinHandle<()>>,
+    helpers: Vec<JoinHandle<anyhow::Result<()>>>,
 }
 
 /// Why a session ends.
@@ -118,18 +122,26 @@ impl End {
     }
 }
 
+impl Drop for Simulation {
+    /// Nobody waits for what does not come any more.
+    fn drop(&mut self) {
+        self.links.board.scene.close();
+        self.links.board.status.close();
+    }
+}
+
 impl Simulation {
     /// Takes the seats and makes the first world.
     pub fn new(plan: Plan, seating: Seating, links: Links) -> anyhow::Result<Self> {
-        if plan.unattended.is_none() {
-            seating.setup().iter().for_each(|line| eprintln!("{line}"));
-        }
+        let terminal = Terminal::new(plan.unattended.is_none());
+        seating.setup().iter().for_each(|line| terminal.say(line.clone()));
         let force = Force::new(plan.force, &links.outbox);
         let mut simulation = Self {
             plan,
             links,
             seating,
             force,
+            terminal,
             stage: Stage::Ready,
             number: 0,
             next: None,
@@ -152,19 +164,20 @@ impl Simulation {
     /// recording is finished whatever happens.
     pub fn drive(mut self) -> anyhow::Result<Timings> {
         let end = self.listen_and_tick();
-        let unfinished = self.end_run(None);
-        for helper in std::mem::take(&mut self.helpers) {
-            helper.join().map_err(|_| anyhow!("cutting a corner case failed"))?;
-        }
+        let unfinished = self.end_run(self.stage.annotation());
+        let gone = |_| Err(anyhow!("a thread that cut a corner case panicked"));
+        let helpers = std::mem::take(&mut self.helpers).into_iter();
+        let cut: Vec<_> = helpers.map(|helper| helper.join().unwrap_or_else(gone)).collect();
         let is_attended = self.plan.unattended.is_none();
         if let (Ok(Some(path)), Ok(why), true) = (&unfinished, &end, is_attended) {
-            eprintln!("the run is over: {}; its recording is complete: {}", why.words(), path.display());
+            self.say(format_args!("the run is over: {}; its recording is complete: {}", why.words(), path.display()));
             aftermath::figures_of(path, self.plan.json)?;
             aftermath::cut(path)?;
         }
         end?;
         unfinished?;
-        Ok(self.timings)
+        cut.into_iter().collect::<anyhow::Result<()>>()?;
+        Ok(std::mem::take(&mut self.timings))
     }
 
     fn listen_and_tick(&mut self) -> anyhow::Result<End> {
@@ -211,19 +224,13 @@ impl Simulation {
             self.say(format_args!("run {} was ended: the safety driver's unit is lost", self.number));
             self.finish(None)?;
         }
-        self.feel();
-        Ok(())
-    }
-
-    /// The drivers' hands feel what the car does.
-    fn feel(&mut self) {
-        match (&self.stage, &self.run, &self.last) {
-            (Stage::Driving, Some(run), Some(last)) => {
-                let speed_mps = run.world().hud().speed_mps;
-                self.force.drive(speed_mps, &last.events, self.seating.armed_devices());
-            }
-            _ => self.force.rest(),
+        match &self.stage {
+            Stage::Driving => {}
+            // The jolt of the collision that ended the run fades.
+            Stage::Labelling(_) => self.force.drive(0.0, &[], self.seating.armed_devices()),
+            Stage::Ready => self.force.rest(),
         }
+        Ok(())
     }
 
     fn tick(&mut self, polled: &Polled) -> anyhow::Result<()> {
@@ -231,6 +238,7 @@ impl Simulation {
         self.pacing.begin_tick(self.links.clock.now_us());
         self.timings.tick(self.pacing.late_us());
         let (state, output, input) = run.tick(polled, self.screen.as_ref())?;
+        self.force.drive(run.world().hud().speed_mps, &output.events, self.seating.armed_devices());
         self.traces.tick(run.world(), &input, &output);
         for event in &output.events {
             self.events.push(event_text(output.tick, event));
@@ -270,8 +278,11 @@ impl Simulation {
 
     fn hear(&mut self, message: Message) -> anyhow::Result<Option<End>> {
         match message {
+            // What is typed into a comment drives nothing.
+            Message::SeatKey(_, true) if matches!(self.stage, Stage::Labelling(_)) => {}
             Message::SeatKey(key, pressed) => self.seating.seats().key(key, pressed),
             Message::KeysReleased => self.seating.seats().release_keys(),
+            Message::Focus(is_ours) => self.seating.seats().focus(is_ours),
             Message::Press(press, repeated) => match self.stage.press(&press, repeated) {
                 Wish::Nothing => self.show_status(Some(Wake::Centre)),
                 Wish::Start => self.start()?,
@@ -306,7 +317,10 @@ impl Simulation {
 
     fn unattended_over(&self) -> bool {
         let driven = self.totals.ticks + self.run.as_ref().map_or(0, |run| run.world().tick());
-        self.plan.unattended.is_some_and(|ticks| driven >= ticks)
+        // A display that shows nothing would keep it waiting for ever.
+        let is_stuck =
+            |ticks: Tick| self.links.clock.now_us() > PATIENCE_US + 3 * ticks * 1_000_000 / Tick::from(TICK_HZ);
+        self.plan.unattended.is_some_and(|ticks| driven >= ticks || is_stuck(ticks))
     }
 
     /// Makes the world of the next run and shows it.
@@ -347,6 +361,7 @@ impl Simulation {
         self.run = Some(Run::start(world, &manifest, self.seating.bots(), path, BackgroundFile::new(file))?);
         self.pacing = Pacing::starting_at(self.links.clock.now_us());
         self.events.clear();
+        self.seating.seats().engage_forward();
         self.stage = Stage::Driving;
         self.show_status(Some(Wake::All));
         Ok(())
@@ -383,27 +398,25 @@ impl Simulation {
         let (path, outbox, json) = (path.to_owned(), self.links.outbox.clone(), self.plan.json);
         let board = self.links.board.clone();
         self.helpers.push(std::thread::spawn(move || {
-            let done = || -> anyhow::Result<Option<PathBuf>> {
-                aftermath::figures_of(&path, json)?;
-                let case = aftermath::cut(&path)?;
-                case.iter().try_for_each(|case| Strip::of(case).map(|strip| board.strip.put(strip)))?;
-                Ok(case)
-            };
-            let said = match done() {
-                Ok(Some(case)) => Message::Note(format!("corner case {}", case.display())),
-                Ok(None) => return,
-                Err(error) => Message::Failed(error),
-            };
-            // When nobody listens any more the session is over, and the case is there all the same.
-            let _ = outbox.send(said);
+            // When nobody listens any more the session is over, and says itself what failed.
+            let note = |text: String| drop(outbox.send(Message::Note(text)));
+            let cut = aftermath::figures_of(&path, json).and_then(|()| aftermath::cut(&path));
+            match &cut {
+                Ok(Some(case)) => {
+                    // A note draws the control centre anew, with the strip.
+                    let shown = Strip::of(case).map(|strip| board.strip.put(strip));
+                    note(format!("corner case {}", case.display()));
+                    shown.unwrap_or_else(|error| note(format!("its pictures cannot be shown: {error:#}")));
+                }
+                Ok(None) => {}
+                Err(error) => note(format!("the corner case was not cut: {error:#}")),
+            }
+            cut.map(drop)
         }));
     }
 
-    /// To the terminal, where somebody is there to read it.
     fn say(&self, words: fmt::Arguments<'_>) {
-        if self.plan.unattended.is_none() {
-            eprintln!("{words}");
-        }
+        self.terminal.say(words.to_string());
     }
 
     fn note(&mut self, text: String) {

@@ -58,17 +58,24 @@ pub enum Wish {
 impl Stage {
     /// Takes a key. `repeated` says that it is held down: then it only types or deletes.
     pub fn press(&mut self, press: &Press, repeated: bool) -> Wish {
-        if *press == Press::Escape {
-            return Wish::Quit;
-        }
         match self {
+            Self::Labelling(dialog) if *dialog != Dialog::default() => dialog.press(press, repeated),
+            _ if *press == Press::Escape => Wish::Quit,
             Self::Labelling(dialog) => dialog.press(press, repeated),
             _ if repeated => Wish::Nothing,
             Self::Ready if is(press, "n") => Wish::Start,
             Self::Ready if is(press, "x") => Wish::Swap,
             _ if is(press, "f") => Wish::Force,
-            _ if is(press, "q") => Wish::Quit,
+            Self::Ready if is(press, "q") => Wish::Quit,
             _ => Wish::Nothing,
+        }
+    }
+
+    /// What has been entered about a corner case, when a label is chosen.
+    pub fn annotation(&self) -> Option<Annotation> {
+        match self {
+            Self::Labelling(dialog) => dialog.annotation(),
+            Self::Ready | Self::Driving => None,
         }
     }
 }
@@ -80,13 +87,15 @@ impl Dialog {
             (Press::Text(text), None) if !repeated => self.label = label_of(text),
             (Press::Text(text), Some(_)) if !repeated => self.type_in(text),
             (Press::Backspace, Some(_)) if self.comment.pop().is_none() => self.label = None,
-            (Press::Enter, Some(label)) if !repeated => {
-                let comment = self.comment.trim().to_owned();
-                return Wish::Annotate(Annotation { label, comment, perception_caused: None });
-            }
+            (Press::Enter, Some(_)) if !repeated => return self.annotation().map_or(Wish::Nothing, Wish::Annotate),
+            (Press::Escape, _) => *self = Self::default(),
             _ => {}
         }
         Wish::Nothing
+    }
+
+    fn annotation(&self) -> Option<Annotation> {
+        Some(Annotation { label: self.label?, comment: self.comment.trim().to_owned(), perception_caused: None })
     }
 
     fn type_in(&mut self, text: &str) {
@@ -170,12 +179,14 @@ mod tests {
     }
 
     #[test]
-    fn q_quits_unless_it_is_a_letter_of_a_comment_and_escape_always() {
-        for mut stage in [Stage::Ready, Stage::Driving] {
-            assert_eq!(stage.press(&text("q"), false), Wish::Quit);
-        }
+    fn q_quits_between_runs_only_and_escape_everywhere_but_in_a_label() {
+        assert_eq!(Stage::Ready.press(&text("q"), false), Wish::Quit);
+        assert_eq!(Stage::Driving.press(&text("q"), false), Wish::Nothing, "it is beside W and A");
+        assert_eq!(Stage::Driving.press(&Press::Escape, false), Wish::Quit);
         let mut stage = Stage::Labelling(Dialog::default());
         enter(&mut stage, "q1q");
-        assert_eq!(stage.press(&Press::Escape, false), Wish::Quit);
+        assert_eq!(stage.annotation().map(|a| (a.label, a.comment)), Some((Label::Walker, "q".into())));
+        assert_eq!(stage.press(&Press::Escape, false), Wish::Nothing, "the entry goes first");
+        assert_eq!((stage.annotation(), stage.press(&Press::Escape, false)), (None, Wish::Quit));
     }
 }

@@ -120,9 +120,9 @@ impl HazardTimes {
     }
 }
 
-/// Presses of "I see it" in the whole log.
+/// Presses of "I see it" up to the end of driving.
 fn presses(log: &Log) -> Vec<Press> {
-    let ticks = log.first_tick() + 1..=log.last_tick();
+    let ticks = log.first_tick() + 1..=end_of_driving(log);
     let pressed = |tick| {
         let seats = [Seat::Semantic, Seat::Safety].into_iter();
         seats.filter(move |seat| is_pressed(log, *seat, tick)).map(move |seat| Press { tick, seat: name(seat) })

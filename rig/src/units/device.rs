@@ -131,6 +131,11 @@ impl DeviceUnit {
         to_do.collect()
     }
 
+    /// Gear D.
+    pub fn engage_forward(&mut self) {
+        (self.reverse, self.gear_asked) = (false, false);
+    }
+
     /// The controls of the next tick, once it is armed.
     pub fn tick(&mut self, speed_mps: f32) -> Option<Controls> {
         let gear_asked = std::mem::take(&mut self.gear_asked);

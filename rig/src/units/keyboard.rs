@@ -156,6 +156,11 @@ impl Keyboard {
         self.held.clear();
     }
 
+    /// Gear D.
+    pub fn engage_forward(&mut self) {
+        (self.reverse, self.gear_asked) = (false, false);
+    }
+
     /// Moves wheel and pedals by one tick.
     pub fn tick(&mut self, speed_mps: f32) -> Controls {
         if std::mem::take(&mut self.gear_asked) && speed_mps.abs() < GEAR_CHANGE_MPS {

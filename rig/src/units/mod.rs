@@ -41,6 +41,8 @@ const HOW_TO_CHOOSE: &str = "to change that: --semantic and --safety take auto, 
                              device) or a path such as /dev/input/event5; X swaps the seats between runs";
 /// What there is to say when no device is there.
 const PERMISSION: &str = "(on Linux one needs read and write permission on /dev/input/event*)";
+/// The keyboard may be without a window for so long, as when it goes from one to the next.
+const UNFOCUSED_TICKS: u32 = 30;
 const SEATS: [Seat; 2] = [Seat::Semantic, Seat::Safety];
 
 /// What the units need to know of the car; that of the tick before.
@@ -88,6 +90,8 @@ pub struct Seats {
     /// Steering that each seat gave last while it was armed.
     held_steer: [i16; 2],
     events: Vec<UnitEvent>,
+    /// Ticks since no window of the rig has the keyboard.
+    unfocused_ticks: Option<u32>,
     /// Why no devices can be looked for, if so.
     deaf: Option<String>,
 }
@@ -135,6 +139,7 @@ impl Seats {
             calibrations,
             held_steer: [0; 2],
             events: Vec::new(),
+            unfocused_ticks: None,
             deaf: None,
         };
         devices.into_iter().map(RawEvent::Connected).for_each(|event| seats.take(event));
@@ -151,9 +156,34 @@ impl Seats {
         self.keyboards().for_each(|keyboard| keyboard.key(key, pressed));
     }
 
-    /// All keys went up: to be called when the last window that has the keyboard loses it.
+    /// All keys went up, as when a window loses the keyboard.
     pub fn release_keys(&mut self) {
         self.keyboards().for_each(Keyboard::release);
+    }
+
+    /// Whether a window of the rig has the keyboard. Without one, units on it count as lost after
+    /// [`UNFOCUSED_TICKS`], and are back at once.
+    pub fn focus(&mut self, is_ours: bool) {
+        self.unfocused_ticks = if is_ours { None } else { self.unfocused_ticks.or(Some(0)) };
+    }
+
+    /// Both units' gear is D.
+    pub fn engage_forward(&mut self) {
+        self.units.iter_mut().for_each(Unit::engage_forward);
+    }
+
+    fn watch_focus(&mut self) {
+        self.unfocused_ticks = self.unfocused_ticks.map(|ticks| ticks.saturating_add(1));
+        let has_keyboard = self.unfocused_ticks.is_none_or(|ticks| ticks < UNFOCUSED_TICKS);
+        for (unit, seat) in self.units.iter_mut().zip(SEATS) {
+            if let Unit::Keyboard { is_there, .. } = unit
+                && *is_there != has_keyboard
+            {
+                *is_there = has_keyboard;
+                let kind = if has_keyboard { UnitEventKind::Returned } else { UnitEventKind::Lost };
+                self.events.push(UnitEvent { seat, kind, unit: "keyboard".into() });
+            }
+        }
     }
 
     /// What was found, what each seat uses, and how to change that, a line each.
@@ -194,6 +224,7 @@ impl Seats {
         while let Some(event) = self.source.next_event() {
             self.take(event);
         }
+        self.watch_focus();
         let own = [0, 1].map(|seat| self.units[seat].tick(car.speed_mps));
         for (held, own) in self.held_steer.iter_mut().zip(own) {
             *held = own.map_or(*held, |controls| controls.steer);
@@ -207,7 +238,7 @@ impl Seats {
 
     fn keyboards(&mut self) -> impl Iterator<Item = &mut Keyboard> {
         self.units.iter_mut().filter_map(|unit| match unit {
-            Unit::Keyboard(keyboard) => Some(keyboard),
+            Unit::Keyboard { keyboard, .. } => Some(keyboard),
             _ => None,
         })
     }
@@ -343,7 +374,7 @@ fn settle(choices: [SeatChoice; 2], devices: usize) -> [Unit; 2] {
             free -= 1;
             Unit::Device(Binding::new(None))
         }
-        SeatChoice::Auto | SeatChoice::Keyboard => Unit::Keyboard(Keyboard::new(seat)),
+        SeatChoice::Auto | SeatChoice::Keyboard => Unit::Keyboard { keyboard: Keyboard::new(seat), is_there: true },
     })
 }
 

@@ -11,7 +11,11 @@ use super::status::{UnitState, UnitStatus};
 #[derive(Debug)]
 pub(super) enum Unit {
     Bot,
-    Keyboard(Keyboard),
+    /// The keyboard, while a window of the rig has it.
+    Keyboard {
+        keyboard: Keyboard,
+        is_there: bool,
+    },
     Device(Binding),
 }
 
@@ -102,7 +106,10 @@ impl Unit {
     pub fn tick(&mut self, speed_mps: f32) -> Option<Controls> {
         match self {
             Self::Bot => Some(Controls::default()),
-            Self::Keyboard(keyboard) => Some(keyboard.tick(speed_mps)),
+            Self::Keyboard { keyboard, is_there } => {
+                let controls = keyboard.tick(speed_mps);
+                is_there.then_some(controls)
+            }
             Self::Device(binding) => binding.unit().and_then(|unit| unit.tick(speed_mps)),
         }
     }
@@ -119,15 +126,24 @@ impl Unit {
 
     /// Drives another seat from now on.
     pub fn sit(&mut self, seat: Seat) {
-        if let Self::Keyboard(keyboard) = self {
+        if let Self::Keyboard { keyboard, .. } = self {
             keyboard.sit(seat);
+        }
+    }
+
+    /// Gear D.
+    pub fn engage_forward(&mut self) {
+        match self {
+            Self::Bot => {}
+            Self::Keyboard { keyboard, .. } => keyboard.engage_forward(),
+            Self::Device(binding) => binding.unit().into_iter().for_each(DeviceUnit::engage_forward),
         }
     }
 
     /// What it is, with the keys of a keyboard.
     pub fn summary(&self) -> String {
         match self {
-            Self::Keyboard(keyboard) => format!("keyboard ({})", keyboard.keys()),
+            Self::Keyboard { keyboard, .. } => format!("keyboard ({})", keyboard.keys()),
             Self::Bot => String::from("bot"),
             Self::Device(_) => self.status().to_string(),
         }
@@ -139,7 +155,10 @@ impl Unit {
             |unit: &str, place: &str| UnitStatus { unit: unit.into(), place: place.into(), state: UnitState::Armed };
         match self {
             Self::Bot => armed("bot", ""),
-            Self::Keyboard(keyboard) => armed("keyboard", keyboard.name()),
+            Self::Keyboard { keyboard, is_there } => {
+                let state = if *is_there { UnitState::Armed } else { UnitState::Unfocused };
+                UnitStatus { state, ..armed("keyboard", keyboard.name()) }
+            }
             Self::Device(binding) => binding.status(),
         }
     }

@@ -58,6 +58,8 @@ pub enum UnitState {
     Armed,
     /// The device is gone.
     Lost,
+    /// No window of the rig has the keyboard.
+    Unfocused,
 }
 
 /// How a seat's unit is, for people to read.
@@ -79,6 +81,7 @@ impl UnitStatus {
             UnitState::Waiting { waits_for } => Some(format!("waiting for {waits_for}")),
             UnitState::Arming { to_do } => Some(format!("to arm it, {}", to_do.join(", "))),
             UnitState::Lost => Some("lost, plug it in again".into()),
+            UnitState::Unfocused => Some("lost, click a window of the rig".into()),
         }
     }
 }

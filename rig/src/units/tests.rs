@@ -44,6 +44,33 @@ fn kinds(polled: &Polled) -> Vec<(Seat, UnitEventKind)> {
 }
 
 #[test]
+fn a_keyboard_without_a_window_is_a_lost_unit_and_the_gear_of_a_new_run_is_d() {
+    let mut seats = Seats::new([SeatChoice::Keyboard, SeatChoice::Keyboard]).unwrap();
+    seats.key(Key::W, true);
+    seats.key(Key::R, true);
+    let polled = (0..60).map(|_| seats.poll(CarState::default())).last().unwrap();
+    assert!(polled.semantic.throttle > 60_000 && polled.semantic.has(Controls::REVERSE));
+    seats.engage_forward();
+    assert!(!seats.poll(CarState::default()).semantic.has(Controls::REVERSE));
+    // From one window to the next.
+    seats.focus(false);
+    assert!((0..20).all(|_| seats.poll(CarState::default()).ready()));
+    seats.focus(true);
+    assert!((0..60).all(|_| seats.poll(CarState::default()).ready()));
+    // To another program.
+    seats.focus(false);
+    let events: Vec<_> = (0..60).flat_map(|_| kinds(&seats.poll(CarState::default()))).collect();
+    assert_eq!(events, [(Seat::Semantic, UnitEventKind::Lost), (Seat::Safety, UnitEventKind::Lost)]);
+    let polled = seats.poll(CarState::default());
+    assert!(!polled.ready() && polled.semantic.brake > 30_000 && polled.semantic.throttle == 0);
+    assert_eq!(polled.safety, Controls::default(), "no intervention");
+    seats.focus(true);
+    let polled = seats.poll(CarState::default());
+    assert!(polled.ready());
+    assert_eq!(kinds(&polled), [(Seat::Semantic, UnitEventKind::Returned), (Seat::Safety, UnitEventKind::Returned)]);
+}
+
+#[test]
 fn two_people_share_a_keyboard() {
     let mut seats = Seats::new([SeatChoice::Keyboard, SeatChoice::Keyboard]).unwrap();
     seats.key(Key::W, true);

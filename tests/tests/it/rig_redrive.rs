@@ -25,7 +25,16 @@ fn case(folder: &Path) -> PathBuf {
 
 fn args(file: PathBuf, checkpoint: Option<CheckpointChoice>, out: PathBuf) -> RedriveArgs {
     let without_intervention = checkpoint.is_none();
-    RedriveArgs { files: vec![file], without_intervention, checkpoint, vary: 1, seconds: 4, out }
+    RedriveArgs {
+        files: vec![file],
+        without_intervention,
+        checkpoint,
+        recorded: vec![],
+        reveal: false,
+        vary: 1,
+        seconds: 4,
+        out,
+    }
 }
 
 fn lines(out: &Path) -> Vec<Value> {

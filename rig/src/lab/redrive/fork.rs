@@ -88,6 +88,7 @@ impl Fork {
             let tick = world.tick() + 1;
             if tick == fork_tick {
                 check(log, network, &world)?;
+                harm = Harm::already(&world);
             }
             let input = if tick < fork_tick { logged(log, tick)? } else { self.controls(bots) };
             recorder.mask_shown(shown);
@@ -144,6 +145,17 @@ fn check(log: &Log, network: &Arc<RoadNetwork>, world: &World) -> anyhow::Result
 }
 
 impl Harm {
+    /// What goes wrong already where the fork begins, and therefore has no event of its own.
+    fn already(world: &World) -> Option<Self> {
+        let watch = world.watch_state();
+        let what = match (watch.wrong_way, watch.off_road) {
+            (true, _) => "wrong way",
+            (false, true) => "off road",
+            (false, false) => return None,
+        };
+        Some(Self { tick: world.tick() + 1, what, with: None, speed_kmh: 3.6 * f64::from(world.hud().speed_mps) })
+    }
+
     fn of(tick: Tick, event: &Event, world: &World) -> Option<Self> {
         let what = match event.kind {
             EventKind::CollisionActor | EventKind::CollisionScenery => "collision",

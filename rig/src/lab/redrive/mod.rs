@@ -21,10 +21,11 @@ use serde::Serialize;
 use self::fork::{Fork, Harm, Otherwise};
 use self::verdict::Verdict;
 use crate::cli::RedriveArgs;
-use crate::exit;
+use crate::exit::{self, Usage};
 use crate::output::{self, PendingFolder, json_line};
 use crate::progress;
 use crate::recorded_eye::RecordedEye;
+use crate::study;
 use crate::vision::{Eye, Vision};
 
 /// A variation lets the safety driver go so much earlier than the one before.
@@ -83,6 +84,9 @@ fn redrive(args: &RedriveArgs, path: &Path, out: &Path) -> anyhow::Result<Vec<Li
     let network = recording.network()?;
     let log = recording.into_log();
     let at = log.intervention.context("holds no intervention, from which to go another way")?.tick;
+    if study::is_blind(&log.manifest.provenance) && !args.reveal {
+        return Err(Usage("a blind drive; expected --reveal, which tells its checkpoint".into()).into());
+    }
     let eye = eye_of(args, &log)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name = name.strip_suffix(".mcap").unwrap_or(&name);
@@ -120,8 +124,8 @@ fn eye_of(args: &RedriveArgs, log: &Log) -> anyhow::Result<Eye> {
         return Eye::open(choice);
     }
     let recorded = RecordedEye::of(&log.manifest.provenance)?;
-    let found = recorded.find(&[])?;
-    found.with_context(|| format!("was driven through {:?}, which does not come with the program", recorded.name))
+    let found = recorded.find(&args.recorded)?;
+    found.with_context(|| format!("was driven through {:?}; expected that file as --recorded", recorded.name))
 }
 
 /// The fork itself, or a variation of it; both follow from the file and the number alone.

@@ -21,7 +21,7 @@ const ATTENTION: Color32 = Color32::from_rgb(255, 190, 60);
 const VIEWS_HEIGHT: f32 = 210.0;
 const FIGURES_WIDTH: f32 = 430.0;
 const MAP_WIDTH: f32 = 330.0;
-const KEYS: &str = "N starts a run, X swaps the seats before it, Q or Escape quits; F9 all monitors, F10 next monitor, F11 full screen";
+const KEYS: &str = "N starts a run, X swaps the seats before it, Q quits before it, Escape any time; F9 all monitors, F10 next monitor, F11 full screen";
 
 /// Panels are not filled, since the window is: filling it again is most of the work on a CPU.
 fn bare() -> Frame {

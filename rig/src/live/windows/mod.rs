@@ -63,7 +63,7 @@ impl Windows {
 
     /// Shows the board until [`Wake::Over`].
     pub fn show(self, link: Link) -> anyhow::Result<()> {
-        let mut desk = Desk { link, panes: None, failure: None };
+        let mut desk = Desk { link, panes: None, focused: None, failure: None };
         self.events.run_app(&mut desk).context("the windows' event loop")?;
         desk.panes.iter().for_each(Panes::keep_places);
         desk.failure.map_or(Ok(()), Err)
@@ -88,6 +88,8 @@ pub struct Link {
 struct Desk {
     link: Link,
     panes: Option<Panes>,
+    /// The window that has the keyboard.
+    focused: Option<WindowId>,
     failure: Option<anyhow::Error>,
 }
 
@@ -236,7 +238,18 @@ impl ApplicationHandler<Wake> for Desk {
             // A key that was down already when the window got the keyboard, or lost it.
             WindowEvent::KeyboardInput { event, .. } => return self.seat_key(event),
             WindowEvent::CloseRequested | WindowEvent::Destroyed => self.link.tell(Message::Closed),
-            WindowEvent::Focused(false) => self.link.tell(Message::KeysReleased),
+            WindowEvent::Focused(true) => {
+                self.focused = Some(id);
+                self.link.tell(Message::Focus(true));
+            }
+            WindowEvent::Focused(false) => {
+                self.link.tell(Message::KeysReleased);
+                // The next window of ours may have got it before this one lost it.
+                if self.focused == Some(id) {
+                    self.focused = None;
+                    self.link.tell(Message::Focus(false));
+                }
+            }
             _ => {}
         }
         if let Some(pane) = self.panes.as_mut().and_then(|panes| panes.of(id)) {
