@@ -1,10 +1,9 @@
 //! One run, recorded as it goes.
 
 use std::fs::File;
-use std::io::ErrorKind;
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::{Context, bail};
 use kernel::arbiter::Outcome;
 use kernel::{Scenario, World};
 use render::{RenderOptions, Renderer};
@@ -120,10 +119,10 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
 
     let mut publisher = args.foxglove.map(Publisher::bind).transpose()?;
     let path = &args.record;
-    let file = File::create_new(path).map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => anyhow!("{}: exists already; expected a new file", path.display()),
-        _ => anyhow!("{}: {error}", path.display()),
-    })?;
+    if path.is_file() {
+        bail!("{}: exists already; expected a new file", path.display());
+    }
+    let file = File::create(path).with_context(|| path.display().to_string())?;
     let interrupt = Interrupt::listen()?;
     let mut second = EverySecond::new();
     let keep_on = |world: &World| {

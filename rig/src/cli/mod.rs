@@ -1,17 +1,20 @@
 //! The command line of `aeye`.
 
+mod values;
+
 use std::convert::Infallible;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use kernel::time::{CLIP_FPS, TICK_HZ, Tick};
+use kernel::time::{CLIP_FPS, Tick};
 use perception::BUNDLED;
 
 use crate::live::foxglove;
 use crate::study::StudyArgs;
 use crate::units::SeatChoice;
+use values::{duration, force, frame_rate, rate, size, threshold};
 
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
 ///
@@ -530,41 +533,6 @@ pub struct DemoArgs {
     pub out: PathBuf,
 }
 
-/// `WxH`, as in `512x256`.
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let side = |s: &str| s.parse::<u32>().ok().filter(|n| (8..=8192).contains(n));
-    text.split_once('x')
-        .and_then(|(w, h)| Some((side(w)?, side(h)?)))
-        .ok_or_else(|| "expected WIDTHxHEIGHT with sides of 8 to 8192 pixels, as in 512x256".into())
-}
-
-/// A number of seconds such as `3s` or `0.5s`, as ticks.
-fn duration(text: &str) -> Result<Tick, String> {
-    let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
-    let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (1.0..=1e9).contains(t));
-    ticks.map(|t| t as Tick).ok_or_else(|| "expected a number of seconds, as in 3s".into())
-}
-
-fn rate(text: &str) -> Result<f32, String> {
-    let rate = text.parse::<f32>().ok().filter(|r| (1e-7..=1.0).contains(r));
-    rate.ok_or_else(|| "expected a number above 0 and up to 1, as in 0.002".into())
-}
-
-fn force(text: &str) -> Result<f32, String> {
-    let fraction = text.parse::<f32>().ok().filter(|f| (0.0..=1.0).contains(f));
-    fraction.ok_or_else(|| "expected a fraction of 0 to 1, as in 0.6".into())
-}
-
-fn threshold(text: &str) -> Result<f32, String> {
-    let fraction = text.parse::<f32>().ok().filter(|f| (0.01..=0.99).contains(f));
-    fraction.ok_or_else(|| "expected a fraction of 0.01 to 0.99, as in 0.1".into())
-}
-
-fn frame_rate(text: &str) -> Result<u32, String> {
-    let fps = text.parse::<u32>().ok().filter(|f| *f > 0 && TICK_HZ.is_multiple_of(*f));
-    fps.ok_or_else(|| format!("expected a divisor of {TICK_HZ}, as in 10"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -573,20 +541,6 @@ mod tests {
     #[test]
     fn the_definition_is_consistent() {
         Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn values_are_read_and_nonsense_is_refused() {
-        assert_eq!(size("512x256"), Ok((512, 256)));
-        assert!(size("512").is_err() && size("0x9").is_err() && size("12x99999999").is_err());
-        assert_eq!(duration("3s"), Ok(180));
-        assert_eq!(duration("0.5"), Ok(30));
-        assert!(duration("-1s").is_err() && duration("NaN").is_err());
-        assert_eq!(threshold("0.2"), Ok(0.2));
-        assert_eq!((force("0"), force("1")), (Ok(0.0), Ok(1.0)));
-        assert!(force("1.1").is_err() && force("-0.1").is_err() && force("nan").is_err());
-        assert!(threshold("0").is_err() && threshold("1").is_err() && threshold("nan").is_err());
-        assert!(frame_rate("7").is_err() && frame_rate("0").is_err());
     }
 
     #[test]
