@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use kernel::arbiter::Phase;
+use kernel::arbiter::{Outcome, Phase};
 use kernel::events::Hud;
 use kernel::scenario::Rules;
 use kernel::time::Tick;
 use kernel::{SceneSnapshot, Seat, TickInput, World};
+use replay::Log;
 
 use super::events::Events;
 use super::foxglove::Telemetry;
@@ -15,6 +16,7 @@ use super::strip::Strip;
 use super::traces::Traces;
 use crate::desktop::Image;
 use crate::newest::Newest;
+use crate::study;
 use crate::units::Key;
 
 /// The newest of everything that is looked at.
@@ -154,7 +156,7 @@ pub struct Status {
     pub about: Arc<About>,
 }
 
-/// What the finished runs of a session came to.
+/// What the finished runs came to, with those recorded under the same name before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
     /// Runs.
@@ -169,12 +171,35 @@ pub struct Totals {
 
 impl Totals {
     /// Adds a run that has ended.
-    pub fn add(&mut self, world: &World, is_case: bool) {
+    pub fn add(&mut self, world: &World) {
+        self.count(world.odometer_mm(), world.tick(), is_case(world.arbiter().outcome));
+    }
+
+    /// Adds a recorded run, unless it was for familiarisation.
+    pub fn add_recorded(&mut self, log: &Log) {
+        if study::is_familiarisation(&log.manifest.provenance) {
+            return;
+        }
+        match &log.summary {
+            Some(summary) => self.count(summary.odometer_mm, summary.ticks, is_case(summary.outcome)),
+            None => {
+                let odometer_mm = log.marks.last().map_or(0, |mark| mark.odometer_mm);
+                self.count(odometer_mm, log.last_tick(), log.intervention.is_some());
+            }
+        }
+    }
+
+    fn count(&mut self, odometer_mm: u64, ticks: Tick, is_case: bool) {
         self.runs += 1;
-        self.odometer_mm += world.odometer_mm();
-        self.ticks += world.tick();
+        self.odometer_mm += odometer_mm;
+        self.ticks += ticks;
         self.cases += u32::from(is_case);
     }
+}
+
+/// An intervention, or a collision that nobody prevented.
+fn is_case(outcome: Option<Outcome>) -> bool {
+    matches!(outcome, Some(Outcome::Intervened | Outcome::Missed))
 }
 
 /// What does not change in a session.

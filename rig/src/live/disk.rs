@@ -83,6 +83,11 @@ pub fn create_next(record: &Path) -> anyhow::Result<(PathBuf, File)> {
     Err(anyhow!("{}: no number is free", record.display()))
 }
 
+/// The runs that are recorded under a name already, in order.
+pub fn recorded(record: &Path) -> impl Iterator<Item = PathBuf> + '_ {
+    (1..).map(move |number| numbered(record, number)).take_while(|path| path.is_file())
+}
+
 /// The path of a corner case beside its recording.
 pub fn case_path(recording: &Path) -> PathBuf {
     let name = recording.file_name().unwrap_or_default().to_string_lossy();
@@ -110,6 +115,7 @@ mod tests {
         let expected = ["drive.mcap", "drive-2.mcap", "drive-3.mcap"].map(|name| dir.path().join(name));
         assert_eq!(names, expected);
         assert_eq!(case_path(&expected[1]), dir.path().join("drive-2.case.mcap"));
+        assert_eq!(recorded(&record).collect::<Vec<_>>(), expected);
         assert!(create_next(&dir.path().join("absent/drive.mcap")).is_err());
         assert_ne!(case_path(Path::new("run.1")), case_path(Path::new("run.2")));
         std::fs::write(dir.path().join("old.case.mcap"), "a case whose recording is elsewhere").expect("written");

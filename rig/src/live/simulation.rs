@@ -12,7 +12,7 @@ use anyhow::anyhow;
 use kernel::arbiter::Outcome;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{Scenario, Seat, TickInput, TickOutput, World};
-use replay::{Annotation, Manifest, Provenance};
+use replay::{Annotation, Manifest, Provenance, Recording};
 
 use super::aftermath;
 use super::board::{About, Board, Look, Message, Status, Totals, View, Wake};
@@ -156,8 +156,19 @@ impl Simulation {
             totals: Totals::default(),
             helpers: Vec::new(),
         };
+        simulation.count_earlier_runs();
         simulation.prepare()?;
         Ok(simulation)
+    }
+
+    /// A campaign goes on in a new session under the same name.
+    fn count_earlier_runs(&mut self) {
+        for path in disk::recorded(&self.plan.record) {
+            match Recording::open(&path) {
+                Ok(recording) => self.totals.add_recorded(recording.log()),
+                Err(error) => self.say(format_args!("not counted: {error:#}")),
+            }
+        }
     }
 
     /// Drives until the operators have had enough, and says how well it kept real time. The last
@@ -388,7 +399,7 @@ impl Simulation {
     fn end_run(&mut self, annotation: Option<Annotation>) -> anyhow::Result<Option<PathBuf>> {
         let Some(run) = self.run.take() else { return Ok(None) };
         if !self.plan.about.is_familiarisation {
-            self.totals.add(run.world(), annotation.is_some());
+            self.totals.add(run.world());
         }
         self.timings.run(self.pacing.driven_us(), self.pacing.slowed_us());
         run.finish(annotation).map(Some)

@@ -5,7 +5,7 @@ use std::sync::mpsc::{self, Sender};
 use std::thread::JoinHandle;
 
 use kernel::Seat;
-use replay::{NoteKind, Recording};
+use replay::{Label, NoteKind, Recording};
 use tempfile::TempDir;
 
 use super::about;
@@ -54,7 +54,11 @@ struct Bench {
 
 impl Bench {
     fn start() -> Self {
-        let (dir, devices) = (tempfile::tempdir().unwrap(), Simulated::default());
+        Self::start_in(tempfile::tempdir().unwrap())
+    }
+
+    fn start_in(dir: TempDir) -> Self {
+        let devices = Simulated::default();
         (0..2).for_each(|id| devices.push(device(id)));
         let choices = [0, 1].map(|id| SeatChoice::Device(path(id)));
         let seats = Seats::with_source(choices.clone(), Vec::new(), Box::new(devices.clone()));
@@ -120,11 +124,16 @@ impl Bench {
         }
     }
 
-    /// Quits, and gives what happened to the units of the first run.
-    fn notes(self) -> Vec<(NoteKind, Seat)> {
+    /// Quits.
+    fn close(self) -> TempDir {
         self.outbox.send(Message::Closed).unwrap();
         self.driving.join().unwrap().unwrap();
-        let recording = Recording::open(&self.dir.path().join("drive.mcap")).unwrap();
+        self.dir
+    }
+
+    /// Quits, and gives what happened to the units of the first run.
+    fn notes(self) -> Vec<(NoteKind, Seat)> {
+        let recording = Recording::open(&self.close().path().join("drive.mcap")).unwrap();
         recording.log().notes.iter().map(|note| (note.kind, note.seat)).collect()
     }
 }
@@ -162,4 +171,25 @@ fn a_takeover_whose_wheel_is_lost_still_asks_for_its_label() {
     bench.devices.push(RawEvent::Lost(1));
     bench.wait(|status| matches!(status.stage, Stage::Labelling(_)));
     assert_eq!(bench.notes(), [(NoteKind::UnitLost, Seat::Safety)]);
+}
+
+#[test]
+fn a_label_survives_an_early_end_and_the_next_session_counts_the_case() {
+    let bench = Bench::start();
+    bench.axis(0, THROTTLE, 200);
+    bench.wait(|status| status.tick > 190);
+    bench.axis(1, BRAKE, 60);
+    bench.wait(|status| matches!(status.stage, Stage::Labelling(_)));
+    ["2", "t", "o", "o"].iter().for_each(|key| bench.press(key));
+    let dir = bench.close();
+    let recording = Recording::open(&dir.path().join("drive.mcap")).unwrap();
+    let annotation = recording.log().annotation.clone().unwrap();
+    assert_eq!((annotation.label, annotation.comment.as_str()), (Label::Vehicle, "too"));
+    assert!(dir.path().join("drive.case.mcap").exists());
+
+    let bench = Bench::start_in(dir);
+    let totals = bench.wait(|status| status.stage == Stage::Driving).totals;
+    let driven_mm = recording.log().summary.as_ref().unwrap().odometer_mm;
+    assert_eq!((totals.runs, totals.cases, totals.odometer_mm), (1, 1, driven_mm));
+    bench.close();
 }
