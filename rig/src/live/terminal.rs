@@ -27,7 +27,10 @@ impl Terminal {
 
     /// Says a line; waits for nobody.
     pub fn say(&self, line: String) {
-        self.lines.iter().for_each(|lines| drop(lines.send(line.clone())));
+        if let Some(lines) = &self.lines {
+            // The other end is there until this one goes.
+            let _ = lines.send(line);
+        }
     }
 }
 
