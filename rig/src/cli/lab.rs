@@ -1,0 +1,82 @@
+//! Arguments of what looks at corner cases again.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use kernel::time::{CLIP_FPS, Tick};
+
+use super::CheckpointChoice;
+use super::values::{duration, frame_rate, size};
+
+/// Arguments of `rerender`.
+#[derive(Args, Debug)]
+pub struct RerenderArgs {
+    /// Recordings or cases.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Length of the window that ends at the intervention (or at the end), as in `3s`.
+    #[arg(long, default_value = "3s", value_parser = duration)]
+    pub last: Tick,
+    /// Frames a second; must divide 60.
+    #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
+    pub fps: u32,
+    /// Size of the pictures.
+    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Folder of the results; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `redrive`.
+#[derive(Args, Debug)]
+#[command(group = clap::ArgGroup::new("counterfactual").required(true).args(["without_intervention", "checkpoint"]))]
+pub struct RedriveArgs {
+    /// Recordings or cases with an intervention.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// The safety driver does nothing from the tick of the intervention on; the semantic driver is a bot
+    /// that looks through the recorded checkpoint. What would have happened?
+    #[arg(long)]
+    pub without_intervention: bool,
+    /// Bots drive from the first tick at hand, at least 3 s before the intervention, the semantic one
+    /// looking through this checkpoint. Is there an intervention again?
+    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Option<CheckpointChoice>,
+    /// Where the recorded checkpoint may be found, if it does not come with the program.
+    #[arg(long, value_name = "FILE.onnx")]
+    pub recorded: Vec<CheckpointChoice>,
+    /// Tell the checkpoint of blind drives.
+    #[arg(long)]
+    pub reveal: bool,
+    /// Further forks of each file with other weather of the paper's ranges and, without the
+    /// intervention, with the safety driver gone 0.1 s earlier each.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=30))]
+    pub vary: u16,
+    /// How long after the intervention a fork goes on, seconds.
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=60))]
+    pub seconds: u16,
+    /// Folder of the forks' recordings and of `redrive.jsonl`; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Corner cases; the recordings beside them give route and kilometres.
+    #[arg(required = true, value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Where the page goes.
+    #[arg(long, value_name = "FILE.html")]
+    pub out: PathBuf,
+}

@@ -1,0 +1,113 @@
+//! Arguments of datasets and trainings.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::CheckpointChoice;
+use super::values::{rate, size};
+
+/// The datasets that can be made.
+#[derive(Debug, Subcommand)]
+pub enum DatasetCommand {
+    /// Frames with ground truth from simulated drives.
+    Natural(NaturalArgs),
+    /// The last 3 s of corner cases at 10 frames a second, with ground truth.
+    Cases(CasesArgs),
+}
+
+/// Arguments of `dataset cases`.
+#[derive(Args, Debug)]
+pub struct CasesArgs {
+    /// Corner cases.
+    #[arg(required = true, value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Which split they become.
+    #[arg(long, default_value = "train", value_parser = ["train", "val", "test"])]
+    pub split: String,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Folder of the dataset; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `dataset natural`.
+#[derive(Args, Debug)]
+pub struct NaturalArgs {
+    /// Scenes (drives) of the training split (paper: 85).
+    #[arg(long, default_value_t = 85)]
+    pub scenes: u32,
+    /// Scenes of the validation split, with seeds of their own (paper: 20).
+    #[arg(long, default_value_t = 20)]
+    pub val_scenes: u32,
+    /// Frames a scene, one a second (paper: 60).
+    #[arg(long, default_value_t = 60)]
+    pub frames: u32,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
+    #[arg(long, value_delimiter = ',', default_value = "all", value_name = "NAMES|all")]
+    pub maps: Vec<String>,
+    /// People on foot in each scene, instead of as many as the map's default scenario has.
+    #[arg(long, value_name = "N")]
+    pub pedestrians: Option<u16>,
+    /// Seed of the dataset.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Folder of the dataset; one that was interrupted is completed.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `train`.
+#[derive(Args, Debug)]
+pub struct TrainArgs {
+    /// Dataset folder.
+    #[arg(long, value_name = "DIR")]
+    pub dataset: PathBuf,
+    /// Where the checkpoint goes.
+    #[arg(long, value_name = "C.onnx")]
+    pub out: PathBuf,
+    /// Passes over the training split.
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..))]
+    pub epochs: u32,
+    /// Seed of weights, order and augmentation.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Size at which the network is trained.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Epochs after which the learning rate would be 0 (default: `--epochs`). A larger one makes a
+    /// training that is stopped early, and that can go on later.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub horizon: Option<u32>,
+    /// Frames a step.
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(2..))]
+    pub batch: u32,
+    /// Threads that share a batch; the result depends on their number, not on the machine's.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub replicas: u32,
+    /// First learning rate.
+    #[arg(long, default_value_t = 2e-3, value_parser = rate)]
+    pub rate: f32,
+}
+
+/// Arguments of `eval`.
+#[derive(Args, Debug)]
+pub struct EvalArgs {
+    /// Checkpoint.
+    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: CheckpointChoice,
+    /// Dataset folder.
+    #[arg(long, value_name = "DIR")]
+    pub dataset: PathBuf,
+    /// Which split.
+    #[arg(long, default_value = "val")]
+    pub split: String,
+}

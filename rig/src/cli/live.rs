@@ -1,0 +1,190 @@
+//! Arguments of the rig itself: drives, their viewer, the machine and its devices.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+use super::CheckpointChoice;
+use super::values::{force, size, threshold};
+use crate::live::foxglove;
+use crate::study::StudyArgs;
+use crate::units::SeatChoice;
+
+/// Arguments of `drive`.
+#[derive(Args, Debug)]
+pub struct DriveArgs {
+    /// Without windows: bots in both seats, as fast as the machine allows.
+    #[arg(long)]
+    pub headless: bool,
+    /// What the semantic driver drives with: `auto` takes a device if there is one, else the keyboard;
+    /// `press` the device on which a button is pressed next.
+    #[arg(long, value_name = "auto|keyboard|press|DEVICE|bot", conflicts_with = "headless")]
+    pub semantic: Option<SeatChoice>,
+    /// What the safety driver drives with.
+    #[arg(long, value_name = "auto|keyboard|press|DEVICE|bot", conflicts_with = "headless")]
+    pub safety: Option<SeatChoice>,
+    /// Calibrations of wheels and gamepads, chosen by the names of their devices; others are read by
+    /// presets.
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "headless")]
+    pub calibration: Vec<PathBuf>,
+    /// Greatest force of wheels and gamepads, 0 (off) to 1 (all that they can).
+    #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION")]
+    pub force: f32,
+    /// Shows the drive to Foxglove at this port of this machine, or at this address.
+    #[arg(long, value_parser = foxglove::address, value_name = "PORT|ADDRESS:PORT")]
+    pub foxglove: Option<SocketAddr>,
+    /// A bundled map or an OpenDRIVE file.
+    #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
+    pub map: Option<String>,
+    /// A scenario file.
+    #[arg(long, value_name = "FILE.toml")]
+    pub scenario: Option<PathBuf>,
+    /// What the semantic driver sees: a bundled checkpoint, ground truth, or an ONNX file.
+    #[arg(long, default_value = "truth", value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: CheckpointChoice,
+    /// Seed of everything random; replaces the scenario's.
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Longest simulated time, seconds; 4 to 86400, as `rules.max_seconds` of scenarios.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(4..=86_400))]
+    pub seconds: Option<u32>,
+    /// Sizes of the pictures in windows.
+    #[command(flatten)]
+    pub sizes: SizeArgs,
+    /// Brake of the safety driver beyond which it intervenes, 0.01 to 0.99 of the pedal, as
+    /// `rules.brake_threshold` of scenarios (default there: 0.1).
+    #[arg(long, value_parser = threshold, value_name = "FRACTION")]
+    pub brake_threshold: Option<f32>,
+    /// Steering of the safety driver beyond which it intervenes, 0.01 to 0.99 of full steering, as
+    /// `rules.steer_threshold` of scenarios (default there: 0.1).
+    #[arg(long, value_parser = threshold, value_name = "FRACTION")]
+    pub steer_threshold: Option<f32>,
+    /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
+    #[arg(long, value_name = "FILE.mcap")]
+    pub record: PathBuf,
+    /// What makes it part of a study with people.
+    #[command(flatten, next_help_heading = "Study")]
+    pub study: StudyArgs,
+}
+
+/// Sizes of the live rig's pictures.
+#[derive(Args, Clone, Debug)]
+pub struct SizeArgs {
+    /// Size of the safety driver's picture.
+    #[arg(long, default_value = "640x360", value_parser = size, value_name = "WxH")]
+    pub image_size: (u32, u32),
+    /// Size of the semantic driver's mask (default: the checkpoint's own, 256x128).
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub mask_size: Option<(u32, u32)>,
+    /// Monitors that the safety driver's view is spread over: 3 show 60 degrees each, every one of
+    /// `--image-size`.
+    #[arg(long, default_value = "1")]
+    pub screens: Screens,
+}
+
+/// Monitors that a view is spread over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Screens {
+    /// One.
+    #[value(name = "1")]
+    One,
+    /// Three side by side.
+    #[value(name = "3")]
+    Three,
+}
+
+/// Arguments of `doctor`.
+#[derive(Args, Debug)]
+pub struct DoctorArgs {
+    /// How long bots drive in windows to measure real time, seconds of simulated time; 0: not at all.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    pub seconds: u32,
+    /// What the semantic driver sees there.
+    #[arg(long, default_value = "full", value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: CheckpointChoice,
+    /// Sizes of the pictures there.
+    #[command(flatten)]
+    pub sizes: SizeArgs,
+}
+
+/// What `view --help` says about the window.
+const VIEW_KEYS: &str = "\
+One window shows two views side by side, so that layers can be compared, over the facts of the tick,
+the events, and a timeline to click and drag on. Keys:
+  Space                 play, stop
+  Left, Right           one tick back or on; with Shift one frame (6 ticks)
+  Up, Down              faster, slower (0.1 to 8 times real time)
+  Page Up, Page Down    event before, next event; Home, End: first and last tick
+  1 to 6                left view: seen mask, RGB, truth, prediction, difference, confidence;
+                        with Shift the right view
+  V, K                  next camera (driver, chase, from above), next checkpoint
+  I, O, C               mark the first and the last tick of a range, cut it as a case
+  S                     screenshot of both views
+  H, F11, Q or Escape   HUD on and off, full screen, quit
+Cases and screenshots go beside FILE, under names with their ticks that are free.";
+
+/// Arguments of `view`.
+#[derive(Args, Debug)]
+#[command(after_help = VIEW_KEYS)]
+pub struct ViewArgs {
+    /// A recording or case; one that was cut off is shown as far as it goes.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// A checkpoint to look through; may be given several times (default: the bundled ones). The one
+    /// that the run was driven through is among them when it is bundled.
+    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Opens no window: makes every mask that was shown again and compares its digest with the logged
+    /// one; exit code 3 if any differs. Equal digests are promised on the adapter that made them.
+    #[arg(long)]
+    pub digests: bool,
+    /// Show a blind drive all the same, with its checkpoint.
+    #[arg(long)]
+    pub reveal: bool,
+}
+
+/// What to do with wheels and gamepads.
+#[derive(Debug, Subcommand)]
+pub enum WheelCommand {
+    /// Say which are there, and by which calibration they would be read.
+    List(WheelListArgs),
+    /// Ask for each movement of a device and write its calibration.
+    Calibrate(WheelCalibrateArgs),
+    /// Write a calibration from the `wheel_config.ini` of CARLA's example.
+    Import(WheelImportArgs),
+}
+
+/// Arguments of `wheel list`.
+#[derive(Args, Debug)]
+pub struct WheelListArgs {
+    /// Calibrations to choose from, by the name of their device.
+    #[arg(long, value_name = "FILE.toml")]
+    pub calibration: Vec<PathBuf>,
+}
+
+/// Arguments of `wheel calibrate`.
+#[derive(Args, Debug)]
+pub struct WheelCalibrateArgs {
+    /// The device, such as /dev/input/event5 (default: the only one).
+    #[arg(long, value_name = "PATH")]
+    pub device: Option<String>,
+    /// Where the calibration goes.
+    #[arg(long, value_name = "FILE.toml")]
+    pub calibration: PathBuf,
+}
+
+/// Arguments of `wheel import`.
+#[derive(Args, Debug)]
+pub struct WheelImportArgs {
+    /// The file of CARLA's example.
+    #[arg(value_name = "wheel_config.ini")]
+    pub file: PathBuf,
+    /// The device that the file numbers axes and buttons of, such as /dev/input/event5 (default: a
+    /// G29, which need not be there).
+    #[arg(long, value_name = "PATH")]
+    pub device: Option<String>,
+    /// Where the calibration goes.
+    #[arg(long, value_name = "FILE.toml")]
+    pub calibration: PathBuf,
+}

@@ -1,0 +1,41 @@
+//! Arguments of what reads recordings and corner cases, one by one.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Arguments of `verify`.
+#[derive(Args, Debug)]
+pub struct VerifyArgs {
+    /// Recordings or cases.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Also go back this many ticks again and again and compare (rollback self-check).
+    #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(1..=600))]
+    pub rewind: Option<u16>,
+    /// Compare with this recording tick by tick, and name the field that differs first.
+    #[arg(long, value_name = "FILE")]
+    pub against: Option<PathBuf>,
+}
+
+/// Arguments of `inspect`.
+#[derive(Args, Debug)]
+pub struct InspectArgs {
+    /// Recordings or cases.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Tell which checkpoint drove blind drives.
+    #[arg(long)]
+    pub reveal: bool,
+}
+
+/// Arguments of `questionnaire`.
+#[derive(Args, Debug)]
+pub struct QuestionnaireArgs {
+    /// Recordings.
+    #[arg(required = true, value_name = "RECORDING")]
+    pub files: Vec<PathBuf>,
+    /// The drivers' answers.
+    #[arg(long, value_name = "FILE.toml")]
+    pub answers: PathBuf,
+}
