@@ -226,6 +226,12 @@ impl Log {
         self.first_tick() + self.inputs.len() as Tick
     }
 
+    /// Millimetres driven, as far as the file says.
+    pub fn odometer_mm(&self) -> u64 {
+        let last_mark = || self.marks.last().map_or(0, |mark| mark.odometer_mm);
+        self.summary.as_ref().map_or_else(last_mark, |summary| summary.odometer_mm)
+    }
+
     /// The input of a tick after the first.
     pub fn input(&self, tick: Tick) -> Option<&TickInput> {
         self.inputs.get(self.index(tick)?)

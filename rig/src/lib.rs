@@ -20,6 +20,7 @@ pub mod quiet;
 mod recorded_eye;
 pub mod session;
 pub mod simulate;
+pub mod statistics;
 pub mod stats;
 pub mod study;
 pub mod units;
@@ -37,6 +38,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Campaign(args) => commands::campaign::run(args, json),
         Command::Verify(args) => commands::verify::run(args, json),
         Command::Inspect(args) => commands::inspect::run(args, json),
+        Command::Statistics(args) => commands::statistics::run(args, json),
         Command::View(args) => view::run(args, json),
         Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Rerender(args) => lab::rerender::run(args, json),

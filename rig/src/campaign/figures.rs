@@ -1,11 +1,14 @@
 //! What a campaign came to, computed from its recordings alone.
 
+use std::collections::BTreeMap;
+
 use replay::Recording;
 use serde::Serialize;
 
 use super::Plan;
 use crate::commands::drive::RunFigures;
-use crate::stats;
+use crate::lab::redrive::Counterfactual;
+use crate::statistics::{Comparison, Ride, Statistics};
 
 /// A run in `campaign.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -16,9 +19,14 @@ pub struct RunLine {
     pub case: Option<String>,
     /// What the semantic driver looked at.
     pub checkpoint: String,
+    /// What would have happened without the intervention, if there was one.
+    pub without_intervention: Option<Counterfactual>,
     /// Everything else.
     #[serde(flatten)]
     pub figures: RunFigures,
+    /// How it counts.
+    #[serde(skip)]
+    pub ride: Option<Ride>,
 }
 
 impl RunLine {
@@ -29,41 +37,9 @@ impl RunLine {
             file: name(plan.recording_path(checkpoint, run)),
             case: has_case.then(|| name(plan.case_path(checkpoint, run))),
             checkpoint: checkpoint.to_owned(),
+            without_intervention: None,
             figures: RunFigures::of(recording),
-        }
-    }
-}
-
-/// Sums over runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Exposure {
-    /// Kilometres driven.
-    pub km: f64,
-    /// Simulated minutes.
-    pub minutes: f64,
-    /// Corner cases: interventions, and collisions that nobody prevented.
-    pub cases: u64,
-    /// Corner cases that true masks avoid.
-    pub perception_caused: u64,
-    /// Corner cases a kilometre.
-    pub cases_per_km: f64,
-    /// Exact 95 % interval of that rate; unfinished legs count as exposure.
-    pub cases_per_km_95: (f64, f64),
-}
-
-impl Exposure {
-    fn of<'a>(runs: impl Iterator<Item = &'a RunLine> + Clone) -> Self {
-        let km = runs.clone().map(|r| r.figures.km).sum::<f64>();
-        let cases = runs.clone().filter(|r| r.case.is_some()).count() as u64;
-        let (low, high) = stats::poisson_interval(cases);
-        let per_km = |n: f64| if km > 0.0 { n / km } else { 0.0 };
-        Self {
-            km,
-            minutes: runs.clone().map(|r| r.figures.minutes).sum(),
-            cases,
-            perception_caused: runs.filter(|r| r.figures.perception_caused == Some(true)).count() as u64,
-            cases_per_km: per_km(cases as f64),
-            cases_per_km_95: (per_km(low), per_km(high)),
+            ride: Ride::of(recording),
         }
     }
 }
@@ -73,11 +49,13 @@ impl Exposure {
 pub struct CheckpointFigures {
     /// Its name.
     pub checkpoint: String,
-    /// Sums over its runs.
+    /// Statistics of its runs.
     #[serde(flatten)]
-    pub exposure: Exposure,
-    /// Two-sided exact p-value against the first checkpoint: the rates are the same.
-    pub p_against_first: Option<f64>,
+    pub statistics: Statistics,
+    /// How many interventions were necessary, early, or needless.
+    pub interventions: BTreeMap<&'static str, u32>,
+    /// Against the first checkpoint; absent for the first itself.
+    pub against_first: Option<Comparison>,
 }
 
 /// The content of `campaign.json`.
@@ -85,9 +63,10 @@ pub struct CheckpointFigures {
 pub struct CampaignFigures {
     /// Seed of the campaign.
     pub seed: u64,
-    /// Sums over all runs.
-    #[serde(flatten)]
-    pub exposure: Exposure,
+    /// Kilometres of all runs.
+    pub km: f64,
+    /// Corner cases of all runs.
+    pub cases: u64,
     /// The figures of each checkpoint.
     pub checkpoints: Vec<CheckpointFigures>,
     /// The runs, in order.
@@ -96,15 +75,18 @@ pub struct CampaignFigures {
 
 /// The figures of a campaign's runs.
 pub fn figures(seed: u64, checkpoints: &[String], runs: Vec<RunLine>) -> CampaignFigures {
-    let of =
-        |name: &String| Exposure::of(runs.iter().filter(|r| r.checkpoint == *name).collect::<Vec<_>>().into_iter());
-    let first = checkpoints.first().map(of);
-    let each = checkpoints.iter().enumerate().map(|(i, name)| {
-        let exposure = of(name);
-        let reference = first.as_ref().filter(|_| i > 0);
-        let p_against_first =
-            reference.and_then(|first| stats::same_rate_p((first.cases, exposure.cases), (first.km, exposure.km)));
-        CheckpointFigures { checkpoint: name.clone(), exposure, p_against_first }
-    });
-    CampaignFigures { seed, exposure: Exposure::of(runs.iter()), checkpoints: each.collect(), runs }
+    let mut each: Vec<CheckpointFigures> = Vec::new();
+    for name in checkpoints {
+        let runs = || runs.iter().filter(|run| run.checkpoint == *name);
+        let rides: Vec<Ride> = runs().filter_map(|run| run.ride).collect();
+        let statistics = Statistics::of(&rides);
+        let mut interventions = BTreeMap::new();
+        for counterfactual in runs().filter_map(|run| run.without_intervention.as_ref()) {
+            *interventions.entry(counterfactual.verdict.name()).or_insert(0) += 1;
+        }
+        let against_first = each.first().map(|first| Comparison::of(&first.statistics, &statistics));
+        each.push(CheckpointFigures { checkpoint: name.clone(), statistics, interventions, against_first });
+    }
+    let (km, cases) = (each.iter().map(|c| c.statistics.km).sum(), each.iter().map(|c| c.statistics.cases).sum());
+    CampaignFigures { seed, km, cases, checkpoints: each, runs }
 }

@@ -81,6 +81,11 @@ impl Plan {
         self.out.join(format!("{checkpoint}-{run:04}.mcap"))
     }
 
+    /// File of what would have happened without a run's intervention.
+    pub fn counterfactual_path(&self, checkpoint: &str, run: u32) -> PathBuf {
+        self.out.join(format!("{checkpoint}-{run:04}.counterfactual.json"))
+    }
+
     /// File of a run's corner case.
     pub fn case_path(&self, checkpoint: &str, run: u32) -> PathBuf {
         self.out.join(format!("{checkpoint}-{run:04}.case.mcap"))

@@ -10,6 +10,7 @@ use render::{RenderOptions, Renderer};
 use replay::{Case, Recording};
 
 use super::{Plan, RunLine};
+use crate::lab::redrive::Counterfactual;
 use crate::output;
 use crate::progress::{self, Interrupt};
 use crate::simulate::{self, manifest};
@@ -60,6 +61,7 @@ pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> 
     for run in enough as u32..state.next {
         discard(&plan.recording_path(eye.name(), run))?;
         discard(&plan.case_path(eye.name(), run))?;
+        discard(&plan.counterfactual_path(eye.name(), run))?;
     }
     runs.truncate(enough);
     Ok(runs)
@@ -121,18 +123,48 @@ impl Board<'_> {
         let recording = Recording::open(&path)?;
         self.check(run, &path, &recording)?;
         let has_case = self.cut(run, &recording)?;
-        Ok(Some(RunLine::new(self.plan, self.eye.name(), run, &recording, has_case)))
+        let mut line = RunLine::new(self.plan, self.eye.name(), run, &recording, has_case);
+        line.without_intervention = self.counterfactual(run, &recording, renderers)?;
+        Ok(Some(line))
+    }
+
+    /// What would have happened without the intervention, if there was one; driven once.
+    fn counterfactual(
+        &self,
+        run: u32,
+        recording: &Recording,
+        renderers: &mut HashMap<usize, Renderer>,
+    ) -> anyhow::Result<Option<Counterfactual>> {
+        if recording.log().intervention.is_none() {
+            return Ok(None);
+        }
+        let path = self.plan.counterfactual_path(self.eye.name(), run);
+        if let Some(known) = Counterfactual::read(&path, recording)? {
+            return Ok(Some(known));
+        }
+        let vision = self.vision(run, renderers)?;
+        let network = &self.plan.maps[self.plan.map_index(run)].network;
+        let (found, vision) = Counterfactual::of(recording, network, vision)?;
+        renderers.insert(self.plan.map_index(run), vision.into_renderer());
+        found.write(&path)?;
+        Ok(Some(found))
+    }
+
+    /// The bot's eye on the map of a run.
+    fn vision(&self, run: u32, renderers: &mut HashMap<usize, Renderer>) -> anyhow::Result<Vision> {
+        let index = self.plan.map_index(run);
+        let renderer = match renderers.remove(&index) {
+            Some(renderer) => renderer,
+            None => Renderer::new(&self.plan.maps[index].network, &RenderOptions::default())?,
+        };
+        Ok(Vision::new(renderer, self.eye.clone()))
     }
 
     /// False when interrupted.
     fn drive(&self, run: u32, path: &Path, renderers: &mut HashMap<usize, Renderer>) -> anyhow::Result<bool> {
         let index = self.plan.map_index(run);
         let map = &self.plan.maps[index];
-        let renderer = match renderers.remove(&index) {
-            Some(renderer) => renderer,
-            None => Renderer::new(&map.network, &RenderOptions::default())?,
-        };
-        let vision = Vision::new(renderer, self.eye.clone());
+        let vision = self.vision(run, renderers)?;
         let scenario = self.plan.scenario_of(run);
         let keep_on = |_: &kernel::World| !self.interrupt.is_raised();
         let (bytes, vision) = simulate::drive(&scenario, map, vision, Vec::new(), keep_on)?;

@@ -21,7 +21,7 @@ pub use live::{
     DoctorArgs, DriveArgs, Screens, SizeArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs,
     WheelListArgs,
 };
-pub use recordings::{InspectArgs, QuestionnaireArgs, VerifyArgs};
+pub use recordings::{InspectArgs, QuestionnaireArgs, StatisticsArgs, VerifyArgs};
 
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
 ///
@@ -49,6 +49,8 @@ pub enum Command {
     Verify(VerifyArgs),
     /// Say what is in recordings or cases.
     Inspect(InspectArgs),
+    /// How often corner cases happened: kilometres, rates with intervals, ratios.
+    Statistics(StatisticsArgs),
     /// Look at a recording or case in a window, tick by tick.
     View(ViewArgs),
     /// Attach answers that were given after a drive.

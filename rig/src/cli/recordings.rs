@@ -39,3 +39,18 @@ pub struct QuestionnaireArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub answers: PathBuf,
 }
+
+/// Arguments of `statistics`.
+#[derive(Args, Debug)]
+pub struct StatisticsArgs {
+    /// Recordings, in the order in which they were driven, or folders of them. Corner cases in folders
+    /// and drives to get used to the rig do not count.
+    #[arg(required = true, value_name = "FILE|DIR")]
+    pub files: Vec<PathBuf>,
+    /// The checkpoint that rates are compared with (default: that of the first recording).
+    #[arg(long, value_name = "NAME")]
+    pub reference: Option<String>,
+    /// Tell the checkpoints of blind drives; without this they are all one.
+    #[arg(long)]
+    pub reveal: bool,
+}

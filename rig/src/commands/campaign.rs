@@ -11,6 +11,7 @@ use crate::exit::{Usage, Verdict};
 use crate::maps::{Map, read_scenario};
 use crate::output;
 use crate::progress::Interrupt;
+use crate::statistics::table;
 use crate::vision::Eye;
 
 /// Runs `aeye campaign`.
@@ -59,17 +60,12 @@ fn plan(args: &CampaignArgs) -> anyhow::Result<Plan> {
 }
 
 fn text(figures: &CampaignFigures) -> String {
-    let mut text = String::from("checkpoint         km      min  cases  by perception  cases/km [95 %]");
-    for each in &figures.checkpoints {
-        let e = &each.exposure;
-        let (low, high) = e.cases_per_km_95;
-        let p = each.p_against_first.map(|p| format!("  p = {p:.3}")).unwrap_or_default();
+    let columns = figures.checkpoints.iter().map(|c| (c.checkpoint.as_str(), &c.statistics, c.against_first.as_ref()));
+    let mut text = table(columns);
+    for each in figures.checkpoints.iter().filter(|each| !each.interventions.is_empty()) {
+        let verdicts: Vec<_> = each.interventions.iter().map(|(verdict, n)| format!("{n} {verdict}")).collect();
         // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "\n{:<12} {:>8.2} {:>8.1} {:>6} {:>14}  {:.3} [{low:.3}, {high:.3}]{p}",
-            each.checkpoint, e.km, e.minutes, e.cases, e.perception_caused, e.cases_per_km
-        );
+        let _ = write!(text, "\n{}: without the interventions: {}", each.checkpoint, verdicts.join(", "));
     }
     text
 }

@@ -52,13 +52,12 @@ impl RunFigures {
     /// Those of a recording.
     pub fn of(recording: &Recording) -> Self {
         let log = recording.log();
-        let odometer_mm = log.summary.as_ref().map(|s| s.odometer_mm).or(log.marks.last().map(|m| m.odometer_mm));
         let outcome = log.summary.as_ref().and_then(|s| s.outcome);
         let annotation = log.annotation.as_ref();
         Self {
             map: log.manifest.scenario.map.clone(),
             seed: log.manifest.scenario.seed,
-            km: odometer_mm.unwrap_or(0) as f64 / 1e6,
+            km: log.odometer_mm() as f64 / 1e6,
             minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
             outcome: outcome_name(outcome),
             familiarisation: study::is_familiarisation(&log.manifest.provenance),

@@ -5,5 +5,6 @@ pub mod doctor;
 pub mod drive;
 pub mod inspect;
 pub mod questionnaire;
+pub mod statistics;
 pub mod verify;
 pub mod wheel;

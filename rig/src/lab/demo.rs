@@ -59,7 +59,7 @@ pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
         report: path.display().to_string(),
         runs: figures.runs.len(),
         cases: files.cases.len(),
-        km: figures.exposure.km,
+        km: figures.km,
     };
     output::print(json, &summary, || summary.report.clone())?;
     Ok(Verdict::Ok)

@@ -4,9 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use kernel::Controls;
+use render::{RenderOptions, Renderer};
 use replay::{Case, Recording, verify};
 use rig::cli::{CheckpointChoice, RedriveArgs};
-use rig::lab::redrive;
+use rig::lab::redrive::{self, Counterfactual};
+use rig::vision::{Eye, Vision};
 use serde_json::Value;
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
@@ -102,4 +104,27 @@ fn what_cannot_be_driven_again_is_said_and_leaves_nothing() {
         assert!(said.starts_with(dir.path().to_str().unwrap()) && said.contains(words), "{said}");
         assert!(!out.exists());
     }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_counterfactual_is_kept_for_its_recording_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let case = Recording::open(&case(dir.path())).unwrap();
+    let network = case.network().unwrap();
+    let vision = Vision::new(Renderer::new(&network, &RenderOptions::default()).unwrap(), Eye::Truth);
+    let (found, vision) = Counterfactual::of(&case, &network, vision).unwrap();
+    assert_eq!(found.harm.is_some(), found.harm_after_s.is_some());
+    assert_eq!(Counterfactual::of(&case, &network, vision).unwrap().0, found);
+
+    let path = dir.path().join("a.counterfactual.json");
+    assert_eq!(Counterfactual::read(&path, &case).unwrap(), None);
+    found.write(&path).unwrap();
+    assert_eq!(Counterfactual::read(&path, &case).unwrap(), Some(found));
+    let mut log = case.log().clone();
+    log.manifest.provenance.insert("remark".into(), "another".into());
+    let another = Recording::from_bytes(&log.encode().unwrap()).unwrap();
+    assert_eq!(Counterfactual::read(&path, &another).unwrap(), None);
+    fs::write(&path, "{").unwrap();
+    assert_eq!(Counterfactual::read(&path, &case).unwrap(), None);
 }

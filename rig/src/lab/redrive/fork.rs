@@ -9,7 +9,7 @@ use kernel::scene::{ActorKind, Weather};
 use kernel::time::{CLIP_TICKS, TICK_HZ, Tick};
 use kernel::{Controls, Keyframe, RoadNetwork, TickInput, World};
 use replay::{Log, Recorder, Replayer};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::crew::Crew;
 use crate::vision::Vision;
@@ -51,13 +51,42 @@ pub struct Course {
     pub intervention: Option<Tick>,
 }
 
+/// What went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HarmKind {
+    /// Anything was hit.
+    Collision,
+    /// A red light was run.
+    #[serde(rename = "red light")]
+    RedLight,
+    /// The car drove against the traffic.
+    #[serde(rename = "wrong way")]
+    WrongWay,
+    /// The car left the road.
+    #[serde(rename = "off road")]
+    OffRoad,
+}
+
+impl HarmKind {
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Collision => "collision",
+            Self::RedLight => "red light",
+            Self::WrongWay => "wrong way",
+            Self::OffRoad => "off road",
+        }
+    }
+}
+
 /// Something that went wrong.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Harm {
     /// When.
     pub tick: Tick,
-    /// `collision`, `red light`, `wrong way` or `off road`.
-    pub what: &'static str,
+    /// What.
+    pub what: HarmKind,
     /// With what kind of road user a collision was; `scenery` stands for everything else.
     pub with: Option<String>,
     /// Speed of the ego car, km/h.
@@ -149,8 +178,8 @@ impl Harm {
     fn already(world: &World) -> Option<Self> {
         let watch = world.watch_state();
         let what = match (watch.wrong_way, watch.off_road) {
-            (true, _) => "wrong way",
-            (false, true) => "off road",
+            (true, _) => HarmKind::WrongWay,
+            (false, true) => HarmKind::OffRoad,
             (false, false) => return None,
         };
         Some(Self { tick: world.tick() + 1, what, with: None, speed_kmh: 3.6 * f64::from(world.hud().speed_mps) })
@@ -158,10 +187,10 @@ impl Harm {
 
     fn of(tick: Tick, event: &Event, world: &World) -> Option<Self> {
         let what = match event.kind {
-            EventKind::CollisionActor | EventKind::CollisionScenery => "collision",
-            EventKind::RedLight => "red light",
-            EventKind::WrongWay => "wrong way",
-            EventKind::OffRoad => "off road",
+            EventKind::CollisionActor | EventKind::CollisionScenery => HarmKind::Collision,
+            EventKind::RedLight => HarmKind::RedLight,
+            EventKind::WrongWay => HarmKind::WrongWay,
+            EventKind::OffRoad => HarmKind::OffRoad,
             _ => return None,
         };
         let with = match event.kind {

@@ -3,6 +3,7 @@
 //! `OUT/NAME.mcap` for each file (`NAME.1.mcap` and so on for variations), recordings that verify as
 //! any other, and `OUT/redrive.jsonl`, a line for each.
 
+mod counterfactual;
 mod fork;
 mod verdict;
 
@@ -18,6 +19,7 @@ use render::{RenderOptions, Renderer};
 use replay::{Log, Recording};
 use serde::Serialize;
 
+pub use self::counterfactual::Counterfactual;
 use self::fork::{Fork, Harm, Otherwise};
 use self::verdict::Verdict;
 use crate::cli::RedriveArgs;
@@ -152,7 +154,7 @@ impl Line {
         let variation = if self.variation == 0 { String::new() } else { format!(" (variation {})", self.variation) };
         let harm = self.harm.as_ref().zip(self.harm_after_s).map(|(harm, after_s)| {
             let with = harm.with.as_ref().map(|with| format!(" with {with}")).unwrap_or_default();
-            format!(": {}{with} at {:.0} km/h, {after_s:.1} s after the takeover", harm.what, harm.speed_kmh)
+            format!(": {}{with} at {:.0} km/h, {after_s:.1} s after the takeover", harm.what.name(), harm.speed_kmh)
         });
         format!("{}{variation}: {}{}", self.file, self.verdict.name(), harm.unwrap_or_default())
     }

@@ -1,15 +1,15 @@
 //! What a fork says about the intervention.
 
 use kernel::time::{Tick, seconds};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::fork::{Course, Otherwise};
+use super::fork::{Course, HarmKind, Otherwise};
 
 /// An intervention is early when harm would have come later than this after it.
 const EARLY_TICKS: Tick = seconds(3);
 
 /// Verdict on an intervention.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Without it, harm comes within 3 s: a collision, a red light, the wrong way, or off the road.
@@ -34,7 +34,7 @@ impl Verdict {
                 None => Self::Needless,
             },
             Otherwise::OtherEye => {
-                let collides = course.harm.as_ref().is_some_and(|harm| harm.what == "collision");
+                let collides = course.harm.as_ref().is_some_and(|harm| harm.what == HarmKind::Collision);
                 if collides || course.intervention.is_some() { Self::Again } else { Self::Avoided }
             }
         }
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
     use crate::lab::redrive::fork::Harm;
 
-    fn course(harm: Option<(Tick, &'static str)>, intervention: Option<Tick>) -> Course {
+    fn course(harm: Option<(Tick, HarmKind)>, intervention: Option<Tick>) -> Course {
         let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
         Course { recording: Vec::new(), fork_tick: 1, harm, intervention }
     }
@@ -66,9 +66,9 @@ mod tests {
     fn harm_soon_after_makes_an_intervention_necessary() {
         let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
         let verdict = |harm| Verdict::of(&course(harm, None), otherwise, 1000);
-        assert_eq!(verdict(Some((1000, "collision"))), Verdict::Necessary);
-        assert_eq!(verdict(Some((1180, "red light"))), Verdict::Necessary);
-        assert_eq!(verdict(Some((1181, "collision"))), Verdict::Early);
+        assert_eq!(verdict(Some((1000, HarmKind::Collision))), Verdict::Necessary);
+        assert_eq!(verdict(Some((1180, HarmKind::RedLight))), Verdict::Necessary);
+        assert_eq!(verdict(Some((1181, HarmKind::Collision))), Verdict::Early);
         assert_eq!(verdict(None), Verdict::Needless);
     }
 
@@ -76,8 +76,8 @@ mod tests {
     fn another_eye_avoids_it_only_without_takeover_and_collision() {
         let verdict = |harm, taken_over| Verdict::of(&course(harm, taken_over), Otherwise::OtherEye, 1000);
         assert_eq!(verdict(None, None), Verdict::Avoided);
-        assert_eq!(verdict(Some((900, "off road")), None), Verdict::Avoided);
-        assert_eq!(verdict(Some((900, "collision")), None), Verdict::Again);
+        assert_eq!(verdict(Some((900, HarmKind::OffRoad)), None), Verdict::Avoided);
+        assert_eq!(verdict(Some((900, HarmKind::Collision)), None), Verdict::Again);
         assert_eq!(verdict(None, Some(990)), Verdict::Again);
     }
 }

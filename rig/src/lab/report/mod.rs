@@ -108,7 +108,7 @@ fn exposure(cases: &[PathBuf]) -> anyhow::Result<Exposure> {
                 continue;
             }
             sum.recordings += 1;
-            sum.km += log.marks.last().map_or(0.0, |mark| mark.odometer_mm as f64 / 1e6);
+            sum.km += log.odometer_mm() as f64 / 1e6;
             sum.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
         }
     }

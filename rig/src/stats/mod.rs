@@ -1,7 +1,13 @@
 //! Rates by exposure, with exact intervals: corner cases are rare.
 
+mod bootstrap;
+mod power;
+
 use serde::Serialize;
-use statrs::distribution::{Binomial, ContinuousCDF, Discrete, Gamma};
+use statrs::distribution::{Beta, Binomial, ContinuousCDF, Discrete, Gamma};
+
+pub use bootstrap::rate_interval;
+pub use power::{exposure_factor_for, power};
 
 /// Exact 95 % interval of a Poisson mean after `events` (Garwood 1936).
 pub fn poisson_interval(events: u64) -> (f64, f64) {
@@ -22,6 +28,17 @@ pub fn same_rate_p(events: (u64, u64), exposure: (f64, f64)) -> Option<f64> {
     let observed = binomial.pmf(events.0);
     let as_unlikely = (0..=total).map(|k| binomial.pmf(k)).filter(|p| *p <= observed * (1.0 + 1e-7));
     Some(as_unlikely.sum::<f64>().min(1.0))
+}
+
+/// Exact 95 % interval of the second rate over the first: given the sum, the second count is binomial
+/// (Clopper and Pearson 1934). The limits are 0 and infinity where a count is 0.
+pub fn rate_ratio_interval(events: (u64, u64), exposure: (f64, f64)) -> (f64, f64) {
+    let share = |a: u64, b: u64, p: f64| Beta::new(a as f64, b as f64).map_or(f64::NAN, |beta| beta.inverse_cdf(p));
+    let ratio = |share: f64| share / (1.0 - share) * exposure.0 / exposure.1;
+    let (first, second) = events;
+    let low = if second == 0 { 0.0 } else { ratio(share(second, first + 1, 0.025)) };
+    let high = if first == 0 { f64::INFINITY } else { ratio(share(second + 1, first, 0.975)) };
+    (low, high)
 }
 
 /// How values spread.
@@ -84,5 +101,16 @@ mod tests {
         assert!((p - 0.41).abs() < 0.02, "{p}");
         assert_eq!(poisson_interval(0).0, 0.0);
         assert_eq!(same_rate_p((0, 0), (1.0, 1.0)), None);
+    }
+
+    #[test]
+    fn a_ratio_lies_within_its_interval_and_leaves_one_out_when_the_rates_differ() {
+        // By SciPy's beta.ppf.
+        let (low, high) = rate_ratio_interval((13, 11), (121.32, 153.38));
+        assert!((low - 0.271_493_1).abs() < 1e-6 && (high - 1.619_008_7).abs() < 1e-6, "{low} {high}");
+        let (low, high) = rate_ratio_interval((5, 40), (10.0, 10.0));
+        assert!(1.0 < low && low < 8.0 && 8.0 < high);
+        assert_eq!(rate_ratio_interval((3, 0), (1.0, 1.0)).0, 0.0);
+        assert_eq!(rate_ratio_interval((0, 3), (1.0, 1.0)).1, f64::INFINITY);
     }
 }

@@ -1,0 +1,81 @@
+//! The verdict on an intervention, kept beside its recording.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::Context;
+use kernel::RoadNetwork;
+use kernel::time::{Tick, seconds};
+use replay::{KERNEL_VERSION, Recording};
+use serde::{Deserialize, Serialize};
+
+use super::fork::{Fork, Harm, Otherwise};
+use super::verdict::Verdict;
+use crate::output;
+use crate::vision::Vision;
+
+/// How long after the intervention a fork goes on.
+const AFTER_TICKS: Tick = seconds(10);
+
+/// What would have happened without an intervention.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Counterfactual {
+    /// Whether the intervention was necessary, early, or needless.
+    pub verdict: Verdict,
+    /// The first thing that goes wrong without it.
+    pub harm: Option<Harm>,
+    /// From the intervention to the harm, seconds.
+    pub harm_after_s: Option<f64>,
+    /// What it follows from.
+    key: Key,
+}
+
+/// Everything that decides a counterfactual.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Key {
+    /// Digest of the recording, which names the checkpoint.
+    recording: String,
+    kernel: String,
+    after_ticks: Tick,
+}
+
+impl Key {
+    fn of(recording: &Recording) -> Self {
+        let digest = blake3::Hash::from_bytes(recording.digest()).to_hex();
+        Self { recording: digest.to_string(), kernel: KERNEL_VERSION.to_owned(), after_ticks: AFTER_TICKS }
+    }
+}
+
+impl Counterfactual {
+    /// Drives a recording's fork without the intervention. Vision is that of the recorded run.
+    pub fn of(recording: &Recording, network: &Arc<RoadNetwork>, vision: Vision) -> anyhow::Result<(Self, Vision)> {
+        let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
+        let at = recording.log().intervention.context("holds no intervention")?.tick;
+        let fork = Fork { otherwise, weather: None, after_ticks: AFTER_TICKS };
+        let (course, vision) = fork.drive(recording.log(), network, vision)?;
+        let found = Self {
+            verdict: Verdict::of(&course, otherwise, at),
+            harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
+            harm: course.harm,
+            key: Key::of(recording),
+        };
+        Ok((found, vision))
+    }
+
+    /// What was found before; `None` if nothing was, or of another recording.
+    pub fn read(path: &Path, recording: &Recording) -> anyhow::Result<Option<Self>> {
+        let bytes = match fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(e) => return Err(e).with_context(|| path.display().to_string()),
+        };
+        let known = serde_json::from_slice::<Self>(&bytes).ok();
+        Ok(known.filter(|known| known.key == Key::of(recording)))
+    }
+
+    /// Keeps it.
+    pub fn write(&self, path: &Path) -> anyhow::Result<()> {
+        output::write_file(path, output::json_file(self)?.as_bytes())
+    }
+}
