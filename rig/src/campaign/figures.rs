@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use replay::Recording;
+use replay::{Label, Recording};
 use serde::Serialize;
 
 use super::Plan;
@@ -41,6 +41,11 @@ impl RunLine {
             figures: RunFigures::of(recording),
             ride: Ride::of(recording),
         }
+    }
+
+    /// Whether it holds a corner case in which a walker was overlooked.
+    pub fn is_pedestrian_case(&self) -> bool {
+        self.case.is_some() && self.figures.label == Some(Label::Walker.name())
     }
 }
 

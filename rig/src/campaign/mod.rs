@@ -23,6 +23,8 @@ pub enum Until {
     Km(f64),
     /// So many corner cases.
     Cases(u32),
+    /// So many corner cases in which a walker was overlooked.
+    PedestrianCases(u32),
 }
 
 impl Until {
@@ -38,6 +40,7 @@ impl Until {
             Self::Runs(n) => (runs.len() as u64, n.into()),
             Self::Km(km) => ((1000.0 * runs.iter().map(|r| r.figures.km).sum::<f64>()) as u64, (1000.0 * km) as u64),
             Self::Cases(n) => (runs.iter().filter(|r| r.case.is_some()).count() as u64, n.into()),
+            Self::PedestrianCases(n) => (runs.iter().filter(|r| r.is_pedestrian_case()).count() as u64, n.into()),
         }
     }
 }
@@ -49,6 +52,8 @@ pub struct Plan {
     pub maps: Vec<Map>,
     /// What every run has in common, if not the default of its map and seed.
     pub scenario: Option<Scenario>,
+    /// People on foot, if not as many as the scenario says.
+    pub pedestrians: Option<u16>,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign.
@@ -73,6 +78,7 @@ impl Plan {
         scenario.map = map.network.name.clone();
         scenario.seed = seed;
         scenario.rules.max_seconds = self.run_seconds;
+        scenario.traffic.pedestrians = self.pedestrians.unwrap_or(scenario.traffic.pedestrians);
         scenario
     }
 

@@ -8,7 +8,7 @@ use super::CheckpointChoice;
 
 /// Arguments of `campaign`.
 #[derive(Args, Debug)]
-#[command(group = clap::ArgGroup::new("until").required(true).args(["runs", "km", "cases"]))]
+#[command(group = clap::ArgGroup::new("until").required(true).args(["runs", "km", "cases", "pedestrian_cases"]))]
 pub struct CampaignArgs {
     /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
     /// the same runs.
@@ -30,6 +30,12 @@ pub struct CampaignArgs {
     /// Corner cases of each checkpoint.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub cases: Option<u32>,
+    /// Corner cases of each checkpoint in which a walker was overlooked.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub pedestrian_cases: Option<u32>,
+    /// People on foot, instead of as many as the scenario or the map's default has.
+    #[arg(long, value_name = "N")]
+    pub pedestrians: Option<u16>,
     /// Longest simulated time of a run, seconds.
     #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(10..=86_400))]
     pub run_seconds: u32,

@@ -49,14 +49,20 @@ fn plan(args: &CampaignArgs) -> anyhow::Result<Plan> {
         _ if args.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
         _ => Map::find_all(&args.maps)?,
     };
-    let until = match (args.runs, args.km, args.cases) {
-        (Some(runs), None, None) => Until::Runs(runs),
-        (None, Some(km), None) if km > 0.0 && km.is_finite() => Until::Km(km),
-        (None, None, Some(cases)) => Until::Cases(cases),
-        _ => return Err(Usage("expected one of --runs, --km (more than 0) and --cases".into()).into()),
+    let until = match (args.runs, args.km, args.cases, args.pedestrian_cases) {
+        (Some(runs), None, None, None) => Until::Runs(runs),
+        (None, Some(km), None, None) if km > 0.0 && km.is_finite() => Until::Km(km),
+        (None, None, Some(cases), None) => Until::Cases(cases),
+        (None, None, None, Some(cases)) => Until::PedestrianCases(cases),
+        _ => {
+            return Err(
+                Usage("expected one of --runs, --km (more than 0), --cases and --pedestrian-cases".into()).into()
+            );
+        }
     };
     let scenario = scenario.map(|(scenario, _)| scenario);
-    Ok(Plan { maps, scenario, run_seconds: args.run_seconds, seed: args.seed, until, out: args.out.clone() })
+    let (pedestrians, run_seconds, seed, out) = (args.pedestrians, args.run_seconds, args.seed, args.out.clone());
+    Ok(Plan { maps, scenario, pedestrians, run_seconds, seed, until, out })
 }
 
 fn text(figures: &CampaignFigures) -> String {

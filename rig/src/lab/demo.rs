@@ -73,6 +73,8 @@ fn campaign_args(args: &DemoArgs, checkpoint: CheckpointChoice, out: &Path) -> C
         runs: None,
         km: None,
         cases: Some(CASES),
+        pedestrian_cases: None,
+        pedestrians: None,
         run_seconds: RUN_SECONDS,
         seed: args.seed,
         jobs: None,

@@ -15,7 +15,15 @@ use rig::vision::{Eye, Vision};
 
 fn plan(out: &Path) -> Plan {
     let maps = Map::find_all(&["all".to_owned()]).expect("bundled maps");
-    Plan { maps, scenario: None, run_seconds: 10, seed: 5, until: Until::Runs(2), out: out.to_owned() }
+    Plan {
+        maps,
+        scenario: None,
+        pedestrians: None,
+        run_seconds: 10,
+        seed: 5,
+        until: Until::Runs(2),
+        out: out.to_owned(),
+    }
 }
 
 fn drive(out: &Path, jobs: usize) -> Vec<RunLine> {
