@@ -27,8 +27,10 @@ use crate::study;
 
 use drive::Drive;
 use page::{CasePart, Page};
+pub use page::{Class, STYLE, legend};
 use story::Story;
-use strip::{Seen, Strip};
+pub use strip::Seen;
+use strip::Strip;
 
 /// What the command prints.
 #[derive(Serialize)]

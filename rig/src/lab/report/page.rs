@@ -14,6 +14,8 @@ use crate::measures::{Spread, Tally};
 use crate::vision::Eye;
 
 const TEMPLATE: &str = include_str!("template.html");
+/// How all pages look.
+pub const STYLE: &str = include_str!("style.css");
 
 #[derive(Serialize)]
 struct Tile {
@@ -37,11 +39,22 @@ struct Row {
     cells: Vec<String>,
 }
 
+/// A class in the legend.
 #[derive(Serialize)]
-struct Class {
+pub struct Class {
     name: &'static str,
     rgb: String,
     scored: bool,
+}
+
+/// The classes that appear in pictures, in their colours.
+pub fn legend(seen: &Seen) -> Vec<Class> {
+    let class = |tag: &render::SemanticTag| {
+        let [r, g, b] = tag.colour();
+        let scored = train_id(*tag as u8).is_some();
+        seen.has(*tag as u8).then(|| Class { name: tag.name(), rgb: format!("{r}, {g}, {b}"), scored })
+    };
+    render::tags::TAGS.iter().filter_map(class).collect()
 }
 
 /// A case on the page.
@@ -100,6 +113,7 @@ fn score_rows(matrices: &[ConfusionMatrix], every_class: bool) -> Vec<Row> {
 /// The whole page.
 #[derive(Serialize)]
 pub struct Page {
+    style: &'static str,
     version: &'static str,
     fps: u32,
     checkpoints: Vec<Checkpoint>,
@@ -132,19 +146,15 @@ impl Page {
         if let Some(Spread { median, n, .. }) = tally.intervention_ms {
             tiles.push(tile("median from hazard to takeover", format!("{median:.0} ms (n = {n})")));
         }
-        let class = |tag: &render::SemanticTag| {
-            let [r, g, b] = tag.colour();
-            let scored = train_id(*tag as u8).is_some();
-            seen.has(*tag as u8).then(|| Class { name: tag.name(), rgb: format!("{r}, {g}, {b}"), scored })
-        };
         let checkpoint = |eye: &Eye| Checkpoint { name: eye.name().to_owned(), digest: eye.digest() };
         Self {
+            style: STYLE,
             version: env!("CARGO_PKG_VERSION"),
             fps: CLIP_FPS,
             checkpoints: eyes.iter().map(checkpoint).collect(),
             tiles,
             overall: score_rows(overall, true),
-            legend: render::tags::TAGS.iter().filter_map(class).collect(),
+            legend: legend(seen),
             cases,
         }
     }

@@ -56,7 +56,8 @@ impl Seen {
         self.0[usize::from(tag)]
     }
 
-    fn add(&mut self, ids: &[u8]) {
+    /// Adds what a picture shows.
+    pub fn add(&mut self, ids: &[u8]) {
         ids.iter().for_each(|id| self.0[usize::from(*id)] = true);
     }
 }
