@@ -4,14 +4,17 @@
 //! with an ignored ground truth count nowhere, and a class that neither appears nor is predicted
 //! is NaN and left out of the mean.
 
+use serde::{Deserialize, Serialize};
+
 use crate::classes::{IGNORE, TRAIN_CLASSES, TRAIN_ID_OF_TAG};
 
 const CLASSES: usize = TRAIN_CLASSES.len();
 /// Predictions of a class that is not trained: wrong for the true class, nobody's false positive.
 const ELSEWHERE: usize = CLASSES;
 
-/// Pixels by true and predicted class.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Pixels by true and predicted class; serialised as its rows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct ConfusionMatrix {
     counts: [[u64; CLASSES + 1]; CLASSES],
 }

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar on stderr; invisible where stderr is no terminal.
 pub fn bar(what: &str, steps: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{prefix:>12} [{bar:32}] {pos}/{len} {msg} ({eta})");
+    let style = ProgressStyle::with_template("{prefix:>12} [{bar:32}] {pos}/{len} {msg} ({per_sec}, {eta} left)");
     let bar = ProgressBar::new(steps).with_prefix(what.to_owned());
     match style {
         Ok(style) => bar.with_style(style.progress_chars("=> ")),

@@ -11,7 +11,7 @@ use super::values::{duration, frame_rate, size};
 /// Arguments of `rerender`.
 #[derive(Args, Debug)]
 pub struct RerenderArgs {
-    /// Recordings or cases.
+    /// Recordings or cases, or folders with cases anywhere below.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
@@ -26,7 +26,11 @@ pub struct RerenderArgs {
     /// Size of the pictures.
     #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
-    /// Folder of the results; must not exist or be empty.
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Folder of the results. One that this command began is completed: what is whole and follows from
+    /// the same files, checkpoints and options is kept.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

@@ -89,7 +89,7 @@ fn rerender_args(args: &DemoArgs, cases: &[PathBuf], checkpoint: &[CheckpointCho
         fs::remove_dir_all(&out).with_context(|| out.display().to_string())?;
     }
     let (last, fps) = (CLIP_TICKS, CLIP_FPS);
-    Ok(RerenderArgs { files: cases.to_vec(), checkpoint: checkpoint.to_vec(), last, fps, size: SIZE, out })
+    Ok(RerenderArgs { files: cases.to_vec(), checkpoint: checkpoint.to_vec(), last, fps, size: SIZE, jobs: None, out })
 }
 
 /// The files of a campaign.

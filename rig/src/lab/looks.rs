@@ -1,8 +1,8 @@
 //! Scenes drawn and looked at through several checkpoints.
 
-use std::collections::BTreeSet;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 
-use anyhow::Context;
 use kernel::{RoadNetwork, SceneSnapshot};
 use perception::Mask;
 use render::{Camera, Frame, RenderOptions, Renderer};
@@ -21,27 +21,27 @@ pub fn open_eyes(choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Resu
     Ok(eyes)
 }
 
-/// A renderer for the driver's camera, made anew when the map changes.
+/// A renderer for each map, all with the driver's camera.
 pub struct Studio {
     camera: Camera,
     options: RenderOptions,
-    current: Option<(u128, Renderer)>,
+    /// By digest of the map.
+    renderers: BTreeMap<u128, Renderer>,
 }
 
 impl Studio {
-    /// For pictures of one size; fails where nothing can draw.
-    pub fn new((width, height): (u32, u32)) -> anyhow::Result<Self> {
+    /// For pictures of one size.
+    pub fn new((width, height): (u32, u32)) -> Self {
         let options = RenderOptions::default();
-        options.adapter.find()?;
-        Ok(Self { camera: Camera::driver(width, height), options, current: None })
+        Self { camera: Camera::driver(width, height), options, renderers: BTreeMap::new() }
     }
 
-    /// The driver's view of a scene.
+    /// The driver's view of a scene; fails where nothing can draw.
     pub fn draw(&mut self, network: &RoadNetwork, scene: &SceneSnapshot) -> anyhow::Result<Frame> {
-        if self.current.as_ref().is_none_or(|(digest, _)| *digest != network.digest) {
-            self.current = Some((network.digest, Renderer::new(network, &self.options)?));
-        }
-        let (_, renderer) = self.current.as_mut().context("a renderer")?;
+        let renderer = match self.renderers.entry(network.digest) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => entry.insert(Renderer::new(network, &self.options)?),
+        };
         Ok(renderer.draw(scene, &self.camera)?)
     }
 }

@@ -10,15 +10,19 @@ use rig::exit::Verdict;
 use rig::lab::{cases, eval, natural, report, rerender};
 use rig::progress::Interrupt;
 use tests::recordings::{TAKEOVER, WITH_TAKEOVER, record};
-use tests::scenes::busy_city;
+use tests::scenes::{Scene, busy_city};
 
 /// A recording of the city whose safety driver brakes, and the case cut from it.
 fn recorded(folder: &Path) -> (PathBuf, PathBuf) {
-    let scene = busy_city();
-    let mut log = Recording::from_bytes(&record(&scene, TAKEOVER + 60, WITH_TAKEOVER)).unwrap().into_log();
+    recorded_in(&busy_city(), folder, "a")
+}
+
+/// The same in any scene, as `NAME.mcap` and `NAME.case.mcap`.
+pub fn recorded_in(scene: &Scene, folder: &Path, name: &str) -> (PathBuf, PathBuf) {
+    let mut log = Recording::from_bytes(&record(scene, TAKEOVER + 60, WITH_TAKEOVER)).unwrap().into_log();
     let comment = "a <test>".into();
     log.annotation = Some(Annotation { label: Label::Rules, comment, perception_caused: None });
-    let (path, case_path) = (folder.join("a.mcap"), folder.join("a.case.mcap"));
+    let (path, case_path) = (folder.join(format!("{name}.mcap")), folder.join(format!("{name}.case.mcap")));
     fs::write(&path, log.encode().unwrap()).unwrap();
     let recording = Recording::open(&path).unwrap();
     let window = Case::window(recording.log()).expect("an intervention");
@@ -27,7 +31,7 @@ fn recorded(folder: &Path) -> (PathBuf, PathBuf) {
 }
 
 /// Every file below a folder with its bytes.
-fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+pub fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(next) = folders.pop() {
@@ -45,7 +49,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn rerender_args(file: &Path, out: PathBuf) -> RerenderArgs {
     let checkpoint = vec![CheckpointChoice::Truth];
-    RerenderArgs { files: vec![file.to_owned()], checkpoint, last: 180, fps: 10, size: (128, 64), out }
+    RerenderArgs { files: vec![file.to_owned()], checkpoint, last: 180, fps: 10, size: (128, 64), jobs: None, out }
 }
 
 #[test]

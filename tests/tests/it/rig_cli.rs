@@ -130,7 +130,7 @@ fn places_that_cannot_hold_results_are_refused_before_the_work() {
         }
     }
     let sentence = sentence_of(&["rerender", "run.mcap", "--checkpoint", "truth", "--out", &file]);
-    assert_eq!(sentence, format!("{file}: exists already; expected a new or an empty folder"));
+    assert_eq!(sentence, format!("{file}: is a file; expected a folder"));
     for command in [&["report", "case.mcap", "--checkpoint", "truth"][..], &["train", "--dataset", "none"]] {
         let sentence = sentence_of(&[command, &["--out", &folder]].concat());
         assert_eq!(sentence, format!("{folder}: is a folder; expected a file"));

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use perception::ConfusionMatrix;
+use render::AdapterChoice;
 use replay::Recording;
 use serde::Serialize;
 
@@ -55,7 +56,8 @@ pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
 /// to the rig do not count.
 pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<String> {
     let mut eyes = open_eyes(choices, size)?;
-    let mut studio = Studio::new(size)?;
+    AdapterChoice::default().find()?;
+    let mut studio = Studio::new(size);
     let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
     let (mut cases, mut drives, mut seen) = (Vec::new(), Vec::new(), Seen::nothing());
     let bar = progress::bar("report", files.len() as u64);

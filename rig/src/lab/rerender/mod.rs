@@ -1,0 +1,148 @@
+//! Renders the window of recordings or cases through checkpoints.
+//!
+//! `OUT/NAME/rgb/TICK.png`, `OUT/NAME/labels/TICK.png`, `OUT/NAME/predictions/CHECKPOINT/TICK.png`
+//! (ids are tags of CARLA 0.9.10), and `OUT/metrics.jsonl`: a line for each frame and checkpoint, for
+//! each file and checkpoint, and for each checkpoint over all. What is whole is found again through
+//! `OUT/.rerender`.
+
+mod pictures;
+
+use std::fs;
+
+use anyhow::{Context, bail};
+use kernel::time::Tick;
+use perception::ConfusionMatrix;
+use render::AdapterChoice;
+use serde::Serialize;
+
+use self::pictures::Pictures;
+use super::figures::{Figures, table};
+use super::footage::is_divergence;
+use super::library;
+use super::looks::open_eyes;
+use super::pipeline::Crew;
+use super::spread::jobs;
+use super::store::Store;
+use crate::cli::RerenderArgs;
+use crate::exit::{Verdict, sentence};
+use crate::output::{self, json_line};
+use crate::progress::{self, Interrupt};
+use crate::vision::Eye;
+
+/// A line of `metrics.jsonl`.
+#[derive(Serialize)]
+struct Line<'a> {
+    /// What it sums over: `frame`, `file` or `overall`.
+    over: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tick: Option<Tick>,
+    checkpoint: &'a str,
+    #[serde(flatten)]
+    figures: Figures,
+}
+
+/// What the command prints.
+#[derive(Serialize)]
+struct Summary {
+    out: String,
+    files: usize,
+    frames: usize,
+    checkpoints: Vec<Seen>,
+}
+
+#[derive(Serialize)]
+struct Seen {
+    name: String,
+    digest: String,
+    #[serde(flatten)]
+    figures: Figures,
+}
+
+/// Runs `aeye rerender`.
+pub fn run(args: &RerenderArgs, json: bool) -> anyhow::Result<Verdict> {
+    match rerender(args, &Interrupt::listen()?) {
+        Ok(summary) => {
+            output::print(json, &summary, || text(&summary))?;
+            Ok(Verdict::Ok)
+        }
+        Err(error) if is_divergence(&error) => {
+            eprintln!("error: {}", sentence(&error));
+            Ok(Verdict::CheckFailed)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn text(summary: &Summary) -> String {
+    let columns: Vec<_> = summary.checkpoints.iter().map(|c| (c.name.clone(), c.figures.clone())).collect();
+    let Summary { out, files, frames, .. } = summary;
+    format!("{}\n{frames} frames of {files} files in {out}", table(&columns))
+}
+
+fn rerender(args: &RerenderArgs, interrupt: &Interrupt) -> anyhow::Result<Summary> {
+    AdapterChoice::default().find()?;
+    let store = Store::open(&args.out, "rerender")?;
+    let files = library::find(&args.files)?;
+    let eyes = open_eyes(&args.checkpoint, args.size)?;
+    let metrics = args.out.join("metrics.jsonl");
+    // That of an earlier call would not be about these files.
+    if metrics.exists() {
+        fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;
+    }
+    let count = args.last.div_ceil(Tick::from(kernel::time::TICK_HZ / args.fps));
+    let bar = progress::bar("frames", count * files.len() as u64);
+    let work =
+        Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, adapter: crate::vision::adapter() };
+    let jobs = jobs(args.jobs);
+    Crew { work: &work, files: files.len(), size: args.size, eyes: &eyes, jobs, interrupt }.run()?;
+    bar.finish_and_clear();
+    let Some(found) = work.found() else {
+        bail!("{}: interrupted; the same command goes on from there", args.out.display());
+    };
+    let (lines, overall) = lines(&work, &found)?;
+    output::write_file(&metrics, lines.as_bytes())?;
+    let frames = found.iter().filter_map(|file| file.first()).map(Vec::len).sum();
+    let seen = |(eye, matrix): (&Eye, &ConfusionMatrix)| Seen {
+        name: eye.name().to_owned(),
+        digest: eye.digest(),
+        figures: matrix.into(),
+    };
+    let checkpoints = eyes.iter().zip(&overall).map(seen).collect();
+    Ok(Summary { out: args.out.display().to_string(), files: files.len(), frames, checkpoints })
+}
+
+/// A checkpoint's matrix of each frame.
+type Matrices = Vec<(Tick, ConfusionMatrix)>;
+
+/// The text of `metrics.jsonl`, and each checkpoint's matrix over all; `found` is by file and checkpoint.
+fn lines(work: &Pictures<'_>, found: &[Vec<Matrices>]) -> anyhow::Result<(String, Vec<ConfusionMatrix>)> {
+    let mut text = String::new();
+    let mut line = |over, file, tick, eye: &Eye, matrix: &ConfusionMatrix| -> anyhow::Result<()> {
+        let line = Line { over, file, tick, checkpoint: eye.name(), figures: matrix.into() };
+        text.push_str(&json_line(&line)?);
+        text.push('\n');
+        Ok(())
+    };
+    let mut overall = vec![ConfusionMatrix::default(); work.eyes.len()];
+    for (file, found) in work.files.iter().zip(found) {
+        let name = Some(file.name.as_str());
+        for frame in 0..found.first().map_or(0, Vec::len) {
+            for (eye, matrices) in work.eyes.iter().zip(found) {
+                let (tick, matrix) = &matrices[frame];
+                line("frame", name, Some(*tick), eye, matrix)?;
+            }
+        }
+        for ((eye, matrices), overall) in work.eyes.iter().zip(found).zip(&mut overall) {
+            let mut sum = ConfusionMatrix::default();
+            matrices.iter().for_each(|(_, matrix)| sum.merge(matrix));
+            overall.merge(&sum);
+            line("file", name, None, eye, &sum)?;
+        }
+    }
+    for (eye, matrix) in work.eyes.iter().zip(&overall) {
+        line("overall", None, None, eye, matrix)?;
+    }
+    Ok((text, overall))
+}
