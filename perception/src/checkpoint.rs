@@ -8,6 +8,9 @@ use crate::onnx::{self, Element, pb};
 use crate::peel::peel;
 use crate::{ClassMap, PerceptionError};
 
+/// Where a model's metadata tells how it was trained.
+pub(crate) const RECIPE_KEY: &str = "aeye.recipe";
+
 /// An ONNX segmentation network with one image as input and logits or a class map as output, and
 /// what it says about itself.
 #[derive(Clone)]
@@ -87,6 +90,11 @@ impl Checkpoint {
     /// What it says about its input and output.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata
+    }
+
+    /// How it was made: the JSON text that [`crate::training::train`] wrote, if it did.
+    pub fn recipe(&self) -> Option<&str> {
+        self.model.metadata_props.iter().find(|p| p.key == RECIPE_KEY).map(|p| p.value.as_str())
     }
 
     /// What the outputs mean.

@@ -9,6 +9,7 @@ use super::network::{Graph, Kernel, Resample, Size, fast_scnn};
 use super::resample;
 use super::weights::{Parameter, Weights};
 use super::{kernels::norm, pictures};
+use crate::checkpoint::RECIPE_KEY;
 use crate::classes::TRAIN_CLASSES;
 use crate::metadata::{Layout, Metadata};
 use crate::onnx::pb::{self, tensor_proto::DataType};
@@ -47,7 +48,7 @@ fn props(recipe: &str) -> Result<Vec<pb::StringStringEntryProto>, PerceptionErro
         align_corners: false,
     };
     let mut pairs = metadata.to_props();
-    pairs.insert("aeye.recipe".into(), recipe.into());
+    pairs.insert(RECIPE_KEY.into(), recipe.into());
     Ok(pairs.into_iter().map(|(key, value)| pb::StringStringEntryProto { key, value }).collect())
 }
 

@@ -28,7 +28,7 @@ pub use dataset::{Frame, Split};
 pub use network::LOGIT_STRIDE;
 pub use pictures::CLASS_WEIGHT_OFFSET;
 
-use crate::{PerceptionError, Scores};
+use crate::{Checkpoint, PerceptionError, Scores};
 
 /// What determines a trained network, together with the dataset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,16 +47,27 @@ pub struct TrainOptions {
     pub replicas: usize,
     /// Adam's first rate; it decays with power 0.9.
     pub rate: f32,
+    /// Stop after so many epochs without a better validation mIoU, and keep the network of the best
+    /// epoch. Without it all epochs are done, and the last one's network is kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub patience: Option<u32>,
 }
 
 impl Default for TrainOptions {
     fn default() -> Self {
-        Self { horizon: 30, seed: 1, width: 256, height: 128, batch: 12, replicas: 2, rate: 2e-3 }
+        Self { horizon: 30, seed: 1, width: 256, height: 128, batch: 12, replicas: 2, rate: 2e-3, patience: None }
+    }
+}
+
+impl TrainOptions {
+    /// The learning rate at the begin of an epoch, counted from 1.
+    pub fn rate_of(&self, epoch: u32) -> f32 {
+        adam::rate(self.rate, u64::from(epoch.saturating_sub(1)), u64::from(self.horizon))
     }
 }
 
 /// What an epoch came to.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct EpochReport {
     /// Passes over the training split so far.
     pub epoch: u32,
@@ -106,6 +117,10 @@ pub enum Progress<'a> {
 pub struct Trained {
     /// The ONNX file.
     pub onnx: Vec<u8>,
+    /// The epoch whose network it is, counted from 1.
+    pub epoch: u32,
+    /// Whether more epochs would change nothing: the horizon is reached, or patience is at its end.
+    pub is_final: bool,
     /// One report an epoch.
     pub history: Vec<EpochReport>,
     /// BLAKE3 over both splits.
@@ -118,8 +133,8 @@ pub struct Trained {
     pub parameters: usize,
 }
 
-/// Trains until `epochs` passes over the split `train` are done, or until `watch` breaks; then
-/// `None` comes back. After every epoch the network is measured on the split `val` and saved at
+/// Trains until `epochs` passes over the split `train` are done or patience is at its end, or until
+/// `watch` breaks; then `None` comes back. After every epoch the network is measured on the split `val` and saved at
 /// `unfinished`, from where the same call goes on. The caller removes that file when it is no longer
 /// needed.
 pub fn train(
@@ -134,17 +149,40 @@ pub fn train(
     if run.announce(watch).is_break() {
         return Ok(None);
     }
-    while run.epochs() < epochs {
+    while run.epochs() < epochs && !run.is_out_of_patience() {
         if run.epoch(watch)?.is_break() {
             return Ok(None);
         }
         run.save(unfinished)?;
+        if run.report(watch).is_break() {
+            return Ok(None);
+        }
     }
-    run.finish().map(Some)
+    run.finish(epochs).map(Some)
+}
+
+/// Whether a checkpoint is what [`train`] would give: it tells these options, this number of epochs
+/// and this dataset.
+pub fn is_trained(
+    checkpoint: &Checkpoint,
+    dataset: &Path,
+    options: &TrainOptions,
+    epochs: u32,
+) -> Result<bool, PerceptionError> {
+    check(options)?;
+    let text = checkpoint.recipe().unwrap_or_default();
+    let told: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
+    let (Some(digest), Some(epoch)) = (told["dataset"].as_str(), told["epochs"].as_u64()) else {
+        return Ok(false);
+    };
+    // With patience the best epoch is known only afterwards.
+    let epoch = if options.patience.is_some() { epoch } else { u64::from(epochs) };
+    Ok(run::recipe(options, epoch, epochs, digest) == text
+        && run::digest(&run::read(dataset, options)?).to_hex().as_str() == digest)
 }
 
 fn check(options: &TrainOptions) -> Result<(), PerceptionError> {
-    let TrainOptions { width, height, batch, replicas, horizon, .. } = *options;
+    let TrainOptions { width, height, batch, replicas, horizon, patience, .. } = *options;
     let multiple = network::SIDE_MULTIPLE;
     let refuse = |reason| Err(PerceptionError::TrainOptions { reason });
     if width == 0 || height == 0 || width % multiple != 0 || height % multiple != 0 {
@@ -155,6 +193,9 @@ fn check(options: &TrainOptions) -> Result<(), PerceptionError> {
     }
     if horizon == 0 {
         return refuse("a horizon of 0 epochs; expected at least 1".into());
+    }
+    if patience == Some(0) {
+        return refuse("a patience of 0 epochs; expected at least 1".into());
     }
     Ok(())
 }

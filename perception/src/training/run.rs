@@ -16,6 +16,7 @@ use super::pictures::{augmented, class_weights};
 use super::random::Random;
 use super::state::State;
 use super::tape::{Lesson, learn};
+use super::weights::Weights;
 use super::{EpochReport, Progress, TrainOptions, Trained, export, network};
 use crate::classes::{TRAIN_CLASSES, tag_of_train_id};
 use crate::{Checkpoint, ConfusionMatrix, PerceptionError, RgbView, Segmenter};
@@ -35,19 +36,46 @@ pub(super) struct Run {
     state: State,
 }
 
+/// The splits of a dataset, in the order of [`SPLITS`].
+pub(super) fn read(dataset: &Path, options: &TrainOptions) -> Result<[Split; 2], PerceptionError> {
+    let [train, val] = SPLITS.map(|split| Split::read(dataset, split, options.width, options.height));
+    Ok([train?, val?])
+}
+
+/// BLAKE3 over both splits.
+pub(super) fn digest([train, val]: &[Split; 2]) -> blake3::Hash {
+    blake3::hash(&[*train.digest.as_bytes(), *val.digest.as_bytes()].concat())
+}
+
+/// What a network's file tells of how it was made: of `epoch` passes, where at most `limit` were
+/// allowed.
+pub(super) fn recipe(options: &TrainOptions, epoch: u64, limit: u32, dataset: &str) -> String {
+    let mut recipe = serde_json::json!({
+        "network": "Fast-SCNN",
+        "stride": network::LOGIT_STRIDE,
+        "options": options,
+        "epochs": epoch,
+        "dataset": dataset,
+    });
+    if options.patience.is_some() {
+        recipe["limit"] = limit.into();
+    }
+    recipe.to_string()
+}
+
 type Watch<'a> = dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a;
 
 impl Run {
     /// Reads the dataset and an unfinished training, if there is one.
     pub(super) fn open(dataset: &Path, unfinished: &Path, options: &TrainOptions) -> Result<Self, PerceptionError> {
-        let read = |split| Split::read(dataset, split, options.width, options.height);
-        let [train, val] = [read(SPLITS[0])?, read(SPLITS[1])?];
+        let splits = read(dataset, options)?;
+        let digest = digest(&splits);
+        let [train, val] = splits;
         if train.frames.len() < options.batch {
             let reason =
                 format!("{} frames to learn from; expected at least a batch of {}", train.frames.len(), options.batch);
             return Err(PerceptionError::Dataset { path: dataset.to_owned(), reason });
         }
-        let digest = blake3::hash(&[*train.digest.as_bytes(), *val.digest.as_bytes()].concat());
         let thread = |_| ThreadPoolBuilder::new().num_threads(1).build().map_err(std::io::Error::other);
         let replicas = (0..options.replicas).map(thread).collect::<Result<_, _>>();
         Ok(Self {
@@ -92,8 +120,13 @@ impl Run {
             }
         }
         let scores = self.measure()?.scores();
-        self.state.history.push(EpochReport::new(epoch, sum / self.steps() as f64, &scores));
-        Ok(self.state.history.last().map_or(ControlFlow::Continue(()), |report| watch(Progress::Epoch(report))))
+        self.state.record(EpochReport::new(epoch, sum / self.steps() as f64, &scores), &self.options);
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Tells what the last epoch came to.
+    pub(super) fn report(&self, watch: &mut Watch<'_>) -> ControlFlow<()> {
+        self.state.history.last().map_or(ControlFlow::Continue(()), |report| watch(Progress::Epoch(report)))
     }
 
     /// One step on the frames with these numbers; gives the loss.
@@ -133,7 +166,7 @@ impl Run {
     fn measure(&self) -> Result<ConfusionMatrix, PerceptionError> {
         let io = |source| PerceptionError::Io { path: std::env::temp_dir(), source };
         let mut file = tempfile::Builder::new().suffix(".onnx").tempfile().map_err(io)?;
-        file.write_all(&self.onnx()?).map_err(io)?;
+        file.write_all(&self.onnx(&self.state.weights, "")?).map_err(io)?;
         let segmenter = Segmenter::new(&Checkpoint::load(file.path())?, self.options.width, self.options.height)?;
         let share = self.val.frames.len().div_ceil(rayon::current_num_threads());
         let matrices =
@@ -144,24 +177,31 @@ impl Run {
         Ok(sum)
     }
 
-    fn onnx(&self) -> Result<Vec<u8>, PerceptionError> {
-        let recipe = serde_json::json!({
-            "network": "Fast-SCNN",
-            "stride": network::LOGIT_STRIDE,
-            "options": self.options,
-            "epochs": self.epochs(),
-            "dataset": self.dataset.to_hex().as_str(),
-        });
-        export::onnx(&self.state.weights, self.options.width, self.options.height, &recipe.to_string())
+    fn onnx(&self, weights: &Weights, recipe: &str) -> Result<Vec<u8>, PerceptionError> {
+        export::onnx(weights, self.options.width, self.options.height, recipe)
+    }
+
+    /// Whether so many epochs as patience allows brought nothing better.
+    pub(super) fn is_out_of_patience(&self) -> bool {
+        let without_gain = self.epochs() - self.state.best_epoch();
+        self.options.patience.is_some_and(|patience| without_gain >= patience)
     }
 
     pub(super) fn save(&mut self, path: &Path) -> Result<(), PerceptionError> {
         self.state.save(path, &self.options, self.dataset)
     }
 
-    pub(super) fn finish(self) -> Result<Trained, PerceptionError> {
+    /// The network to keep of at most `limit` epochs.
+    pub(super) fn finish(self, limit: u32) -> Result<Trained, PerceptionError> {
+        let (epoch, weights) = match &self.state.best {
+            Some(best) => (self.state.best_epoch(), best),
+            None => (self.epochs(), &self.state.weights),
+        };
+        let recipe = recipe(&self.options, u64::from(epoch), limit, &self.dataset.to_hex());
         Ok(Trained {
-            onnx: self.onnx()?,
+            onnx: self.onnx(weights, &recipe)?,
+            epoch,
+            is_final: self.epochs() >= self.options.horizon || self.is_out_of_patience(),
             dataset: self.dataset,
             train_frames: self.train.frames.len(),
             val_frames: self.val.frames.len(),

@@ -126,6 +126,70 @@ fn it_learns_and_an_interrupted_training_ends_with_the_same_bytes() {
 }
 
 #[test]
+fn out_of_patience_the_best_epoch_is_kept_also_when_it_was_interrupted() {
+    let dir = tempfile::tempdir().unwrap();
+    dataset(dir.path(), 8, 2);
+    let train = |name: &str, patience, epochs, watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>| {
+        let options = TrainOptions { patience, ..options() };
+        train(dir.path(), &dir.path().join(name), &options, epochs, watch).unwrap()
+    };
+    let kept = train("a", Some(1), 6, &mut go_on).unwrap();
+    let mious: Vec<f64> = kept.history.iter().map(|report| report.miou.unwrap()).collect();
+    let best = mious.iter().fold(0.0, |best: f64, miou| best.max(*miou));
+    assert_eq!(kept.epoch as usize, 1 + mious.iter().position(|miou| *miou == best).unwrap());
+    assert_eq!(kept.is_final, mious.len() > kept.epoch as usize);
+    assert!(kept.is_final || mious.len() == 6, "{mious:?}");
+
+    let graph = |trained: &Trained| decode(&trained.onnx).unwrap().graph;
+    let plain = train("b", None, kept.epoch, &mut go_on).unwrap();
+    assert!(graph(&kept) == graph(&plain), "the network is that of epoch {}", kept.epoch);
+    assert!(kept.onnx != plain.onnx, "it tells that there was patience");
+
+    let an_epoch = &mut |progress: Progress<'_>| match progress {
+        Progress::Epoch(_) => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
+    let resumed = mious.iter().filter_map(|_| train("c", Some(1), 6, an_epoch)).last();
+    let resumed = resumed.or_else(|| train("c", Some(1), 6, &mut go_on)).unwrap();
+    assert!(resumed.onnx == kept.onnx, "interrupted after every epoch it differs");
+}
+
+#[test]
+fn what_was_never_measured_ends_with_patience() {
+    let dir = tempfile::tempdir().unwrap();
+    dataset(dir.path(), 4, 1);
+    let label = dir.path().join("gtFine/val/scene/scene_000000_000000_gtFine_labelTrainIds.png");
+    let mut encoder = png::Encoder::new(File::create(label).unwrap(), WIDTH as u32, HEIGHT as u32);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(&[crate::classes::IGNORE; WIDTH * HEIGHT]).unwrap();
+    let options = TrainOptions { patience: Some(2), ..options() };
+    let trained = train(dir.path(), &dir.path().join("p"), &options, 12, &mut go_on).unwrap().unwrap();
+    assert_eq!((trained.epoch, trained.history.len(), trained.is_final), (1, 3, true));
+}
+
+#[test]
+fn a_network_is_known_by_its_options_and_its_dataset() {
+    let dir = tempfile::tempdir().unwrap();
+    dataset(dir.path(), 4, 1);
+    let options = |patience| TrainOptions { patience, ..options() };
+    let trained = [None, Some(1)].map(|patience| {
+        let trained = train(dir.path(), &dir.path().join("p"), &options(patience), 2, &mut go_on).unwrap().unwrap();
+        fs::remove_file(dir.path().join("p")).unwrap();
+        (patience, Checkpoint::from_bytes("c", &trained.onnx).unwrap())
+    });
+    let known =
+        |checkpoint: &Checkpoint, options, epochs| is_trained(checkpoint, dir.path(), &options, epochs).unwrap();
+    for (patience, checkpoint) in &trained {
+        assert!(known(checkpoint, options(*patience), 2) && !known(checkpoint, options(*patience), 3));
+        assert!(!known(checkpoint, TrainOptions { seed: 2, ..options(*patience) }, 2));
+        assert!(!known(checkpoint, options(Some(3)), 2));
+    }
+    assert!(!known(&crate::bundled("full").unwrap().unwrap(), options(None), 2));
+    dataset(dir.path(), 4, 2);
+    assert!(trained.iter().all(|(patience, checkpoint)| !known(checkpoint, options(*patience), 2)), "a picture more");
+}
+
+#[test]
 fn what_cannot_be_trained_is_refused_in_one_sentence() {
     let dir = tempfile::tempdir().unwrap();
     let said = |options: TrainOptions| {
@@ -135,6 +199,7 @@ fn what_cannot_be_trained_is_refused_in_one_sentence() {
     };
     assert!(said(TrainOptions { width: 100, ..options() }).contains("multiples of 32"));
     assert!(said(TrainOptions { batch: 5, ..options() }).contains("replicas"));
+    assert!(said(TrainOptions { patience: Some(0), ..options() }).contains("patience"));
     assert!(said(options()).contains("No such file"));
     dataset(dir.path(), 2, 1);
     assert!(said(options()).contains("2 frames to learn from"));

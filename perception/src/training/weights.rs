@@ -50,6 +50,12 @@ impl Weights {
         self.parameters.iter().map(|p| p.values.len()).sum()
     }
 
+    /// Every number, in a fixed order.
+    pub(super) fn vectors(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
+        let moments = self.moments.iter_mut().flat_map(|m| [&mut m.mean, &mut m.variance]);
+        self.parameters.iter_mut().map(|p| &mut p.values).chain(moments)
+    }
+
     /// Moves the running moments towards those of one step.
     pub(super) fn follow(&mut self, step: &[Moments]) {
         let blend = |running: &mut [f32], new: &[f32]| {

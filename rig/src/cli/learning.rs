@@ -87,6 +87,10 @@ pub struct TrainArgs {
     /// training that is stopped early, and that can go on later.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub horizon: Option<u32>,
+    /// Stop after so many epochs without a better validation mIoU, and keep the best epoch's network
+    /// instead of the last one's.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub patience: Option<u32>,
     /// Frames a step.
     #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(2..))]
     pub batch: u32,

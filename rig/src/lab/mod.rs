@@ -11,6 +11,7 @@ pub mod library;
 pub mod looks;
 pub mod natural;
 pub mod pipeline;
+pub mod plot;
 pub mod png;
 pub mod redrive;
 pub mod report;

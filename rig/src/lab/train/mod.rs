@@ -1,0 +1,150 @@
+//! Trains a checkpoint from a dataset folder. `C.onnx` is written last, after its card `C.md` and its
+//! learning curves `C.jsonl` and `C.svg`, so that it stands for all of them.
+
+mod card;
+mod curves;
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use indicatif::ProgressBar;
+use perception::Checkpoint;
+use perception::training::{self, Progress, TrainOptions, Trained};
+use serde::Serialize;
+
+pub use curves::Epoch;
+
+use crate::cli::TrainArgs;
+use crate::exit::Verdict;
+use crate::output;
+use crate::progress::{self, Interrupt};
+
+/// A checkpoint that is trained.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Summary {
+    /// Its file.
+    pub checkpoint: PathBuf,
+    /// Its digest, as recordings and evaluations name it, in hexadecimal digits.
+    pub digest: String,
+    /// Whether it was there already, from the same options and the same dataset.
+    pub was_there: bool,
+}
+
+/// Runs `aeye train`. Ctrl-C stops it; the same command goes on from the last finished epoch.
+pub fn run(args: &TrainArgs, json: bool) -> anyhow::Result<Verdict> {
+    let print = &mut |epoch: &Epoch| output::print(json, epoch, || line(epoch));
+    let Summary { checkpoint, was_there, .. } = train(args, &Interrupt::listen()?, print)?;
+    if was_there {
+        eprintln!("{}: is trained already, with these options on this dataset", checkpoint.display());
+    }
+    Ok(Verdict::Ok)
+}
+
+/// Trains a checkpoint unless it is there, and shows every epoch as it ends. What is interrupted goes
+/// on from its last finished epoch, to the same bytes.
+pub fn train(
+    args: &TrainArgs,
+    interrupt: &Interrupt,
+    show: &mut dyn FnMut(&Epoch) -> anyhow::Result<()>,
+) -> anyhow::Result<Summary> {
+    output::check_file(&args.out)?;
+    let options = options(args);
+    if let Ok(checkpoint) = Checkpoint::load(&args.out)
+        && training::is_trained(&checkpoint, &args.dataset, &options, args.epochs)?
+    {
+        return Ok(summary(args, &checkpoint, true));
+    }
+    let unfinished = beside(&args.out, "onnx.part");
+    let mut screen = Screen { bar: ProgressBar::hidden(), options: &options, epochs: args.epochs, show, failed: None };
+    let watch = &mut |progress: Progress<'_>| {
+        screen.watch(progress);
+        if interrupt.is_raised() || screen.failed.is_some() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let trained = training::train(&args.dataset, &unfinished, &options, args.epochs, watch)?;
+    screen.bar.finish_and_clear();
+    if let Some(error) = screen.failed {
+        return Err(error);
+    }
+    let Some(trained) = trained else {
+        anyhow::bail!("interrupted; the same command goes on from {}", unfinished.display());
+    };
+    write(args, &options, &trained)?;
+    if trained.is_final {
+        fs::remove_file(&unfinished).with_context(|| unfinished.display().to_string())?;
+    }
+    Ok(summary(args, &Checkpoint::load(&args.out)?, false))
+}
+
+fn write(args: &TrainArgs, options: &TrainOptions, trained: &Trained) -> anyhow::Result<()> {
+    let epochs: Vec<Epoch> = trained.history.iter().map(|report| Epoch::new(report, options)).collect();
+    output::write_file(&beside(&args.out, "md"), card::card(args, options, trained).as_bytes())?;
+    output::write_file(&beside(&args.out, "jsonl"), curves::lines(&epochs)?.as_bytes())?;
+    output::write_file(&beside(&args.out, "svg"), curves::picture(&epochs).as_bytes())?;
+    output::write_file(&args.out, &trained.onnx)
+}
+
+fn summary(args: &TrainArgs, checkpoint: &Checkpoint, was_there: bool) -> Summary {
+    Summary { checkpoint: args.out.clone(), digest: checkpoint.digest().to_hex().to_string(), was_there }
+}
+
+fn options(args: &TrainArgs) -> TrainOptions {
+    TrainOptions {
+        horizon: args.horizon.unwrap_or(args.epochs),
+        seed: args.seed,
+        width: args.size.0 as usize,
+        height: args.size.1 as usize,
+        batch: args.batch as usize,
+        replicas: args.replicas as usize,
+        rate: args.rate,
+        patience: args.patience,
+    }
+}
+
+fn beside(out: &Path, ending: &str) -> PathBuf {
+    out.with_extension(ending)
+}
+
+/// What is seen of a training: a bar an epoch on stderr, and what the caller makes of it.
+struct Screen<'a> {
+    bar: ProgressBar,
+    options: &'a TrainOptions,
+    epochs: u32,
+    show: &'a mut dyn FnMut(&Epoch) -> anyhow::Result<()>,
+    /// Why an epoch could not be shown.
+    failed: Option<anyhow::Error>,
+}
+
+impl Screen<'_> {
+    fn watch(&mut self, progress: Progress<'_>) {
+        match progress {
+            Progress::Loaded { train, val, epochs, steps } => {
+                eprintln!("{train} frames to learn from, {val} to measure on; {epochs} epochs are done");
+                let left = u64::from(self.epochs.saturating_sub(epochs)) * steps as u64;
+                self.bar = progress::bar("train", left);
+            }
+            Progress::Step { loss, .. } => {
+                self.bar.inc(1);
+                self.bar.set_message(format!("loss {loss:.3}"));
+            }
+            Progress::Epoch(report) => {
+                let epoch = Epoch::new(report, self.options);
+                self.failed = self.bar.suspend(|| (self.show)(&epoch)).err();
+            }
+        }
+    }
+}
+
+fn line(report: &Epoch) -> String {
+    let Epoch { epoch, loss, miou, pedestrian_iou, .. } = report;
+    format!("epoch {epoch:3}  loss {loss:.4}  mIoU {}  IoU Pedestrian {}", number(*miou), number(*pedestrian_iou))
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or("-".into(), |v| format!("{v:.4}"))
+}
