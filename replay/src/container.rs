@@ -12,7 +12,7 @@ use crate::Error;
 use crate::layout::{CHANNELS, Channel, MESSAGE_ENCODING, SCHEMA_ENCODING, nanoseconds};
 
 /// Every option is set here, so that neither the machine nor a new default can change a file.
-fn options() -> WriteOptions {
+pub(crate) fn options() -> WriteOptions {
     WriteOptions::new()
         .profile("")
         .library(concat!("aeye ", env!("CARGO_PKG_VERSION")))
@@ -92,7 +92,7 @@ fn closed() -> Error {
     Error::Io(io::Error::other("the file is closed"))
 }
 
-fn io_error(error: McapError) -> Error {
+pub(crate) fn io_error(error: McapError) -> Error {
     match error {
         McapError::Io(e) => Error::Io(e),
         other => Error::Io(io::Error::other(other)),

@@ -108,7 +108,7 @@ impl Channel {
 }
 
 /// Time of a tick in a file, nanoseconds from tick 0.
-pub(crate) fn nanoseconds(tick: Tick) -> u64 {
+pub fn nanoseconds(tick: Tick) -> u64 {
     u64::try_from(u128::from(tick) * 1_000_000_000 / u128::from(TICK_HZ)).unwrap_or(u64::MAX)
 }
 

@@ -5,7 +5,8 @@
 //! of it checked; a [`Replayer`] simulates it again and compares each tick; a [`Case`] is a
 //! self-contained cut around an intervention. [`Log`] is the content of all of these as plain data.
 //!
-//! Files are MCAP; `layout.rs` describes every channel.
+//! Files are MCAP; `layout.rs` describes every channel. An [`Exporter`] writes MCAP files for viewers, of
+//! messages that the caller made.
 
 mod block;
 mod case;
@@ -14,6 +15,7 @@ mod container;
 mod divergence;
 mod encode;
 mod error;
+mod export;
 mod layout;
 mod log;
 mod notes;
@@ -29,6 +31,8 @@ mod wire;
 pub use case::Case;
 pub use divergence::Divergence;
 pub use error::Error;
+pub use export::{ExportChannel, Exporter, Schema};
+pub use layout::nanoseconds;
 pub use log::{
     Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Provenance,
     RunSummary,

@@ -1,5 +1,6 @@
 //! The application `aeye`: drivers and sessions, and the offline lab.
 
+mod boxes;
 pub mod campaign;
 mod chart;
 pub mod cli;
@@ -45,6 +46,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Dataset(DatasetCommand::Cases(args)) => lab::cases::run(args, json),
         Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
         Command::Redrive(args) => lab::redrive::run(args, json),
+        Command::Export(args) => lab::export::run(args, json),
         Command::Train(args) => lab::train::run(args, json),
         Command::Eval(args) => lab::eval::run(args, json),
         Command::Report(args) => lab::report::run(args, json),

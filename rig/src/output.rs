@@ -1,7 +1,7 @@
 //! What a command prints, and files that appear only when they are whole.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
@@ -66,6 +66,41 @@ fn temporary(path: &Path, bytes: &[u8]) -> anyhow::Result<tempfile::NamedTempFil
     file.as_file_mut().write_all(bytes).with_context(|| path.display().to_string())?;
     make_readable(file.path(), 0o644)?;
     Ok(file)
+}
+
+/// A file that gets its name only when it is complete; dropped before, nothing remains.
+pub struct PendingFile {
+    temporary: BufWriter<tempfile::NamedTempFile>,
+    path: PathBuf,
+}
+
+impl PendingFile {
+    /// Starts a file.
+    pub fn new(path: &Path) -> anyhow::Result<Self> {
+        Ok(Self { temporary: BufWriter::new(temporary(path, &[])?), path: path.to_owned() })
+    }
+
+    /// Gives the file its name; whatever had it before is gone.
+    pub fn finish(self) -> anyhow::Result<()> {
+        let context = || self.path.display().to_string();
+        let file = self.temporary.into_inner().map_err(IntoInnerError::into_error).with_context(context)?;
+        file.persist(&self.path).with_context(context)?;
+        Ok(())
+    }
+}
+
+impl Write for PendingFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.temporary.write(bytes).map_err(|error| named(&self.path, &error))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.temporary.flush().map_err(|error| named(&self.path, &error))
+    }
+}
+
+fn named(path: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 
 /// Refuses a place where no file can be written, before the work whose result it is for.
@@ -161,6 +196,23 @@ mod tests {
         pending.finish().expect("renamed");
         assert_eq!(fs::read_to_string(path.join("a")).expect("there"), "b");
         assert!(PendingFolder::new(&path).is_err());
+    }
+
+    #[test]
+    fn a_file_appears_only_when_finished() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("out");
+        let written = |content: &[u8]| {
+            let mut file = PendingFile::new(&path).expect("a writable folder");
+            file.write_all(content).expect("written");
+            file
+        };
+        drop(written(b"a"));
+        assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 0);
+        written(b"b").finish().expect("renamed");
+        drop(written(b"c"));
+        assert_eq!(fs::read_to_string(&path).expect("there"), "b");
+        assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 1, "nothing temporary remains");
     }
 
     #[test]

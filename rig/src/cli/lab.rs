@@ -6,7 +6,7 @@ use clap::Args;
 use kernel::time::{CLIP_FPS, Tick};
 
 use super::CheckpointChoice;
-use super::values::{duration, frame_rate, size};
+use super::values::{duration, frame_rate, moment, size};
 
 /// Arguments of `rerender`.
 #[derive(Args, Debug)]
@@ -32,6 +32,36 @@ pub struct RerenderArgs {
     /// Folder of the results. One that this command began is completed: what is whole and follows from
     /// the same files, checkpoints and options is kept.
     #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `export`.
+#[derive(Args, Debug)]
+pub struct ExportArgs {
+    /// Recordings or cases.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints whose masks come along with the ground truth.
+    #[arg(long, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
+    /// window everything is exported.
+    #[arg(long, value_parser = duration, conflicts_with_all = ["from", "to"])]
+    pub last: Option<Tick>,
+    /// Only from this time of the run on, as in `10s`.
+    #[arg(long, value_parser = moment, value_name = "TIME")]
+    pub from: Option<Tick>,
+    /// Only up to this time of the run, as in `20s`.
+    #[arg(long, value_parser = moment, value_name = "TIME")]
+    pub to: Option<Tick>,
+    /// Pictures a second; must divide 60. What is measured is exported at every tick.
+    #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
+    pub fps: u32,
+    /// Size of the pictures.
+    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// File of the export, with its layout for viewers beside it; or a folder, for several files.
+    #[arg(long, value_name = "OUT.mcap|DIR")]
     pub out: PathBuf,
 }
 

@@ -15,7 +15,7 @@ use clap::{Parser, Subcommand};
 use perception::BUNDLED;
 
 pub use campaign::{CampaignArgs, DemoArgs};
-pub use lab::{RedriveArgs, ReportArgs, RerenderArgs};
+pub use lab::{ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
 pub use learning::{CasesArgs, DatasetCommand, EvalArgs, NaturalArgs, TrainArgs};
 pub use live::{
     DoctorArgs, DriveArgs, Screens, SizeArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs,
@@ -59,6 +59,8 @@ pub enum Command {
     Rerender(RerenderArgs),
     /// Drive corner cases on from before the intervention: was it necessary?
     Redrive(RedriveArgs),
+    /// Write recordings or cases with pictures and scene for Foxglove, Lichtblick or Rerun.
+    Export(ExportArgs),
     /// Make datasets.
     #[command(subcommand)]
     Dataset(DatasetCommand),

@@ -17,6 +17,13 @@ pub fn duration(text: &str) -> Result<Tick, String> {
     ticks.map(|t| t as Tick).ok_or_else(|| "expected a number of seconds, as in 3s".into())
 }
 
+/// A time of a run such as `0s` or `12.5s`, as a tick.
+pub fn moment(text: &str) -> Result<Tick, String> {
+    let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
+    let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (0.0..=1e9).contains(t));
+    ticks.map(|t| t as Tick).ok_or_else(|| "expected a time in seconds, as in 12.5s".into())
+}
+
 /// A first learning rate.
 pub fn rate(text: &str) -> Result<f32, String> {
     let rate = text.parse::<f32>().ok().filter(|r| (1e-7..=1.0).contains(r));
@@ -52,6 +59,8 @@ mod tests {
         assert_eq!(duration("3s"), Ok(180));
         assert_eq!(duration("0.5"), Ok(30));
         assert!(duration("-1s").is_err() && duration("NaN").is_err());
+        assert_eq!((moment("0s"), moment("1.5")), (Ok(0), Ok(90)));
+        assert!(moment("-1").is_err() && moment("s").is_err());
         assert_eq!(threshold("0.2"), Ok(0.2));
         assert_eq!((force("0"), force("1")), (Ok(0.0), Ok(1.0)));
         assert!(force("1.1").is_err() && force("-0.1").is_err() && force("nan").is_err());

@@ -39,12 +39,17 @@ impl Footage {
     }
 }
 
-/// The ticks of the window's frames, ascending; those before the log's first are left out.
-fn window(log: &Log, last: Tick, fps: u32) -> Vec<Tick> {
-    let end = match &log.manifest.case {
+/// Where the window of a log ends: at the intervention, the collision of a missed one, or the last tick.
+pub fn decisive_tick(log: &Log) -> Tick {
+    match &log.manifest.case {
         Some(case) => case.to,
         None => Case::window(log).map_or(log.last_tick(), |window| *window.end()),
-    };
+    }
+}
+
+/// The ticks of the window's frames, ascending; those before the log's first are left out.
+fn window(log: &Log, last: Tick, fps: u32) -> Vec<Tick> {
+    let end = decisive_tick(log);
     let stride = Tick::from(TICK_HZ / fps);
     let count = last.div_ceil(stride);
     let tick = |before: Tick| end.checked_sub(before * stride).filter(|tick| *tick >= log.first_tick());

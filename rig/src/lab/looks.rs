@@ -36,6 +36,11 @@ impl Studio {
         Self { camera: Camera::driver(width, height), options, renderers: BTreeMap::new() }
     }
 
+    /// The driver's camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
     /// The driver's view of a scene; fails where nothing can draw.
     pub fn draw(&mut self, network: &RoadNetwork, scene: &SceneSnapshot) -> anyhow::Result<Frame> {
         let renderer = match self.renderers.entry(network.digest) {

@@ -5,6 +5,7 @@ pub mod cityscapes;
 pub mod demo;
 pub mod eval;
 pub mod expert;
+pub mod export;
 pub mod figures;
 pub mod footage;
 pub mod library;

@@ -125,7 +125,7 @@ fn presses(log: &Log) -> Vec<Press> {
     let ticks = log.first_tick() + 1..=end_of_driving(log);
     let pressed = |tick| {
         let seats = [Seat::Semantic, Seat::Safety].into_iter();
-        seats.filter(move |seat| is_pressed(log, *seat, tick)).map(move |seat| Press { tick, seat: name(seat) })
+        seats.filter(move |seat| is_pressed(log, *seat, tick)).map(move |seat| Press { tick, seat: seat_name(seat) })
     };
     ticks.flat_map(pressed).collect()
 }
@@ -143,7 +143,8 @@ fn controls(input: &TickInput, seat: Seat) -> &Controls {
     }
 }
 
-fn name(seat: Seat) -> &'static str {
+/// What files and figures call a seat.
+pub fn seat_name(seat: Seat) -> &'static str {
     match seat {
         Seat::Semantic => "semantic",
         Seat::Safety => "safety",

@@ -12,6 +12,7 @@ mod replay_verify;
 mod rig_bots;
 mod rig_campaign;
 mod rig_cli;
+mod rig_export;
 mod rig_redrive;
 mod rig_rerender;
 mod rig_statistics;

@@ -2,17 +2,14 @@
 //! JSON, and telemetry of our own.
 
 use glam::{Quat, Vec3};
-use kernel::ego::{CENTRE_M, SIZE_M};
-use kernel::scene::{ActorKind, ActorScene, SceneSnapshot};
+use kernel::scene::SceneSnapshot;
 use serde_json::{Value, json};
 
 use super::telemetry::Telemetry;
+use crate::boxes::{EGO, MAP, RoadUser, road_users};
 
 /// How long an actor stays in sight after it was told of last, nanoseconds.
 const LIFETIME_NS: u64 = 500_000_000;
-/// The frame of everything that stands still, and that of the car.
-const MAP: &str = "map";
-const EGO: &str = "ego";
 const INFO: u32 = 2;
 
 /// A channel.
@@ -158,40 +155,21 @@ pub fn transform(scene: &SceneSnapshot, time_ns: u64) -> Value {
 
 /// Every road user as a box.
 pub fn scene(scene: &SceneSnapshot, time_ns: u64) -> Value {
-    let ego = scene.ego;
-    let cube = cube(ego.position + ego.rotation * CENTRE_M, ego.rotation, SIZE_M, [0.9, 0.2, 0.2]);
-    let entities: Vec<Value> = std::iter::once(entity(EGO.into(), cube, time_ns))
-        .chain(scene.actors.iter().map(|actor| {
-            let ActorScene { position, rotation, .. } = *actor;
-            let (id, size) = (format!("{:?} {}", actor.kind, actor.id), actor.kind.size_m());
-            let middle = position + rotation * Vec3::Z * (size.z / 2.0);
-            entity(id, self::cube(middle, rotation, size, colour(actor.kind)), time_ns)
-        }))
-        .collect();
+    let entities: Vec<Value> = road_users(scene).map(|user| entity(user, time_ns)).collect();
     json!({ "deletions": [], "entities": entities })
 }
 
-fn entity(id: String, cube: Value, time_ns: u64) -> Value {
+fn entity(user: RoadUser, time_ns: u64) -> Value {
+    let [r, g, b] = user.colour;
+    let cube = json!({
+        "pose": { "position": vector(user.middle), "orientation": rotation(user.rotation) },
+        "size": vector(user.size_m), "color": { "r": r, "g": g, "b": b, "a": 1.0 },
+    });
     json!({
-        "timestamp": stamp(time_ns), "frame_id": MAP, "id": id, "lifetime": stamp(LIFETIME_NS),
+        "timestamp": stamp(time_ns), "frame_id": MAP, "id": user.name, "lifetime": stamp(LIFETIME_NS),
         "frame_locked": false, "metadata": [], "arrows": [], "cubes": [cube], "spheres": [], "cylinders": [],
         "lines": [], "triangles": [], "texts": [], "models": [],
     })
-}
-
-fn cube(middle: Vec3, rotation: Quat, size: Vec3, [r, g, b]: [f32; 3]) -> Value {
-    json!({
-        "pose": { "position": vector(middle), "orientation": self::rotation(rotation) },
-        "size": vector(size), "color": { "r": r, "g": g, "b": b, "a": 1.0 },
-    })
-}
-
-fn colour(kind: ActorKind) -> [f32; 3] {
-    match kind {
-        ActorKind::Car | ActorKind::Truck | ActorKind::Bus => [0.2, 0.4, 0.9],
-        ActorKind::Motorcycle | ActorKind::Bicycle => [0.9, 0.6, 0.1],
-        ActorKind::Pedestrian => [0.9, 0.1, 0.8],
-    }
 }
 
 /// The figures of a tick.
