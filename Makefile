@@ -6,7 +6,7 @@ TEST_PACKAGES := xvfb xdotool
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test bench setup build
+.PHONY: demo test bench oracles setup build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -23,6 +23,11 @@ test: setup
 ## Benchmarks; fails when a budget is broken.
 bench: setup
 	cargo bench --workspace --bench budgets
+
+## Compares what is computed here with what programs of others make of the same files (Python, PyPI).
+oracles: PACKAGES += python3-venv
+oracles: build
+	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
 
 # The whole workspace, so that demo, test and bench ask the same features of the dependencies.
 build: setup

@@ -68,6 +68,12 @@ impl ConfusionMatrix {
         self.counts[usize::from(truth)][usize::from(predicted)]
     }
 
+    /// A row for each true class, in it the pixels by predicted class; the last number is of classes
+    /// that are not trained.
+    pub fn rows(&self) -> &[[u64; TRAIN_CLASSES.len() + 1]] {
+        &self.counts
+    }
+
     /// Pixels whose true class has this train id.
     pub fn truth_pixels(&self, train_id: u8) -> u64 {
         self.counts[usize::from(train_id)].iter().sum()

@@ -56,8 +56,8 @@ fn bad(path: &Path, reason: impl Into<String>) -> PerceptionError {
     PerceptionError::Dataset { path: path.to_owned(), reason: reason.into() }
 }
 
-/// All pictures of a split, sorted.
-fn image_paths(split: &Path) -> Result<Vec<PathBuf>, PerceptionError> {
+/// All pictures of the folder of a split, `leftImg8bit/SPLIT`, sorted; at least one.
+pub fn image_paths(split: &Path) -> Result<Vec<PathBuf>, PerceptionError> {
     let mut found = Vec::new();
     for scene in entries(split)?.iter().filter(|p| p.is_dir()) {
         found.extend(entries(scene)?.into_iter().filter(|p| p.to_string_lossy().ends_with(IMAGE_ENDING)));
@@ -81,13 +81,23 @@ fn read_frame(
     height: usize,
 ) -> Result<(Frame, blake3::Hash), PerceptionError> {
     let label = label_path(dataset, image);
+    if !label.is_file() {
+        return Err(bad(&label, format!("is missing; expected the ground truth of {}", image.display())));
+    }
     let mut digest = blake3::Hasher::new();
     let rgb = read_png(image, 3, width, height, &mut digest)?;
     let labels = read_png(&label, 1, width, height, &mut digest)?;
-    if let Some(id) = labels.iter().find(|id| **id != IGNORE && usize::from(**id) >= TRAIN_CLASSES.len()) {
-        return Err(bad(&label, format!("holds train id {id}; expected 0 to {} or {IGNORE}", TRAIN_CLASSES.len() - 1)));
-    }
+    check_train_ids(&label, &labels)?;
     Ok((Frame { rgb, labels }, digest.finalize()))
+}
+
+/// Refuses labels of a file that are neither train ids nor ignored.
+pub fn check_train_ids(label: &Path, ids: &[u8]) -> Result<(), PerceptionError> {
+    let last = TRAIN_CLASSES.len() - 1;
+    match ids.iter().find(|id| **id != IGNORE && usize::from(**id) > last) {
+        Some(id) => Err(bad(label, format!("holds train id {id}; expected 0 to {last} or {IGNORE}"))),
+        None => Ok(()),
+    }
 }
 
 /// The ground truth that belongs to a picture.

@@ -24,7 +24,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-pub use dataset::{Frame, Split};
+pub use dataset::{Frame, Split, check_train_ids, image_paths};
 pub use network::LOGIT_STRIDE;
 pub use pictures::CLASS_WEIGHT_OFFSET;
 

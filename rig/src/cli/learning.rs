@@ -114,4 +114,8 @@ pub struct EvalArgs {
     /// Which split.
     #[arg(long, default_value = "val")]
     pub split: String,
+    /// Folder for the predictions, as `CITY/CITY_SEQ_FRAME_pred_labelIds.png` in tags; must not exist or
+    /// be empty.
+    #[arg(long, value_name = "DIR")]
+    pub save_predictions: Option<PathBuf>,
 }

@@ -37,6 +37,28 @@ impl From<&ConfusionMatrix> for Figures {
     }
 }
 
+/// A confusion matrix as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Confusion<'a> {
+    /// Names of the classes, in the order of rows and columns.
+    pub classes: Vec<&'static str>,
+    /// Pixels: a row for each true class; in it a number for each predicted class, and a last one
+    /// for those that are not trained.
+    pub pixels: &'a [[u64; TRAIN_CLASSES.len() + 1]],
+}
+
+impl<'a> From<&'a ConfusionMatrix> for Confusion<'a> {
+    fn from(matrix: &'a ConfusionMatrix) -> Self {
+        Self { classes: TRAIN_CLASSES.iter().map(|class| class.name).collect(), pixels: matrix.rows() }
+    }
+}
+
+/// The labelled pixels of each class, divided by the number of scenes or frames.
+pub fn pixels_per(matrix: &ConfusionMatrix, count: usize) -> BTreeMap<&'static str, f64> {
+    let mean = |id: usize| matrix.truth_pixels(id as u8) as f64 / count as f64;
+    TRAIN_CLASSES.iter().enumerate().map(|(id, class)| (class.name, mean(id))).collect()
+}
+
 /// A figure between 0 and 1 with three decimals, or a dash.
 pub fn decimal(value: Option<f64>) -> String {
     value.map_or("-".into(), |v| format!("{v:.3}"))

@@ -158,7 +158,8 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
     assert_eq!(contents(&b), whole);
 
     assert!(natural::make(&natural_args(a.clone(), 1), &interrupt).is_err(), "it is complete");
-    let eval_args = EvalArgs { checkpoint: CheckpointChoice::Truth, dataset: a, split: "val".into() };
+    let eval_args =
+        EvalArgs { checkpoint: CheckpointChoice::Truth, dataset: a, split: "val".into(), save_predictions: None };
     assert_eq!(eval::run(&eval_args, true).unwrap(), Verdict::Ok);
 }
 

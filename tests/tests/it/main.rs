@@ -13,6 +13,7 @@ mod rig_bots;
 mod rig_campaign;
 mod rig_cli;
 mod rig_export;
+mod rig_learning;
 mod rig_redrive;
 mod rig_rerender;
 mod rig_statistics;
