@@ -29,3 +29,6 @@ pub use frame::Frame;
 pub use renderer::{Preset, RenderOptions, Renderer};
 pub use scenery::FIRST_PARKED_INSTANCE;
 pub use tags::SemanticTag;
+
+/// Version of the renderer; another one may draw a scene differently.
+pub const RENDERER_VERSION: &str = env!("CARGO_PKG_VERSION");

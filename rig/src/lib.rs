@@ -28,7 +28,7 @@ pub mod units;
 mod view;
 pub mod vision;
 
-use cli::{Cli, Command, DatasetCommand};
+use cli::{Cli, Command};
 use exit::Verdict;
 
 /// Runs a command.
@@ -43,8 +43,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::View(args) => view::run(args, json),
         Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Rerender(args) => lab::rerender::run(args, json),
-        Command::Dataset(DatasetCommand::Cases(args)) => lab::cases::run(args, json),
-        Command::Dataset(DatasetCommand::Natural(args)) => lab::natural::run(args, json),
+        Command::Dataset(command) => lab::dataset::run(command, json),
         Command::Redrive(args) => lab::redrive::run(args, json),
         Command::Export(args) => lab::export::run(args, json),
         Command::Train(args) => lab::train::run(args, json),

@@ -122,7 +122,7 @@ def check_layout(dataset, labels):
 
 def main(program, folder):
     dataset, labels = folder / "dataset", table()
-    sizes = ["--scenes", 0, "--val-scenes", SCENES, "--frames", FRAMES, "--size", "x".join(map(str, SIZE))]
+    sizes = ["--scenes", 0, "--val-scenes", SCENES, "--test-scenes", 0, "--frames", FRAMES, "--size", "x".join(map(str, SIZE))]
     aeye(program, "dataset", "natural", *sizes, "--pedestrians", 200, "--seed", 7, "--out", dataset)
     check_layout(dataset, labels)
     for checkpoint in ["early", "full"]:

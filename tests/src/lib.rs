@@ -1,5 +1,6 @@
 //! Scenes shared by the integration tests and the benchmarks.
 
+pub mod files;
 pub mod recordings;
 pub mod scenes;
 pub mod street;

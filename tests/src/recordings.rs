@@ -1,11 +1,14 @@
 //! Recordings of the shared scenes.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
 use kernel::arbiter::{Outcome, Phase};
 use kernel::time::Tick;
 use kernel::{Controls, TickInput, World};
-use replay::{Annotation, Label, Manifest, MaskShown, Provenance, Recorder};
+use replay::{Annotation, Case, Label, Manifest, MaskShown, Provenance, Recorder, Recording};
 
-use crate::scenes::{Scene, follow_route};
+use crate::scenes::{Scene, busy_city, follow_route};
 
 /// How a run is driven: the controls of the next tick.
 pub type Script = fn(&World) -> TickInput;
@@ -50,4 +53,24 @@ fn mask_at(tick: Tick) -> MaskShown {
     let tick_of_frame = (tick / 6 * 6).saturating_sub(6);
     let digest = (tick_of_frame + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     MaskShown { tick_shown: tick, tick_of_frame, camera: 0, digest, times: None }
+}
+
+/// Writes a recording of the city whose safety driver brakes, and the case cut from it.
+pub fn recorded(folder: &Path) -> (PathBuf, PathBuf) {
+    recorded_in(&busy_city(), folder, "a")
+}
+
+/// The same in any scene, as `NAME.mcap` and `NAME.case.mcap`.
+pub fn recorded_in(scene: &Scene, folder: &Path, name: &str) -> (PathBuf, PathBuf) {
+    let run = record(scene, TAKEOVER + 60, WITH_TAKEOVER);
+    let mut log = Recording::from_bytes(&run).expect("a recording").into_log();
+    let comment = "a <test>".into();
+    log.annotation = Some(Annotation { label: Label::Rules, comment, perception_caused: None });
+    let (path, case_path) = (folder.join(format!("{name}.mcap")), folder.join(format!("{name}.case.mcap")));
+    fs::write(&path, log.encode().expect("a log")).expect("written");
+    let recording = Recording::open(&path).expect("a recording");
+    let window = Case::window(recording.log()).expect("an intervention");
+    let case = Case::cut(&recording, &scene.network, window).expect("a case");
+    fs::write(&case_path, case.encode().expect("a log")).expect("written");
+    (path, case_path)
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use replay::Label;
 
 use super::CheckpointChoice;
 use super::values::{rate, size};
@@ -14,14 +15,19 @@ pub enum DatasetCommand {
     Natural(NaturalArgs),
     /// The last 3 s of corner cases at 10 frames a second, with ground truth.
     Cases(CasesArgs),
+    /// The paper's three training sets of equal size: natural, pedestrian and corner-case enriched.
+    Mix(MixArgs),
 }
 
 /// Arguments of `dataset cases`.
 #[derive(Args, Debug)]
 pub struct CasesArgs {
-    /// Corner cases.
-    #[arg(required = true, value_name = "CASE")]
+    /// Corner cases, or folders of them.
+    #[arg(required = true, value_name = "CASE|DIR")]
     pub files: Vec<PathBuf>,
+    /// Take only cases with this label: walker, vehicle, rules or boredom; may be given again.
+    #[arg(long)]
+    pub label: Vec<Label>,
     /// Which split they become.
     #[arg(long, default_value = "train", value_parser = ["train", "val", "test"])]
     pub split: String,
@@ -29,6 +35,29 @@ pub struct CasesArgs {
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
     /// Folder of the dataset; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `dataset mix`.
+#[derive(Args, Debug)]
+pub struct MixArgs {
+    /// Dataset whose training frames are replaced; its other splits are in all three sets.
+    #[arg(long, value_name = "DIR")]
+    pub natural: PathBuf,
+    /// Dataset of drives among more people (`dataset natural --pedestrians N` with another seed).
+    #[arg(long, value_name = "DIR")]
+    pub pool: PathBuf,
+    /// Dataset of corner cases.
+    #[arg(long, value_name = "DIR")]
+    pub cases: PathBuf,
+    /// Training frames replaced (paper: 1500; default: as many as the corner cases have).
+    #[arg(long, value_name = "N")]
+    pub replace: Option<u32>,
+    /// Seed of which frames are replaced, and by which.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Folder of the three datasets `natural`, `pedestrian` and `corner-case`; must not exist or be empty.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -42,9 +71,15 @@ pub struct NaturalArgs {
     /// Scenes of the validation split, with seeds of their own (paper: 20).
     #[arg(long, default_value_t = 20)]
     pub val_scenes: u32,
-    /// Frames a scene, one a second (paper: 60).
+    /// Scenes of the test split, with seeds of their own (paper: 21).
+    #[arg(long, default_value_t = 21)]
+    pub test_scenes: u32,
+    /// Frames a scene of training and validation, one a second (paper: 60).
     #[arg(long, default_value_t = 60)]
     pub frames: u32,
+    /// Frames a scene of the test split (paper: 30).
+    #[arg(long, default_value_t = 30)]
+    pub test_frames: u32,
     /// Size of the pictures.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),

@@ -16,7 +16,7 @@ use perception::BUNDLED;
 
 pub use campaign::{CampaignArgs, DemoArgs};
 pub use lab::{ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
-pub use learning::{CasesArgs, DatasetCommand, EvalArgs, NaturalArgs, TrainArgs};
+pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, TrainArgs};
 pub use live::{
     DoctorArgs, DriveArgs, Screens, SizeArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs,
     WheelListArgs,

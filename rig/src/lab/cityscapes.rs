@@ -52,6 +52,9 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Every one.
+    pub const ALL: [Self; 5] = [Self::Image, Self::LabelIds, Self::TrainIds, Self::InstanceIds, Self::Color];
+
     /// The folder below the dataset's, and the end of the file's name.
     fn names(self) -> (&'static str, &'static str) {
         match self {
@@ -79,11 +82,10 @@ pub fn sibling(image: &Path, kind: Kind) -> Option<PathBuf> {
 /// Writes all files of a frame below `dir`.
 pub fn write(dir: &Path, place: &Place<'_>, frame: &Frame) -> anyhow::Result<()> {
     let size = (frame.width, frame.height);
-    let train: Vec<u8> = frame.class_ids.iter().map(|&tag| TRAIN_ID_OF_TAG[usize::from(tag)]).collect();
     let files = [
         (Kind::Image, png::rgb(size, &frame.rgb)?),
         (Kind::LabelIds, png::grey(size, &frame.class_ids)?),
-        (Kind::TrainIds, png::grey(size, &train)?),
+        (Kind::TrainIds, png::grey(size, &train_ids(&frame.class_ids))?),
         (Kind::InstanceIds, png::grey16(size, &instances(frame))?),
         (Kind::Color, png::tags(size, &frame.class_ids)?),
     ];
@@ -96,18 +98,13 @@ pub fn write(dir: &Path, place: &Place<'_>, frame: &Frame) -> anyhow::Result<()>
     Ok(())
 }
 
-/// BLAKE3 over colour, tags and instances of a frame, in hexadecimal digits.
-pub fn digest(frame: &Frame) -> String {
-    let mut pixels = blake3::Hasher::new();
-    pixels.update(&frame.rgb).update(&frame.class_ids);
-    frame.instance_ids.iter().for_each(|id| {
-        pixels.update(&id.to_le_bytes());
-    });
-    pixels.finalize().to_hex().to_string()
+/// Train ids of tags.
+pub fn train_ids(tags: &[u8]) -> Vec<u8> {
+    tags.iter().map(|&tag| TRAIN_ID_OF_TAG[usize::from(tag)]).collect()
 }
 
 /// `tag * 1000 + n` for the n-th instance of the picture (by id), the tag alone for all else.
-fn instances(frame: &Frame) -> Vec<u16> {
+pub fn instances(frame: &Frame) -> Vec<u16> {
     let mut ids: Vec<u16> = frame.instance_ids.iter().copied().filter(|id| *id != 0).collect();
     ids.sort_unstable();
     ids.dedup();
@@ -140,7 +137,7 @@ mod tests {
         write(dir.path(), &place, &frame).expect("written");
         let image = dir.path().join(place.path(Kind::Image));
         assert_eq!(sibling(&image, Kind::TrainIds), Some(dir.path().join(place.path(Kind::TrainIds))));
-        for kind in [Kind::Image, Kind::LabelIds, Kind::TrainIds, Kind::InstanceIds, Kind::Color] {
+        for kind in Kind::ALL {
             assert!(dir.path().join(place.path(kind)).is_file(), "{kind:?}");
         }
     }

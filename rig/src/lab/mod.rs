@@ -1,16 +1,14 @@
 //! The offline lab: pictures, datasets, checkpoints and reports made from recordings.
 
-pub mod cases;
 pub mod cityscapes;
+pub mod dataset;
 pub mod demo;
 pub mod eval;
-pub mod expert;
 pub mod export;
 pub mod figures;
 pub mod footage;
 pub mod library;
 pub mod looks;
-pub mod natural;
 pub mod pipeline;
 pub mod plot;
 pub mod png;

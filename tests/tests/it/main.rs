@@ -1,6 +1,7 @@
 //! The integration tests, one binary. Each module tests one promise to the user.
 
 mod classes;
+mod datasets;
 mod lab;
 mod real_maps;
 mod render_frame;

@@ -9,9 +9,9 @@ use replay::Recording;
 use rig::cli::{CheckpointChoice, RerenderArgs};
 use rig::exit::{self, Verdict};
 use rig::lab::rerender;
+use tests::files::contents;
+use tests::recordings::recorded_in;
 use tests::scenes::{busy_city, country_road};
-
-use crate::lab::{contents, recorded_in};
 
 const EARLY: CheckpointChoice = CheckpointChoice::Bundled("early");
 

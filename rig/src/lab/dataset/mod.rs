@@ -1,0 +1,34 @@
+//! Datasets: frames with ground truth in the layout of Cityscapes, each with its provenance.
+//!
+//! | kind | frames | module |
+//! |---|---|---|
+//! | natural | simulated drives, one frame a second | [`natural`], driven by [`expert`] in [`drive`] |
+//! | cases | the 3 s up to each takeover, ten frames a second | [`cases`] |
+//! | mix | natural ones, some replaced by others | [`mix`] |
+//!
+//! A folder is a dataset as soon as it holds `dataset.json` ([`Manifest`]: the recipe and what came of
+//! it), which is written last. `frames.jsonl` says where each frame comes from ([`FrameLine`]). The
+//! pictures are a function of the recipe, on one adapter.
+
+pub mod cases;
+mod drive;
+mod expert;
+mod manifest;
+pub mod mix;
+pub mod natural;
+mod provenance;
+
+pub use manifest::{Manifest, Recipe};
+pub use provenance::{FrameLine, Part, WeatherLine};
+
+use crate::cli::DatasetCommand;
+use crate::exit::Verdict;
+
+/// Runs `aeye dataset ...`.
+pub fn run(command: &DatasetCommand, json: bool) -> anyhow::Result<Verdict> {
+    match command {
+        DatasetCommand::Natural(args) => natural::run(args, json),
+        DatasetCommand::Cases(args) => cases::run(args, json),
+        DatasetCommand::Mix(args) => mix::run(args, json),
+    }
+}
