@@ -49,6 +49,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Train(args) => lab::train::run(args, json),
         Command::Eval(args) => lab::eval::run(args, json),
         Command::Report(args) => lab::report::run(args, json),
+        Command::Experiment(args) => lab::experiment::run(args, json),
         Command::Demo(args) => lab::demo::run(args, json),
         Command::Wheel(command) => commands::wheel::run(command, json),
         Command::Doctor(args) => commands::doctor::run(args, json),

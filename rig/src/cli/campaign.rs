@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CheckpointChoice;
+use crate::lab::experiment::Preset;
 
 /// Arguments of `campaign`.
 #[derive(Args, Debug)]
@@ -59,4 +60,24 @@ pub struct DemoArgs {
     /// Folder of the results; a demo that was interrupted goes on there.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// Arguments of `experiment`.
+#[derive(Args, Debug)]
+pub struct ExperimentArgs {
+    /// The experiment's numbers: half an hour, a night (both on two cores), or as in the paper.
+    #[arg(long, value_name = "smoke|desk|paper", required_unless_present = "recipe", conflicts_with = "recipe")]
+    pub preset: Option<Preset>,
+    /// A file with other numbers; `--print-recipe` shows what it has to hold.
+    #[arg(long, value_name = "FILE.toml")]
+    pub recipe: Option<PathBuf>,
+    /// Print the recipe as TOML and do nothing.
+    #[arg(long)]
+    pub print_recipe: bool,
+    /// Drives at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Folder of the results; an experiment that was interrupted goes on there.
+    #[arg(long, value_name = "DIR", required_unless_present = "print_recipe")]
+    pub out: Option<PathBuf>,
 }

@@ -14,7 +14,7 @@ use std::str::FromStr;
 use clap::{Parser, Subcommand};
 use perception::BUNDLED;
 
-pub use campaign::{CampaignArgs, DemoArgs};
+pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
 pub use lab::{ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
 pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, TrainArgs};
 pub use live::{
@@ -70,6 +70,8 @@ pub enum Command {
     Eval(EvalArgs),
     /// One self-contained page about corner cases.
     Report(ReportArgs),
+    /// The paper from end to end: do corner cases make networks better?
+    Experiment(ExperimentArgs),
     /// Drive until three corner cases, verify, render them again, and write a report.
     Demo(DemoArgs),
     /// List and calibrate wheels and gamepads.

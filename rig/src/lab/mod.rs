@@ -4,6 +4,7 @@ pub mod cityscapes;
 pub mod dataset;
 pub mod demo;
 pub mod eval;
+pub mod experiment;
 pub mod export;
 pub mod figures;
 pub mod footage;

@@ -5,24 +5,32 @@ use kernel::rng::{self, Stream};
 /// How often is drawn.
 const DRAWS: u32 = 4000;
 
+/// One drawing again: `count` of the numbers below `count`, with replacement. `what` tells apart what is
+/// drawn within one draw.
+pub fn resample(seed: u64, draw: u32, what: u32, count: usize) -> impl Iterator<Item = usize> {
+    let below = u32::try_from(count).unwrap_or(u32::MAX);
+    let entity = u64::from(what) << 32 | u64::from(draw);
+    (0..count).map(move |i| rng::below(seed, Stream::Driver, entity, i as u64, below) as usize)
+}
+
+/// 95 % interval of a statistic by its percentiles over all draws, whose numbers it is given. Draws where it
+/// is not finite are left out; `None` if all are.
+pub fn percentile_interval(statistic: impl Fn(u32) -> f64) -> Option<(f64, f64)> {
+    let mut values: Vec<f64> = (0..DRAWS).map(statistic).filter(|value| value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let quantile = |share: f64| values.get((share * (values.len() as f64 - 1.0)).round() as usize).copied();
+    Some((quantile(0.025)?, quantile(0.975)?))
+}
+
 /// 95 % interval of events per exposure, by drawing clusters (rides) of `(events, exposure)` with
 /// replacement: unlike the exact interval it allows for rides that differ. `None` for fewer than two clusters.
 pub fn rate_interval(clusters: &[(u64, f64)], seed: u64) -> Option<(f64, f64)> {
-    let count = u32::try_from(clusters.len()).ok().filter(|n| *n >= 2)?;
-    let mut rates: Vec<f64> = (0..DRAWS)
-        .map(|draw| {
-            let drawn = (0..count).map(|i| rng::below(seed, Stream::Driver, u64::from(draw), i.into(), count));
-            let (events, exposure) = drawn.fold((0, 0.0), |(events, exposure), i| {
-                let cluster = clusters[i as usize];
-                (events + cluster.0, exposure + cluster.1)
-            });
-            events as f64 / exposure
-        })
-        .filter(|rate| rate.is_finite())
-        .collect();
-    rates.sort_by(f64::total_cmp);
-    let quantile = |share: f64| rates.get((share * (rates.len() as f64 - 1.0)).round() as usize).copied();
-    Some((quantile(0.025)?, quantile(0.975)?))
+    let rate = |draw| {
+        let drawn = resample(seed, draw, 0, clusters.len()).map(|i| clusters[i]);
+        let (events, exposure) = drawn.fold((0, 0.0), |(n, sum), (events, exposure)| (n + events, sum + exposure));
+        events as f64 / exposure
+    };
+    if clusters.len() < 2 { None } else { percentile_interval(rate) }
 }
 
 #[cfg(test)]

@@ -140,7 +140,8 @@ impl Screen<'_> {
     }
 }
 
-fn line(report: &Epoch) -> String {
+/// An epoch as a line of text.
+pub fn line(report: &Epoch) -> String {
     let Epoch { epoch, loss, miou, pedestrian_iou, .. } = report;
     format!("epoch {epoch:3}  loss {loss:.4}  mIoU {}  IoU Pedestrian {}", number(*miou), number(*pedestrian_iou))
 }

@@ -1,0 +1,258 @@
+//! The numbers of an experiment.
+
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+/// Everything that decides an experiment's results.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recipe {
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Width and height of all pictures, pixels.
+    pub size: (u32, u32),
+    /// Maps, in turn.
+    pub maps: Vec<String>,
+    /// The initial data.
+    pub natural: Natural,
+    /// More natural scenes, from which the pedestrian enriched set takes.
+    pub pool: Pool,
+    /// The network that the first campaign drives with, stopped early on purpose.
+    pub driving: Driving,
+    /// The campaign that finds corner cases.
+    pub first_campaign: FirstCampaign,
+    /// The networks that are compared.
+    pub training: Training,
+    /// The campaign that compares them.
+    pub second_campaign: SecondCampaign,
+}
+
+/// The initial data: scenes of one frame a second.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Natural {
+    /// Scenes to learn from.
+    pub scenes: u32,
+    /// Scenes to choose by.
+    pub val_scenes: u32,
+    /// Frames of each of these.
+    pub frames: u32,
+    /// Scenes of the natural test.
+    pub test_scenes: u32,
+    /// Frames of each of these.
+    pub test_frames: u32,
+}
+
+/// Scenes that are rich in pedestrians.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pool {
+    /// How many.
+    pub scenes: u32,
+    /// People on foot on the map.
+    pub pedestrians: u16,
+}
+
+/// A training that is stopped early.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Driving {
+    /// Epochs that are trained.
+    pub epochs: u32,
+    /// Epochs of the whole schedule.
+    pub horizon: u32,
+}
+
+/// How corner cases are found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FirstCampaign {
+    /// Corner cases with pedestrians to learn from.
+    pub training_cases: u32,
+    /// Corner cases with pedestrians of the safety-critical test, from later runs.
+    pub test_cases: u32,
+    /// People on foot on the map; absent: as many as it has by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pedestrians: Option<u16>,
+    /// Longest simulated time of a run, seconds.
+    pub run_seconds: u32,
+}
+
+/// How the three kinds of network are trained.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Training {
+    /// Epochs.
+    pub epochs: u32,
+    /// Trainings on each dataset, which differ in their seeds.
+    pub seeds: u32,
+}
+
+/// How long each of the three drives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SecondCampaign {
+    /// Kilometres of each network.
+    pub km: f64,
+    /// People on foot on the map; absent: as many as it has by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pedestrians: Option<u16>,
+    /// Longest simulated time of a run, seconds.
+    pub run_seconds: u32,
+}
+
+/// Experiments with a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// Half an hour on two cores: shows that everything works.
+    Smoke,
+    /// A night on two cores.
+    Desk,
+    /// The paper's numbers of scenes, corner cases, epochs, seeds and kilometres.
+    Paper,
+}
+
+impl Preset {
+    /// Its numbers.
+    pub fn recipe(self) -> Recipe {
+        match self {
+            Self::Smoke => Recipe {
+                natural: Natural { scenes: 20, val_scenes: 4, frames: 24, test_scenes: 6, test_frames: 15 },
+                pool: Pool { scenes: 10, pedestrians: 250 },
+                driving: Driving { epochs: 3, horizon: 12 },
+                first_campaign: FirstCampaign {
+                    training_cases: 4,
+                    test_cases: 2,
+                    pedestrians: Some(250),
+                    run_seconds: 120,
+                },
+                training: Training { epochs: 8, seeds: 2 },
+                second_campaign: SecondCampaign { km: 2.0, pedestrians: Some(250), run_seconds: 120 },
+                ..Self::Paper.recipe()
+            },
+            Self::Desk => Recipe {
+                natural: Natural { scenes: 60, val_scenes: 12, frames: 40, test_scenes: 21, test_frames: 30 },
+                pool: Pool { scenes: 40, pedestrians: 250 },
+                driving: Driving { epochs: 5, horizon: 40 },
+                first_campaign: FirstCampaign {
+                    training_cases: 24,
+                    test_cases: 12,
+                    pedestrians: Some(250),
+                    run_seconds: 240,
+                },
+                training: Training { epochs: 40, seeds: 3 },
+                second_campaign: SecondCampaign { km: 40.0, pedestrians: Some(250), run_seconds: 240 },
+                ..Self::Paper.recipe()
+            },
+            Self::Paper => Recipe {
+                seed: 1,
+                size: (256, 128),
+                maps: vec!["all".into()],
+                natural: Natural { scenes: 85, val_scenes: 20, frames: 60, test_scenes: 21, test_frames: 30 },
+                pool: Pool { scenes: 85, pedestrians: 250 },
+                driving: Driving { epochs: 5, horizon: 200 },
+                first_campaign: FirstCampaign {
+                    training_cases: 50,
+                    test_cases: 21,
+                    pedestrians: None,
+                    run_seconds: 600,
+                },
+                training: Training { epochs: 200, seeds: 5 },
+                second_campaign: SecondCampaign { km: 150.0, pedestrians: None, run_seconds: 600 },
+            },
+        }
+    }
+}
+
+impl Recipe {
+    /// Reads a recipe's file.
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let context = || path.display().to_string();
+        let text = std::fs::read_to_string(path).with_context(context)?;
+        let recipe: Self =
+            toml::from_str(&text).map_err(|e| anyhow::anyhow!(one_line(&e, &text))).with_context(context)?;
+        recipe.check().with_context(context)?;
+        Ok(recipe)
+    }
+
+    /// As a file has it.
+    pub fn to_toml(&self) -> anyhow::Result<String> {
+        Ok(toml::to_string(self)?)
+    }
+
+    fn check(&self) -> anyhow::Result<()> {
+        let counts = [
+            ("natural.scenes", self.natural.scenes),
+            ("natural.val_scenes", self.natural.val_scenes),
+            ("natural.frames", self.natural.frames),
+            ("natural.test_scenes", self.natural.test_scenes),
+            ("natural.test_frames", self.natural.test_frames),
+            ("pool.scenes", self.pool.scenes),
+            ("driving.epochs", self.driving.epochs),
+            ("first_campaign.training_cases", self.first_campaign.training_cases),
+            ("first_campaign.test_cases", self.first_campaign.test_cases),
+            ("training.epochs", self.training.epochs),
+            ("training.seeds", self.training.seeds),
+        ];
+        if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
+            bail!("{name} is 0; expected at least 1");
+        }
+        if self.driving.horizon < self.driving.epochs {
+            bail!("driving.horizon is {}; expected at least driving.epochs", self.driving.horizon);
+        }
+        if !(self.second_campaign.km > 0.0 && self.second_campaign.km.is_finite()) {
+            bail!("second_campaign.km is {}; expected more than 0", self.second_campaign.km);
+        }
+        let seconds = [self.first_campaign.run_seconds, self.second_campaign.run_seconds];
+        if let Some(wrong) = seconds.iter().find(|s| !(10..=86_400).contains(*s)) {
+            bail!("run_seconds is {wrong}; expected 10 to 86400");
+        }
+        Ok(())
+    }
+}
+
+/// A message of the TOML reader as one sentence with its line.
+fn one_line(error: &toml::de::Error, text: &str) -> String {
+    let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
+    format!("line {line}: {}", error.message())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_valid_and_come_back_from_their_text() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("recipe.toml");
+        for preset in Preset::value_variants() {
+            let recipe = preset.recipe();
+            std::fs::write(&path, recipe.to_toml().expect("text")).expect("written");
+            assert_eq!(Recipe::read(&path).expect("valid"), recipe, "{preset:?}");
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused_by_its_place() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("recipe.toml");
+        let refused = |text: &str| {
+            std::fs::write(&path, text).expect("written");
+            format!("{:#}", Recipe::read(&path).expect_err("refused"))
+        };
+        let good = Preset::Smoke.recipe().to_toml().expect("text");
+        for (from, to, said) in [
+            ("seeds = 2", "seeds = 0", "training.seeds is 0"),
+            ("km = 2.0", "km = -1.0", "more than 0"),
+            ("epochs = 3", "epochs = 30", "at least driving.epochs"),
+            ("run_seconds = 120", "run_seconds = 1", "10 to 86400"),
+            ("seed = 1", "sead = 1", "line 1: unknown field"),
+        ] {
+            let message = refused(&good.replacen(from, to, 1));
+            assert!(message.contains(said) && message.contains("recipe.toml"), "{message}");
+        }
+    }
+}
