@@ -2,12 +2,14 @@
 //! times are ours.
 
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::Path;
 
 use kernel::time::Tick;
-use mcap::records::{MessageHeader, Metadata};
+use mcap::records::{MessageHeader, Metadata, Record};
 use mcap::write::NoSeek;
-use mcap::{WriteOptions, Writer};
+use mcap::{MAGIC, WriteOptions, Writer};
 
 use crate::Error;
 use crate::container::{io_error, options};
@@ -15,8 +17,10 @@ use crate::layout::nanoseconds;
 
 /// Bytes of messages in a chunk: a second or two of small pictures.
 const CHUNK_BYTES: u64 = 1 << 20;
-/// Name of the metadata record that says what the file was made from.
+/// Name of the metadata record that says what the file was made from; it follows the header.
 const METADATA: &str = "aeye.export";
+/// Header and metadata are shorter than this.
+const HEAD_BYTES: u64 = 1 << 16;
 
 /// What the messages of a channel look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +82,18 @@ impl<W: Write> Exporter<W> {
         self.writer.finish().map_err(io_error)?;
         Ok(self.writer.into_inner().into_inner())
     }
+}
+
+/// What a file was made from, as given to [`Exporter::new`]; `None` for a file of another kind. Reads no
+/// more than the file's head.
+pub fn exported_from(path: &Path) -> Option<BTreeMap<String, String>> {
+    let mut head = Vec::new();
+    File::open(path).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+    let records = mcap::read::LinearReader::sans_magic(head.strip_prefix(MAGIC)?);
+    records.take(2).find_map(|record| match record {
+        Ok(Record::Metadata(Metadata { name, metadata })) if name == METADATA => Some(metadata),
+        _ => None,
+    })
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ pub mod crew;
 mod desktop;
 pub mod drivers;
 pub mod exit;
+mod footprint;
 pub mod lab;
 mod live;
 pub mod maps;

@@ -8,6 +8,7 @@ protobuf support, and Rerun's MCAP importer. Both must find the frames, poses an
 import collections
 import io
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -22,6 +23,8 @@ import rerun.chunk
 TICK_HZ = 60
 CHECKPOINT = "early"
 SIZE = (128, 64)
+# Topics whose messages are ours; all others hold Foxglove's.
+OWN = {"/telemetry", "/criticality"}
 # What Rerun must make of a topic, instead of leaving its messages as they are.
 ARCHETYPES = {
     "/tf": "Transform3D",
@@ -46,10 +49,19 @@ def expected(contents):
     window, intervention = contents["window"], contents["intervention"]
     decisive = window["to"] if window else intervention["tick"] if intervention else last
     frames = sum((tick - decisive) % (TICK_HZ // 10) == 0 for tick in range(first, last + 1))
-    counts = dict.fromkeys(["/tf", "/actors", *(t for t in ARCHETYPES if t.startswith("/camera"))], frames)
+    counts = dict.fromkeys(["/tf", "/actors", "/criticality", *(t for t in ARCHETYPES if t.startswith("/camera"))], frames)
     counts |= {"/ego/pose": last - first + 1, "/telemetry": last - first, "/ego/path": 1, "/map": 1}
     counts |= {"/events": len(contents["events"]) + len(contents["notes"])}
     return {topic: count for topic, count in counts.items() if count}
+
+
+def same_trace(message, samples):
+    """What is plotted is what `aeye inspect` tells of a case."""
+    for sample in (sample for sample in samples if sample["tick"] == message.tick):
+        assert message.encroachment == (sample["encroachment"] is not None)
+        for name in ["ttc_s", "pret_s", "required_deceleration_mps2"]:
+            told, plotted = sample[name], getattr(message, name)
+            assert math.isnan(plotted) if told is None else math.isclose(plotted, told["value"]), (name, told)
 
 
 def read_with_mcap(path, contents):
@@ -59,11 +71,13 @@ def read_with_mcap(path, contents):
         for schema, channel, message, decoded in reader.iter_decoded_messages():
             counts[channel.topic] += 1
             assert schema.encoding == channel.message_encoding == "protobuf" and schema.data
-            assert schema.name.startswith("foxglove.") or channel.topic == "/telemetry", schema.name
+            assert schema.name.startswith("foxglove.") or channel.topic in OWN, schema.name
             assert message.log_time == message.publish_time
             if channel.topic == "/telemetry":
                 tick = -(-message.log_time * TICK_HZ // 10**9)
                 assert decoded.tick == tick and {decoded.steering_by, decoded.pedals_by} <= {"semantic", "safety"}
+            elif channel.topic == "/criticality":
+                same_trace(decoded, (contents["criticality"] or {"samples": []})["samples"])
             elif channel.topic.startswith("/camera/") and channel.topic != "/camera/calibration":
                 picture = PIL.Image.open(io.BytesIO(decoded.data))
                 assert picture.size == SIZE and picture.mode == ("RGB" if channel.topic == "/camera/rgb" else "P")

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::drive::RunFigures;
 use crate::cli::InspectArgs;
 use crate::exit::Verdict;
-use crate::measures::{self, Measures, Tally};
+use crate::measures::{self, Criticality, Measures, Tally};
 use crate::output;
 use crate::study::{self, Questionnaire};
 
@@ -41,6 +41,8 @@ struct Contents {
     measures: Option<Measures>,
     /// Why there are no measures.
     unmeasured: Option<String>,
+    /// Of a corner case.
+    criticality: Option<Criticality>,
     scenario: String,
 }
 
@@ -161,6 +163,7 @@ fn read(file: &Path, recording: &Recording, reveal: bool) -> anyhow::Result<Cont
         notes: log.notes.iter().map(NoteLine::of).collect(),
         unmeasured: measured.as_ref().err().map(ToString::to_string),
         measures: measured.ok(),
+        criticality: recording.network().and_then(|network| Criticality::of_case(log, &network)).ok().flatten(),
         scenario: manifest.scenario.to_toml(),
     })
 }
@@ -214,6 +217,9 @@ fn text(c: &Contents) -> String {
     match (&c.measures, &c.unmeasured) {
         (Some(measures), _) => measures::lines(measures).into_iter().for_each(|(name, value)| line(name, value)),
         (None, why) => line("measures", format!("none: {}", why.as_deref().unwrap_or_default())),
+    }
+    for (name, value) in c.criticality.iter().flat_map(Criticality::lines) {
+        line(name, value);
     }
     paragraph(lines)
 }

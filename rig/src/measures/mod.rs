@@ -6,6 +6,7 @@
 //! route at its present speed, or goes on braking; vehicles keep to their lanes, people to their
 //! direction. Times are counted from there.
 
+pub mod criticality;
 mod reactions;
 mod screen;
 mod steering;
@@ -21,6 +22,7 @@ use replay::{Error, Log};
 use serde::Serialize;
 
 pub use crate::stats::Spread;
+pub use criticality::Criticality;
 pub use reactions::Response;
 pub use screen::ScreenAge;
 pub use tally::Tally;

@@ -2,7 +2,8 @@
 
 use kernel::time::{TICK_HZ, Tick};
 
-use super::{HazardTimes, Measures, Response, ScreenAge, Spread, Tally};
+use super::criticality::Extreme;
+use super::{Criticality, HazardTimes, Measures, Response, ScreenAge, Spread, Tally};
 
 /// The measures of a recording as names and values.
 pub fn lines(measures: &Measures) -> Vec<(&'static str, String)> {
@@ -16,6 +17,23 @@ pub fn lines(measures: &Measures) -> Vec<(&'static str, String)> {
 
 fn at(tick: Tick) -> String {
     format!("tick {tick} ({:.2} s)", tick as f64 / f64::from(TICK_HZ))
+}
+
+impl Criticality {
+    /// The extremes as names and values.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let line = |name, unit, extreme: &Option<Extreme>| {
+            let Extreme { value, tick, with } = extreme.as_ref()?;
+            Some((name, format!("{value:.2} {unit} at {}, {with}", at(*tick))))
+        };
+        let lines = [
+            line("least TTC", "s", &self.min_ttc_s),
+            line("least PrET", "s", &self.min_pret_s),
+            line("PET", "s", &self.pet_s),
+            line("braking", "m/s^2 required", &self.max_required_deceleration_mps2),
+        ];
+        lines.into_iter().flatten().collect()
+    }
 }
 
 impl HazardTimes {

@@ -48,7 +48,8 @@ fn topics(file: &Path) -> Topics {
         let message = message.unwrap();
         let schema = message.channel.schema.as_ref().expect("a schema");
         assert_eq!((schema.encoding.as_str(), message.channel.message_encoding.as_str()), ("protobuf", "protobuf"));
-        assert!(schema.name.starts_with("foxglove.") || schema.name == "telemetry.Telemetry", "{}", schema.name);
+        let ours = ["telemetry.Telemetry", "criticality.Criticality"].contains(&schema.name.as_str());
+        assert!(ours || schema.name.starts_with("foxglove."), "{}", schema.name);
         assert!(!schema.data.is_empty() && message.log_time == message.publish_time && message.log_time >= last);
         last = message.log_time;
         topics.entry(message.channel.topic.clone()).or_default().push((message.log_time, message.data.into_owned()));
@@ -86,7 +87,9 @@ fn an_export_holds_every_frame_pose_and_event_at_its_time() {
     for topic in ["rgb", "truth", "predicted/early", "calibration"] {
         assert_eq!(times(&topics[&format!("/camera/{topic}")]), frames, "{topic}");
     }
-    assert_eq!((times(&topics["/tf"]), times(&topics["/actors"])), (frames.clone(), frames.clone()));
+    for topic in ["/tf", "/actors", "/criticality"] {
+        assert_eq!(times(&topics[topic]), frames, "{topic}");
+    }
     assert_eq!(times(&topics["/ego/pose"]), nanos(&mut ticks.iter()));
     assert_eq!(times(&topics["/telemetry"]), nanos(&mut ticks[1..].iter()));
     assert_eq!(times(&topics["/events"]), nanos(&mut log.events.iter().map(|(tick, _)| tick)));
@@ -143,6 +146,11 @@ fn windows_are_those_of_the_run_and_several_files_go_into_a_folder() {
     let common = ["--size", "16x8", "--out", folder.to_str().unwrap()];
     let (code, sentence) = export(&[&[recording, case, "--last", "3s"], common.as_slice()].concat());
     assert_eq!(code, 0, "{sentence}");
+    let written = |name: &str| fs::metadata(folder.join(name)).unwrap().modified().unwrap();
+    let before = written("a.mcap");
+    fs::write(folder.join("a.case.mcap"), "something else").unwrap();
+    let (code, sentence) = export(&[&[recording, case, "--last", "3s"], common.as_slice()].concat());
+    assert_eq!((code, written("a.mcap")), (0, before), "what is there is kept: {sentence}");
     let frames = |name: &str| times(&topics(&folder.join(name))["/camera/rgb"]);
     assert_eq!(frames("a.mcap").len(), 30);
     assert_eq!((frames("a.mcap"), frames("a.mcap").last()), (frames("a.case.mcap"), Some(&nanoseconds(TAKEOVER))));

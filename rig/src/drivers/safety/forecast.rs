@@ -1,50 +1,16 @@
 //! Where everyone will be in the next seconds if nobody changes his mind.
 
 use glam::Vec2;
-use kernel::map::{LaneKind, Prop, RoadNetwork};
+use kernel::map::{LaneKind, RoadNetwork};
 use kernel::scene::{ActorKind, ActorScene, EgoScene};
 use kernel::{World, ego, ops};
+
+use crate::footprint::{Footprint, middle};
 
 /// Room kept around the ego car on each side, metres.
 const MARGIN_M: f32 = 0.15;
 /// An actor belongs to a lane whose middle is nearer than this, metres.
 const ON_LANE_M: f32 = 1.5;
-
-/// A footprint on the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Footprint {
-    /// Middle, metres.
-    pub centre: Vec2,
-    /// Unit vector to the front.
-    pub forward: Vec2,
-    /// Half of length and width, metres.
-    pub half: Vec2,
-}
-
-impl Footprint {
-    /// Whether two footprints share ground (separating axes).
-    pub fn overlaps(&self, other: &Self) -> bool {
-        let between = other.centre - self.centre;
-        let axes = [self.forward, self.forward.perp(), other.forward, other.forward.perp()];
-        axes.iter().all(|&axis| between.dot(axis).abs() <= self.reach(axis) + other.reach(axis))
-    }
-
-    fn reach(&self, axis: Vec2) -> f32 {
-        self.half.x * self.forward.dot(axis).abs() + self.half.y * self.forward.perp().dot(axis).abs()
-    }
-
-    /// That of an actor as it is now.
-    pub fn of_actor(actor: &ActorScene) -> Self {
-        let forward = (actor.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
-        Self { centre: actor.position.truncate(), forward, half: 0.5 * actor.kind.size_m().truncate() }
-    }
-
-    /// That of a parked car.
-    pub fn of_prop(prop: &Prop) -> Self {
-        let forward = Vec2::new(ops::cos(prop.heading_rad), ops::sin(prop.heading_rad));
-        Self { centre: prop.position.truncate(), forward, half: 0.5 * prop.size.truncate() }
-    }
-}
 
 /// The ego car's way along its route, beside the middle of it as far as it is now.
 pub struct EgoWay {
@@ -92,16 +58,6 @@ pub fn driven_m(speed_mps: f32, acceleration_mps2: f32, t_s: f32) -> f32 {
     speed_mps * t_s + 0.5 * acceleration_mps2 * t_s * t_s
 }
 
-/// Middle of the ego car, seen from above.
-pub fn middle(car: &EgoScene) -> Vec2 {
-    car.position.truncate() + ego::CENTRE_M.x * forward(car)
-}
-
-/// Direction of the ego car, seen from above.
-pub fn forward(car: &EgoScene) -> Vec2 {
-    (car.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X)
-}
-
 /// Footprint of another actor after some metres: vehicles keep their lane, people their direction.
 pub fn actor_after(network: &RoadNetwork, actor: &ActorScene, driven_m: f32) -> Footprint {
     let now = Footprint::of_actor(actor);
@@ -140,18 +96,5 @@ mod tests {
         assert_eq!(driven_m(6.0, 1.0, 2.0), 12.0);
         assert_eq!(driven_m(6.0, -2.0, 2.0), 8.0);
         assert_eq!(driven_m(6.0, -2.0, 9.0), 9.0);
-    }
-
-    #[test]
-    fn footprints_overlap_as_boxes_do() {
-        let car = |x, y, heading: f32| Footprint {
-            centre: Vec2::new(x, y),
-            forward: Vec2::from_angle(heading),
-            half: Vec2::new(2.25, 0.9),
-        };
-        assert!(car(0.0, 0.0, 0.0).overlaps(&car(4.0, 0.0, 0.0)));
-        assert!(!car(0.0, 0.0, 0.0).overlaps(&car(0.0, 1.9, 0.0)));
-        assert!(car(0.0, 0.0, 0.0).overlaps(&car(0.0, 2.5, 1.57)));
-        assert!(!car(0.0, 0.0, 0.0).overlaps(&car(3.0, 3.0, -0.785)));
     }
 }

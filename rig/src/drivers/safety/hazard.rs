@@ -8,8 +8,9 @@ use kernel::signals::LightPhase;
 use kernel::{World, ego, ops};
 use replay::Label;
 
-use super::forecast::{EgoWay, Footprint, actor_after, driven_m, forward, middle};
+use super::forecast::{EgoWay, actor_after, driven_m};
 use super::looks::Looks;
+use crate::footprint::{Footprint, forward, middle};
 
 /// An encroachment predicted within this time is critical (Westhofen et al. 2022), seconds.
 const CRITICAL_S: f32 = 2.0;

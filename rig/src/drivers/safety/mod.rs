@@ -10,6 +10,7 @@ use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Controls, World, ego, ops};
 
 use super::Driver;
+use crate::footprint;
 pub use hazard::{Hazard, label_of, predicted_encroachment};
 pub use looks::{LOOK_TICKS, Looks};
 
@@ -123,7 +124,7 @@ fn steer_back(world: &World) -> f32 {
     let route = world.route_ahead(STEER_TO_M as f32 + 1.0);
     let Some(target) = route.get(STEER_TO_M).or(route.last()) else { return 0.0 };
     let to = target.truncate() - car.position.truncate();
-    let left_m = forecast::forward(&car).perp_dot(to);
+    let left_m = footprint::forward(&car).perp_dot(to);
     let curvature = 2.0 * left_m / Vec2::length_squared(to).max(1.0);
     (-ops::atan2(ego::WHEELBASE_M * curvature, 1.0) / ego::MAX_WHEEL_ANGLE_RAD).clamp(-1.0, 1.0)
 }

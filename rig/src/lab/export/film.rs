@@ -11,12 +11,14 @@ use kernel::{RoadNetwork, World};
 use replay::{Log, Replayer};
 use serde::Serialize;
 
+use super::criticality::Criticality;
 use super::sink::Sink;
 use super::telemetry::Telemetry;
 use super::topics::Topics;
 use super::{entities, happenings, messages};
 use crate::lab::looks::{Studio, look};
 use crate::lab::png;
+use crate::measures::criticality::{SAMPLE_TICKS, Sampler, WARM_UP_SAMPLES};
 use crate::vision::Eye;
 
 /// What is exported of a log.
@@ -34,14 +36,9 @@ impl Window {
     fn has_picture(&self, tick: Tick) -> bool {
         tick.abs_diff(self.anchor).is_multiple_of(self.stride)
     }
-
-    /// How many pictures there are.
-    pub fn pictures(&self) -> usize {
-        self.ticks.clone().filter(|tick| self.has_picture(*tick)).count()
-    }
 }
 
-/// What was written.
+/// What is written of a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
     /// Ticks with a picture.
@@ -50,6 +47,17 @@ pub struct Counts {
     pub poses: usize,
     /// Happenings.
     pub events: usize,
+}
+
+impl Counts {
+    /// That of a window of a log.
+    pub fn of(log: &Log, window: &Window) -> Self {
+        Self {
+            frames: window.ticks.clone().filter(|tick| window.has_picture(*tick)).count(),
+            poses: window.ticks.clone().count(),
+            events: happenings::lines(log, &window.ticks).len(),
+        }
+    }
 }
 
 /// What turns scenes into pictures and masks.
@@ -67,46 +75,51 @@ pub fn shoot<W: Write>(
     camera: &mut Camera<'_>,
     sink: &mut Sink<W>,
     mut go_on: impl FnMut() -> anyhow::Result<()>,
-) -> anyhow::Result<Counts> {
+) -> anyhow::Result<()> {
     let topics = Topics::declare(sink, camera.eyes.iter().map(Eye::name))?;
     let (first, last) = (*window.ticks.start(), *window.ticks.end());
     sink.put(&topics.ground, first, &entities::ground(first, network))?;
     sink.put(&topics.path, first, &messages::ego_path(first, &path(log, network, window)?))?;
-    let mut happenings = happenings::lines(log, first, last).into_iter().peekable();
-    let mut counts = Counts::default();
+    let mut happenings = happenings::lines(log, &window.ticks).into_iter().peekable();
     let mut replayer = Replayer::new(log, network.clone())?;
-    // The tick before the window, so that the first one is stepped to as all others are.
-    replayer.seek(first.saturating_sub(1).max(log.first_tick()))?;
+    // Some ticks before the window, so that everyone's change of speed is known in it.
+    let mut sampler = Sampler::default();
+    replayer.seek(first.saturating_sub(WARM_UP_SAMPLES * SAMPLE_TICKS).max(log.first_tick()))?;
     loop {
-        let tick = replayer.world().tick();
-        if window.ticks.contains(&tick) {
-            let scene = replayer.world().scene();
+        let scene = replayer.world().scene();
+        let (tick, inside) = (scene.tick, window.ticks.contains(&scene.tick));
+        if tick.abs_diff(window.anchor).is_multiple_of(SAMPLE_TICKS) {
+            let sample = sampler.look(replayer.world(), &scene);
+            if inside {
+                sink.put(&topics.criticality, tick, &Criticality::of(&sample))?;
+            }
+        }
+        if inside {
             sink.put(&topics.pose, tick, &messages::ego_pose(tick, &scene.ego))?;
-            counts.poses += 1;
             while let Some((_, line)) = happenings.next_if(|(at, _)| *at <= tick) {
                 sink.put(&topics.events, tick, &line)?;
-                counts.events += 1;
             }
             if window.has_picture(tick) {
                 picture(&scene, network, camera, &topics, sink)?;
-                counts.frames += 1;
                 go_on()?;
             }
         }
         if tick >= last {
-            return Ok(counts);
+            return Ok(());
         }
-        step(&mut replayer, &topics, sink)?;
+        let (telemetry, tick) = (step(&mut replayer)?, tick + 1);
+        if window.ticks.contains(&tick) {
+            sink.put(&topics.telemetry, tick, &telemetry)?;
+        }
     }
 }
 
-/// Goes on by a tick and writes its figures.
-fn step<W: Write>(replayer: &mut Replayer<'_>, topics: &Topics, sink: &mut Sink<W>) -> anyhow::Result<()> {
+/// Goes on by a tick and gives its figures.
+fn step(replayer: &mut Replayer<'_>) -> anyhow::Result<Telemetry> {
     let log = replayer.log();
     let output = replayer.step()?.context("the log ends within the window")?;
     let input = log.input(output.tick).context("a tick without input")?;
-    let telemetry = Telemetry::of(replayer.world(), input, &output, log);
-    sink.put(&topics.telemetry, output.tick, &telemetry)
+    Ok(Telemetry::of(replayer.world(), input, &output, log))
 }
 
 /// Ten places of the ego car a second.

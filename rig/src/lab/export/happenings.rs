@@ -1,5 +1,7 @@
 //! What happened, as lines of a log.
 
+use std::ops::RangeInclusive;
+
 use foxglove::messages::Log as Line;
 use foxglove::messages::log::Level;
 use kernel::events::{Event, EventKind};
@@ -10,11 +12,11 @@ use super::messages::stamp;
 use crate::measures::seat_name;
 
 /// Events of the car and notes of the rig within a range of ticks, by ascending tick.
-pub fn lines(log: &Log, from: Tick, to: Tick) -> Vec<(Tick, Line)> {
+pub fn lines(log: &Log, ticks: &RangeInclusive<Tick>) -> Vec<(Tick, Line)> {
     let annotation = log.annotation.as_ref();
     let events = log.events.iter().map(|(tick, event)| (*tick, of_event(*tick, event, annotation)));
     let notes = log.notes.iter().map(|note| (note.tick, of_note(note)));
-    let mut lines: Vec<_> = events.chain(notes).filter(|(tick, _)| (from..=to).contains(tick)).collect();
+    let mut lines: Vec<_> = events.chain(notes).filter(|(tick, _)| ticks.contains(tick)).collect();
     lines.sort_by_key(|(tick, _)| *tick);
     lines
 }

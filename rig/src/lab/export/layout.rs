@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::topics::{ACTORS, CALIBRATION, EVENTS, GROUND, PATH, RGB, TELEMETRY, TRUTH, predicted};
+use super::topics::{ACTORS, CALIBRATION, CRITICALITY, EVENTS, GROUND, PATH, RGB, TELEMETRY, TRUTH, predicted};
 use crate::boxes::EGO;
 
 /// The layout for exports with masks of these checkpoints.
@@ -13,8 +13,11 @@ pub fn layout<'a>(checkpoints: impl Iterator<Item = &'a str>) -> Value {
     panels.insert("Image!camera".into(), image(RGB));
     panels.insert("RosOut!events".into(), json!({ "searchTerms": [], "minLogLevel": 1, "topicToRender": EVENTS }));
     panels.insert("StateTransitions!control".into(), states(&["phase", "steering_by", "pedals_by"]));
-    panels.insert("Plot!speed".into(), plot(&["speed_mps", "limit_mps"]));
-    panels.insert("Plot!pedals".into(), plot(&["throttle", "brake", "steer", "safety_brake", "safety_steer"]));
+    panels.insert("Plot!speed".into(), plot(TELEMETRY, &["speed_mps", "limit_mps"]));
+    panels
+        .insert("Plot!pedals".into(), plot(TELEMETRY, &["throttle", "brake", "steer", "safety_brake", "safety_steer"]));
+    let critical = ["ttc_s", "pret_s", "required_deceleration_mps2"];
+    panels.insert("Plot!criticality".into(), plot(CRITICALITY, &critical));
     let masks = masks.iter().map(|topic| {
         let id = format!("Image!{}", topic.trim_start_matches('/').replace('/', "."));
         panels.insert(id.clone(), image(topic));
@@ -22,7 +25,8 @@ pub fn layout<'a>(checkpoints: impl Iterator<Item = &'a str>) -> Value {
     });
     let masks = stacked(masks.collect());
     let pictures = split("column", json!("Image!camera"), masks, 35);
-    let figures = stacked(["StateTransitions!control", "Plot!speed", "Plot!pedals"].map(Value::from).into());
+    let figures =
+        stacked(["StateTransitions!control", "Plot!speed", "Plot!pedals", "Plot!criticality"].map(Value::from).into());
     let world = split("column", json!("3D!scene"), json!("RosOut!events"), 75);
     let layout = split("row", split("row", world, pictures, 55), figures, 70);
     json!({
@@ -63,20 +67,20 @@ fn image(topic: &str) -> Value {
     json!({ "imageMode": { "imageTopic": topic, "calibrationTopic": CALIBRATION } })
 }
 
-fn figure(name: &str) -> Value {
-    json!({ "value": format!("{TELEMETRY}.{name}"), "label": name, "enabled": true, "timestampMethod": "receiveTime" })
+fn figure(topic: &str, name: &str) -> Value {
+    json!({ "value": format!("{topic}.{name}"), "label": name, "enabled": true, "timestampMethod": "receiveTime" })
 }
 
-fn plot(names: &[&str]) -> Value {
+fn plot(topic: &str, names: &[&str]) -> Value {
     json!({
-        "paths": names.iter().map(|name| figure(name)).collect::<Vec<_>>(), "xAxisVal": "timestamp",
+        "paths": names.iter().map(|name| figure(topic, name)).collect::<Vec<_>>(), "xAxisVal": "timestamp",
         "showXAxisLabels": true, "showYAxisLabels": true, "showLegend": true, "legendDisplay": "floating",
         "isSynced": true, "sidebarDimension": 240,
     })
 }
 
 fn states(names: &[&str]) -> Value {
-    json!({ "paths": names.iter().map(|name| figure(name)).collect::<Vec<_>>(), "isSynced": true })
+    json!({ "paths": names.iter().map(|name| figure(TELEMETRY, name)).collect::<Vec<_>>(), "isSynced": true })
 }
 
 #[cfg(test)]

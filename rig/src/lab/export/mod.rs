@@ -1,8 +1,10 @@
 //! Recordings and cases for viewers of robot logs (Foxglove, Lichtblick, Rerun): an MCAP file of
 //! Foxglove's protobuf messages, and a layout that shows them.
 //!
-//! Message times are simulated time, so that the same export gives the same bytes.
+//! Message times are simulated time, so that the same export gives the same bytes. An export that is there
+//! already is kept: its file says what it was made from.
 
+mod criticality;
 mod entities;
 mod film;
 mod happenings;
@@ -17,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use kernel::time::{TICK_HZ, Tick};
-use replay::{Log, Recording};
+use replay::{Log, Recording, exported_from};
 use serde::Serialize;
 
 use super::footage::{decisive_tick, is_divergence};
@@ -45,6 +47,8 @@ struct Export {
     out: PathBuf,
     from: Tick,
     to: Tick,
+    /// It was there already, made from the same.
+    kept: bool,
     #[serde(flatten)]
     counts: Counts,
 }
@@ -66,9 +70,13 @@ pub fn run(args: &ExportArgs, json: bool) -> anyhow::Result<Verdict> {
 
 fn text(summary: &Summary) -> String {
     let line = |export: &Export| {
-        let Export { out, from, to, counts, .. } = export;
+        let Export { out, from, to, kept, counts, .. } = export;
         let Counts { frames, poses, events } = counts;
-        format!("{}: ticks {from} to {to}, {frames} frames, {poses} poses, {events} events", out.display())
+        format!(
+            "{}: ticks {from} to {to}, {frames} frames, {poses} poses, {events} events{}",
+            out.display(),
+            if *kept { ", kept" } else { "" }
+        )
     };
     let lines = summary.exports.iter().map(line);
     lines.chain([format!("{}: a layout for the viewer", summary.layout.display())]).collect::<Vec<_>>().join("\n")
@@ -135,9 +143,16 @@ fn export_one(
     let (log, network) = (recording.log(), recording.network()?);
     let window = window(log, args)?;
     output::create_folder(out.parent().unwrap_or(Path::new(".")))?;
-    let bar = progress::bar("frames", window.pictures() as u64);
-    let mut sink = Sink::new(PendingFile::new(&out)?, about(recording, &window, args, camera.eyes))?;
-    let counts = film::shoot((log, &network), &window, camera, &mut sink, || {
+    let (about, counts) = (about(recording, &window, args, camera.eyes), Counts::of(log, &window));
+    let (from, to) = window.ticks.clone().into_inner();
+    let kept = exported_from(&out).as_ref() == Some(&about);
+    let export = Export { file: file.to_owned(), out, from, to, kept, counts };
+    if kept {
+        return Ok(export);
+    }
+    let bar = progress::bar("frames", counts.frames as u64);
+    let mut sink = Sink::new(PendingFile::new(&export.out)?, about)?;
+    film::shoot((log, &network), &window, camera, &mut sink, || {
         bar.inc(1);
         if interrupt.is_raised() {
             bail!("interrupted; nothing of its export is kept");
@@ -146,8 +161,7 @@ fn export_one(
     })?;
     sink.finish()?.finish()?;
     bar.finish_and_clear();
-    let (from, to) = window.ticks.into_inner();
-    Ok(Export { file: file.to_owned(), out, from, to, counts })
+    Ok(export)
 }
 
 fn same_file(a: &Path, b: &Path) -> bool {
@@ -180,6 +194,7 @@ fn about(recording: &Recording, window: &Window, args: &ExportArgs, eyes: &[Eye]
         ("size", format!("{}x{}", args.size.0, args.size.1)),
         ("checkpoints", eyes.join(", ")),
         ("adapter", crate::vision::adapter()),
+        ("program", env!("CARGO_PKG_VERSION").to_owned()),
     ];
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

@@ -6,6 +6,7 @@ use foxglove::messages::{
     CameraCalibration, CompressedImage, FrameTransforms, Log, PoseInFrame, PosesInFrame, SceneUpdate,
 };
 
+use super::criticality::Criticality;
 use super::sink::{Sink, Topic};
 use super::telemetry::Telemetry;
 
@@ -17,6 +18,8 @@ pub const POSE: &str = "/ego/pose";
 pub const PATH: &str = "/ego/path";
 /// Figures to plot, every tick.
 pub const TELEMETRY: &str = "/telemetry";
+/// How critical it is, ten times a second.
+pub const CRITICALITY: &str = "/criticality";
 /// What happened.
 pub const EVENTS: &str = "/events";
 /// Roads, paint and sidewalks, once.
@@ -42,6 +45,7 @@ pub struct Topics {
     pub pose: Topic<PoseInFrame>,
     pub path: Topic<PosesInFrame>,
     pub telemetry: Topic<Telemetry>,
+    pub criticality: Topic<Criticality>,
     pub events: Topic<Log>,
     pub ground: Topic<SceneUpdate>,
     pub actors: Topic<SceneUpdate>,
@@ -63,6 +67,7 @@ impl Topics {
             pose: sink.topic(POSE)?,
             path: sink.topic(PATH)?,
             telemetry: sink.topic(TELEMETRY)?,
+            criticality: sink.topic(CRITICALITY)?,
             events: sink.topic(EVENTS)?,
             ground: sink.topic(GROUND)?,
             actors: sink.topic(ACTORS)?,

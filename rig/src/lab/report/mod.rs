@@ -6,6 +6,7 @@ mod map;
 mod page;
 mod story;
 mod strip;
+mod trace;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -76,7 +77,8 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
         }
         overall.iter_mut().zip(strip.matrices()).for_each(|(sum, matrix)| sum.merge(matrix));
         let story = Story::of(&drive, &footage)?;
-        cases.push(CasePart::new(&footage.name, story, strip));
+        let trace = trace::of(&footage);
+        cases.push(CasePart::new(&footage.name, story, strip, trace));
         drives.push(drive);
         bar.inc(1);
     }

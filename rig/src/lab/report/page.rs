@@ -10,6 +10,7 @@ use super::super::figures::{Figures, decimal};
 use super::Exposure;
 use super::story::{Fact, Story};
 use super::strip::{Moment, PictureRow, Seen, Strip};
+use super::trace::Trace;
 use crate::measures::{Spread, Tally};
 use crate::vision::Eye;
 
@@ -65,6 +66,7 @@ pub struct CasePart {
     comment: String,
     facts: Vec<Fact>,
     map_svg: String,
+    trace: Option<Trace>,
     scores: Vec<Row>,
     moments: Vec<Moment>,
     rows: Vec<PictureRow>,
@@ -72,13 +74,14 @@ pub struct CasePart {
 
 impl CasePart {
     /// From what is known and what was drawn.
-    pub fn new(name: &str, story: Story, strip: Strip) -> Self {
+    pub fn new(name: &str, story: Story, strip: Strip, trace: Option<Trace>) -> Self {
         Self {
             name: name.strip_suffix(".case").unwrap_or(name).to_owned(),
             label: story.label,
             comment: story.comment,
             facts: story.facts,
             map_svg: story.map_svg,
+            trace,
             scores: score_rows(strip.matrices(), false),
             moments: strip.moments,
             rows: strip.rows,

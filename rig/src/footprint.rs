@@ -1,0 +1,82 @@
+//! What a road user covers of the ground.
+
+use glam::Vec2;
+use kernel::map::Prop;
+use kernel::scene::{ActorScene, EgoScene};
+use kernel::{ego, ops};
+
+/// A rectangle on the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Middle, metres.
+    pub centre: Vec2,
+    /// Unit vector to the front.
+    pub forward: Vec2,
+    /// Half of length and width, metres.
+    pub half: Vec2,
+}
+
+impl Footprint {
+    /// Whether two footprints share ground (separating axes).
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let between = other.centre - self.centre;
+        let mut axes = self.axes().into_iter().chain(other.axes());
+        axes.all(|axis| between.dot(axis).abs() <= self.reach(axis) + other.reach(axis))
+    }
+
+    /// Unit vectors to the front and to the left.
+    pub fn axes(&self) -> [Vec2; 2] {
+        [self.forward, self.forward.perp()]
+    }
+
+    /// How far it extends from its middle along a direction, metres.
+    pub fn reach(&self, axis: Vec2) -> f32 {
+        let [forward, left] = self.axes();
+        self.half.x * forward.dot(axis).abs() + self.half.y * left.dot(axis).abs()
+    }
+
+    /// That of the ego car.
+    pub fn of_ego(car: &EgoScene) -> Self {
+        Self { centre: middle(car), forward: forward(car), half: 0.5 * ego::SIZE_M.truncate() }
+    }
+
+    /// That of an actor.
+    pub fn of_actor(actor: &ActorScene) -> Self {
+        let forward = (actor.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
+        Self { centre: actor.position.truncate(), forward, half: 0.5 * actor.kind.size_m().truncate() }
+    }
+
+    /// That of a parked car.
+    pub fn of_prop(prop: &Prop) -> Self {
+        let forward = Vec2::new(ops::cos(prop.heading_rad), ops::sin(prop.heading_rad));
+        Self { centre: prop.position.truncate(), forward, half: 0.5 * prop.size.truncate() }
+    }
+}
+
+/// Middle of the ego car, seen from above.
+pub fn middle(car: &EgoScene) -> Vec2 {
+    car.position.truncate() + ego::CENTRE_M.x * forward(car)
+}
+
+/// Direction of the ego car, seen from above.
+pub fn forward(car: &EgoScene) -> Vec2 {
+    (car.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn footprints_overlap_as_boxes_do() {
+        let car = |x, y, heading: f32| Footprint {
+            centre: Vec2::new(x, y),
+            forward: Vec2::from_angle(heading),
+            half: Vec2::new(2.25, 0.9),
+        };
+        assert!(car(0.0, 0.0, 0.0).overlaps(&car(4.0, 0.0, 0.0)));
+        assert!(!car(0.0, 0.0, 0.0).overlaps(&car(0.0, 1.9, 0.0)));
+        assert!(car(0.0, 0.0, 0.0).overlaps(&car(0.0, 2.5, 1.57)));
+        assert!(!car(0.0, 0.0, 0.0).overlaps(&car(3.0, 3.0, -0.785)));
+    }
+}
