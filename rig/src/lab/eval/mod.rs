@@ -223,6 +223,7 @@ fn text(summary: &Summary<'_>) -> String {
             row(&to.map_or_else(|| format!("{from}+ {unit}"), |to| format!("{from}-{to} {unit}")), recall);
         }
     }
+    row("feet hidden", &pedestrians.feet_hidden);
     text
 }
 
@@ -268,7 +269,7 @@ mod tests {
             ["toy_000000", "toy_000001"]
         );
         assert_eq!((all.pedestrians.all.people, all.pedestrians.all.half_seen), (4, Some(1.0)));
-        // Feet 10 rows below the horizon: 32 px * 1.5 m / 10 px.
+        // Feet 10 rows below the horizon are 32 px * 1.5 m / 10 px = 4.8 m away, 8 rows there 1.2 m.
         assert_eq!(all.pedestrians.by_distance_m[0].recall.people, 4);
     }
 
