@@ -44,6 +44,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::View(args) => view::run(args, json),
         Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Rerender(args) => lab::rerender::run(args, json),
+        Command::Compare(args) => lab::compare::run(args, json),
         Command::Dataset(command) => lab::dataset::run(command, json),
         Command::Redrive(args) => lab::redrive::run(args, json),
         Command::Export(args) => lab::export::run(args, json),

@@ -4,3 +4,4 @@ pub mod files;
 pub mod recordings;
 pub mod scenes;
 pub mod street;
+pub mod toy;

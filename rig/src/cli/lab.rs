@@ -7,6 +7,7 @@ use kernel::time::{CLIP_FPS, Tick};
 
 use super::CheckpointChoice;
 use super::values::{duration, frame_rate, moment, size};
+use crate::lab::compare::Gate;
 
 /// Arguments of `rerender`.
 #[derive(Args, Debug)]
@@ -62,6 +63,36 @@ pub struct ExportArgs {
     pub size: (u32, u32),
     /// File of the export, with its layout for viewers beside it; or a folder, for several files.
     #[arg(long, value_name = "OUT.mcap|DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `compare`.
+#[derive(Args, Debug)]
+pub struct CompareArgs {
+    /// Corner cases, or folders with cases anywhere below.
+    #[arg(required = true, value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Two or more checkpoints; the first is the baseline.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// A condition on every checkpoint but the baseline, as in `ped_iou>=0.5`. Metrics: ped_iou, miou,
+    /// ped_recall_on_path, hazards_seen (share of the hazards seen 1 s or more before the intervention),
+    /// first_sight_s (mean), and against the baseline the numbers of cases fixed and broken.
+    #[arg(long, value_name = "METRIC>=NUMBER")]
+    pub gate: Vec<Gate>,
+    /// A checkpoint than which no other may be worse: of no metric may the paired 95 % interval of the
+    /// difference lie below 0 as a whole.
+    #[arg(long, value_name = "NAME")]
+    pub no_worse_than: Option<String>,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Folder of the results. One that this command began is completed: what follows from the same cases,
+    /// checkpoints and size is kept.
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
 

@@ -15,7 +15,7 @@ use clap::{Parser, Subcommand};
 use perception::BUNDLED;
 
 pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
-pub use lab::{ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
+pub use lab::{CompareArgs, ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
 pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, TrainArgs};
 pub use live::{
     DoctorArgs, DriveArgs, Screens, SizeArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs,
@@ -57,6 +57,8 @@ pub enum Command {
     Questionnaire(QuestionnaireArgs),
     /// Render the window of recordings or cases through checkpoints.
     Rerender(RerenderArgs),
+    /// Which corner cases another checkpoint fixes and breaks.
+    Compare(CompareArgs),
     /// Drive corner cases on from before the intervention: was it necessary?
     Redrive(RedriveArgs),
     /// Write recordings or cases with pictures and scene for Foxglove, Lichtblick or Rerun.

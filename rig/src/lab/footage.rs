@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use anyhow::{Context, bail};
 use kernel::time::{TICK_HZ, Tick};
-use kernel::{RoadNetwork, SceneSnapshot};
+use kernel::{RoadNetwork, SceneSnapshot, World};
 use replay::{Case, Divergence, Error, KERNEL_VERSION, Log, Recording, Replayer};
 
 /// A window of a run, ready to be drawn.
@@ -24,6 +24,11 @@ impl Footage {
     /// The last `last` ticks up to the intervention (the collision of a missed one, else the end)
     /// at `fps` frames a second, a divisor of the tick rate.
     pub fn read(path: &Path, last: Tick, fps: u32) -> anyhow::Result<Self> {
+        Self::watch(path, last, fps, |_, _| ())
+    }
+
+    /// As [`Footage::read`]; `see` is shown the world at each frame, unless another kernel made the file.
+    pub fn watch(path: &Path, last: Tick, fps: u32, see: impl FnMut(&World, &SceneSnapshot)) -> anyhow::Result<Self> {
         let file = || path.display().to_string();
         let recording = Recording::open(path)?;
         let network = recording.network().with_context(file)?;
@@ -32,7 +37,7 @@ impl Footage {
         if ticks.is_empty() {
             bail!("{}: holds no tick of that window", file());
         }
-        let scenes = scenes(&log, &network, &ticks).with_context(file)?;
+        let scenes = scenes(&log, &network, &ticks, see).with_context(file)?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let name = name.strip_suffix(".mcap").unwrap_or(&name).to_owned();
         Ok(Self { name, log, network, scenes })
@@ -58,7 +63,12 @@ fn window(log: &Log, last: Tick, fps: u32) -> Vec<Tick> {
 
 /// The scenes at these ticks. A case made by another kernel cannot be replayed; its stored scenes
 /// can still be drawn.
-fn scenes(log: &Log, network: &Arc<RoadNetwork>, ticks: &[Tick]) -> anyhow::Result<Vec<SceneSnapshot>> {
+fn scenes(
+    log: &Log,
+    network: &Arc<RoadNetwork>,
+    ticks: &[Tick],
+    mut see: impl FnMut(&World, &SceneSnapshot),
+) -> anyhow::Result<Vec<SceneSnapshot>> {
     let stored = |tick: Tick| log.scenes.iter().find(|scene| scene.tick == tick);
     if log.manifest.kernel != KERNEL_VERSION {
         let all: Option<Vec<_>> = ticks.iter().map(|tick| stored(*tick).cloned()).collect();
@@ -75,6 +85,7 @@ fn scenes(log: &Log, network: &Arc<RoadNetwork>, ticks: &[Tick]) -> anyhow::Resu
         if stored(tick).is_some_and(|stored| *stored != scene) {
             return Err(Error::from(Box::new(other_scene(tick))).into());
         }
+        see(replayer.world(), &scene);
         scenes.push(scene);
     }
     Ok(scenes)

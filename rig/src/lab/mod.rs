@@ -1,6 +1,7 @@
 //! The offline lab: pictures, datasets, checkpoints and reports made from recordings.
 
 pub mod cityscapes;
+pub mod compare;
 pub mod dataset;
 pub mod demo;
 pub mod eval;

@@ -9,7 +9,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
+use super::library::Entry;
 use crate::output;
+use crate::vision::{self, Eye};
 
 /// Everything that a result follows from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,6 +30,35 @@ pub struct Key {
     pub adapter: String,
     /// Digest of the checkpoint, if one looks.
     pub checkpoint: Option<String>,
+}
+
+/// What the results of a command have in common.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    last_ticks: Tick,
+    fps: u32,
+    size: (u32, u32),
+    adapter: String,
+}
+
+impl Settings {
+    /// For windows of so many ticks at so many frames a second, drawn in one size on this machine's adapter.
+    pub fn new(last_ticks: Tick, fps: u32, size: (u32, u32)) -> Self {
+        Self { last_ticks, fps, size, adapter: vision::adapter() }
+    }
+
+    /// The key of what is found out about a file, by an eye or without any.
+    pub fn key(&self, file: &Entry, eye: Option<&Eye>) -> Key {
+        Key {
+            log: file.digest.to_hex().to_string(),
+            last_ticks: self.last_ticks,
+            fps: self.fps,
+            size: self.size,
+            program: env!("CARGO_PKG_VERSION").into(),
+            adapter: self.adapter.clone(),
+            checkpoint: eye.map(Eye::digest),
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]

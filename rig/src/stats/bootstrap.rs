@@ -22,21 +22,62 @@ pub fn percentile_interval(statistic: impl Fn(u32) -> f64) -> Option<(f64, f64)>
     Some((quantile(0.025)?, quantile(0.975)?))
 }
 
-/// 95 % interval of events per exposure, by drawing clusters (rides) of `(events, exposure)` with
-/// replacement: unlike the exact interval it allows for rides that differ. `None` for fewer than two clusters.
-pub fn rate_interval(clusters: &[(u64, f64)], seed: u64) -> Option<(f64, f64)> {
-    let rate = |draw| {
-        let drawn = resample(seed, draw, 0, clusters.len()).map(|i| clusters[i]);
-        let (events, exposure) = drawn.fold((0, 0.0), |(n, sum), (events, exposure)| (n + events, sum + exposure));
-        events as f64 / exposure
+/// 95 % interval of a figure of so many units, which is given the numbers of those drawn; draws of which there
+/// is no figure are left out. `None` for fewer than two units. A figure that compares two measurements of the
+/// same units is thereby paired.
+pub fn interval(units: usize, seed: u64, figure: impl Fn(&[usize]) -> Option<f64>) -> Option<(f64, f64)> {
+    let statistic = |draw| {
+        let drawn: Vec<usize> = resample(seed, draw, 0, units).collect();
+        figure(&drawn).unwrap_or(f64::NAN)
     };
-    if clusters.len() < 2 { None } else { percentile_interval(rate) }
+    if units < 2 { None } else { percentile_interval(statistic) }
+}
+
+/// 95 % interval of events per exposure, by drawing clusters (rides) of `(events, exposure)`: unlike the
+/// exact interval it allows for rides that differ. `None` for fewer than two clusters.
+pub fn rate_interval(clusters: &[(u64, f64)], seed: u64) -> Option<(f64, f64)> {
+    interval(clusters.len(), seed, |drawn| {
+        let add = |(events, exposure), i: &usize| (events + clusters[*i].0, exposure + clusters[*i].1);
+        let (events, exposure) = drawn.iter().fold((0, 0.0), add);
+        Some(events as f64 / exposure)
+    })
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::stats::poisson_interval;
+
+    proptest! {
+        #[test]
+        fn the_mean_lies_in_its_interval_which_moves_and_scales_with_the_values(
+            values in prop::collection::vec(-50i32..50, 2..40), shift in -9i32..9, scale in 1i32..5, seed: u64,
+        ) {
+            let mean = |f: &dyn Fn(i32) -> i32| {
+                let of = |drawn: &[usize]| drawn.iter().map(|i| f64::from(f(values[*i]))).sum::<f64>() / drawn.len() as f64;
+                let all: Vec<usize> = (0..values.len()).collect();
+                let (low, high) = interval(values.len(), seed, |drawn| Some(of(drawn))).expect("two or more");
+                (of(&all), low, high)
+            };
+            let (middle, low, high) = mean(&|v| v);
+            prop_assert!(low <= middle + 1e-9 && middle <= high + 1e-9);
+            let (_, moved_low, moved_high) = mean(&|v| scale * v + shift);
+            let expected = |v: f64| f64::from(scale) * v + f64::from(shift);
+            prop_assert!((moved_low - expected(low)).abs() < 1e-9 && (moved_high - expected(high)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn pairs_that_all_gain_the_same_leave_no_doubt_however_they_differ() {
+        let before = [0.1, 0.9, 0.4, 0.2];
+        let gain = |drawn: &[usize]| Some(drawn.iter().map(|i| (before[*i] + 0.05) - before[*i]).sum::<f64>() / 4.0);
+        let (low, high) = interval(4, 3, gain).expect("pairs");
+        assert!((low - 0.05).abs() < 1e-9 && (high - 0.05).abs() < 1e-9);
+        assert_eq!(interval(4, 3, |_| None), None);
+        assert_eq!(interval(1, 3, |_| Some(1.0)), None);
+    }
 
     #[test]
     fn rides_that_do_not_differ_give_about_the_exact_interval() {

@@ -6,7 +6,7 @@ mod power;
 use serde::Serialize;
 use statrs::distribution::{Beta, Binomial, ContinuousCDF, Discrete, Gamma};
 
-pub use bootstrap::{percentile_interval, rate_interval, resample};
+pub use bootstrap::{interval, percentile_interval, rate_interval, resample};
 pub use power::{exposure_factor_for, power};
 
 /// Exact 95 % interval of a Poisson mean after `events` (Garwood 1936).

@@ -13,6 +13,7 @@ mod replay_verify;
 mod rig_bots;
 mod rig_campaign;
 mod rig_cli;
+mod rig_compare;
 mod rig_criticality;
 mod rig_experiment;
 mod rig_export;

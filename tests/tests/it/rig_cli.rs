@@ -94,6 +94,8 @@ fn nonsense_on_the_command_line_is_usage() {
         &["campaign", "--checkpoint", "truth", "--out", "d", "--runs", "0"],
         &["rerender", "x.mcap", "--checkpoint", "truth", "--size", "0x0", "--out", "d"],
         &["rerender", "x.mcap", "--checkpoint", "truth", "--fps", "7", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--gate", "speed>=1", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--gate", "miou~1", "--out", "d"],
         &["fly"],
     ] {
         let error = Cli::try_parse_from([&["aeye"], arguments].concat()).expect_err("nonsense");

@@ -54,41 +54,86 @@ pub fn predicted_encroachment(world: &World, scene: &SceneSnapshot, looks: &Look
 }
 
 fn encroachment(world: &World, scene: &SceneSnapshot, way: &EgoWay, looks: &Looks) -> Option<Hazard> {
-    if scene.ego.speed_mps < 0.5 {
-        return None;
-    }
-    let near = |p: glam::Vec3| (p.truncate() - middle(&scene.ego)).length() < NEAR_M;
-    let actors: Vec<&ActorScene> =
-        scene.actors.iter().filter(|a| near(a.position) && matters(world, scene, a)).collect();
-    let parked: Vec<Footprint> = world
-        .network()
-        .props
-        .iter()
-        .filter(|p| p.kind == PropKind::ParkedCar)
-        .filter(|p| near(p.position))
-        .map(Footprint::of_prop)
-        .collect();
-    let actor_at = |actor: &ActorScene, t_s: f32| {
-        actor_after(world.network(), actor, driven_m(actor.speed_mps, looks.actor_mps2(actor), t_s))
-    };
-    (1..=(CRITICAL_S / STEP_S) as u32).find_map(|step| {
-        let t_s = step as f32 * STEP_S;
-        let ego = way.at(t_s)?;
-        let actor = actors.iter().find(|a| actor_at(a, t_s).overlaps(&ego));
-        actor.map(|a| of_actor(a, t_s)).or_else(|| {
-            let hit = parked.iter().any(|p| p.overlaps(&ego));
-            hit.then(|| hazard(Label::Vehicle, format!("parked car, {t_s:.1} s before contact")))
+    let others = Others::near(world, scene, looks)?;
+    steps().find_map(|t_s| {
+        let touched = others.touched(&way.at(t_s)?, t_s).next()?;
+        Some(match touched {
+            Touched::Actor(id, kind) => of_actor(id, kind, t_s),
+            Touched::Parked(_) => hazard(Label::Vehicle, format!("parked car, {t_s:.1} s before contact")),
         })
     })
+}
+
+/// Everyone whom the ego car is predicted to touch within 2 s, first contact first.
+pub fn encroachers(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Vec<Touched> {
+    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
+    let mut found: Vec<Touched> = Vec::new();
+    let Some(others) = Others::near(world, scene, looks) else { return found };
+    for t_s in steps() {
+        let Some(ego) = way.at(t_s) else { continue };
+        for touched in others.touched(&ego, t_s) {
+            if !found.contains(&touched) {
+                found.push(touched);
+            }
+        }
+    }
+    found
+}
+
+/// Who is predicted to be touched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touched {
+    /// A road user, by id and kind.
+    Actor(u32, ActorKind),
+    /// A parked car, by its number among the map's.
+    Parked(usize),
+}
+
+/// Seconds ahead at which the prediction looks.
+fn steps() -> impl Iterator<Item = f32> {
+    (1..=(CRITICAL_S / STEP_S) as u32).map(|step| step as f32 * STEP_S)
+}
+
+/// Who is around the ego car and matters.
+struct Others<'a> {
+    world: &'a World,
+    looks: &'a Looks,
+    actors: Vec<&'a ActorScene>,
+    parked: Vec<(usize, Footprint)>,
+}
+
+impl<'a> Others<'a> {
+    /// `None` while the ego car stands, which touches nobody.
+    fn near(world: &'a World, scene: &'a SceneSnapshot, looks: &'a Looks) -> Option<Self> {
+        if scene.ego.speed_mps < 0.5 {
+            return None;
+        }
+        let near = |p: glam::Vec3| (p.truncate() - middle(&scene.ego)).length() < NEAR_M;
+        let actors = scene.actors.iter().filter(|a| near(a.position) && matters(world, scene, a)).collect();
+        let parked = world.network().props.iter().filter(|p| p.kind == PropKind::ParkedCar).enumerate();
+        let parked = parked.filter(|(_, p)| near(p.position)).map(|(n, p)| (n, Footprint::of_prop(p))).collect();
+        Some(Self { world, looks, actors, parked })
+    }
+
+    /// Who shares ground with the ego car in `t_s` seconds: actors, then parked cars.
+    fn touched(&self, ego: &Footprint, t_s: f32) -> impl Iterator<Item = Touched> {
+        let actor_at = move |actor: &ActorScene| {
+            let driven_m = driven_m(actor.speed_mps, self.looks.actor_mps2(actor), t_s);
+            actor_after(self.world.network(), actor, driven_m)
+        };
+        let actors = self.actors.iter().filter(move |a| actor_at(a).overlaps(ego));
+        let parked = self.parked.iter().filter(move |(_, p)| p.overlaps(ego));
+        actors.map(|a| Touched::Actor(a.id, a.kind)).chain(parked.map(|(n, _)| Touched::Parked(*n)))
+    }
 }
 
 fn hazard(label: Label, comment: String) -> Hazard {
     Hazard { label, comment, steer: false }
 }
 
-fn of_actor(actor: &ActorScene, t_s: f32) -> Hazard {
-    let what = format!("{:?}", actor.kind).to_lowercase();
-    hazard(label_of(actor.kind), format!("{what} {}, {t_s:.1} s before contact", actor.id))
+fn of_actor(id: u32, kind: ActorKind, t_s: f32) -> Hazard {
+    let what = format!("{kind:?}").to_lowercase();
+    hazard(label_of(kind), format!("{what} {id}, {t_s:.1} s before contact"))
 }
 
 /// What it is called to overlook an actor.

@@ -11,7 +11,7 @@ use kernel::{Controls, World, ego, ops};
 
 use super::Driver;
 use crate::footprint;
-pub use hazard::{Hazard, label_of, predicted_encroachment};
+pub use hazard::{Hazard, Touched, encroachers, label_of, predicted_encroachment};
 pub use looks::{LOOK_TICKS, Looks};
 
 /// Reaction times are log-normal with this mean (Dixit et al. 2016), seconds, and spread.

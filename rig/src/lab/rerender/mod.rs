@@ -20,9 +20,9 @@ use super::figures::{Figures, table};
 use super::footage::is_divergence;
 use super::library;
 use super::looks::open_eyes;
-use super::pipeline::Crew;
+use super::pipeline::{Crew, Studios};
 use super::spread::jobs;
-use super::store::Store;
+use super::store::{Settings, Store};
 use crate::cli::RerenderArgs;
 use crate::exit::{Verdict, sentence};
 use crate::output::{self, json_line};
@@ -91,12 +91,13 @@ fn rerender(args: &RerenderArgs, interrupt: &Interrupt) -> anyhow::Result<Summar
     if metrics.exists() {
         fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;
     }
-    let count = args.last.div_ceil(Tick::from(kernel::time::TICK_HZ / args.fps));
-    let bar = progress::bar("frames", count * files.len() as u64);
-    let work =
-        Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, adapter: crate::vision::adapter() };
-    let jobs = jobs(args.jobs);
-    Crew { work: &work, files: files.len(), size: args.size, eyes: &eyes, jobs, interrupt }.run()?;
+    let bar = progress::bar("frames", 0);
+    let settings = Settings::new(args.last, args.fps, args.size);
+    let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings };
+    let left = work.left();
+    bar.set_length(work.expected() * left.len() as u64);
+    let (size, jobs, studios) = (args.size, jobs(args.jobs), Studios::default());
+    Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
     bar.finish_and_clear();
     let Some(found) = work.found() else {
         bail!("{}: interrupted; the same command goes on from there", args.out.display());

@@ -14,7 +14,7 @@ use super::super::footage::Footage;
 use super::super::library::Entry;
 use super::super::pipeline::{Film, Work};
 use super::super::png;
-use super::super::store::{Key, Store, remove_folder};
+use super::super::store::{Settings, Store, remove_folder};
 use super::Matrices;
 use crate::cli::RerenderArgs;
 use crate::vision::Eye;
@@ -26,7 +26,7 @@ pub struct Pictures<'a> {
     pub eyes: &'a [Eye],
     pub store: &'a Store,
     pub bar: &'a ProgressBar,
-    pub adapter: String,
+    pub settings: Settings,
 }
 
 /// What is made of a file.
@@ -43,23 +43,16 @@ impl Work for Pictures<'_> {
     type Notes = Making;
     type Seen = (Tick, Vec<ConfusionMatrix>);
 
-    fn read(&self, index: usize) -> anyhow::Result<Option<(Footage, Making)>> {
+    fn read(&self, index: usize) -> anyhow::Result<(Footage, Making)> {
         let file = &self.files[index];
-        let frames = !self.has_frames(file);
-        let is_missing = |eye: &usize| frames || self.matrices(file, &self.eyes[*eye]).is_none();
-        let eyes: Vec<usize> = (0..self.eyes.len()).filter(is_missing).collect();
-        if eyes.is_empty() {
-            self.bar.inc(self.expected());
-            return Ok(None);
-        }
         let footage = Footage::read(&file.path, self.args.last, self.args.fps)?;
-        self.bar.inc(self.expected() - footage.scenes.len() as u64);
+        let (frames, eyes) = self.missing(file);
         let making = Making { frames, eyes, folder: self.store.pending()? };
         for folder in self.folders(&making) {
             let folder = making.folder.path().join(folder);
             fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
         }
-        Ok(Some((footage, making)))
+        Ok((footage, making))
     }
 
     fn see(&self, film: &Film<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Self::Seen> {
@@ -81,7 +74,6 @@ impl Work for Pictures<'_> {
             matrices.push(matrix);
             write(&predictions(eye), png::tags(size, &mask.ids)?)?;
         }
-        self.bar.inc(1);
         Ok((frame.tick, matrices))
     }
 
@@ -102,12 +94,13 @@ impl Work for Pictures<'_> {
         }
         if making.frames {
             let ticks: Vec<Tick> = seen.iter().map(|(tick, _)| *tick).collect();
-            self.store.keep(&frames_mark(file), self.key(file, None), ticks)?;
+            self.store.keep(&frames_mark(file), self.settings.key(file, None), ticks)?;
         }
         for (i, eye) in making.eyes.iter().map(|eye| &self.eyes[*eye]).enumerate() {
             let matrices: Matrices = seen.iter().map(|(tick, all)| (*tick, all[i].clone())).collect();
-            self.store.keep(&mark(file, eye), self.key(file, Some(eye)), matrices)?;
+            self.store.keep(&mark(file, eye), self.settings.key(file, Some(eye)), matrices)?;
         }
+        self.bar.inc(self.expected());
         Ok(())
     }
 }
@@ -119,25 +112,25 @@ impl Pictures<'_> {
         self.files.iter().map(of_file).collect()
     }
 
+    /// Numbers of the files of which something is missing.
+    pub fn left(&self) -> Vec<usize> {
+        (0..self.files.len()).filter(|file| !self.missing(&self.files[*file]).1.is_empty()).collect()
+    }
+
     /// Frames of a window that is there as a whole.
-    fn expected(&self) -> u64 {
+    pub fn expected(&self) -> u64 {
         self.args.last.div_ceil(Tick::from(kernel::time::TICK_HZ / self.args.fps))
     }
 
-    fn key(&self, file: &Entry, eye: Option<&Eye>) -> Key {
-        Key {
-            log: file.digest.to_hex().to_string(),
-            last_ticks: self.args.last,
-            fps: self.args.fps,
-            size: self.args.size,
-            program: env!("CARGO_PKG_VERSION").into(),
-            adapter: self.adapter.clone(),
-            checkpoint: eye.map(Eye::digest),
-        }
+    /// Whether the frames are missing, and numbers of the checkpoints whose predictions are.
+    fn missing(&self, file: &Entry) -> (bool, Vec<usize>) {
+        let frames = !self.has_frames(file);
+        let is_missing = |eye: &usize| frames || self.matrices(file, &self.eyes[*eye]).is_none();
+        (frames, (0..self.eyes.len()).filter(is_missing).collect())
     }
 
     fn has_frames(&self, file: &Entry) -> bool {
-        let ticks: Option<Vec<Tick>> = self.store.find(&frames_mark(file), &self.key(file, None));
+        let ticks: Option<Vec<Tick>> = self.store.find(&frames_mark(file), &self.settings.key(file, None));
         ticks.is_some_and(|ticks| {
             [RGB, LABELS].iter().all(|folder| self.holds(file, Path::new(folder), ticks.iter().copied()))
         })
@@ -145,7 +138,7 @@ impl Pictures<'_> {
 
     /// What a checkpoint made of a file, if its pictures are there.
     fn matrices(&self, file: &Entry, eye: &Eye) -> Option<Matrices> {
-        let matrices: Matrices = self.store.find(&mark(file, eye), &self.key(file, Some(eye)))?;
+        let matrices: Matrices = self.store.find(&mark(file, eye), &self.settings.key(file, Some(eye)))?;
         let ticks = matrices.iter().map(|(tick, _)| *tick);
         self.holds(file, &predictions(eye), ticks).then_some(matrices)
     }

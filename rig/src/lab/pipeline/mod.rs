@@ -1,6 +1,8 @@
 //! Films of many files: some threads replay and draw while the others look at what was drawn. What is
 //! found out does not depend on the number of threads.
 
+mod alone;
+
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,6 +15,8 @@ use super::looks::Studio;
 use crate::clock::seconds_of;
 use crate::progress::Interrupt;
 use crate::vision::Eye;
+
+pub use alone::Alone;
 
 /// Looking threads that one drawing thread keeps busy. A frame is drawn several times faster than a
 /// network looks at it.
@@ -27,8 +31,8 @@ pub trait Work: Sync {
     /// What is found out about a frame.
     type Seen: Send;
 
-    /// Replays a file; `None` if nothing is left to do for it.
-    fn read(&self, index: usize) -> anyhow::Result<Option<(Footage, Self::Notes)>>;
+    /// Replays a file.
+    fn read(&self, index: usize) -> anyhow::Result<(Footage, Self::Notes)>;
 
     /// Looks at a frame.
     fn see(&self, film: &Film<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Self::Seen>;
@@ -64,12 +68,19 @@ pub struct Pace {
     pub seconds: f64,
 }
 
+impl Pace {
+    /// Frames a second.
+    pub fn rate(&self) -> f64 {
+        self.frames as f64 / self.seconds
+    }
+}
+
 /// The crew and its work.
 pub struct Crew<'a, W> {
     /// What is done.
     pub work: &'a W,
-    /// Number of files.
-    pub files: usize,
+    /// Numbers of the files that it is done with.
+    pub files: &'a [usize],
     /// Width and height of the pictures, pixels.
     pub size: (u32, u32),
     /// Who looks; each looking thread has copies.
@@ -78,6 +89,23 @@ pub struct Crew<'a, W> {
     pub jobs: usize,
     /// Ends the work early; files that are not finished by then are dropped.
     pub interrupt: &'a Interrupt,
+    /// Renderers, one set a drawing thread; those that are missing are made.
+    pub studios: Studios,
+}
+
+/// Renderers that outlast the threads that draw with them.
+#[derive(Default)]
+pub struct Studios(Mutex<Vec<Studio>>);
+
+impl Studios {
+    /// Calls `draw` with a set for pictures of one size.
+    pub fn with<T>(&self, size: (u32, u32), draw: impl FnOnce(&mut Studio) -> T) -> T {
+        let free = lock(&self.0).pop();
+        let mut studio = free.unwrap_or_else(|| Studio::new(size));
+        let value = draw(&mut studio);
+        lock(&self.0).push(studio);
+        value
+    }
 }
 
 /// What the threads share.
@@ -89,7 +117,20 @@ struct Board<'a, W> {
     failure: Mutex<Option<anyhow::Error>>,
 }
 
+impl<W: Work> Film<W> {
+    fn read(work: &W, index: usize) -> anyhow::Result<Self> {
+        let (footage, notes) = work.read(index)?;
+        let seen = Mutex::new(footage.scenes.iter().map(|_| None).collect());
+        Ok(Self { index, footage, notes, seen })
+    }
+}
+
 impl<W: Work> Crew<'_, W> {
+    /// Number of drawing threads.
+    fn drawing(&self) -> usize {
+        self.jobs.div_ceil(LOOKING_A_DRAWING).max(1)
+    }
+
     /// Does the work. After the first error nothing new is begun, and that error is returned.
     pub fn run(&self) -> anyhow::Result<Pace> {
         let board = Board {
@@ -113,7 +154,7 @@ impl<W: Work> Board<'_, W> {
         let (shots, waiting) = sync_channel(WAITING * jobs);
         let waiting = Mutex::new(waiting);
         thread::scope(|scope| {
-            for _ in 0..jobs.div_ceil(LOOKING_A_DRAWING) {
+            for _ in 0..self.crew.drawing() {
                 let shots = shots.clone();
                 scope.spawn(move || self.draw_all(&shots));
             }
@@ -125,20 +166,17 @@ impl<W: Work> Board<'_, W> {
     }
 
     fn draw_all(&self, shots: &SyncSender<Shot<W>>) {
-        let mut studio = Studio::new(self.crew.size);
-        while !self.is_over() {
-            let index = self.next.fetch_add(1, Ordering::Relaxed);
-            if index >= self.crew.files {
-                return;
+        self.crew.studios.with(self.crew.size, |studio| {
+            while !self.is_over() {
+                let next = self.next.fetch_add(1, Ordering::Relaxed);
+                let Some(index) = self.crew.files.get(next) else { return };
+                self.note(self.draw(*index, studio, shots));
             }
-            self.note(self.draw(index, &mut studio, shots));
-        }
+        });
     }
 
     fn draw(&self, index: usize, studio: &mut Studio, shots: &SyncSender<Shot<W>>) -> anyhow::Result<()> {
-        let Some((footage, notes)) = self.crew.work.read(index)? else { return Ok(()) };
-        let seen = Mutex::new(footage.scenes.iter().map(|_| None).collect());
-        let film = Arc::new(Film { index, footage, notes, seen });
+        let film = Arc::new(Film::read(self.crew.work, index)?);
         for (number, scene) in film.footage.scenes.iter().enumerate() {
             if self.is_over() {
                 break;
