@@ -148,7 +148,7 @@ fn windows_are_those_of_the_run_and_several_files_go_into_a_folder() {
     assert_eq!(code, 0, "{sentence}");
     let written = |name: &str| fs::metadata(folder.join(name)).unwrap().modified().unwrap();
     let before = written("a.mcap");
-    fs::write(folder.join("a.case.mcap"), "something else").unwrap();
+    fs::remove_file(folder.join("a.case.mcap")).unwrap();
     let (code, sentence) = export(&[&[recording, case, "--last", "3s"], common.as_slice()].concat());
     assert_eq!((code, written("a.mcap")), (0, before), "what is there is kept: {sentence}");
     let frames = |name: &str| times(&topics(&folder.join(name))["/camera/rgb"]);
@@ -169,7 +169,7 @@ fn what_cannot_be_exported_is_refused_in_one_sentence_and_nothing_is_left() {
     let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
     let (out, folder) = (path("out.mcap"), path("out"));
     let before = fs::read_dir(dir.path()).unwrap().count();
-    let bytes = fs::read(recording).unwrap();
+    let bytes = (fs::read(recording).unwrap(), fs::read(case).unwrap());
     let same = dir.path().to_str().unwrap();
     for (arguments, expected, words) in [
         (vec![recording, case, "--out", &out], 2, "out.mcap: is one file; expected a folder"),
@@ -178,7 +178,8 @@ fn what_cannot_be_exported_is_refused_in_one_sentence_and_nothing_is_left() {
         (vec!["missing.mcap", "--out", &folder], 1, "missing.mcap"),
         (vec![recording, "--from", "500s", "--out", &folder], 1, "nothing of that window"),
         (vec![recording, "--from", "3s", "--to", "2s", "--out", &out], 1, "nothing of that window"),
-        (vec![recording, "--out", same], 1, "would be overwritten"),
+        (vec![recording, "--out", same], 1, "a.mcap: exists already and is no export"),
+        (vec![recording, "--out", case], 1, "a.case.mcap: exists already and is no export"),
         (vec![recording, "--out", "/nowhere/to/be/found.mcap"], 1, "/nowhere/to/be does not exist"),
         (vec![recording, "--checkpoint", "gone.onnx", "--out", &out], 1, "gone.onnx"),
     ] {
@@ -187,5 +188,5 @@ fn what_cannot_be_exported_is_refused_in_one_sentence_and_nothing_is_left() {
         assert!(!sentence.contains('\n') && sentence.len() < 400, "{sentence:?}");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), before, "{arguments:?}: something was left");
     }
-    assert_eq!(fs::read(recording).unwrap(), bytes);
+    assert_eq!((fs::read(recording).unwrap(), fs::read(case).unwrap()), bytes);
 }

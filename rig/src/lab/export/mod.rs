@@ -137,15 +137,16 @@ fn export_one(
     camera: &mut Camera<'_>,
     interrupt: &Interrupt,
 ) -> anyhow::Result<Export> {
-    if same_file(file, &out) {
-        bail!("would be overwritten by its export; expected another place");
+    let there = exported_from(&out);
+    if there.is_none() && out.exists() {
+        bail!("{}: exists already and is no export; expected another place", out.display());
     }
     let (log, network) = (recording.log(), recording.network()?);
     let window = window(log, args)?;
     output::create_folder(out.parent().unwrap_or(Path::new(".")))?;
     let (about, counts) = (about(recording, &window, args, camera.eyes), Counts::of(log, &window));
     let (from, to) = window.ticks.clone().into_inner();
-    let kept = exported_from(&out).as_ref() == Some(&about);
+    let kept = there.as_ref() == Some(&about);
     let export = Export { file: file.to_owned(), out, from, to, kept, counts };
     if kept {
         return Ok(export);
@@ -162,10 +163,6 @@ fn export_one(
     sink.finish()?.finish()?;
     bar.finish_and_clear();
     Ok(export)
-}
-
-fn same_file(a: &Path, b: &Path) -> bool {
-    a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
 }
 
 /// The ticks that are asked for.
