@@ -17,6 +17,8 @@ pub enum DatasetCommand {
     Cases(CasesArgs),
     /// The paper's three training sets of equal size: natural, pedestrian and corner-case enriched.
     Mix(MixArgs),
+    /// Make a dataset again from its recipe.
+    Rebuild(RebuildArgs),
 }
 
 /// Arguments of `dataset cases`.
@@ -34,7 +36,7 @@ pub struct CasesArgs {
     /// Size of the pictures.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
-    /// Folder of the dataset; must not exist or be empty.
+    /// Folder of the dataset; must not exist, be empty, or hold this dataset already.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -57,7 +59,27 @@ pub struct MixArgs {
     /// Seed of which frames are replaced, and by which.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder of the three datasets `natural`, `pedestrian` and `corner-case`; must not exist or be empty.
+    /// Folder of the datasets `natural`, `pedestrian` and `corner-case`; must not exist, be empty, or
+    /// hold them already.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `dataset rebuild`.
+#[derive(Args, Debug)]
+pub struct RebuildArgs {
+    /// `dataset.json` of a dataset, or its folder.
+    pub recipe: PathBuf,
+    /// Corner cases that the recipe asks for, or folders of them; they are found by their digests.
+    #[arg(long, num_args = 1.., value_name = "CASE|DIR")]
+    pub cases: Vec<PathBuf>,
+    /// OpenDRIVE files of maps that are not bundled.
+    #[arg(long, value_delimiter = ',', value_name = "FILE.xodr")]
+    pub maps: Vec<String>,
+    /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

@@ -16,7 +16,7 @@ use perception::BUNDLED;
 
 pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
 pub use lab::{CompareArgs, ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
-pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, TrainArgs};
+pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, RebuildArgs, TrainArgs};
 pub use live::{
     DoctorArgs, DriveArgs, Screens, SizeArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs,
     WheelListArgs,

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use perception::training::Split;
 use replay::{Annotation, Case, Label, Recording};
-use rig::cli::{CasesArgs, CheckpointChoice, EvalArgs, MixArgs, NaturalArgs};
+use rig::cli::{CasesArgs, CheckpointChoice, EvalArgs, MixArgs, NaturalArgs, RebuildArgs};
 use rig::exit::Verdict;
-use rig::lab::dataset::{FrameLine, Manifest, Part, Recipe, cases, mix, natural};
+use rig::lab::dataset::{FrameLine, Manifest, Part, Recipe, cases, mix, natural, rebuild};
 use rig::lab::eval;
 use rig::progress::Interrupt;
 use tests::files::contents;
@@ -295,4 +295,51 @@ fn what_cannot_be_mixed_is_named_and_nothing_is_left() {
     let text = fs::read_to_string(&list).unwrap();
     fs::write(&list, text.lines().skip(1).map(|l| format!("{l}\n")).collect::<String>()).unwrap();
     refused(with(&args, 3, Some(5), "mix"), &["frames.jsonl: was changed since"]);
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn recipes_alone_make_the_same_folders_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let interrupt = Interrupt::default();
+    let args = parts(dir.path());
+    mix::make(&args, &interrupt).unwrap();
+    let recipe = dir.path().join("recipe.json");
+    let again = |recipe: &Path, cases: Vec<PathBuf>, name: &str| {
+        let (recipe, out) = (recipe.to_owned(), dir.path().join(name));
+        rebuild::make(&RebuildArgs { recipe, cases, maps: Vec::new(), jobs: Some(2), out }, &interrupt)
+    };
+    for (number, set) in ["natural", "pedestrian", "corner-case"].into_iter().enumerate() {
+        let first = args.out.join(set);
+        fs::copy(first.join("dataset.json"), &recipe).unwrap();
+        let cases = if set == "corner-case" { vec![dir.path().join("a.case.mcap")] } else { Vec::new() };
+        let rebuilt = again(&recipe, cases, &format!("again-{number}")).unwrap();
+        assert!(rebuilt.same && rebuilt.same_labels && rebuilt.made_otherwise.is_none(), "{set}");
+        assert_eq!(rebuilt.verdict(), Verdict::Ok);
+        assert_eq!(contents(&dir.path().join(format!("again-{number}"))), contents(&first), "{set}");
+    }
+    assert!(!dir.path().join("again-1.parts").exists());
+
+    let said = again(&args.cases, Vec::new(), "never").unwrap_err().to_string();
+    assert!(said.starts_with("case a.case with digest ") && said.contains("after --cases"), "{said}");
+    assert!(!dir.path().join("never").exists());
+
+    // What if the first one had come out otherwise?
+    let text = fs::read_to_string(dir.path().join("again-0/dataset.json")).unwrap();
+    let verdict = |changes: &[&str]| {
+        let mut first: serde_json::Value = serde_json::from_str(&text).unwrap();
+        changes.iter().for_each(|field| first[*field] = "other".into());
+        fs::write(&recipe, first.to_string()).unwrap();
+        again(&recipe, Vec::new(), "again-0").unwrap().verdict()
+    };
+    assert_eq!(verdict(&["digest"]), Verdict::CheckFailed);
+    assert_eq!(verdict(&["digest", "adapter"]), Verdict::Ok);
+    assert_eq!(verdict(&["digest", "adapter", "labels_digest"]), Verdict::CheckFailed);
+    let other_map = text.replace("\"rural\"", "\"moor\"");
+    fs::write(&recipe, other_map).unwrap();
+    let said = again(&recipe, Vec::new(), "never").unwrap_err().to_string();
+    assert!(said.starts_with("map moor with digest ") && said.contains("after --maps"), "{said}");
+    fs::write(&recipe, "{}").unwrap();
+    let said = format!("{:#}", again(&recipe, Vec::new(), "never").unwrap_err());
+    assert!(said.contains("recipe.json: does not describe a dataset"), "{said}");
 }

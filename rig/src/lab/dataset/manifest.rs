@@ -79,9 +79,13 @@ pub struct Manifest {
 impl Manifest {
     /// Reads that of a dataset folder.
     pub fn read(folder: &Path) -> anyhow::Result<Self> {
-        let path = folder.join(MANIFEST);
-        let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        serde_json::from_str(&text).with_context(|| format!("{}: not what makes a dataset", path.display()))
+        Self::read_file(&folder.join(MANIFEST))
+    }
+
+    /// Reads one wherever it lies.
+    pub fn read_file(path: &Path) -> anyhow::Result<Self> {
+        let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        serde_json::from_str(&text).with_context(|| format!("{}: does not describe a dataset", path.display()))
     }
 
     /// That of a folder which holds a complete dataset of this recipe already; `None` when the dataset

@@ -8,7 +8,7 @@
 //!
 //! A folder is a dataset as soon as it holds `dataset.json` ([`Manifest`]: the recipe and what came of
 //! it), which is written last. `frames.jsonl` says where each frame comes from ([`FrameLine`]). The
-//! pictures are a function of the recipe, on one adapter.
+//! pictures are a function of the recipe, on one adapter ([`rebuild`]).
 
 pub mod cases;
 mod drive;
@@ -17,6 +17,7 @@ mod manifest;
 pub mod mix;
 pub mod natural;
 mod provenance;
+pub mod rebuild;
 
 pub use manifest::{Manifest, Recipe};
 pub use provenance::{FrameLine, Part, WeatherLine};
@@ -30,5 +31,6 @@ pub fn run(command: &DatasetCommand, json: bool) -> anyhow::Result<Verdict> {
         DatasetCommand::Natural(args) => natural::run(args, json),
         DatasetCommand::Cases(args) => cases::run(args, json),
         DatasetCommand::Mix(args) => mix::run(args, json),
+        DatasetCommand::Rebuild(args) => rebuild::run(args, json),
     }
 }
