@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use serde::Serialize;
 
 /// Version of everything that `--json` prints; raised when a field changes its meaning or goes.
-pub const JSON_VERSION: u32 = 1;
+pub const JSON_VERSION: u32 = 2;
 
 #[derive(Serialize)]
 struct Versioned<'a, T> {
@@ -233,6 +233,6 @@ mod tests {
         struct Ticks {
             ticks: u64,
         }
-        assert_eq!(json_line(&Ticks { ticks: 3 }).expect("serialises"), r#"{"version":1,"ticks":3}"#);
+        assert_eq!(json_line(&Ticks { ticks: 3 }).expect("serialises"), r#"{"version":2,"ticks":3}"#);
     }
 }

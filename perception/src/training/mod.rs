@@ -146,6 +146,14 @@ pub fn train(
 ) -> Result<Option<Trained>, PerceptionError> {
     check(options)?;
     let mut run = run::Run::open(dataset, unfinished, options)?;
+    if run.epochs() > epochs {
+        let reason = format!(
+            "{epochs} epochs, but {} has {} already; expected at least as many, or another file",
+            unfinished.display(),
+            run.epochs()
+        );
+        return Err(PerceptionError::TrainOptions { reason });
+    }
     if run.announce(watch).is_break() {
         return Ok(None);
     }

@@ -43,7 +43,7 @@ impl RunLine {
         }
     }
 
-    /// Whether it holds a corner case in which a walker was overlooked.
+    /// Whether it holds a corner case with the label `walker`.
     pub fn is_pedestrian_case(&self) -> bool {
         self.case.is_some() && self.figures.label == Some(Label::Walker.name())
     }

@@ -14,6 +14,11 @@ pub use workers::drive_all;
 
 use crate::maps::Map;
 
+/// A campaign that so many runs in a row bring no further would never end.
+const STALLED_RUNS: usize = 200;
+/// Metres a run that a car creeps without getting anywhere, at most.
+const CREEP_M: u64 = 5;
+
 /// When a campaign is over; counted for each checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Until {
@@ -23,7 +28,7 @@ pub enum Until {
     Km(f64),
     /// So many corner cases.
     Cases(u32),
-    /// So many corner cases in which a walker was overlooked.
+    /// So many corner cases with the label `walker`.
     PedestrianCases(u32),
 }
 
@@ -32,6 +37,17 @@ impl Until {
     pub fn is_met(&self, runs: &[RunLine]) -> bool {
         let (done, of) = self.progress(runs);
         done >= of
+    }
+
+    /// Whether the last of these runs brought it no further.
+    fn is_out_of_reach(&self, runs: &[RunLine]) -> bool {
+        let Some(before) = runs.len().checked_sub(STALLED_RUNS) else { return false };
+        let gained = self.progress(runs).0 - self.progress(&runs[..before]).0;
+        match self {
+            Self::Runs(_) => false,
+            Self::Km(_) => gained < CREEP_M * STALLED_RUNS as u64,
+            Self::Cases(_) | Self::PedestrianCases(_) => gained == 0,
+        }
     }
 
     /// How much of how much is done; kilometres count in metres.

@@ -1,6 +1,6 @@
 //! Threads that drive: one world, renderer and segmenter each.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::Mutex;
 
@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use render::{RenderOptions, Renderer};
 use replay::{Case, Recording};
 
-use super::{Plan, RunLine};
+use super::{Plan, RunLine, STALLED_RUNS};
 use crate::lab::redrive::Counterfactual;
 use crate::output;
 use crate::progress::{self, Interrupt};
@@ -29,6 +29,8 @@ struct Board<'a> {
 struct State {
     next: u32,
     done: BTreeMap<u32, RunLine>,
+    /// Runs that were not there before.
+    driven: BTreeSet<u32>,
     failure: Option<anyhow::Error>,
 }
 
@@ -58,7 +60,8 @@ pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> 
         bail!("interrupted after {} runs; the same command goes on from there", runs.len());
     }
     let enough = (1..=runs.len()).find(|n| plan.until.is_met(&runs[..*n])).unwrap_or(runs.len());
-    for run in enough as u32..state.next {
+    // Only what was driven just now: a longer campaign may have left more.
+    for run in state.driven.range(enough as u32..).copied() {
         discard(&plan.recording_path(eye.name(), run))?;
         discard(&plan.case_path(eye.name(), run))?;
         discard(&plan.counterfactual_path(eye.name(), run))?;
@@ -100,6 +103,14 @@ impl Board<'_> {
         if state.failure.is_some() || self.interrupt.is_raised() || self.plan.until.is_met(&state.prefix()) {
             return None;
         }
+        if self.plan.until.is_out_of_reach(&state.prefix()) {
+            state.failure = Some(anyhow::anyhow!(
+                "{}: {STALLED_RUNS} runs in a row brought the campaign no further; expected a checkpoint that drives, and \
+                 traffic that makes such corner cases",
+                self.eye.name()
+            ));
+            return None;
+        }
         // Driven already but not in turn: only runs can be counted before they are driven.
         if matches!(self.plan.until, super::Until::Runs(n) if state.next >= n) {
             return None;
@@ -117,8 +128,11 @@ impl Board<'_> {
     /// Drives a run, unless its files are there already; `None` when interrupted.
     fn run(&self, run: u32, renderers: &mut HashMap<usize, Renderer>) -> anyhow::Result<Option<RunLine>> {
         let path = self.plan.recording_path(self.eye.name(), run);
-        if !path.exists() && !self.drive(run, &path, renderers)? {
-            return Ok(None);
+        if !path.exists() {
+            if !self.drive(run, &path, renderers)? {
+                return Ok(None);
+            }
+            self.state().driven.insert(run);
         }
         let recording = Recording::open(&path)?;
         self.check(run, &path, &recording)?;
@@ -147,7 +161,8 @@ impl Board<'_> {
         let (found, vision) = Counterfactual::of(recording, network, vision)?;
         renderers.insert(self.plan.map_index(run), vision.into_renderer());
         found.write(&path)?;
-        Ok(Some(found))
+        // As it would be read again: numbers lose their last digits in JSON.
+        Counterfactual::read(&path, recording)
     }
 
     /// The bot's eye on the map of a run.
@@ -190,7 +205,8 @@ impl Board<'_> {
     fn cut(&self, run: u32, recording: &Recording) -> anyhow::Result<bool> {
         let Some(window) = Case::window(recording.log()) else { return Ok(false) };
         let path = self.plan.case_path(self.eye.name(), run);
-        if !path.exists() {
+        let is_cut = |case: &Case| case.info().source == recording.digest() && case.info().to == *window.end();
+        if !Case::open(&path).is_ok_and(|case| is_cut(&case)) {
             let case = Case::cut(recording, &recording.network()?, window)?;
             output::write_file(&path, &case.encode()?)?;
         }

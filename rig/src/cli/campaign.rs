@@ -31,7 +31,7 @@ pub struct CampaignArgs {
     /// Corner cases of each checkpoint.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub cases: Option<u32>,
-    /// Corner cases of each checkpoint in which a walker was overlooked.
+    /// Corner cases of each checkpoint with the label `walker`: takeovers because of people on foot.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub pedestrian_cases: Option<u32>,
     /// People on foot, instead of as many as the scenario or the map's default has.

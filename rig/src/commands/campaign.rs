@@ -49,6 +49,9 @@ fn plan(args: &CampaignArgs) -> anyhow::Result<Plan> {
         _ if args.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
         _ => Map::find_all(&args.maps)?,
     };
+    if args.pedestrian_cases.is_some() && args.pedestrians == Some(0) {
+        return Err(Usage("--pedestrian-cases without people on foot; expected --pedestrians above 0".into()).into());
+    }
     let until = match (args.runs, args.km, args.cases, args.pedestrian_cases) {
         (Some(runs), None, None, None) => Until::Runs(runs),
         (None, Some(km), None, None) if km > 0.0 && km.is_finite() => Until::Km(km),

@@ -13,6 +13,8 @@ use crate::study;
 
 /// What blind drives go by.
 const BLIND: &str = "blind";
+/// What drives go by whose recordings name no checkpoint.
+const UNKNOWN: &str = "unknown";
 
 /// The statistics of one checkpoint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -75,10 +77,17 @@ fn recordings(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
         if inside.is_empty() {
             bail!("{}: holds no recording; expected NAME.mcap", path.display());
         }
-        inside.sort();
+        inside.sort_by_cached_key(|path| turn(path));
         found.append(&mut inside);
     }
     Ok(found)
+}
+
+/// What recordings are sorted by: `drive.mcap`, `drive-2.mcap` ... `drive-10.mcap` were driven in this order.
+fn turn(path: &Path) -> (String, u64) {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let numbered = name.rsplit_once('-').and_then(|(stem, number)| Some((stem.to_owned(), number.parse().ok()?)));
+    numbered.unwrap_or((name, 1))
 }
 
 fn is_recording(path: &Path) -> bool {
@@ -96,13 +105,17 @@ fn group(files: &[PathBuf], reveal: bool) -> anyhow::Result<Vec<Group>> {
         if log.manifest.case.is_some() {
             bail!("{}: a corner case; expected the recording that it was cut from", path.display());
         }
+        if log.manifest.provenance.contains_key("fork") {
+            bail!("{}: a fork of aeye redrive, which nobody drove; expected recordings of drives", path.display());
+        }
         if !known.insert(recording.digest()) {
             bail!("{}: the same recording was given before; expected each once", path.display());
         }
         let Some(ride) = Ride::of(&recording) else { continue };
         let told = study::tellable(&log.manifest.provenance, reveal);
         let digest = told.get("checkpoint_digest").cloned();
-        let checkpoint = told.get("checkpoint").cloned().unwrap_or_else(|| BLIND.into());
+        let untold = if study::is_blind(&log.manifest.provenance) { BLIND } else { UNKNOWN };
+        let checkpoint = told.get("checkpoint").cloned().unwrap_or_else(|| untold.into());
         match groups.iter_mut().find(|g| g.digest == digest && g.checkpoint == checkpoint) {
             Some(group) => group.rides.push(ride),
             None => groups.push(Group { checkpoint, digest, rides: vec![ride] }),
@@ -119,5 +132,18 @@ fn tell_apart(groups: &mut [Group]) {
         if let Some(digest) = group.digest.as_ref().filter(|_| twins > 1) {
             group.checkpoint = format!("{}@{}", group.checkpoint, digest.get(..8).unwrap_or(digest));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_a_session_come_in_their_order() {
+        let order = ["drive.mcap", "drive-2.mcap", "drive-10.mcap", "early-0002.mcap", "early-0010.mcap", "p-07.mcap"];
+        let mut paths: Vec<PathBuf> = order.iter().rev().map(PathBuf::from).collect();
+        paths.sort_by_cached_key(|path| turn(path));
+        assert_eq!(paths, order.map(PathBuf::from));
     }
 }

@@ -77,7 +77,8 @@ pub struct Statistics {
     pub cases_per_km: f64,
     /// Exact 95 % interval of that rate; legs that did not end count as exposure.
     pub cases_per_km_95: (f64, f64),
-    /// 95 % interval of that rate by drawing rides again; absent for a single ride.
+    /// 95 % interval of that rate by drawing rides again; absent for a single ride,
+    /// or without cases.
     pub cases_per_km_95_of_rides: Option<(f64, f64)>,
     /// Kilometres and minutes between corner cases, as the paper prints them.
     pub legs: Legs,

@@ -34,8 +34,12 @@ pub fn interval(units: usize, seed: u64, figure: impl Fn(&[usize]) -> Option<f64
 }
 
 /// 95 % interval of events per exposure, by drawing clusters (rides) of `(events, exposure)`: unlike the
-/// exact interval it allows for rides that differ. `None` for fewer than two clusters.
+/// exact interval it allows for rides that differ. `None` for fewer than two clusters, or without events, of
+/// which drawing again can say nothing.
 pub fn rate_interval(clusters: &[(u64, f64)], seed: u64) -> Option<(f64, f64)> {
+    if clusters.iter().all(|(events, _)| *events == 0) {
+        return None;
+    }
     interval(clusters.len(), seed, |drawn| {
         let add = |(events, exposure), i: &usize| (events + clusters[*i].0, exposure + clusters[*i].1);
         let (events, exposure) = drawn.iter().fold((0, 0.0), add);
@@ -96,6 +100,7 @@ mod tests {
         let (_, high) = rate_interval(&lumped, 1).expect("many rides");
         assert!(high > poisson_interval(40).1 / 40.0);
         assert_eq!(rate_interval(&[(1, 1.0)], 1), None);
+        assert_eq!(rate_interval(&[(0, 1.0), (0, 2.0)], 1), None);
         assert_eq!(rate_interval(&lumped, 7), rate_interval(&lumped, 7));
     }
 }

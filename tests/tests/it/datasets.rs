@@ -63,7 +63,9 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
 
     // What an interrupted run leaves: what it was begun with, one finished scene, no manifest.
     let Recipe::Natural(recipe) = &made.recipe else { panic!("{:?}", made.recipe) };
-    let begun = serde_json::json!({ "recipe": recipe, "renderer": made.renderer, "adapter": made.adapter });
+    let begun = serde_json::json!({
+        "recipe": recipe, "kernel": made.kernel, "renderer": made.renderer, "adapter": made.adapter
+    });
     let frames = String::from_utf8(whole[Path::new("frames.jsonl")].clone()).unwrap();
     let first: String = frames.lines().take(2).map(|l| format!("{l}\n")).collect();
     let begin = |begun: &serde_json::Value| {

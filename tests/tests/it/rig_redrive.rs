@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use kernel::Controls;
+use kernel::arbiter::Outcome;
 use render::{RenderOptions, Renderer};
 use replay::{Case, Recording, verify};
 use rig::cli::{CheckpointChoice, RedriveArgs};
@@ -18,6 +19,8 @@ fn case(folder: &Path) -> PathBuf {
     let scene = busy_city();
     let mut log = Recording::from_bytes(&record(&scene, TAKEOVER + 60, WITH_TAKEOVER)).unwrap().into_log();
     log.manifest.provenance.insert("checkpoint_digest".into(), "truth".into());
+    // The run would have ended within a second of the takeover: a fork goes on all the same.
+    log.manifest.scenario.rules.max_seconds = TAKEOVER as u32 / 60 + 1;
     let recording = Recording::from_bytes(&log.encode().unwrap()).unwrap();
     let window = Case::window(recording.log()).expect("an intervention");
     let path = folder.join("a.case.mcap");
@@ -54,7 +57,7 @@ fn without_the_intervention_the_past_is_the_same_and_the_fork_is_made_again() {
         redrive::run(&args(path.clone(), None, dir.path().join(name)), true).unwrap();
     }
     let read = |name: &str, file: &str| fs::read(dir.path().join(name).join(file)).unwrap();
-    for file in ["a.case.mcap", "a.case.1.mcap", "redrive.jsonl"] {
+    for file in ["a.fork.mcap", "a.fork-1.mcap", "redrive.jsonl"] {
         assert_eq!(read("first", file), read("second", file), "{file}");
     }
     for (line, earlier) in lines(&dir.path().join("first")).iter().zip([0, 6]) {
@@ -69,6 +72,9 @@ fn without_the_intervention_the_past_is_the_same_and_the_fork_is_made_again() {
             assert_eq!(fork.log().hash(tick), case.log().hash(tick));
         }
         assert_ne!(case.log().input(TAKEOVER).unwrap().safety, Controls::default());
+        let missed = fork.log().summary.as_ref().unwrap().outcome == Some(Outcome::Missed);
+        assert!(missed || fork.log().last_tick() == TAKEOVER + 4 * 60, "{}", fork.log().last_tick());
+        assert_eq!(missed, !line["collision"].is_null());
         let rest = fork_tick..=fork.log().last_tick();
         assert!(
             rest.clone().count() > 10
@@ -85,10 +91,10 @@ fn through_another_checkpoint_the_verdict_is_what_the_recording_shows() {
     let out = dir.path().join("out");
     redrive::run(&args(case(dir.path()), Some(CheckpointChoice::Truth), out.clone()), true).unwrap();
     let line = &lines(&out)[0];
-    let fork = Recording::open(&out.join("a.case.mcap")).unwrap();
+    let fork = Recording::open(&out.join("a.fork.mcap")).unwrap();
     verify(fork.log(), &fork.network().unwrap()).unwrap();
     assert_eq!(line["intervention_again"].as_u64(), fork.log().intervention.map(|i| i.tick));
-    assert_eq!(line["verdict"] == "again", fork.log().intervention.is_some() || !line["harm"].is_null());
+    assert_eq!(line["verdict"] == "again", fork.log().intervention.is_some() || !line["collision"].is_null());
 }
 
 #[test]

@@ -51,6 +51,13 @@ fn every_ride_counts_once_for_its_checkpoint() {
     assert_eq!(new.against_reference.as_ref().unwrap().ratio, Some(0.0));
 
     assert!(refused(&[case_path], None).contains("a corner case"));
+    let fork = write(
+        dir.path(),
+        "a.fork.mcap",
+        &recording(false, &[("checkpoint", "old"), ("fork", "without the intervention")]),
+    );
+    assert!(refused(std::slice::from_ref(&fork), None).contains("a fork of aeye redrive"));
+    fs::remove_file(fork).unwrap();
     assert!(refused(&[dir.path().join("0.mcap"), dir.path().to_owned()], None).contains("given before"));
     assert!(refused(&[dir.path().to_owned()], Some("newest")).contains("expected one of old, new"));
     assert!(refused(&[dir.path().join("3.mcap")], None).contains("no recording counts"));

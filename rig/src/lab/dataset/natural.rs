@@ -12,6 +12,7 @@ use anyhow::{Context, bail};
 use indicatif::ProgressBar;
 use kernel::World;
 use render::{Camera, RENDERER_VERSION, RenderOptions, Renderer};
+use replay::KERNEL_VERSION;
 use serde::{Deserialize, Serialize};
 
 use super::drive::ExpertDrive;
@@ -126,16 +127,33 @@ pub(super) fn build(
 #[derive(PartialEq, Serialize, Deserialize)]
 struct Begun {
     recipe: Recipe,
+    kernel: String,
     renderer: String,
     adapter: String,
+}
+
+/// Whether a folder holds nothing but an empty `parts`, as a kill at the very begin leaves it.
+fn only_parts(out: &Path) -> bool {
+    let names = |path: &Path| fs::read_dir(path).map(|entries| entries.flatten().map(|e| e.file_name()).collect());
+    let inside: Vec<_> = names(out).unwrap_or_default();
+    inside == ["parts"] && names(&out.join("parts")).is_ok_and(|inside: Vec<_>| inside.is_empty())
 }
 
 /// The folder of finished scenes, once it is certain that they belong to this recipe.
 fn prepare(out: &Path, recipe: &Recipe, adapter: &str) -> anyhow::Result<PathBuf> {
     let parts = out.join("parts");
     let file = parts.join("begun.json");
+    let is_foreign = !file.exists() && fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
+    if is_foreign && !only_parts(out) {
+        bail!("{}: holds something else; expected a new or an empty folder, or this dataset", out.display());
+    }
     output::create_folder(&parts)?;
-    let now = Begun { recipe: recipe.clone(), renderer: RENDERER_VERSION.to_owned(), adapter: adapter.to_owned() };
+    let now = Begun {
+        recipe: recipe.clone(),
+        kernel: KERNEL_VERSION.to_owned(),
+        renderer: RENDERER_VERSION.to_owned(),
+        adapter: adapter.to_owned(),
+    };
     if !file.exists() {
         output::write_file(&file, serde_json::to_string_pretty(&now)?.as_bytes())?;
         return Ok(parts);
@@ -146,10 +164,11 @@ fn prepare(out: &Path, recipe: &Recipe, adapter: &str) -> anyhow::Result<PathBuf
         bail!("{}: was begun with other arguments; expected the same to complete it", out.display());
     }
     if begun != now {
-        let Begun { adapter: first, renderer, .. } = begun;
-        let place = out.display();
+        let Begun { adapter: first, kernel, renderer, .. } = begun;
         bail!(
-            "{place}: was begun with renderer {renderer} on {first}; expected the same to complete it, not {adapter}"
+            "{}: was begun with kernel {kernel} and renderer {renderer} on {first}; expected the same to complete it, \
+             not {KERNEL_VERSION}, {RENDERER_VERSION} and {adapter}",
+            out.display()
         );
     }
     Ok(parts)

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use clap::ValueEnum;
+use kernel::time::CLIP_FRAMES;
+use perception::training::TrainOptions;
 use serde::{Deserialize, Serialize};
 
 /// Everything that decides an experiment's results.
@@ -120,31 +122,32 @@ impl Preset {
     pub fn recipe(self) -> Recipe {
         match self {
             Self::Smoke => Recipe {
+                maps: vec!["city".into()],
                 natural: Natural { scenes: 20, val_scenes: 4, frames: 24, test_scenes: 6, test_frames: 15 },
-                pool: Pool { scenes: 10, pedestrians: 250 },
+                pool: Pool { scenes: 10, pedestrians: 400 },
                 driving: Driving { epochs: 3, horizon: 12 },
                 first_campaign: FirstCampaign {
-                    training_cases: 4,
+                    training_cases: 3,
                     test_cases: 2,
-                    pedestrians: Some(250),
-                    run_seconds: 120,
+                    pedestrians: Some(400),
+                    run_seconds: 90,
                 },
                 training: Training { epochs: 8, seeds: 2 },
-                second_campaign: SecondCampaign { km: 2.0, pedestrians: Some(250), run_seconds: 120 },
+                second_campaign: SecondCampaign { km: 2.0, pedestrians: Some(400), run_seconds: 90 },
                 ..Self::Paper.recipe()
             },
             Self::Desk => Recipe {
                 natural: Natural { scenes: 60, val_scenes: 12, frames: 40, test_scenes: 21, test_frames: 30 },
-                pool: Pool { scenes: 40, pedestrians: 250 },
+                pool: Pool { scenes: 40, pedestrians: 400 },
                 driving: Driving { epochs: 5, horizon: 40 },
                 first_campaign: FirstCampaign {
                     training_cases: 24,
                     test_cases: 12,
-                    pedestrians: Some(250),
+                    pedestrians: Some(400),
                     run_seconds: 240,
                 },
                 training: Training { epochs: 40, seeds: 3 },
-                second_campaign: SecondCampaign { km: 40.0, pedestrians: Some(250), run_seconds: 240 },
+                second_campaign: SecondCampaign { km: 40.0, pedestrians: Some(400), run_seconds: 240 },
                 ..Self::Paper.recipe()
             },
             Self::Paper => Recipe {
@@ -152,7 +155,7 @@ impl Preset {
                 size: (256, 128),
                 maps: vec!["all".into()],
                 natural: Natural { scenes: 85, val_scenes: 20, frames: 60, test_scenes: 21, test_frames: 30 },
-                pool: Pool { scenes: 85, pedestrians: 250 },
+                pool: Pool { scenes: 85, pedestrians: 400 },
                 driving: Driving { epochs: 5, horizon: 200 },
                 first_campaign: FirstCampaign {
                     training_cases: 50,
@@ -200,6 +203,25 @@ impl Recipe {
         if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
             bail!("{name} is 0; expected at least 1");
         }
+        let (natural, pool) = (&self.natural, &self.pool);
+        let frames = CLIP_FRAMES * self.first_campaign.training_cases;
+        let least = natural.scenes.min(pool.scenes) * natural.frames;
+        if frames > least {
+            bail!(
+                "first_campaign.training_cases replace {frames} frames; expected natural and pool to have as many, not {least}"
+            );
+        }
+        let side = self.size.0.min(self.size.1);
+        if side == 0 || !self.size.0.is_multiple_of(32) || !self.size.1.is_multiple_of(32) {
+            bail!("size is {}x{}; expected sides that are multiples of 32", self.size.0, self.size.1);
+        }
+        let batch = TrainOptions::default().batch as u32;
+        if natural.scenes * natural.frames < batch {
+            bail!("natural.scenes of natural.frames are too few to learn from; expected {batch} frames");
+        }
+        if self.first_campaign.pedestrians == Some(0) {
+            bail!("first_campaign.pedestrians is 0; expected people on foot, for cases with them");
+        }
         if self.driving.horizon < self.driving.epochs {
             bail!("driving.horizon is {}; expected at least driving.epochs", self.driving.horizon);
         }
@@ -246,9 +268,11 @@ mod tests {
         let good = Preset::Smoke.recipe().to_toml().expect("text");
         for (from, to, said) in [
             ("seeds = 2", "seeds = 0", "training.seeds is 0"),
+            ("training_cases = 3", "training_cases = 30", "replace 900 frames"),
+            ("size = [256, 128]", "size = [256, 100]", "multiples of 32"),
             ("km = 2.0", "km = -1.0", "more than 0"),
             ("epochs = 3", "epochs = 30", "at least driving.epochs"),
-            ("run_seconds = 120", "run_seconds = 1", "10 to 86400"),
+            ("run_seconds = 90", "run_seconds = 1", "10 to 86400"),
             ("seed = 1", "sead = 1", "line 1: unknown field"),
         ] {
             let message = refused(&good.replacen(from, to, 1));

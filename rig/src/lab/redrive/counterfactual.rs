@@ -27,6 +27,10 @@ pub struct Counterfactual {
     pub harm: Option<Harm>,
     /// From the intervention to the harm, seconds.
     pub harm_after_s: Option<f64>,
+    /// The first collision, which may come after other harm.
+    pub collision: Option<Harm>,
+    /// From the intervention to the collision, seconds.
+    pub collision_after_s: Option<f64>,
     /// What it follows from.
     key: Key,
 }
@@ -58,6 +62,8 @@ impl Counterfactual {
             verdict: Verdict::of(&course, otherwise, at),
             harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
             harm: course.harm,
+            collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
+            collision: course.collision,
             key: Key::of(recording),
         };
         Ok((found, vision))

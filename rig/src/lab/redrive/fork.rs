@@ -47,6 +47,8 @@ pub struct Course {
     pub fork_tick: Tick,
     /// The first thing that went wrong from then on.
     pub harm: Option<Harm>,
+    /// The first collision from then on.
+    pub collision: Option<Harm>,
     /// Tick of an intervention, which there is only with a safety bot.
     pub intervention: Option<Tick>,
 }
@@ -107,11 +109,15 @@ impl Fork {
         manifest.case = None;
         manifest.scenario.weather = self.weather.unwrap_or(manifest.scenario.weather);
         manifest.provenance.extend(self.provenance(fork_tick, &vision));
+        let end = at + self.after_ticks;
+        // The recorded run's limit of time is no end of a fork. Rules are not part of the world's state.
+        let limit_s = &mut manifest.scenario.rules.max_seconds;
+        *limit_s = (*limit_s).max((end / Tick::from(TICK_HZ)) as u32 + 1);
         let mut world = World::resume(&manifest.scenario, network, start)?;
         let mut recorder = Recorder::new(Vec::new(), &manifest, start)?;
         let mut crew = Crew::new(vision);
-        let mut harm = None;
-        while world.tick() < at + self.after_ticks && world.arbiter().phase != Phase::Done {
+        let (mut harm, mut collision) = (None, None);
+        while world.tick() < end && world.arbiter().phase != Phase::Done {
             // The bots look on before the fork, too: their memory is then that of the drive.
             let (bots, shown) = crew.act(&world)?;
             let tick = world.tick() + 1;
@@ -124,12 +130,14 @@ impl Fork {
             let output = world.step(&input);
             recorder.tick(&input, &output, &world.part_hashes())?;
             if tick >= fork_tick {
-                harm = harm.or_else(|| output.events.iter().find_map(|event| Harm::of(tick, event, &world)));
+                let mut harms = output.events.iter().filter_map(|event| Harm::of(tick, event, &world));
+                harm = harm.or_else(|| harms.clone().next());
+                collision = collision.or_else(|| harms.find(|harm| harm.what == HarmKind::Collision));
             }
         }
         let intervention = world.arbiter().intervention.map(|i| i.tick);
         let recording = recorder.finish(world.arbiter().outcome)?;
-        Ok((Course { recording, fork_tick, harm, intervention }, crew.into_vision()))
+        Ok((Course { recording, fork_tick, harm, collision, intervention }, crew.into_vision()))
     }
 
     fn controls(&self, bots: TickInput) -> TickInput {
@@ -201,6 +209,12 @@ impl Harm {
             _ => None,
         };
         Some(Self { tick, what, with: with.map(str::to_owned), speed_kmh: 3.6 * f64::from(event.speed_mps) })
+    }
+
+    /// What it was, how fast, and how long after a takeover.
+    pub fn words(&self, after_s: f64) -> String {
+        let with = self.with.as_ref().map(|with| format!(" with {with}")).unwrap_or_default();
+        format!("{}{with} at {:.0} km/h, {after_s:.1} s after the takeover", self.what.name(), self.speed_kmh)
     }
 
     /// Seconds from a tick.

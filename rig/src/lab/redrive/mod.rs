@@ -1,6 +1,6 @@
 //! Counterfactuals: corner cases driven on from before the intervention.
 //!
-//! `OUT/NAME.mcap` for each file (`NAME.1.mcap` and so on for variations), recordings that verify as
+//! `OUT/NAME.fork.mcap` for each file (`NAME.fork-1.mcap` and so on for variations), recordings that verify as
 //! any other, and `OUT/redrive.jsonl`, a line for each.
 
 mod counterfactual;
@@ -48,6 +48,10 @@ struct Line {
     harm: Option<Harm>,
     /// From the recorded intervention to the harm, seconds.
     harm_after_s: Option<f64>,
+    /// The first collision, which may come after other harm.
+    collision: Option<Harm>,
+    /// From the recorded intervention to the collision, seconds.
+    collision_after_s: Option<f64>,
     /// Tick of an intervention in the fork.
     intervention_again: Option<Tick>,
 }
@@ -92,13 +96,14 @@ fn redrive(args: &RedriveArgs, path: &Path, out: &Path) -> anyhow::Result<Vec<Li
     let eye = eye_of(args, &log)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name = name.strip_suffix(".mcap").unwrap_or(&name);
+    let name = name.strip_suffix(".case").unwrap_or(name);
     let mut vision = Vision::new(Renderer::new(&network, &RenderOptions::default())?, eye.clone());
     let mut lines = Vec::new();
     for variation in 0..=args.vary {
         let fork = variant(args, &log, &network, variation);
         let (course, after) = fork.drive(&log, &network, vision)?;
         vision = after.with_eye(eye.clone());
-        let file = if variation == 0 { format!("{name}.mcap") } else { format!("{name}.{variation}.mcap") };
+        let file = if variation == 0 { format!("{name}.fork.mcap") } else { format!("{name}.fork-{variation}.mcap") };
         let to = out.join(&file);
         if to.exists() {
             bail!("two files are named {name}; expected names that differ");
@@ -114,6 +119,8 @@ fn redrive(args: &RedriveArgs, path: &Path, out: &Path) -> anyhow::Result<Vec<Li
             verdict: Verdict::of(&course, fork.otherwise, at),
             harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
             harm: course.harm,
+            collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
+            collision: course.collision,
             intervention_again: course.intervention,
         });
     }
@@ -152,10 +159,10 @@ fn text(summary: &Summary) -> String {
 impl Line {
     fn words(&self) -> String {
         let variation = if self.variation == 0 { String::new() } else { format!(" (variation {})", self.variation) };
-        let harm = self.harm.as_ref().zip(self.harm_after_s).map(|(harm, after_s)| {
-            let with = harm.with.as_ref().map(|with| format!(" with {with}")).unwrap_or_default();
-            format!(": {}{with} at {:.0} km/h, {after_s:.1} s after the takeover", harm.what.name(), harm.speed_kmh)
-        });
+        let words = |harm: &Option<Harm>, after_s: Option<f64>| Some(harm.as_ref()?.words(after_s?));
+        let harm = words(&self.harm, self.harm_after_s).map(|harm| format!(": {harm}"));
+        let later = words(&self.collision, self.collision_after_s).filter(|_| self.collision != self.harm);
+        let harm = harm.map(|harm| harm + &later.map(|later| format!("; {later}")).unwrap_or_default());
         format!("{}{variation}: {}{}", self.file, self.verdict.name(), harm.unwrap_or_default())
     }
 }

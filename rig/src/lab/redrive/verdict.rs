@@ -3,7 +3,7 @@
 use kernel::time::{Tick, seconds};
 use serde::{Deserialize, Serialize};
 
-use super::fork::{Course, HarmKind, Otherwise};
+use super::fork::{Course, Otherwise};
 
 /// An intervention is early when harm would have come later than this after it.
 const EARLY_TICKS: Tick = seconds(3);
@@ -34,8 +34,11 @@ impl Verdict {
                 None => Self::Needless,
             },
             Otherwise::OtherEye => {
-                let collides = course.harm.as_ref().is_some_and(|harm| harm.what == HarmKind::Collision);
-                if collides || course.intervention.is_some() { Self::Again } else { Self::Avoided }
+                if course.collision.is_some() || course.intervention.is_some() {
+                    Self::Again
+                } else {
+                    Self::Avoided
+                }
             }
         }
     }
@@ -55,11 +58,12 @@ impl Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::redrive::fork::Harm;
+    use crate::lab::redrive::fork::{Harm, HarmKind};
 
     fn course(harm: Option<(Tick, HarmKind)>, intervention: Option<Tick>) -> Course {
         let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
-        Course { recording: Vec::new(), fork_tick: 1, harm, intervention }
+        let collision = harm.clone().filter(|harm| harm.what == HarmKind::Collision);
+        Course { recording: Vec::new(), fork_tick: 1, harm, collision, intervention }
     }
 
     #[test]

@@ -85,6 +85,8 @@ impl Work for Pictures<'_> {
             self.store.forget_below(&file.name)?;
             remove_folder(&home)?;
         }
+        // Metrics go before the pictures they are of, so that they never stand over others.
+        making.eyes.iter().try_for_each(|eye| self.store.forget(&mark(file, &self.eyes[*eye])))?;
         for folder in self.folders(making) {
             let (from, to) = (making.folder.path().join(&folder), home.join(&folder));
             remove_folder(&to)?;

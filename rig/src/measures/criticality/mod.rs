@@ -31,8 +31,9 @@ pub const CRITICAL_S: f64 = 2.0;
 pub const SAMPLE_TICKS: Tick = CLIP_STRIDE_TICKS;
 /// How many samples it takes until everyone's change of speed is known.
 pub const WARM_UP_SAMPLES: Tick = 3;
-/// Others beyond this distance are not looked at, metres.
-const NEAR_M: f32 = 150.0;
+/// Others beyond this distance are not looked at, metres: at 60 km/h each, they meet no sooner than in
+/// [`HORIZON_S`].
+const NEAR_M: f32 = 340.0;
 
 const _: () = assert!(SAMPLE_TICKS == LOOK_TICKS, "changes of speed are those between two looks");
 

@@ -1,6 +1,7 @@
 //! The files of a mix: links to those of its parts, once it is certain that these are whole.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, bail};
@@ -66,10 +67,17 @@ fn check_interrupt(interrupt: &Interrupt) -> anyhow::Result<()> {
 fn link_file(from: &Path, to: &Path) -> anyhow::Result<()> {
     let folder = to.parent().unwrap_or(to);
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    if fs::hard_link(from, to).is_err() {
-        fs::copy(from, to).with_context(|| format!("{} to {}", from.display(), to.display()))?;
+    match fs::hard_link(from, to) {
+        Ok(()) => Ok(()),
+        // A copy would write through the link that is there, into its source.
+        Err(e) if e.kind() == ErrorKind::AlreadyExists => {
+            bail!("{}: two frames have this name; expected parts that are no mixes themselves", to.display())
+        }
+        Err(_) => {
+            let copied = fs::copy(from, to).with_context(|| format!("{} to {}", from.display(), to.display()));
+            copied.map(|_| ())
+        }
     }
-    Ok(())
 }
 
 /// A frame's line where it goes.

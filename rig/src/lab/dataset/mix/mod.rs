@@ -10,6 +10,7 @@ mod choice;
 mod files;
 mod parts;
 
+use anyhow::bail;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -141,7 +142,11 @@ pub fn make(args: &MixArgs, interrupt: &Interrupt) -> anyhow::Result<Sets> {
 /// The sets that a folder holds already.
 fn finished(out: &Path, natural: &Dataset, pedestrian: &Recipe, corner_case: &Recipe) -> anyhow::Result<Option<Sets>> {
     let of = |name: &str, recipe: manifest::Recipe| Manifest::of_finished(&out.join(name), &recipe);
-    let natural = of("natural", natural.manifest.recipe.clone())?;
+    let part = natural;
+    let natural = of("natural", part.manifest.recipe.clone())?;
+    if natural.as_ref().is_some_and(|set| set.digest != part.manifest.digest) {
+        bail!("{}: holds a mix of other pictures; expected a new folder", out.display());
+    }
     let replaced = pedestrian.replace;
     let found = (natural, of("pedestrian", pedestrian.clone().into())?, of("corner-case", corner_case.clone().into())?);
     let (Some(natural), Some(pedestrian), Some(corner_case)) = found else { return Ok(None) };
