@@ -37,6 +37,7 @@ pub fn picture(rows: &[Row]) -> Option<String> {
          viewBox=\"0 0 {width} {height}\" font-family=\"system-ui, sans-serif\" font-size=\"12\">"
     );
     let steps = (limit / step).round() as i32;
+    let digits = (-step.log10() - 1e-9).ceil().max(0.0) as usize;
     // Writing to a string cannot fail.
     for i in -steps..=steps {
         let (at, bottom) = (x(f64::from(i) * step), height - MARGIN_PX);
@@ -44,7 +45,7 @@ pub fn picture(rows: &[Row]) -> Option<String> {
         let _ =
             write!(svg, "<line x1=\"{at:.1}\" x2=\"{at:.1}\" y1=\"{MARGIN_PX}\" y2=\"{bottom}\" stroke=\"{ink}\"/>");
         let (text, below) = (f64::from(i) * step, bottom + 16.0);
-        let _ = write!(svg, "<text x=\"{at:.1}\" y=\"{below}\" text-anchor=\"middle\">{text:+.2}</text>");
+        let _ = write!(svg, "<text x=\"{at:.1}\" y=\"{below}\" text-anchor=\"middle\">{text:+.digits$}</text>");
     }
     for (i, gain) in gains.iter().enumerate() {
         let y = MARGIN_PX + LINE_PX * (i as f64 + 0.5);

@@ -176,7 +176,6 @@ fn line_2((ours, paper): (&CheckpointStatistics, [f64; 7])) -> Line2 {
 
 /// Corner cases of the second campaign over the kilometres driven.
 fn cases_over_km(results: &Results) -> String {
-    let names: Vec<String> = results.networks.iter().map(|path| name_of(path)).collect();
     let of = |(name, colour): (&'static str, _)| {
         let runs = results.second_campaign.runs.iter().filter(|run| run.checkpoint.starts_with(name));
         let mut points = vec![(0.0, 0.0)];
@@ -194,9 +193,8 @@ fn cases_over_km(results: &Results) -> String {
     let lines: Vec<Line<'_>> = Set::ALL.map(Set::name).into_iter().zip(COLOURS).map(of).collect();
     let ends = lines.iter().filter_map(|line| line.points.last());
     let (km, cases) = ends.fold((1.0f64, 1.0f64), |(km, cases), end| (km.max(end.0), cases.max(end.1)));
-    let title = format!("Corner cases of {}", names.join(", "));
     row(&[Plot {
-        title: &title,
+        title: "Second campaign",
         x: Axis { name: "driven, km", low: 0.0, high: km },
         y: Axis { name: "corner cases", low: 0.0, high: cases },
         lines,
