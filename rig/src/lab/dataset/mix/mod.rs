@@ -126,6 +126,9 @@ pub fn make(args: &MixArgs, interrupt: &Interrupt) -> anyhow::Result<Sets> {
     if let Some(finished) = finished(&args.out, &natural, &pedestrian, &corner_case)? {
         return Ok(finished);
     }
+    for part in [&args.natural, &args.pool, &args.cases] {
+        output::check_outside(&args.out, part)?;
+    }
     let pending = PendingFolder::new(&args.out)?;
     let folder = |name| pending.path().join(name);
     files::copy(&natural, &folder("natural"), interrupt)?;

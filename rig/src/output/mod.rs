@@ -1,11 +1,15 @@
 //! What a command prints, and files that appear only when they are whole.
 
+mod pending;
+
 use std::fs;
-use std::io::{self, BufWriter, IntoInnerError, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use serde::Serialize;
+
+pub use pending::{PendingFile, PendingFolder};
 
 /// Version of everything that `--json` prints; raised when a field changes its meaning or goes.
 pub const JSON_VERSION: u32 = 2;
@@ -68,41 +72,6 @@ fn temporary(path: &Path, bytes: &[u8]) -> anyhow::Result<tempfile::NamedTempFil
     Ok(file)
 }
 
-/// A file that gets its name only when it is complete; dropped before, nothing remains.
-pub struct PendingFile {
-    temporary: BufWriter<tempfile::NamedTempFile>,
-    path: PathBuf,
-}
-
-impl PendingFile {
-    /// Starts a file.
-    pub fn new(path: &Path) -> anyhow::Result<Self> {
-        Ok(Self { temporary: BufWriter::new(temporary(path, &[])?), path: path.to_owned() })
-    }
-
-    /// Gives the file its name; whatever had it before is gone.
-    pub fn finish(self) -> anyhow::Result<()> {
-        let context = || self.path.display().to_string();
-        let file = self.temporary.into_inner().map_err(IntoInnerError::into_error).with_context(context)?;
-        file.persist(&self.path).with_context(context)?;
-        Ok(())
-    }
-}
-
-impl Write for PendingFile {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.temporary.write(bytes).map_err(|error| named(&self.path, &error))
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.temporary.flush().map_err(|error| named(&self.path, &error))
-    }
-}
-
-fn named(path: &Path, error: &io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
-}
-
 /// Refuses a place where no file can be written, before the work whose result it is for.
 pub fn check_file(path: &Path) -> anyhow::Result<()> {
     let folder = folder_of(path);
@@ -127,48 +96,20 @@ pub fn create_folder(path: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Refuses a place inside a folder that is there.
+pub fn check_outside(path: &Path, folder: &Path) -> anyhow::Result<()> {
+    let context = || path.display().to_string();
+    let absolute = std::path::absolute(path).with_context(context)?;
+    let there = absolute.ancestors().find(|above| above.exists()).unwrap_or(&absolute);
+    let folder_there = folder.canonicalize().with_context(|| folder.display().to_string())?;
+    if there.canonicalize().with_context(context)?.starts_with(folder_there) {
+        bail!("{}: lies inside {}; expected a place outside of it", path.display(), folder.display());
+    }
+    Ok(())
+}
+
 fn folder_of(path: &Path) -> PathBuf {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
-}
-
-/// A folder that gets its name only when it is complete; dropped before, nothing remains.
-pub struct PendingFolder {
-    temporary: tempfile::TempDir,
-    path: PathBuf,
-}
-
-impl PendingFolder {
-    /// Starts a folder; `path` must not exist, or be an empty folder.
-    pub fn new(path: &Path) -> anyhow::Result<Self> {
-        let is_free = match fs::read_dir(path) {
-            Ok(mut entries) => entries.next().is_none(),
-            Err(_) => !path.exists(),
-        };
-        if !is_free {
-            bail!("{}: exists already; expected a new or an empty folder", path.display());
-        }
-        let parent = folder_of(path);
-        create_folder(&parent)?;
-        let temporary = tempfile::Builder::new().prefix(".aeye-").tempdir_in(&parent);
-        Ok(Self { temporary: temporary.with_context(|| parent.display().to_string())?, path: path.to_owned() })
-    }
-
-    /// Where to write until [`PendingFolder::finish`].
-    pub fn path(&self) -> &Path {
-        self.temporary.path()
-    }
-
-    /// Gives the folder its name.
-    pub fn finish(self) -> anyhow::Result<()> {
-        make_readable(self.temporary.path(), 0o755)?;
-        if self.path.exists() {
-            fs::remove_dir(&self.path).with_context(|| self.path.display().to_string())?;
-        }
-        fs::rename(self.temporary.path(), &self.path).with_context(|| self.path.display().to_string())?;
-        // It has moved away: nothing is left to delete.
-        let _ = self.temporary.keep();
-        Ok(())
-    }
 }
 
 /// What is temporary is private; results are not.
@@ -186,36 +127,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_folder_appears_only_when_finished() {
-        let dir = tempfile::tempdir().expect("a folder");
-        let path = dir.path().join("out");
-        drop(PendingFolder::new(&path).expect("free"));
-        assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 0);
-        let pending = PendingFolder::new(&path).expect("free");
-        fs::write(pending.path().join("a"), "b").expect("writable");
-        pending.finish().expect("renamed");
-        assert_eq!(fs::read_to_string(path.join("a")).expect("there"), "b");
-        assert!(PendingFolder::new(&path).is_err());
-    }
-
-    #[test]
-    fn a_file_appears_only_when_finished() {
-        let dir = tempfile::tempdir().expect("a folder");
-        let path = dir.path().join("out");
-        let written = |content: &[u8]| {
-            let mut file = PendingFile::new(&path).expect("a writable folder");
-            file.write_all(content).expect("written");
-            file
-        };
-        drop(written(b"a"));
-        assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 0);
-        written(b"b").finish().expect("renamed");
-        drop(written(b"c"));
-        assert_eq!(fs::read_to_string(&path).expect("there"), "b");
-        assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 1, "nothing temporary remains");
-    }
-
-    #[test]
     fn a_new_file_takes_the_first_name_that_is_free() {
         let dir = tempfile::tempdir().expect("a folder");
         let stem = dir.path().join("run.1");
@@ -225,6 +136,17 @@ mod tests {
         }
         assert_eq!(fs::read_to_string(dir.path().join("run.1.png")).expect("there"), "a");
         assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 3, "nothing temporary remains");
+    }
+
+    #[test]
+    fn places_inside_are_told_from_places_beside() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| dir.path().join(name);
+        fs::create_dir_all(at("a/b")).expect("writable");
+        assert!(check_outside(&at("a/new/er"), &at("a")).is_err());
+        assert!(check_outside(&at("a/b/../c"), &at("a")).is_err());
+        check_outside(&at("ab"), &at("a")).expect("beside");
+        check_outside(&at("a/c"), &at("a/b")).expect("beside");
     }
 
     #[test]
