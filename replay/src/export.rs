@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{Read, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use kernel::time::Tick;
@@ -84,16 +84,32 @@ impl<W: Write> Exporter<W> {
     }
 }
 
-/// What a file was made from, as given to [`Exporter::new`]; `None` for a file of another kind. Reads no
-/// more than the file's head.
-pub fn exported_from(path: &Path) -> Option<BTreeMap<String, String>> {
+/// What is known of an export from its head and its end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exported {
+    /// What it was made from, as given to [`Exporter::new`].
+    pub about: BTreeMap<String, String>,
+    /// Whether its end is there.
+    pub is_whole: bool,
+}
+
+/// Reads head and end of a file; `None` for one of another kind.
+pub fn exported(path: &Path) -> Option<Exported> {
     let mut head = Vec::new();
-    File::open(path).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+    let mut file = File::open(path).ok()?;
+    (&file).take(HEAD_BYTES).read_to_end(&mut head).ok()?;
     let records = mcap::read::LinearReader::sans_magic(head.strip_prefix(MAGIC)?);
-    records.take(2).find_map(|record| match record {
+    let about = records.take(2).find_map(|record| match record {
         Ok(Record::Metadata(Metadata { name, metadata })) if name == METADATA => Some(metadata),
         _ => None,
-    })
+    })?;
+    Some(Exported { about, is_whole: ends_as_mcap(&mut file) })
+}
+
+fn ends_as_mcap(file: &mut File) -> bool {
+    let mut end = [0; MAGIC.len()];
+    let back = -(MAGIC.len() as i64);
+    file.seek(SeekFrom::End(back)).and_then(|_| file.read_exact(&mut end)).is_ok_and(|()| end == *MAGIC)
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ mod wire;
 pub use case::Case;
 pub use divergence::Divergence;
 pub use error::Error;
-pub use export::{ExportChannel, Exporter, Schema, exported_from};
+pub use export::{ExportChannel, Exported, Exporter, Schema, exported};
 pub use layout::nanoseconds;
 pub use log::{
     Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Provenance,
