@@ -84,6 +84,12 @@ fn a_training_that_is_killed_ends_with_the_same_files_and_is_done_once() {
     let again = train(dir.path(), "whole/c.onnx").output().expect("the program starts");
     let said = String::from_utf8_lossy(&again.stderr).into_owned();
     assert!(again.stdout.is_empty() && said.starts_with("whole/c.onnx: is trained already"), "{said}");
+
+    let other = train(dir.path(), "whole/c.onnx").args(["--seed", "9"]).output().expect("the program starts");
+    let said = String::from_utf8_lossy(&other.stderr).into_owned();
+    assert_eq!((other.status.code(), said.lines().count()), (Some(1), 1), "{said}");
+    assert!(said.contains("whole/c.onnx: exists already and is not what these options make"), "{said}");
+    assert!(results(&place("whole")) == files, "nothing is overwritten");
 }
 
 #[test]

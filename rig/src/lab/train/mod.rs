@@ -8,7 +8,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use indicatif::ProgressBar;
 use perception::Checkpoint;
 use perception::training::{self, Progress, TrainOptions, Trained};
@@ -57,6 +57,10 @@ pub fn train(
         return Ok(summary(args, &checkpoint, true));
     }
     let unfinished = beside(&args.out, "onnx.part");
+    if args.out.exists() && !unfinished.exists() {
+        let out = args.out.display();
+        bail!("{out}: exists already and is not what these options make of this dataset; expected another place");
+    }
     let mut screen = Screen { bar: ProgressBar::hidden(), options: &options, epochs: args.epochs, show, failed: None };
     let watch = &mut |progress: Progress<'_>| {
         screen.watch(progress);
@@ -72,7 +76,7 @@ pub fn train(
         return Err(error);
     }
     let Some(trained) = trained else {
-        anyhow::bail!("interrupted; the same command goes on from {}", unfinished.display());
+        bail!("interrupted; the same command goes on from {}", unfinished.display());
     };
     write(args, &options, &trained)?;
     if trained.is_final {
