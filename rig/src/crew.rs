@@ -19,7 +19,12 @@ pub struct Crew {
 impl Crew {
     /// Takes the seats.
     pub fn new(vision: Vision) -> Self {
-        Self { vision, semantic: SemanticBot::default(), safety: SafetyBot::default() }
+        Self::with(vision, SafetyBot::default())
+    }
+
+    /// Takes the seats, with this safety driver.
+    pub fn with(vision: Vision, safety: SafetyBot) -> Self {
+        Self { vision, semantic: SemanticBot::default(), safety }
     }
 
     /// Both drivers' controls for the next tick, and what the semantic driver saw.

@@ -23,12 +23,19 @@ impl std::fmt::Display for Usage {
 
 impl std::error::Error for Usage {}
 
+/// Whether an error says that a replay is not the run that was recorded.
+pub fn is_divergence(error: &anyhow::Error) -> bool {
+    let diverged = |error: &replay::Error| matches!(error, replay::Error::Diverged(_));
+    error.chain().any(|e| e.downcast_ref::<replay::Error>().is_some_and(diverged))
+}
+
 /// The exit code as a number: 0 ok, 1 error (unreadable, damaged), 2 usage, 3 a check failed.
 pub fn number(result: &anyhow::Result<Verdict>) -> u8 {
     match result {
         Ok(Verdict::Ok) => 0,
         Ok(Verdict::CheckFailed) => 3,
         Err(error) if error.is::<Usage>() => 2,
+        Err(error) if is_divergence(error) => 3,
         Err(_) => 1,
     }
 }

@@ -118,7 +118,8 @@ pub struct RedriveArgs {
     #[arg(long)]
     pub reveal: bool,
     /// Further forks of each file with other weather of the paper's ranges and, without the
-    /// intervention, with the safety driver gone 0.1 s earlier each.
+    /// intervention, with the safety driver gone 0.1 s earlier each; through another checkpoint, with
+    /// safety drivers of other reaction times.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=30))]
     pub vary: u16,
     /// How long after the intervention a fork goes on, seconds.

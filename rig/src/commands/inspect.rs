@@ -218,7 +218,7 @@ fn text(c: &Contents) -> String {
         (Some(measures), _) => measures::lines(measures).into_iter().for_each(|(name, value)| line(name, value)),
         (None, why) => line("measures", format!("none: {}", why.as_deref().unwrap_or_default())),
     }
-    for (name, value) in c.criticality.iter().flat_map(Criticality::lines) {
+    for (name, value) in c.criticality.iter().flat_map(|criticality| criticality.extremes.lines()) {
         line(name, value);
     }
     paragraph(lines)

@@ -102,9 +102,3 @@ fn other_scene(tick: Tick) -> Divergence {
         seen_at: tick,
     }
 }
-
-/// Whether an error says that a replay is not the run that was recorded.
-pub fn is_divergence(error: &anyhow::Error) -> bool {
-    let diverged = |error: &Error| matches!(error, Error::Diverged(_));
-    error.chain().any(|e| e.downcast_ref::<Error>().is_some_and(diverged))
-}

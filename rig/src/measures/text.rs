@@ -2,8 +2,8 @@
 
 use kernel::time::{TICK_HZ, Tick};
 
-use super::criticality::Extreme;
-use super::{Criticality, HazardTimes, Measures, Response, ScreenAge, Spread, Tally};
+use super::criticality::{Extreme, Extremes};
+use super::{HazardTimes, Measures, Response, ScreenAge, Spread, Tally};
 
 /// The measures of a recording as names and values.
 pub fn lines(measures: &Measures) -> Vec<(&'static str, String)> {
@@ -19,8 +19,8 @@ fn at(tick: Tick) -> String {
     format!("tick {tick} ({:.2} s)", tick as f64 / f64::from(TICK_HZ))
 }
 
-impl Criticality {
-    /// The extremes as names and values.
+impl Extremes {
+    /// As names and values.
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         let line = |name, unit, extreme: &Option<Extreme>| {
             let Extreme { value, tick, with } = extreme.as_ref()?;

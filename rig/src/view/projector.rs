@@ -11,8 +11,7 @@ use super::layers::{self, Layer};
 use super::reel::{Moment, Reel};
 use super::seen::{Seen, SeenTrack};
 use crate::desktop::Image;
-use crate::exit::sentence;
-use crate::lab::footage::is_divergence;
+use crate::exit::{is_divergence, sentence};
 use crate::newest::Newest;
 use crate::vision::Eye;
 

@@ -18,6 +18,7 @@ mod rig_criticality;
 mod rig_experiment;
 mod rig_export;
 mod rig_learning;
+mod rig_pipeline;
 mod rig_redrive;
 mod rig_rerender;
 mod rig_statistics;

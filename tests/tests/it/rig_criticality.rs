@@ -89,9 +89,11 @@ fn the_trace_of_a_case_is_that_of_boxes_moved_on_by_hand() {
 
     let least = |of: fn(&Sample) -> Option<f64>| samples.iter().filter_map(of).min_by(f64::total_cmp);
     let ttc = least(|sample| sample.ttc_s.as_ref().map(|worst| worst.value));
-    assert_eq!(criticality.min_ttc_s.as_ref().map(|extreme| extreme.value), ttc);
+    assert_eq!(criticality.extremes.min_ttc_s.as_ref().map(|extreme| extreme.value), ttc);
     let pret = least(|sample| sample.pret_s.as_ref().map(|worst| worst.value));
-    assert_eq!(criticality.min_pret_s.as_ref().map(|extreme| extreme.value), pret);
+    assert_eq!(criticality.extremes.min_pret_s.as_ref().map(|extreme| extreme.value), pret);
     let held_s = ticks.len() as f64 * 6.0 / f64::from(TICK_HZ);
-    assert!(criticality.pet_s.iter().all(|pet| (0.0..held_s).contains(&pet.value) && window.start() <= &pet.tick));
+    assert!(
+        criticality.extremes.pet_s.iter().all(|pet| (0.0..held_s).contains(&pet.value) && window.start() <= &pet.tick)
+    );
 }

@@ -9,6 +9,7 @@ use render::{RenderOptions, Renderer};
 use replay::{Case, Recording, verify};
 use rig::cli::{CheckpointChoice, RedriveArgs};
 use rig::lab::redrive::{self, Counterfactual};
+use rig::measures::Criticality;
 use rig::vision::{Eye, Vision};
 use serde_json::Value;
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
@@ -76,6 +77,9 @@ fn without_the_intervention_the_past_is_the_same_and_the_fork_is_made_again() {
         assert!(missed || fork.log().last_tick() == TAKEOVER + 4 * 60, "{}", fork.log().last_tick());
         assert_eq!(missed, !line["collision"].is_null());
         let rest = fork_tick..=fork.log().last_tick();
+        let closest = Criticality::of(fork.log(), &case.network().unwrap(), rest.clone()).unwrap().extremes;
+        let written: Value = serde_json::from_str(&serde_json::to_string(&closest).unwrap()).unwrap();
+        assert_eq!(line["closest"], written);
         assert!(
             rest.clone().count() > 10
                 && rest.clone().all(|t| fork.log().input(t).unwrap().safety == Controls::default())

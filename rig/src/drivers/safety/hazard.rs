@@ -13,7 +13,7 @@ use super::looks::Looks;
 use crate::footprint::{Footprint, forward, middle};
 
 /// An encroachment predicted within this time is critical (Westhofen et al. 2022), seconds.
-const CRITICAL_S: f32 = 2.0;
+pub const CRITICAL_S: f32 = 2.0;
 /// Step of the prediction, seconds.
 const STEP_S: f32 = 0.1;
 /// How far around the car others matter, metres.

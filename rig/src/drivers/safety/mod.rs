@@ -11,7 +11,7 @@ use kernel::{Controls, World, ego, ops};
 
 use super::Driver;
 use crate::footprint;
-pub use hazard::{Hazard, Touched, encroachers, label_of, predicted_encroachment};
+pub use hazard::{CRITICAL_S, Hazard, Touched, encroachers, label_of, predicted_encroachment};
 pub use looks::{LOOK_TICKS, Looks};
 
 /// Reaction times are log-normal with this mean (Dixit et al. 2016), seconds, and spread.
@@ -31,6 +31,8 @@ const STEER_TO_M: usize = 8;
 /// Sees the truth, and takes over when it gets dangerous.
 #[derive(Clone, Debug, Default)]
 pub struct SafetyBot {
+    /// Number of the person, who has reaction times of their own.
+    person: u64,
     looks: Looks,
     /// When the present hazard was first and last seen.
     feared: Option<Feared>,
@@ -47,6 +49,11 @@ struct Feared {
 }
 
 impl SafetyBot {
+    /// One of many, of whom [`SafetyBot::default`] is number 0: they differ in their reaction times.
+    pub fn of_person(person: u64) -> Self {
+        Self { person, ..Self::default() }
+    }
+
     /// Why it took over, once it has.
     pub fn reason(&self) -> Option<&Hazard> {
         self.reason.as_ref()
@@ -69,7 +76,7 @@ impl SafetyBot {
     fn fear(&mut self, hazard: Hazard, world: &World) {
         let tick = world.tick();
         let since = self.feared.as_ref().map_or(tick, |f| f.since);
-        if tick >= since + reaction_ticks(world.scenario().seed, since) {
+        if tick >= since + reaction_ticks(world.scenario().seed, self.person, since) {
             self.reason = Some(hazard);
         }
         self.feared = Some(Feared { since, last: tick });
@@ -107,10 +114,10 @@ impl Driver<World> for SafetyBot {
     }
 }
 
-/// Log-normal reaction time to a hazard that began at a tick.
-fn reaction_ticks(seed: u64, since: Tick) -> Tick {
+/// Log-normal reaction time of a person to a hazard that began at a tick.
+fn reaction_ticks(seed: u64, person: u64, since: Tick) -> Tick {
     // Box and Muller 1958; 1 - u is never 0.
-    let draw = |entity| rng::unit(seed, Stream::Driver, entity, since);
+    let draw = |number| rng::unit(seed, Stream::Driver, 2 * person + number, since);
     let normal = (-2.0 * ops::ln(1.0 - draw(0))).sqrt() * ops::cos(core::f32::consts::TAU * draw(1));
     let median_s = REACTION_MEAN_S * ops::exp(-0.5 * REACTION_SIGMA * REACTION_SIGMA);
     let [least, most] = REACTION_RANGE_S;
@@ -135,8 +142,9 @@ mod tests {
 
     #[test]
     fn reactions_are_human() {
-        let mean = (0..2000).map(|i| reaction_ticks(7, i) as f32).sum::<f32>() / 2000.0 / TICK_HZ as f32;
+        let mean = (0..2000).map(|i| reaction_ticks(7, i % 4, i) as f32).sum::<f32>() / 2000.0 / TICK_HZ as f32;
         assert!((mean - REACTION_MEAN_S).abs() < 0.04, "{mean}");
-        assert_eq!(reaction_ticks(7, 3), reaction_ticks(7, 3));
+        assert_eq!(reaction_ticks(7, 0, 3), reaction_ticks(7, 0, 3));
+        assert_ne!(reaction_ticks(7, 0, 3), reaction_ticks(7, 1, 3));
     }
 }

@@ -23,14 +23,13 @@ use self::gate::{Passage, no_worse};
 use self::looking::{Looked, Looking};
 use self::metrics::CaseSums;
 use self::summary::{Speed, Summary};
-use super::footage::is_divergence;
 use super::library;
 use super::looks::open_eyes;
 use super::pipeline::{Crew, Studios};
 use super::spread::jobs;
 use super::store::{Settings, Store};
 use crate::cli::CompareArgs;
-use crate::exit::{Usage, Verdict, sentence};
+use crate::exit::{Usage, Verdict};
 use crate::output;
 use crate::progress::{self, Interrupt};
 use crate::vision::Eye;
@@ -39,18 +38,10 @@ pub use gate::Gate;
 
 /// Runs `aeye compare`.
 pub fn run(args: &CompareArgs, json: bool) -> anyhow::Result<Verdict> {
-    match compare(args, &Interrupt::listen()?) {
-        Ok((summary, speed)) => {
-            let printed = summary::Printed { summary: &summary, speed: speed.as_ref() };
-            output::print(json, &printed, || text::of(&printed))?;
-            Ok(verdict(&summary.gates))
-        }
-        Err(error) if is_divergence(&error) => {
-            eprintln!("error: {}", sentence(&error));
-            Ok(Verdict::CheckFailed)
-        }
-        Err(error) => Err(error),
-    }
+    let (summary, speed) = compare(args, &Interrupt::listen()?)?;
+    let printed = summary::Printed { summary: &summary, speed: speed.as_ref() };
+    output::print(json, &printed, || text::of(&printed))?;
+    Ok(verdict(&summary.gates))
 }
 
 /// Says which gates were not passed.

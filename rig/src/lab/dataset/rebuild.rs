@@ -33,7 +33,8 @@ pub struct Rebuilt {
 }
 
 impl Rebuilt {
-    /// Labels are to be the same anywhere, pictures where nothing differs from what made the first one.
+    /// Pictures are to be the same where nothing differs from what made the first one. Labels are to be the
+    /// same anywhere: another adapter may draw the edges of triangles differently, and that is to be known.
     pub fn verdict(&self) -> Verdict {
         let as_promised = self.same || self.made_otherwise.is_some() && self.same_labels;
         if as_promised { Verdict::Ok } else { Verdict::CheckFailed }

@@ -19,13 +19,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use kernel::time::{TICK_HZ, Tick};
-use replay::{Log, Recording, exported_from};
+use replay::{Exported, Log, Recording, exported};
 use serde::Serialize;
 
-use super::footage::{decisive_tick, is_divergence};
+use super::footage::decisive_tick;
 use super::looks::{Studio, open_eyes};
 use crate::cli::ExportArgs;
-use crate::exit::{Usage, Verdict, sentence};
+use crate::exit::{Usage, Verdict};
 use crate::output::{self, PendingFile};
 use crate::progress::{self, Interrupt};
 use crate::vision::Eye;
@@ -55,17 +55,9 @@ struct Export {
 
 /// Runs `aeye export`.
 pub fn run(args: &ExportArgs, json: bool) -> anyhow::Result<Verdict> {
-    match export(args) {
-        Ok(summary) => {
-            output::print(json, &summary, || text(&summary))?;
-            Ok(Verdict::Ok)
-        }
-        Err(error) if is_divergence(&error) => {
-            eprintln!("error: {}", sentence(&error));
-            Ok(Verdict::CheckFailed)
-        }
-        Err(error) => Err(error),
-    }
+    let summary = export(args)?;
+    output::print(json, &summary, || text(&summary))?;
+    Ok(Verdict::Ok)
 }
 
 fn text(summary: &Summary) -> String {
@@ -137,7 +129,7 @@ fn export_one(
     camera: &mut Camera<'_>,
     interrupt: &Interrupt,
 ) -> anyhow::Result<Export> {
-    let there = exported_from(&out);
+    let there = exported(&out);
     if there.is_none() && out.exists() {
         bail!("{}: exists already and is no export; expected another place", out.display());
     }
@@ -146,7 +138,7 @@ fn export_one(
     output::create_folder(out.parent().unwrap_or(Path::new(".")))?;
     let (about, counts) = (about(recording, &window, args, camera.eyes), Counts::of(log, &window));
     let (from, to) = window.ticks.clone().into_inner();
-    let kept = there.as_ref() == Some(&about);
+    let kept = there == Some(Exported { about: about.clone(), is_whole: true });
     let export = Export { file: file.to_owned(), out, from, to, kept, counts };
     if kept {
         return Ok(export);

@@ -152,7 +152,7 @@ impl<W: Work> Board<'_, W> {
     fn run(&self) {
         let jobs = self.crew.jobs.max(1);
         let (shots, waiting) = sync_channel(WAITING * jobs);
-        let waiting = Mutex::new(waiting);
+        let waiting = Arc::new(Mutex::new(waiting));
         thread::scope(|scope| {
             for _ in 0..self.crew.drawing() {
                 let shots = shots.clone();
@@ -160,8 +160,11 @@ impl<W: Work> Board<'_, W> {
             }
             drop(shots);
             for _ in 0..jobs {
-                scope.spawn(|| self.look_at_all(&waiting));
+                let waiting = waiting.clone();
+                scope.spawn(move || self.look_at_all(&waiting));
             }
+            // The looking threads alone hold it: when all of them have panicked, nobody waits for room.
+            drop(waiting);
         });
     }
 

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fork::{Fork, Harm, Otherwise};
 use super::verdict::Verdict;
+use crate::measures::criticality::Extremes;
 use crate::output;
 use crate::vision::Vision;
 
@@ -31,6 +32,8 @@ pub struct Counterfactual {
     pub collision: Option<Harm>,
     /// From the intervention to the collision, seconds.
     pub collision_after_s: Option<f64>,
+    /// How close it came to harm without it, whatever the verdict.
+    pub closest: Extremes,
     /// What it follows from.
     key: Key,
 }
@@ -64,6 +67,7 @@ impl Counterfactual {
             harm: course.harm,
             collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
             collision: course.collision,
+            closest: course.closest,
             key: Key::of(recording),
         };
         Ok((found, vision))

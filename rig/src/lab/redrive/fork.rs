@@ -8,10 +8,13 @@ use kernel::events::{Event, EventKind};
 use kernel::scene::{ActorKind, Weather};
 use kernel::time::{CLIP_TICKS, TICK_HZ, Tick};
 use kernel::{Controls, Keyframe, RoadNetwork, TickInput, World};
-use replay::{Log, Recorder, Replayer};
+use replay::{Log, Recorder, Recording, Replayer};
 use serde::{Deserialize, Serialize};
 
 use crate::crew::Crew;
+use crate::drivers::safety::SafetyBot;
+use crate::measures::Criticality;
+use crate::measures::criticality::Extremes;
 use crate::vision::Vision;
 
 /// What is done otherwise than in the recording.
@@ -24,7 +27,10 @@ pub enum Otherwise {
         earlier_ticks: Tick,
     },
     /// Bots give all controls from the first tick.
-    OtherEye,
+    OtherEye {
+        /// Which of many safety drivers; they differ in their reaction times.
+        person: u64,
+    },
 }
 
 /// A fork: what is done otherwise, in which weather, and how long after the intervention it ends.
@@ -51,6 +57,8 @@ pub struct Course {
     pub collision: Option<Harm>,
     /// Tick of an intervention, which there is only with a safety bot.
     pub intervention: Option<Tick>,
+    /// How critical it was from then on.
+    pub closest: Extremes,
 }
 
 /// What went wrong.
@@ -103,7 +111,7 @@ impl Fork {
         let start = start_of(log, at)?;
         let fork_tick = match self.otherwise {
             Otherwise::NoIntervention { earlier_ticks } => at.saturating_sub(earlier_ticks).max(start.tick + 1),
-            Otherwise::OtherEye => start.tick + 1,
+            Otherwise::OtherEye { .. } => start.tick + 1,
         };
         let mut manifest = log.manifest.clone();
         manifest.case = None;
@@ -115,7 +123,7 @@ impl Fork {
         *limit_s = (*limit_s).max((end / Tick::from(TICK_HZ)) as u32 + 1);
         let mut world = World::resume(&manifest.scenario, network, start)?;
         let mut recorder = Recorder::new(Vec::new(), &manifest, start)?;
-        let mut crew = Crew::new(vision);
+        let mut crew = Crew::with(vision, self.safety_driver());
         let (mut harm, mut collision) = (None, None);
         while world.tick() < end && world.arbiter().phase != Phase::Done {
             // The bots look on before the fork, too: their memory is then that of the drive.
@@ -137,20 +145,29 @@ impl Fork {
         }
         let intervention = world.arbiter().intervention.map(|i| i.tick);
         let recording = recorder.finish(world.arbiter().outcome)?;
-        Ok((Course { recording, fork_tick, harm, collision, intervention }, crew.into_vision()))
+        let driven = Recording::from_bytes(&recording)?.into_log();
+        let closest = Criticality::of(&driven, network, fork_tick..=driven.last_tick())?.extremes;
+        Ok((Course { recording, fork_tick, harm, collision, intervention, closest }, crew.into_vision()))
+    }
+
+    fn safety_driver(&self) -> SafetyBot {
+        match self.otherwise {
+            Otherwise::NoIntervention { .. } => SafetyBot::default(),
+            Otherwise::OtherEye { person } => SafetyBot::of_person(person),
+        }
     }
 
     fn controls(&self, bots: TickInput) -> TickInput {
         match self.otherwise {
             Otherwise::NoIntervention { .. } => TickInput { safety: Controls::default(), ..bots },
-            Otherwise::OtherEye => bots,
+            Otherwise::OtherEye { .. } => bots,
         }
     }
 
     fn provenance(&self, fork_tick: Tick, vision: &Vision) -> Vec<(String, String)> {
         let said = match self.otherwise {
             Otherwise::NoIntervention { .. } => "without the intervention",
-            Otherwise::OtherEye => "through another checkpoint",
+            Otherwise::OtherEye { .. } => "through another checkpoint",
         };
         let mut entries = vec![
             ("fork".to_owned(), said.to_owned()),

@@ -24,6 +24,7 @@ use self::fork::{Fork, Harm, Otherwise};
 use self::verdict::Verdict;
 use crate::cli::RedriveArgs;
 use crate::exit::{self, Usage};
+use crate::measures::criticality::{CRITICAL_S, Extreme, Extremes};
 use crate::output::{self, PendingFolder, json_line};
 use crate::progress;
 use crate::recorded_eye::RecordedEye;
@@ -54,6 +55,8 @@ struct Line {
     collision_after_s: Option<f64>,
     /// Tick of an intervention in the fork.
     intervention_again: Option<Tick>,
+    /// How critical it was from the fork on.
+    closest: Extremes,
 }
 
 #[derive(Serialize)]
@@ -122,6 +125,7 @@ fn redrive(args: &RedriveArgs, path: &Path, out: &Path) -> anyhow::Result<Vec<Li
             collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
             collision: course.collision,
             intervention_again: course.intervention,
+            closest: course.closest,
         });
     }
     Ok(lines)
@@ -142,7 +146,7 @@ fn variant(args: &RedriveArgs, log: &Log, network: &Arc<RoadNetwork>, variation:
     let otherwise = if args.without_intervention {
         Otherwise::NoIntervention { earlier_ticks: Tick::from(variation) * VARIATION_TICKS }
     } else {
-        Otherwise::OtherEye
+        Otherwise::OtherEye { person: variation.into() }
     };
     let seed = log.manifest.scenario.seed.wrapping_add(variation.into());
     let weather = (variation > 0).then(|| Scenario::default_for(&network.name, seed).weather);
@@ -163,6 +167,15 @@ impl Line {
         let harm = words(&self.harm, self.harm_after_s).map(|harm| format!(": {harm}"));
         let later = words(&self.collision, self.collision_after_s).filter(|_| self.collision != self.harm);
         let harm = harm.map(|harm| harm + &later.map(|later| format!("; {later}")).unwrap_or_default());
-        format!("{}{variation}: {}{}", self.file, self.verdict.name(), harm.unwrap_or_default())
+        let what = harm.or_else(|| self.near_miss()).unwrap_or_default();
+        format!("{}{variation}: {}{what}", self.file, self.verdict.name())
+    }
+
+    /// How close it came where nothing went wrong.
+    fn near_miss(&self) -> Option<String> {
+        let Extreme { value, tick, with } = self.closest.min_ttc_s.as_ref()?;
+        let after_s = (*tick as f64 - self.intervention_tick as f64) / f64::from(TICK_HZ);
+        (*value <= CRITICAL_S)
+            .then(|| format!(", {value:.1} s from a collision with {with} {after_s:.1} s after the takeover"))
     }
 }

@@ -33,7 +33,7 @@ impl Verdict {
                 Some(_) => Self::Early,
                 None => Self::Needless,
             },
-            Otherwise::OtherEye => {
+            Otherwise::OtherEye { .. } => {
                 if course.collision.is_some() || course.intervention.is_some() {
                     Self::Again
                 } else {
@@ -59,11 +59,13 @@ impl Verdict {
 mod tests {
     use super::*;
     use crate::lab::redrive::fork::{Harm, HarmKind};
+    use crate::measures::criticality::Extremes;
 
     fn course(harm: Option<(Tick, HarmKind)>, intervention: Option<Tick>) -> Course {
         let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
         let collision = harm.clone().filter(|harm| harm.what == HarmKind::Collision);
-        Course { recording: Vec::new(), fork_tick: 1, harm, collision, intervention }
+        let closest = Extremes { min_ttc_s: None, min_pret_s: None, max_required_deceleration_mps2: None, pet_s: None };
+        Course { recording: Vec::new(), fork_tick: 1, harm, collision, intervention, closest }
     }
 
     #[test]
@@ -78,7 +80,8 @@ mod tests {
 
     #[test]
     fn another_eye_avoids_it_only_without_takeover_and_collision() {
-        let verdict = |harm, taken_over| Verdict::of(&course(harm, taken_over), Otherwise::OtherEye, 1000);
+        let verdict =
+            |harm, taken_over| Verdict::of(&course(harm, taken_over), Otherwise::OtherEye { person: 0 }, 1000);
         assert_eq!(verdict(None, None), Verdict::Avoided);
         assert_eq!(verdict(Some((900, HarmKind::OffRoad)), None), Verdict::Avoided);
         assert_eq!(verdict(Some((900, HarmKind::Collision)), None), Verdict::Again);

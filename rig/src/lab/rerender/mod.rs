@@ -17,14 +17,13 @@ use serde::Serialize;
 
 use self::pictures::Pictures;
 use super::figures::{Figures, table};
-use super::footage::is_divergence;
 use super::library;
 use super::looks::open_eyes;
 use super::pipeline::{Crew, Studios};
 use super::spread::jobs;
 use super::store::{Settings, Store};
 use crate::cli::RerenderArgs;
-use crate::exit::{Verdict, sentence};
+use crate::exit::Verdict;
 use crate::output::{self, json_line};
 use crate::progress::{self, Interrupt};
 use crate::vision::Eye;
@@ -62,17 +61,9 @@ struct Seen {
 
 /// Runs `aeye rerender`.
 pub fn run(args: &RerenderArgs, json: bool) -> anyhow::Result<Verdict> {
-    match rerender(args, &Interrupt::listen()?) {
-        Ok(summary) => {
-            output::print(json, &summary, || text(&summary))?;
-            Ok(Verdict::Ok)
-        }
-        Err(error) if is_divergence(&error) => {
-            eprintln!("error: {}", sentence(&error));
-            Ok(Verdict::CheckFailed)
-        }
-        Err(error) => Err(error),
-    }
+    let summary = rerender(args, &Interrupt::listen()?)?;
+    output::print(json, &summary, || text(&summary))?;
+    Ok(Verdict::Ok)
 }
 
 fn text(summary: &Summary) -> String {

@@ -15,7 +15,7 @@ use kernel::scene::{ActorScene, SceneSnapshot};
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
 use kernel::{RoadNetwork, World};
 use replay::{Error, Log, Replayer};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::boxes;
 use crate::drivers::safety::{LOOK_TICKS, Looks, predicted_encroachment};
@@ -26,7 +26,7 @@ use observed::Tracks;
 pub use encounter::{HORIZON_S, MAX_DECELERATION_MPS2};
 
 /// An encroachment within this time is critical (Westhofen et al. 2022), seconds.
-pub const CRITICAL_S: f64 = 2.0;
+pub const CRITICAL_S: f64 = crate::drivers::safety::CRITICAL_S as f64;
 /// Ticks from one sample to the next: 0.1 s.
 pub const SAMPLE_TICKS: Tick = CLIP_STRIDE_TICKS;
 /// How many samples it takes until everyone's change of speed is known.
@@ -65,7 +65,7 @@ pub struct Sample {
 }
 
 /// The worst value of a trace.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
     /// Seconds or m/s^2.
     pub value: f64,
@@ -75,9 +75,9 @@ pub struct Extreme {
     pub with: String,
 }
 
-/// The trace of a window and its extremes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Criticality {
+/// How critical a window was at its worst.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Extremes {
     /// Least time to collision, seconds.
     pub min_ttc_s: Option<Extreme>,
     /// Least predicted post-encroachment time, seconds.
@@ -87,6 +87,14 @@ pub struct Criticality {
     /// Post-encroachment time (PET) of the ways that were really driven, seconds: the least time from
     /// when the one left a place to when the other came there, where they crossed; 0 in a collision.
     pub pet_s: Option<Extreme>,
+}
+
+/// The trace of a window and its extremes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Criticality {
+    /// The extremes.
+    #[serde(flatten)]
+    pub extremes: Extremes,
     /// Ten samples a second.
     pub samples: Vec<Sample>,
 }
@@ -99,8 +107,8 @@ impl Criticality {
         Self::of(log, network, case.from..=log.last_tick()).map(Some)
     }
 
-    /// That of a window of a log, sampled from its first tick on.
-    fn of(log: &Log, network: &Arc<RoadNetwork>, window: RangeInclusive<Tick>) -> Result<Self, Error> {
+    /// That of a window of a log, sampled from its first tick on; fails as [`Criticality::of_case`] does.
+    pub fn of(log: &Log, network: &Arc<RoadNetwork>, window: RangeInclusive<Tick>) -> Result<Self, Error> {
         let mut replayer = Replayer::new(log, network.clone())?;
         let (mut sampler, mut tracks, mut samples) = (Sampler::default(), Tracks::default(), Vec::new());
         loop {
@@ -122,14 +130,14 @@ impl Criticality {
     fn summing_up(samples: Vec<Sample>, tracks: &Tracks) -> Self {
         let least =
             |of: fn(&Sample) -> &Option<Worst>| extremes(&samples, of).min_by(|a, b| a.value.total_cmp(&b.value));
-        Self {
+        let extremes = Extremes {
             min_ttc_s: least(|sample| &sample.ttc_s),
             min_pret_s: least(|sample| &sample.pret_s),
             max_required_deceleration_mps2: extremes(&samples, |sample| &sample.required_deceleration_mps2)
                 .max_by(|a, b| a.value.total_cmp(&b.value).then(b.tick.cmp(&a.tick))),
             pet_s: tracks.post_encroachment(),
-            samples,
-        }
+        };
+        Self { extremes, samples }
     }
 }
 
