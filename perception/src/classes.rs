@@ -71,6 +71,9 @@ const fn train_ids() -> [u8; 256] {
 /// Train id of every tag id; [`IGNORE`] for those that are not trained.
 pub const TRAIN_ID_OF_TAG: [u8; 256] = train_ids();
 
+/// The class of pedestrians in tables by train id.
+pub const PEDESTRIAN: usize = TRAIN_ID_OF_TAG[PEDESTRIAN_TAG as usize] as usize;
+
 /// Train id of a tag, unless it is ignored.
 pub fn train_id(tag: u8) -> Option<u8> {
     Some(TRAIN_ID_OF_TAG[usize::from(tag)]).filter(|&id| id != IGNORE)

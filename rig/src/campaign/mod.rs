@@ -113,3 +113,45 @@ impl Plan {
         self.out.join(format!("{checkpoint}-{run:04}.case.mcap"))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::drive::RunFigures;
+
+    fn runs(each: impl IntoIterator<Item = (f64, bool)>) -> Vec<RunLine> {
+        let figures = |km| RunFigures {
+            map: "city".into(),
+            seed: 1,
+            km,
+            minutes: 1.0,
+            outcome: "censored",
+            familiarisation: false,
+            label: None,
+            comment: None,
+            perception_caused: None,
+        };
+        let run = |(km, is_case): (f64, bool)| RunLine {
+            file: "a.mcap".into(),
+            case: is_case.then(|| "a.case.mcap".into()),
+            checkpoint: "full".into(),
+            without_intervention: None,
+            figures: figures(km),
+            ride: None,
+        };
+        each.into_iter().map(run).collect()
+    }
+
+    #[test]
+    fn a_campaign_that_gets_nowhere_is_given_up_and_a_slow_one_is_not() {
+        let nothing = || std::iter::repeat_n((0.0, false), STALLED_RUNS);
+        let stalled = runs(std::iter::once((0.9, true)).chain(nothing()));
+        let slow = runs(nothing().chain([(1.1, true)]));
+        for until in [Until::Km(2.0), Until::Cases(2)] {
+            assert!(until.is_out_of_reach(&stalled) && until.is_out_of_reach(&runs(nothing())), "{until:?}");
+            assert!(!until.is_out_of_reach(&stalled[..STALLED_RUNS]) && !until.is_out_of_reach(&slow), "{until:?}");
+        }
+        assert!(!Until::Runs(1000).is_out_of_reach(&stalled));
+        assert!(Until::PedestrianCases(1).is_out_of_reach(&slow), "no case is labelled walker");
+    }
+}

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use perception::classes::{PEDESTRIAN_TAG, TRAIN_CLASSES, TRAIN_ID_OF_TAG};
+use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use perception::{ConfusionMatrix, Scores};
 use serde::Serialize;
 
@@ -26,12 +26,11 @@ impl From<&ConfusionMatrix> for Figures {
     fn from(matrix: &ConfusionMatrix) -> Self {
         let Scores { iou, miou, accuracy, pixels } = matrix.scores();
         let number = |value: f64| Some(value).filter(|v| !v.is_nan());
-        let pedestrian = usize::from(TRAIN_ID_OF_TAG[usize::from(PEDESTRIAN_TAG)]);
         Self {
             pixels,
             accuracy: number(accuracy),
             miou: number(miou),
-            pedestrian_iou: number(iou[pedestrian]),
+            pedestrian_iou: number(iou[PEDESTRIAN]),
             iou: TRAIN_CLASSES.iter().zip(iou).map(|(class, iou)| (class.name, number(iou))).collect(),
         }
     }

@@ -80,6 +80,10 @@ pub struct Statistics {
     /// 95 % interval of that rate by drawing rides again; absent for a single ride,
     /// or without cases.
     pub cases_per_km_95_of_rides: Option<(f64, f64)>,
+    /// Corner cases a minute.
+    pub cases_per_min: f64,
+    /// Exact 95 % interval of that rate.
+    pub cases_per_min_95: (f64, f64),
     /// Kilometres and minutes between corner cases, as the paper prints them.
     pub legs: Legs,
 }
@@ -95,18 +99,21 @@ impl Statistics {
             *by_label.entry(case.label.map_or(UNLABELLED, Label::name)).or_insert(0) += 1;
         }
         let (low, high) = stats::poisson_interval(number);
-        let per_km = |n: f64| if km > 0.0 { n / km } else { 0.0 };
+        let minutes: f64 = rides.iter().map(|r| r.minutes).sum();
+        let per = |n: f64, exposure: f64| if exposure > 0.0 { n / exposure } else { 0.0 };
         let clusters: Vec<(u64, f64)> = rides.iter().map(|r| (r.is_case.into(), r.km)).collect();
         Self {
             rides: rides.len(),
             km,
-            minutes: rides.iter().map(|r| r.minutes).sum(),
+            minutes,
             cases: number,
             cases_by_label: by_label,
             perception_caused: cases.filter(|r| r.perception_caused == Some(true)).count() as u64,
-            cases_per_km: per_km(number as f64),
-            cases_per_km_95: (per_km(low), per_km(high)),
+            cases_per_km: per(number as f64, km),
+            cases_per_km_95: (per(low, km), per(high, km)),
             cases_per_km_95_of_rides: stats::rate_interval(&clusters, BOOTSTRAP_SEED),
+            cases_per_min: per(number as f64, minutes),
+            cases_per_min_95: (per(low, minutes), per(high, minutes)),
             legs: Legs::of(rides),
         }
     }
@@ -133,6 +140,9 @@ mod tests {
             prop_assert_eq!(s.legs.completed as u64, s.cases);
             prop_assert_eq!(s.cases_by_label.values().sum::<u64>(), s.cases);
             prop_assert!(s.cases_per_km_95.0 <= s.cases_per_km && s.cases_per_km <= s.cases_per_km_95.1);
+            // A kilometre takes two minutes here.
+            prop_assert!((s.cases_per_km_95.1 - 2.0 * s.cases_per_min_95.1).abs() < 1e-9);
+            prop_assert!((s.cases_per_km - 2.0 * s.cases_per_min).abs() < 1e-9);
         }
 
         #[test]

@@ -28,6 +28,8 @@ pub fn table<'a>(columns: impl Iterator<Item = (&'a str, &'a Statistics, Option<
         if let Some((low, high)) = s.cases_per_km_95_of_rides {
             let _ = write!(text, ", by rides [{low:.3}, {high:.3}]");
         }
+        let (low, high) = s.cases_per_min_95;
+        let _ = write!(text, "; {:.4} cases/min [{low:.4}, {high:.4}]", s.cases_per_min);
         let labels: Vec<_> = s.cases_by_label.iter().map(|(label, n)| format!("{n} {label}")).collect();
         let _ = write!(text, "; {} by perception", s.perception_caused);
         if !labels.is_empty() {

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use kernel::time::TICK_HZ;
-use perception::classes::{PEDESTRIAN_TAG, TRAIN_CLASSES, TRAIN_ID_OF_TAG};
+use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use serde::{Serialize, Serializer};
 
 use super::score::{CaseScore, Hits};
@@ -81,7 +81,7 @@ impl Metric {
     pub fn of(self, cases: &[CaseSums], numbers: &[usize]) -> Option<f64> {
         let chosen = || numbers.iter().map(|number| &cases[*number]);
         match self {
-            Self::PedIou => iou(chosen(), usize::from(TRAIN_ID_OF_TAG[usize::from(PEDESTRIAN_TAG)])),
+            Self::PedIou => iou(chosen(), PEDESTRIAN),
             Self::Miou => mean((0..CLASSES).filter_map(|class| iou(chosen(), class))),
             Self::PedRecallOnPath => {
                 let sum = |of: fn(&Hits) -> u64| chosen().map(|case| of(&case.people_on_path)).sum();

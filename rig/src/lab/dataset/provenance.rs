@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::time::Tick;
-use perception::classes::{PEDESTRIAN_TAG, TRAIN_CLASSES, train_id};
+use perception::classes::{PEDESTRIAN, TRAIN_CLASSES, train_id};
 use render::{Frame, RENDERER_VERSION};
 use serde::{Deserialize, Serialize};
 
@@ -136,8 +136,7 @@ impl FrameLine {
 
     /// Pixels that show pedestrians.
     pub fn pedestrian_pixels(&self) -> u64 {
-        let name = train_id(PEDESTRIAN_TAG).map(|id| TRAIN_CLASSES[usize::from(id)].name);
-        name.and_then(|name| self.class_pixels.get(name)).copied().unwrap_or(0)
+        self.class_pixels.get(TRAIN_CLASSES[PEDESTRIAN].name).copied().unwrap_or(0)
     }
 }
 

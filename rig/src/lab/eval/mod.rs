@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use perception::ConfusionMatrix;
-use perception::classes::{PEDESTRIAN_TAG, tag_name};
+use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use serde::Serialize;
 
 pub use people::{Pedestrians, Person, Range, Recall, people};
@@ -201,7 +201,7 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 
 fn text(summary: &Summary<'_>) -> String {
     let Summary { scenes, frames, split, pedestrians, .. } = summary;
-    let a_scene = tag_name(PEDESTRIAN_TAG).and_then(|name| summary.pixels_per_scene.get(name)).copied();
+    let a_scene = summary.pixels_per_scene.get(TRAIN_CLASSES[PEDESTRIAN].name).copied();
     let mut text = format!(
         "{}\n{frames} frames of {scenes} scenes of {split}; {:.1} pixels of pedestrians a scene\n\n{:<14} {:>12} {:>12} {:>12} {:>12}",
         table(&[(summary.checkpoint.to_owned(), summary.figures.clone())]),

@@ -174,8 +174,9 @@ impl Line {
     /// How close it came where nothing went wrong.
     fn near_miss(&self) -> Option<String> {
         let Extreme { value, tick, with } = self.closest.min_ttc_s.as_ref()?;
-        let after_s = (*tick as f64 - self.intervention_tick as f64) / f64::from(TICK_HZ);
+        let away_s = tick.abs_diff(self.intervention_tick) as f64 / f64::from(TICK_HZ);
+        let side = if *tick < self.intervention_tick { "before" } else { "after" };
         (*value <= CRITICAL_S)
-            .then(|| format!(", {value:.1} s from a collision with {with} {after_s:.1} s after the takeover"))
+            .then(|| format!(", {value:.1} s from a collision with {with} {away_s:.1} s {side} the takeover"))
     }
 }

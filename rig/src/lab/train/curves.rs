@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use perception::classes::{PEDESTRIAN_TAG, TRAIN_CLASSES, TRAIN_ID_OF_TAG};
+use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use perception::training::{EpochReport, TrainOptions};
 use serde::Serialize;
 
@@ -35,7 +35,7 @@ impl Epoch {
             loss: *loss,
             rate: options.rate_of(*epoch),
             miou: *miou,
-            pedestrian_iou: of(TRAIN_ID_OF_TAG[usize::from(PEDESTRIAN_TAG)].into()),
+            pedestrian_iou: of(PEDESTRIAN),
             iou: TRAIN_CLASSES.iter().enumerate().map(|(id, class)| (class.name, of(id))).collect(),
         }
     }
