@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn a_campaign_that_gets_nowhere_is_given_up_and_a_slow_one_is_not() {
         let nothing = || std::iter::repeat_n((0.0, false), STALLED_RUNS);
-        let stalled = runs(std::iter::once((0.9, true)).chain(nothing()));
+        let stalled = runs(std::iter::once((1.1, true)).chain(nothing()));
         let slow = runs(nothing().chain([(1.1, true)]));
         for until in [Until::Km(2.0), Until::Cases(2)] {
             assert!(until.is_out_of_reach(&stalled) && until.is_out_of_reach(&runs(nothing())), "{until:?}");

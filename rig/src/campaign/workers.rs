@@ -16,9 +16,6 @@ use crate::progress::{self, Interrupt};
 use crate::simulate::{self, manifest};
 use crate::vision::{Eye, Vision};
 
-/// Runs that are under way at the same time, at most; as `--jobs` has it.
-const MOST_JOBS: u32 = 256;
-
 /// What the threads share.
 struct Board<'a> {
     plan: &'a Plan,
@@ -32,7 +29,7 @@ struct Board<'a> {
 struct State {
     next: u32,
     done: BTreeMap<u32, RunLine>,
-    /// Runs that were not there before, or that a killed process left out of turn.
+    /// Runs that were not there before.
     driven: BTreeSet<u32>,
     failure: Option<anyhow::Error>,
 }
@@ -47,8 +44,7 @@ impl State {
 /// Drives the runs of one checkpoint until there are enough, and gives those that count, in order.
 pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> anyhow::Result<Vec<RunLine>> {
     let bar = progress::bar(eye.name(), plan.until.progress(&[]).1);
-    let state = Mutex::new(State { driven: out_of_turn(plan, eye), ..State::default() });
-    let board = Board { plan, eye, interrupt, bar, state };
+    let board = Board { plan, eye, interrupt, bar, state: Mutex::default() };
     std::thread::scope(|scope| {
         for _ in 0..jobs {
             scope.spawn(|| board.work());
@@ -72,13 +68,6 @@ pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> 
     }
     runs.truncate(enough);
     Ok(runs)
-}
-
-/// Runs that are there although one before them is not: a campaign that came to its end leaves no gap.
-fn out_of_turn(plan: &Plan, eye: &Eye) -> BTreeSet<u32> {
-    let is_there = |run: &u32| plan.recording_path(eye.name(), *run).exists();
-    let first_missing = (0..).find(|run| !is_there(run)).unwrap_or(u32::MAX);
-    (first_missing..first_missing.saturating_add(MOST_JOBS)).filter(is_there).collect()
 }
 
 /// Deletes what a thread drove while another finished the campaign.

@@ -1,31 +1,31 @@
 //! Long results under a hidden name until they are complete. What a killed process had begun of a result is
 //! removed when that result is begun again.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use tempfile::{NamedTempFile, TempDir};
+use tempfile::{Builder, NamedTempFile, TempDir};
 
 use super::{create_folder, folder_of, make_readable};
+
+/// How many characters end a hidden name.
+const RANDOM_CHARACTERS: usize = 6;
 
 /// A file that gets its name only when it is complete; dropped before, nothing remains.
 pub struct PendingFile {
     temporary: BufWriter<NamedTempFile>,
     path: PathBuf,
+    _claim: Option<Claim>,
 }
 
 impl PendingFile {
     /// Starts a file.
     pub fn new(path: &Path) -> anyhow::Result<Self> {
-        let parent = folder_of(path);
-        sweep(path)?;
-        let temporary = tempfile::Builder::new().prefix(&prefix(path)).tempfile_in(&parent);
-        let temporary = temporary.with_context(|| parent.display().to_string())?;
-        claim(temporary.as_file());
+        let (temporary, claim) = begin(path, |builder, folder| builder.tempfile_in(folder))?;
         make_readable(temporary.path(), 0o644)?;
-        Ok(Self { temporary: BufWriter::new(temporary), path: path.to_owned() })
+        Ok(Self { temporary: BufWriter::new(temporary), path: path.to_owned(), _claim: claim })
     }
 
     /// Gives the file its name; whatever had it before is gone.
@@ -55,8 +55,7 @@ fn named(path: &Path, error: &io::Error) -> io::Error {
 pub struct PendingFolder {
     temporary: TempDir,
     path: PathBuf,
-    /// The folder opened, where the system can; holds its lock.
-    _claimed: Option<File>,
+    _claim: Option<Claim>,
 }
 
 impl PendingFolder {
@@ -69,14 +68,9 @@ impl PendingFolder {
         if !is_free {
             bail!("{}: exists already; expected a new or an empty folder", path.display());
         }
-        let parent = folder_of(path);
-        create_folder(&parent)?;
-        sweep(path)?;
-        let temporary = tempfile::Builder::new().prefix(&prefix(path)).tempdir_in(&parent);
-        let temporary = temporary.with_context(|| parent.display().to_string())?;
-        let claimed = File::open(temporary.path()).ok();
-        claimed.iter().for_each(claim);
-        Ok(Self { temporary, path: path.to_owned(), _claimed: claimed })
+        create_folder(&folder_of(path))?;
+        let (temporary, claim) = begin(path, |builder, folder| builder.tempdir_in(folder))?;
+        Ok(Self { temporary, path: path.to_owned(), _claim: claim })
     }
 
     /// Where to write until [`PendingFolder::finish`].
@@ -97,32 +91,51 @@ impl PendingFolder {
     }
 }
 
-/// How the hidden names of a result begin.
-fn prefix(path: &Path) -> String {
-    format!(".aeye-{}-", path.file_name().unwrap_or_default().to_string_lossy())
-}
+/// A locked file or folder: a sign that its process still runs, which ends with the process.
+type Claim = File;
 
-/// Marks what is being made until the process ends, however it ends. Where a file system knows no locks,
-/// nothing is marked, and nothing removed.
-fn claim(begun: &File) {
-    let _ = begun.try_lock();
-}
-
-/// Removes what processes that are gone had begun of a result.
-fn sweep(path: &Path) -> anyhow::Result<()> {
+/// Begins something under a hidden name beside a result. Where the file system knows no locks there is no
+/// claim, and nothing is ever swept.
+fn begin<T: AsRef<Path>>(
+    path: &Path,
+    make: impl Fn(&Builder<'_, '_>, &Path) -> io::Result<T>,
+) -> anyhow::Result<(T, Option<Claim>)> {
     let (folder, prefix) = (folder_of(path), prefix(path));
-    let place = || folder.display().to_string();
-    for entry in fs::read_dir(&folder).with_context(place)? {
-        let entry = entry.with_context(place)?;
-        let is_ours = entry.file_name().to_string_lossy().starts_with(&prefix);
-        if !is_ours || !File::open(entry.path()).is_ok_and(|begun| begun.try_lock().is_ok()) {
-            continue;
+    sweep(&folder, &prefix);
+    loop {
+        let begun = make(Builder::new().prefix(&prefix).rand_bytes(RANDOM_CHARACTERS), &folder)
+            .with_context(|| folder.display().to_string())?;
+        let claim = match File::open(&begun) {
+            Ok(claim) => claim,
+            Err(e) if e.kind() == io::ErrorKind::NotFound => continue,
+            Err(_) => return Ok((begun, None)),
+        };
+        match claim.try_lock() {
+            Ok(()) if begun.as_ref().exists() => return Ok((begun, Some(claim))),
+            // Another process took it for a leftover before it was locked.
+            Ok(()) | Err(TryLockError::WouldBlock) => {}
+            Err(TryLockError::Error(_)) => return Ok((begun, None)),
         }
-        let is_folder = entry.file_type().with_context(place)?.is_dir();
-        let removed = if is_folder { fs::remove_dir_all(entry.path()) } else { fs::remove_file(entry.path()) };
-        removed.with_context(|| entry.path().display().to_string())?;
     }
-    Ok(())
+}
+
+/// How the hidden names of a result begin. Names may not be longer than 255 bytes.
+fn prefix(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    format!(".aeye-{}-", name.chars().take(40).collect::<String>())
+}
+
+/// Removes what processes that are gone had begun of a result, where that is possible.
+fn sweep(folder: &Path, prefix: &str) {
+    let is_hidden = |name: &str| name.strip_prefix(prefix).is_some_and(|rest| rest.len() == RANDOM_CHARACTERS);
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| is_hidden(&entry.file_name().to_string_lossy())) {
+        let path = entry.path();
+        let Ok(claim) = File::open(&path) else { continue };
+        if claim.try_lock().is_ok() {
+            let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+        }
+    }
 }
 
 #[cfg(test)]
@@ -132,16 +145,20 @@ mod tests {
     #[test]
     fn what_a_process_that_is_gone_had_begun_is_removed() {
         let dir = tempfile::tempdir().expect("a folder");
-        let (path, other) = (dir.path().join("out"), dir.path().join("out2"));
-        let begun = |name: &str| dir.path().join(name);
-        fs::create_dir(begun(".aeye-out-x")).expect("writable");
-        fs::write(begun(".aeye-out-x/half"), "").expect("writable");
-        fs::write(begun(".aeye-out-y"), "").expect("writable");
-        fs::write(begun(".aeye-out2-z"), "").expect("writable");
-        let (folder, _file) = (PendingFolder::new(&path).expect("free"), PendingFile::new(&other).expect("free"));
-        assert!(!begun(".aeye-out-x").exists() && !begun(".aeye-out-y").exists() && !begun(".aeye-out2-z").exists());
+        let (path, other) = (dir.path().join("out"), dir.path().join("out-2"));
+        let at = |name: &str| dir.path().join(name);
+        fs::create_dir(at(".aeye-out-abcdef")).expect("writable");
+        fs::write(at(".aeye-out-abcdef/half"), "").expect("writable");
+        fs::write(at(".aeye-out-ghijkl"), "").expect("writable");
+        fs::write(at(".aeye-out-2-mnopqr"), "").expect("writable");
+        let folder = PendingFolder::new(&path).expect("free");
+        assert!(!at(".aeye-out-abcdef").exists() && !at(".aeye-out-ghijkl").exists());
+        assert!(at(".aeye-out-2-mnopqr").exists(), "is of another result");
+        let _file = PendingFile::new(&other).expect("free");
+        assert!(!at(".aeye-out-2-mnopqr").exists());
         let _another = PendingFolder::new(&path).expect("free");
         assert!(folder.path().exists(), "its process still runs");
+        PendingFolder::new(&dir.path().join("n".repeat(255))).expect("the longest name there may be");
     }
 
     #[test]

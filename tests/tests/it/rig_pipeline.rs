@@ -1,7 +1,9 @@
 //! The threads that draw and those that look do not wait for one another for ever.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
 use render::Frame;
 use rig::lab::footage::Footage;
@@ -10,19 +12,23 @@ use rig::progress::Interrupt;
 use rig::vision::Eye;
 use tests::recordings::recorded;
 
-/// Looks at one file and panics.
-struct Broken(PathBuf);
+/// Looks at one file and panics at a frame, or at each.
+struct Broken {
+    case: PathBuf,
+    at: Option<usize>,
+}
 
 impl Work for Broken {
     type Notes = ();
     type Seen = ();
 
     fn read(&self, _: usize) -> anyhow::Result<(Footage, ())> {
-        Ok((Footage::read(&self.0, 180, 10)?, ()))
+        Ok((Footage::read(&self.case, 180, 10)?, ()))
     }
 
-    fn see(&self, _: &Film<Self>, _: &Frame, _: &mut [Eye]) -> anyhow::Result<()> {
-        panic!("as a network might");
+    fn see(&self, film: &Film<Self>, frame: &Frame, _: &mut [Eye]) -> anyhow::Result<()> {
+        assert!(self.at.is_some_and(|at| film.footage.scenes[at].tick != frame.tick), "as a network might");
+        Ok(())
     }
 
     fn finish(&self, _: &Film<Self>, _: Vec<()>) -> anyhow::Result<()> {
@@ -30,21 +36,24 @@ impl Work for Broken {
     }
 }
 
+/// Whether the work ends by a panic.
+fn panics(work: &Broken, jobs: usize) -> bool {
+    let interrupt = Interrupt::default();
+    let (size, studios) = ((16, 8), Studios::default());
+    let crew = Crew { work, files: &[0], size, eyes: &[], jobs, interrupt: &interrupt, studios };
+    thread::scope(|scope| scope.spawn(|| crew.run()).join().is_err())
+}
+
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_panic_of_those_who_look_ends_the_work() {
     let dir = tempfile::tempdir().unwrap();
-    let work = Broken(recorded(dir.path()).1);
-    for jobs in [1, 2] {
-        let crew = Crew {
-            work: &work,
-            files: &[0],
-            size: (16, 8),
-            eyes: &[],
-            jobs,
-            interrupt: &Interrupt::default(),
-            studios: Studios::default(),
-        };
-        assert!(catch_unwind(AssertUnwindSafe(|| crew.run())).is_err(), "{jobs} jobs");
+    let case = recorded(dir.path()).1;
+    for (jobs, at) in [(1, None), (2, None), (2, Some(1)), (1, Some(29))] {
+        let work = Broken { case: case.clone(), at };
+        let (said, ended) = mpsc::channel();
+        thread::spawn(move || said.send(panics(&work, jobs)));
+        let panicked = ended.recv_timeout(Duration::from_secs(100)).expect("it comes to its end");
+        assert!(panicked, "{jobs} jobs, frame {at:?}");
     }
 }

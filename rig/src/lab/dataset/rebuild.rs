@@ -33,8 +33,8 @@ pub struct Rebuilt {
 }
 
 impl Rebuilt {
-    /// Pictures are to be the same where nothing differs from what made the first one. Labels are to be the
-    /// same anywhere: another adapter may draw the edges of triangles differently, and that is to be known.
+    /// Fails where labels differ, and where anything differs although the same adapter and versions made both.
+    /// On another adapter labels may differ at the edges of triangles: that is no damage, but is said.
     pub fn verdict(&self) -> Verdict {
         let as_promised = self.same || self.made_otherwise.is_some() && self.same_labels;
         if as_promised { Verdict::Ok } else { Verdict::CheckFailed }

@@ -169,6 +169,7 @@ impl<W: Work> Board<'_, W> {
     }
 
     fn draw_all(&self, shots: &SyncSender<Shot<W>>) {
+        let _alarm = Alarm(&self.has_failed);
         self.crew.studios.with(self.crew.size, |studio| {
             while !self.is_over() {
                 let next = self.next.fetch_add(1, Ordering::Relaxed);
@@ -193,6 +194,7 @@ impl<W: Work> Board<'_, W> {
     }
 
     fn look_at_all(&self, waiting: &Mutex<Receiver<Shot<W>>>) {
+        let _alarm = Alarm(&self.has_failed);
         let mut eyes = self.crew.eyes.to_vec();
         loop {
             let Ok(shot) = lock(waiting).recv() else { return };
@@ -223,6 +225,17 @@ impl<W: Work> Board<'_, W> {
 
     fn is_over(&self) -> bool {
         self.has_failed.load(Ordering::Relaxed) || self.crew.interrupt.is_raised()
+    }
+}
+
+/// Tells the other threads that this one panicked.
+struct Alarm<'a>(&'a AtomicBool);
+
+impl Drop for Alarm<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
     }
 }
 

@@ -174,6 +174,9 @@ impl Fork {
             ("fork_tick".to_owned(), fork_tick.to_string()),
             ("semantic".to_owned(), "bot".to_owned()),
         ];
+        if let Otherwise::OtherEye { person } = self.otherwise {
+            entries.push(("safety_driver".to_owned(), format!("bot {person}")));
+        }
         entries.extend(crate::vision::provenance(vision.eye(), vision.eye().size()));
         entries
     }

@@ -24,7 +24,7 @@ use self::fork::{Fork, Harm, Otherwise};
 use self::verdict::Verdict;
 use crate::cli::RedriveArgs;
 use crate::exit::{self, Usage};
-use crate::measures::criticality::{CRITICAL_S, Extreme, Extremes};
+use crate::measures::criticality::{Extreme, Extremes};
 use crate::output::{self, PendingFolder, json_line};
 use crate::progress;
 use crate::recorded_eye::RecordedEye;
@@ -33,6 +33,8 @@ use crate::vision::{Eye, Vision};
 
 /// A variation lets the safety driver go so much earlier than the one before.
 const VARIATION_TICKS: Tick = TICK_HZ as Tick / 10;
+/// A time to collision up to this is a near miss in a town (van der Horst and Hogema 1993), seconds.
+const NEAR_MISS_S: f64 = 1.5;
 
 /// A line of `redrive.jsonl`.
 #[derive(Serialize)]
@@ -171,12 +173,54 @@ impl Line {
         format!("{}{variation}: {}{what}", self.file, self.verdict.name())
     }
 
-    /// How close it came where nothing went wrong.
+    /// How close it came where nothing went wrong and nobody had to take over.
     fn near_miss(&self) -> Option<String> {
+        if !matches!(self.verdict, Verdict::Needless | Verdict::Avoided) {
+            return None;
+        }
         let Extreme { value, tick, with } = self.closest.min_ttc_s.as_ref()?;
         let away_s = tick.abs_diff(self.intervention_tick) as f64 / f64::from(TICK_HZ);
         let side = if *tick < self.intervention_tick { "before" } else { "after" };
-        (*value <= CRITICAL_S)
+        (*value <= NEAR_MISS_S)
             .then(|| format!(", {value:.1} s from a collision with {with} {away_s:.1} s {side} the takeover"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(verdict: Verdict, min_ttc_s: f64, tick: Tick) -> Line {
+        let extreme = Extreme { value: min_ttc_s, tick, with: "bicycle 9".into() };
+        Line {
+            file: "a.case.mcap".into(),
+            variation: 0,
+            recording: "a.fork.mcap".into(),
+            checkpoint: "early".into(),
+            intervention_tick: 600,
+            fork_tick: 600,
+            verdict,
+            harm: None,
+            harm_after_s: None,
+            collision: None,
+            collision_after_s: None,
+            intervention_again: None,
+            closest: Extremes {
+                min_ttc_s: Some(extreme),
+                min_pret_s: None,
+                max_required_deceleration_mps2: None,
+                pet_s: None,
+            },
+        }
+    }
+
+    #[test]
+    fn a_near_miss_is_told_where_nobody_had_to_take_over() {
+        let words = |verdict, ttc, tick| line(verdict, ttc, tick).words();
+        let near = "a.case.mcap: needless, 0.4 s from a collision with bicycle 9 0.5 s after the takeover";
+        assert_eq!(words(Verdict::Needless, 0.4, 630), near);
+        assert!(words(Verdict::Avoided, 1.5, 540).ends_with("1.0 s before the takeover"));
+        assert_eq!(words(Verdict::Needless, 1.6, 630), "a.case.mcap: needless");
+        assert_eq!(words(Verdict::Again, 0.4, 630), "a.case.mcap: again");
     }
 }
