@@ -112,7 +112,7 @@ impl State {
         bytes.extend(digest.as_bytes());
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut file = tempfile::NamedTempFile::new_in(folder).map_err(io)?;
-        file.write_all(&bytes).map_err(io)?;
+        file.as_file_mut().write_all(&bytes).map_err(io)?;
         file.persist(path).map_err(|e| io(e.error))?;
         Ok(())
     }
