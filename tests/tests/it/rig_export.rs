@@ -151,6 +151,10 @@ fn windows_are_those_of_the_run_and_several_files_go_into_a_folder() {
     fs::remove_file(folder.join("a.case.mcap")).unwrap();
     let (code, sentence) = export(&[&[recording, case, "--last", "3s"], common.as_slice()].concat());
     assert_eq!((code, written("a.mcap")), (0, before), "what is there is kept: {sentence}");
+    let whole = fs::read(folder.join("a.mcap")).unwrap();
+    fs::write(folder.join("a.mcap"), &whole[..whole.len() - 1]).unwrap();
+    let (code, sentence) = export(&[&[recording, case, "--last", "3s"], common.as_slice()].concat());
+    assert!(code == 0 && fs::read(folder.join("a.mcap")).unwrap() == whole, "one without an end is not: {sentence}");
     let frames = |name: &str| times(&topics(&folder.join(name))["/camera/rgb"]);
     assert_eq!(frames("a.mcap").len(), 30);
     assert_eq!((frames("a.mcap"), frames("a.mcap").last()), (frames("a.case.mcap"), Some(&nanoseconds(TAKEOVER))));

@@ -33,7 +33,7 @@ use crate::vision::{Eye, Vision};
 
 /// A variation lets the safety driver go so much earlier than the one before.
 const VARIATION_TICKS: Tick = TICK_HZ as Tick / 10;
-/// A time to collision up to this is a near miss in a town (van der Horst and Hogema 1993), seconds.
+/// A time to collision up to this is told as a near miss, seconds.
 const NEAR_MISS_S: f64 = 1.5;
 
 /// A line of `redrive.jsonl`.
