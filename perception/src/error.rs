@@ -67,6 +67,14 @@ pub enum PerceptionError {
         /// Bytes a pixel.
         channels: usize,
     },
+    /// This machine cannot compute networks so.
+    #[error("inference on {name} does not work here: {reason}")]
+    Compute {
+        /// Name of what was to compute.
+        name: &'static str,
+        /// What is missing or wrong.
+        reason: String,
+    },
     /// The network failed while it ran.
     #[error("{path}: inference failed: {reason}")]
     Inference {

@@ -7,6 +7,7 @@
 mod bundled;
 mod checkpoint;
 pub mod classes;
+mod compute;
 mod decode;
 mod error;
 mod image;
@@ -23,6 +24,7 @@ pub mod training;
 pub use bundled::{BUNDLED, bundled};
 pub use checkpoint::Checkpoint;
 pub use classes::ClassMap;
+pub use compute::Compute;
 pub use error::PerceptionError;
 pub use image::{Mask, RgbView};
 pub use metadata::{Layout, Metadata, Normalisation};

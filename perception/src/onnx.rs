@@ -1,9 +1,12 @@
 //! The inference engine. This is the only file that names tract.
 
+use std::panic::catch_unwind;
 use std::path::Path;
 use std::sync::Arc;
 
 use prost::Message;
+// Only looked for by name, among the runtimes that are linked.
+use tract_cuda as _;
 use tract_onnx::prelude::*;
 
 /// ONNX as protobuf messages.
@@ -28,10 +31,10 @@ pub(crate) enum Output {
     Ids(Vec<i64>),
 }
 
-/// A network optimised for one input shape; clones share the weights.
+/// A network optimised for one input shape on one device; clones share the weights.
 #[derive(Clone)]
 pub(crate) struct Engine {
-    plan: Arc<TypedSimplePlan>,
+    plan: Arc<dyn Runnable>,
     input_shape: [usize; 4],
     /// Shape of the first output.
     pub output_shape: Vec<usize>,
@@ -48,6 +51,13 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<pb::ModelProto, String> {
     }
 }
 
+/// The runtime of a name, if it works here; the error says why not.
+pub(crate) fn runtime(name: &str) -> Result<&'static dyn Runtime, String> {
+    // Libraries that are found but lack a symbol make their bindings panic.
+    let found = catch_unwind(|| runtime_for_name(name)).map_err(|_| "its libraries do not fit".to_owned())?;
+    found.map_err(reason)?.ok_or_else(|| "it is not built in".into())
+}
+
 fn reason(error: TractError) -> String {
     error.root_cause().to_string().replace('\n', " ")
 }
@@ -55,6 +65,7 @@ fn reason(error: TractError) -> String {
 impl Engine {
     /// Prepares a model for inputs of one shape; external weights are looked for in `dir`.
     pub fn new(
+        runtime: &dyn Runtime,
         model: &pb::ModelProto,
         dir: Option<&Path>,
         element: Element,
@@ -64,10 +75,11 @@ impl Engine {
             Element::Float => f32::datum_type(),
             Element::Byte => u8::datum_type(),
         };
-        Self::prepare(model, dir, InferenceFact::dt_shape(kind, input_shape), input_shape).map_err(reason)
+        Self::prepare(runtime, model, dir, InferenceFact::dt_shape(kind, input_shape), input_shape).map_err(reason)
     }
 
     fn prepare(
+        runtime: &dyn Runtime,
         model: &pb::ModelProto,
         dir: Option<&Path>,
         input: InferenceFact,
@@ -79,14 +91,14 @@ impl Engine {
         if let Some(name) = parsed.unresolved_inputs.first() {
             return Err(TractError::msg(format!("value {name} is used but never computed")));
         }
-        let network = parsed.model.with_input_fact(0, input)?.into_optimized()?;
+        let network = parsed.model.with_input_fact(0, input)?.into_typed()?;
         let output = network.output_fact(0)?;
         let shape = output.shape.as_concrete().ok_or_else(|| TractError::msg("the output has no fixed shape"))?;
         Ok(Self {
             output_shape: shape.to_vec(),
             gives_ids: !output.datum_type.is_float(),
             input_shape,
-            plan: network.into_runnable()?,
+            plan: runtime.prepare(network)?.into(),
         })
     }
 

@@ -1,20 +1,23 @@
 //! Runs a checkpoint on pictures of one size.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::classes::UNLABELED_TAG;
+use crate::compute::agree;
 use crate::decode::{Decoder, Grid};
 use crate::image::resample;
 use crate::metadata::Layout;
-use crate::onnx::{Element, Engine, Output, Pixels};
-use crate::{Checkpoint, Mask, PerceptionError, RgbView};
+use crate::onnx::{self, Element, Engine, Output, Pixels};
+use crate::{Checkpoint, Compute, Mask, PerceptionError, RgbView};
 
-/// A network made ready for pictures of one size. Single-threaded and deterministic; a clone
-/// shares the weights.
+/// A network made ready for pictures of one size. On the CPU single-threaded and deterministic; a
+/// clone shares the weights.
 #[derive(Clone)]
 pub struct Segmenter {
     path: PathBuf,
+    compute: Compute,
     width: usize,
     height: usize,
     network: (usize, usize),
@@ -30,9 +33,39 @@ pub struct Segmenter {
 }
 
 impl Segmenter {
-    /// Makes the network ready for pictures of `width` x `height` pixels. Where the network takes
-    /// one size only, pictures are resampled to it; the mask always has the picture's size.
+    /// Makes the network ready on the CPU for pictures of `width` x `height` pixels. Where the network
+    /// takes one size only, pictures are resampled to it; the mask always has the picture's size.
     pub fn new(checkpoint: &Checkpoint, width: usize, height: usize) -> Result<Self, PerceptionError> {
+        Self::ready(Compute::Cpu, checkpoint, width, height)
+    }
+
+    /// As [`Segmenter::new`], computed by something else. It looks at a picture first, and is refused if
+    /// it does not see there what the CPU sees.
+    pub fn on(compute: Compute, checkpoint: &Checkpoint, width: usize, height: usize) -> Result<Self, PerceptionError> {
+        let cpu = Self::new(checkpoint, width, height)?;
+        if compute == Compute::Cpu {
+            return Ok(cpu);
+        }
+        let tried = catch_unwind(AssertUnwindSafe(|| {
+            let segmenter = Self::ready(compute, checkpoint, width, height)?;
+            segmenter.compare(cpu)?;
+            Ok(segmenter)
+        }));
+        let refuse = |reason| PerceptionError::Compute { name: compute.name(), reason };
+        tried.unwrap_or_else(|_| Err(refuse("its libraries failed".into())))
+    }
+
+    /// Whether it makes of a picture what another one makes of it.
+    fn compare(&self, mut other: Self) -> Result<(), PerceptionError> {
+        let mut own = self.clone();
+        let noise = |i: usize| (i as u32).wrapping_mul(0x9e37_79b9).to_be_bytes()[0] / 2 + (i / self.width % 128) as u8;
+        let rgb: Vec<u8> = (0..3 * self.width * self.height).map(noise).collect();
+        let image = RgbView::new(self.width, self.height, &rgb)?;
+        let refuse = |reason| PerceptionError::Compute { name: self.compute.name(), reason };
+        agree(&other.output(image)?, &own.output(image)?).map_err(refuse)
+    }
+
+    fn ready(compute: Compute, checkpoint: &Checkpoint, width: usize, height: usize) -> Result<Self, PerceptionError> {
         if width == 0 || height == 0 {
             return Err(PerceptionError::ImageSize { bytes: 0, width, height, channels: 3 });
         }
@@ -44,12 +77,15 @@ impl Segmenter {
         };
         let path = checkpoint.path().to_path_buf();
         let refuse = |reason| PerceptionError::NotSegmentation { path: path.clone(), reason };
-        let engine =
-            Engine::new(&checkpoint.model, checkpoint.path().parent(), input.element, shape).map_err(refuse)?;
+        let lacks = |reason| PerceptionError::Compute { name: compute.name(), reason };
+        let runtime = onnx::runtime(compute.name()).map_err(lacks)?;
+        let dir = checkpoint.path().parent();
+        let engine = Engine::new(runtime, &checkpoint.model, dir, input.element, shape).map_err(refuse)?;
         let grid = grid(&engine, checkpoint.classes().count(), input.layout).map_err(refuse)?;
         let decoder = Decoder::new(grid, width, height, checkpoint.align_corners);
         Ok(Self {
             path,
+            compute,
             width,
             height,
             network,
@@ -62,6 +98,11 @@ impl Segmenter {
             floats: Vec::new(),
             bytes: Vec::new(),
         })
+    }
+
+    /// What computes it.
+    pub fn compute(&self) -> Compute {
+        self.compute
     }
 
     /// Width and height in pixels of the pictures it takes.
@@ -248,6 +289,32 @@ mod tests {
             assert_eq!(mask, segmenter.run(image).unwrap());
             assert_eq!(confidence.map(|c| c.len()), has_scores.then_some(SIZE.0 * SIZE.1));
         }
+    }
+
+    #[test]
+    fn what_else_computes_sees_the_same_or_says_what_is_missing() {
+        let checkpoint = crate::bundled("early").unwrap().unwrap();
+        let mut cpu = Segmenter::on(Compute::Cpu, &checkpoint, 256, 128).unwrap();
+        let rgb = toy::picture(256, 128);
+        let image = RgbView::new(256, 128, &rgb).unwrap();
+        match Segmenter::on(Compute::Cuda, &checkpoint, 256, 128) {
+            Ok(mut cuda) => agree(&cpu.output(image).unwrap(), &cuda.output(image).unwrap()).unwrap(),
+            Err(error) => {
+                let (said, lacks) = (error.to_string(), Compute::Cuda.check().unwrap_err().to_string());
+                assert_eq!(said, lacks);
+                assert!(said.starts_with("inference on cuda does not work here: "), "{said}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_network_that_sees_something_else_is_refused() {
+        let [early, full] = ["early", "full"].map(|name| {
+            let checkpoint = crate::bundled(name).unwrap().unwrap();
+            Segmenter::new(&checkpoint, 256, 128).unwrap()
+        });
+        assert!(early.compare(early.clone()).is_ok());
+        assert!(early.compare(full).is_err());
     }
 
     #[test]

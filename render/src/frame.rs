@@ -27,6 +27,6 @@ pub struct Frame {
 impl Frame {
     /// Class plane in the tags' colours, 3 bytes a pixel.
     pub fn class_colours(&self) -> Vec<u8> {
-        self.class_ids.iter().flat_map(|&id| crate::tags::colour(id)).collect()
+        crate::tags::colours(&self.class_ids)
     }
 }

@@ -20,7 +20,7 @@ macro_rules! tags {
             }
 
             /// Red, green and blue in images of classes.
-            pub fn colour(self) -> [u8; 3] {
+            pub const fn colour(self) -> [u8; 3] {
                 match self { $(Self::$name => [$r, $g, $b],)* }
             }
 
@@ -104,9 +104,26 @@ impl SemanticTag {
     }
 }
 
+const COLOURS: [[u8; 3]; 256] = {
+    let mut colours = [[0; 3]; 256];
+    let mut i = 0;
+    while i < SemanticTag::ALL.len() {
+        let tag = SemanticTag::ALL[i];
+        colours[tag as usize] = tag.colour();
+        i += 1;
+    }
+    colours
+};
+
 /// Red, green and blue of a class id; black for ids without a tag.
 pub fn colour(id: u8) -> [u8; 3] {
-    SemanticTag::from_id(id).map_or([0, 0, 0], SemanticTag::colour)
+    COLOURS[usize::from(id)]
+}
+
+/// Red, green and blue of every class id, 3 bytes each.
+pub fn colours(ids: &[u8]) -> Vec<u8> {
+    let colours: Vec<[u8; 3]> = ids.iter().map(|&id| colour(id)).collect();
+    colours.into_flattened()
 }
 
 #[cfg(test)]
@@ -117,6 +134,15 @@ mod tests {
     fn the_index_of_a_carla_tag_is_its_id() {
         assert!(TAGS.iter().enumerate().all(|(i, &tag)| tag as usize == i && tag.coarse() == tag));
         assert_eq!(TAGS[10].colour(), [0, 0, 142]);
+    }
+
+    #[test]
+    fn every_tag_has_its_colour_and_other_ids_are_black() {
+        for id in 0..=u8::MAX {
+            let expected = SemanticTag::from_id(id).map_or([0, 0, 0], SemanticTag::colour);
+            assert_eq!(colour(id), expected);
+            assert_eq!(colours(&[id, 10]), [expected, [0, 0, 142]].concat());
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The eye behind the masks of a recording, found again.
 
 use anyhow::anyhow;
+use perception::Compute;
 use replay::Provenance;
 
 use crate::cli::CheckpointChoice;
@@ -17,6 +18,8 @@ pub struct RecordedEye {
     pub size: (u32, u32),
     /// Adapter and driver that drew them; empty when nothing is said.
     pub adapter: String,
+    /// What computed it; the CPU when nothing is said.
+    pub compute: Compute,
 }
 
 impl RecordedEye {
@@ -28,16 +31,26 @@ impl RecordedEye {
             Some(camera) => camera_size(camera)
                 .ok_or_else(|| anyhow!("provenance \"camera\" is {camera:?}; expected as in \"driver 256x128\""))?,
         };
-        Ok(Self { name: said("checkpoint"), digest: said("checkpoint_digest"), size, adapter: said("adapter") })
+        let compute = match provenance.get("inference") {
+            None => Compute::default(),
+            Some(name) => {
+                name.parse().map_err(|expected| anyhow!("provenance \"inference\" is {name:?}; {expected}"))?
+            }
+        };
+        let (name, digest, adapter) = (said("checkpoint"), said("checkpoint_digest"), said("adapter"));
+        Ok(Self { name, digest, size, adapter, compute })
     }
 
-    /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest.
+    /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest. Where what
+    /// computed it is not at hand, the CPU does.
     pub fn find(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<Eye>> {
         let bundled = perception::BUNDLED.map(CheckpointChoice::Bundled);
         for choice in choices.iter().chain(&bundled).chain(&[CheckpointChoice::Truth]) {
             let eye = Eye::open_at(choice, self.size)?;
             if eye.digest() == self.digest {
-                return Ok(Some(eye));
+                let is_same = eye.compute() == self.compute;
+                let again = || Eye::open_on(self.compute, choice, Some(self.size));
+                return Ok(Some(if is_same { eye } else { again().unwrap_or(eye) }));
             }
         }
         Ok(None)
@@ -64,12 +77,25 @@ mod tests {
     }
 
     #[test]
+    fn what_computed_it_is_the_cpu_unless_the_recording_says_otherwise() {
+        let of = |inference: Option<&str>| {
+            let said = inference.map(|name| ("inference".to_owned(), name.to_owned()));
+            RecordedEye::of(&said.into_iter().collect()).map(|eye| eye.compute)
+        };
+        assert_eq!(of(None).unwrap(), Compute::Cpu);
+        assert_eq!(of(Some("cuda")).unwrap(), Compute::Cuda);
+        let said = of(Some("abacus")).unwrap_err().to_string();
+        assert_eq!(said, "provenance \"inference\" is \"abacus\"; expected cpu or cuda");
+    }
+
+    #[test]
     fn the_eye_is_found_by_its_digest() {
         let eye = |digest: &str| RecordedEye {
             name: "some".into(),
             digest: digest.into(),
             size: (32, 16),
             adapter: String::new(),
+            compute: Compute::Cpu,
         };
         let found = |digest: &str| eye(digest).find(&[]).expect("readable").map(|eye| eye.name().to_owned());
         let early = perception::bundled("early").expect("bundled").expect("readable");

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use kernel::World;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
-use perception::{BUNDLED, Checkpoint, Mask, RgbView, Segmenter};
+use perception::{BUNDLED, Checkpoint, Compute, Mask, RgbView, Segmenter};
 use render::{Camera, Frame, RenderOptions, Renderer};
 use replay::{MaskShown, Provenance};
 
@@ -38,23 +38,24 @@ pub enum Eye {
 impl Eye {
     /// Opens a checkpoint at the size it takes.
     pub fn open(choice: &CheckpointChoice) -> anyhow::Result<Self> {
-        Self::open_for(choice, None)
+        Self::open_on(Compute::Cpu, choice, None)
     }
 
     /// Opens a checkpoint for pictures of one size, which are resampled if it takes another.
     pub fn open_at(choice: &CheckpointChoice, size: (u32, u32)) -> anyhow::Result<Self> {
-        Self::open_for(choice, Some((size.0 as usize, size.1 as usize)))
+        Self::open_on(Compute::Cpu, choice, Some(size))
     }
 
-    fn open_for(choice: &CheckpointChoice, size: Option<(usize, usize)>) -> anyhow::Result<Self> {
+    /// Opens a checkpoint on a device, for pictures of one size or of the size it takes.
+    pub fn open_on(compute: Compute, choice: &CheckpointChoice, size: Option<(u32, u32)>) -> anyhow::Result<Self> {
         let checkpoint = Box::new(match choice {
             CheckpointChoice::Truth => return Ok(Self::Truth),
             CheckpointChoice::Bundled(name) => perception::bundled(name).context("a bundled checkpoint")??,
             CheckpointChoice::File(path) => load(path)?,
         });
         let own = || checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
-        let (width, height) = size.unwrap_or_else(own);
-        let segmenter = Box::new(Segmenter::new(&checkpoint, width, height)?);
+        let (width, height) = size.map_or_else(own, |(width, height)| (width as usize, height as usize));
+        let segmenter = Box::new(Segmenter::on(compute, &checkpoint, width, height)?);
         Ok(Self::Network { checkpoint, segmenter })
     }
 
@@ -71,6 +72,14 @@ impl Eye {
         match self {
             Self::Truth => "truth".into(),
             Self::Network { checkpoint, .. } => checkpoint.digest().to_hex().to_string(),
+        }
+    }
+
+    /// What computes it.
+    pub fn compute(&self) -> Compute {
+        match self {
+            Self::Truth => Compute::default(),
+            Self::Network { segmenter, .. } => segmenter.compute(),
         }
     }
 
@@ -115,14 +124,15 @@ fn load(path: &Path) -> anyhow::Result<Checkpoint> {
     Err(Usage(sentence).into())
 }
 
-/// What recordings say about how their masks came about: through which checkpoint, from pictures of
-/// which size, drawn by which adapter with which driver.
+/// What recordings say about how their masks came about: through which checkpoint, computed by what,
+/// from pictures of which size, drawn by which adapter with which driver.
 pub fn provenance(eye: &Eye, (width, height): (u32, u32)) -> Provenance {
     let entries = [
         ("checkpoint", eye.name().to_owned()),
         ("checkpoint_digest", eye.digest()),
         ("camera", format!("driver {width}x{height}")),
         ("adapter", adapter()),
+        ("inference", eye.compute().name().to_owned()),
     ];
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

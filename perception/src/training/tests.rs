@@ -11,7 +11,7 @@ use super::tape::logits;
 use super::weights::Weights;
 use super::*;
 use crate::classes::TRAIN_CLASSES;
-use crate::onnx::{Element, Engine, Output, Pixels, decode};
+use crate::onnx::{self, Element, Engine, Output, Pixels, decode};
 
 const WIDTH: usize = 128;
 const HEIGHT: usize = 64;
@@ -38,7 +38,8 @@ fn the_shipped_network_gives_the_logits_of_the_trained_one() {
     weights.moments = moments;
     let bytes = export::onnx(&weights, WIDTH, HEIGHT, "{}").unwrap();
     assert_eq!(bytes, export::onnx(&weights, WIDTH, HEIGHT, "{}").unwrap());
-    let engine = Engine::new(&decode(&bytes).unwrap(), None, Element::Float, [1, 3, HEIGHT, WIDTH]).unwrap();
+    let cpu = onnx::runtime("cpu").unwrap();
+    let engine = Engine::new(cpu, &decode(&bytes).unwrap(), None, Element::Float, [1, 3, HEIGHT, WIDTH]).unwrap();
     let classes = TRAIN_CLASSES.len();
     let positions = WIDTH / LOGIT_STRIDE * (HEIGHT / LOGIT_STRIDE);
     let spread = trained.iter().fold(0.0f32, |m, v| m.max(v.abs()));

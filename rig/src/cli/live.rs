@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use perception::Compute;
 
 use super::CheckpointChoice;
 use super::values::{force, size, threshold};
@@ -49,9 +50,9 @@ pub struct DriveArgs {
     /// Longest simulated time, seconds; 4 to 86400, as `rules.max_seconds` of scenarios.
     #[arg(long, value_parser = clap::value_parser!(u32).range(4..=86_400))]
     pub seconds: Option<u32>,
-    /// Sizes of the pictures in windows.
+    /// The pictures in windows.
     #[command(flatten)]
-    pub sizes: SizeArgs,
+    pub pictures: PictureArgs,
     /// Brake of the safety driver beyond which it intervenes, 0.01 to 0.99 of the pedal, as
     /// `rules.brake_threshold` of scenarios (default there: 0.1).
     #[arg(long, value_parser = threshold, value_name = "FRACTION")]
@@ -68,15 +69,19 @@ pub struct DriveArgs {
     pub study: StudyArgs,
 }
 
-/// Sizes of the live rig's pictures.
+/// How the live rig makes its pictures.
 #[derive(Args, Clone, Debug)]
-pub struct SizeArgs {
+pub struct PictureArgs {
     /// Size of the safety driver's picture.
     #[arg(long, default_value = "640x360", value_parser = size, value_name = "WxH")]
     pub image_size: (u32, u32),
     /// Size of the semantic driver's mask (default: the checkpoint's own, 256x128).
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub mask_size: Option<(u32, u32)>,
+    /// What computes the networks: one core of the CPU, or an NVIDIA GPU with the libraries of CUDA 13 and
+    /// cuDNN, if it sees in a picture what the CPU sees.
+    #[arg(long, default_value = "cpu", value_name = "cpu|cuda")]
+    pub inference: Compute,
     /// Monitors that the safety driver's view is spread over: 3 show 60 degrees each, every one of
     /// `--image-size`.
     #[arg(long, default_value = "1")]
@@ -103,9 +108,9 @@ pub struct DoctorArgs {
     /// What the semantic driver sees there.
     #[arg(long, default_value = "full", value_name = "early|full|truth|FILE.onnx")]
     pub checkpoint: CheckpointChoice,
-    /// Sizes of the pictures there.
+    /// The pictures there.
     #[command(flatten)]
-    pub sizes: SizeArgs,
+    pub pictures: PictureArgs,
 }
 
 /// What `view --help` says about the window.

@@ -18,7 +18,7 @@ pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
 pub use lab::{CompareArgs, ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
 pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, RebuildArgs, TrainArgs};
 pub use live::{
-    DoctorArgs, DriveArgs, Screens, SizeArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs,
+    DoctorArgs, DriveArgs, PictureArgs, Screens, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs,
     WheelListArgs,
 };
 pub use recordings::{InspectArgs, QuestionnaireArgs, StatisticsArgs, VerifyArgs};

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use kernel::{TickInput, World};
+use perception::Compute;
 use render::{Camera, RenderOptions, Renderer};
 use serde::Serialize;
 
@@ -56,7 +57,7 @@ struct Adapter {
 /// A measured time.
 #[derive(Debug, Serialize)]
 struct Budget {
-    what: &'static str,
+    what: String,
     ms: f64,
     /// How many of it fit into the time that a live drive gives it.
     times_real_time: f64,
@@ -78,13 +79,13 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
         Ok(devices) => findings.devices = devices,
         Err(error) => findings.notes.push(sentence(&error)),
     }
-    if let Err(error) = measure(&mut findings.budgets) {
+    if let Err(error) = measure(&mut findings) {
         findings.problems.push(sentence(&error));
     }
     if args.seconds > 0 && findings.problems.is_empty() {
-        match live::trial(&args.checkpoint, &args.sizes, args.seconds) {
+        match live::trial(&args.checkpoint, &args.pictures, args.seconds) {
             Ok(figures) => {
-                findings.advice = advice(args, &figures);
+                findings.advice.extend(advice(args, &figures));
                 findings.live = Some(figures);
             }
             Err(error) => findings.notes.push(format!("real time was not measured: {}", sentence(&error))),
@@ -99,10 +100,10 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
 fn advice(args: &DoctorArgs, figures: &LiveFigures) -> Vec<String> {
     let pixels = |(width, height): (u32, u32)| f64::from(width * height);
     // As if the time of a picture went with its pixels, which overstates what smaller ones bring.
-    let fps = |size| figures.safety_fps * pixels(args.sizes.image_size) / pixels(size);
+    let fps = |size| figures.safety_fps * pixels(args.pictures.image_size) / pixels(size);
     let size = SIZES.into_iter().find(|size| fps(*size) >= ENOUGH_FPS).unwrap_or(SIZES[SIZES.len() - 1]);
     let mut said = figures.shortfalls();
-    said.push(match size == args.sizes.image_size {
+    said.push(match size == args.pictures.image_size {
         true => "the safety driver's pictures suit this machine".into(),
         false => format!("drive with --image-size {}x{}", size.0, size.1),
     });
@@ -126,14 +127,15 @@ fn devices() -> anyhow::Result<Vec<String>> {
 }
 
 /// World step, rendering and inference, as a drive needs them.
-fn measure(budgets: &mut Vec<Budget>) -> anyhow::Result<()> {
-    let mut each = |what, ms: f64, needed_ms: f64| budgets.push(Budget { what, ms, times_real_time: needed_ms / ms });
+fn measure(findings: &mut Findings) -> anyhow::Result<()> {
+    let mut each = |what: &str, ms: f64, needed_ms: f64| {
+        findings.budgets.push(Budget { what: what.into(), ms, times_real_time: needed_ms / ms });
+    };
     let map = Map::find(kernel::map::BUNDLED[0])?;
     let mut world = World::new(&map.scenario(1), &map.network)?;
     let ((), s) = seconds_of(|| (0..TICKS).for_each(|_| drop(world.step(&TickInput::default()))));
     each("world step", 1e3 * s / f64::from(TICKS), 1e3 / f64::from(kernel::time::TICK_HZ));
 
-    let mut eye = Eye::open(&CheckpointChoice::Bundled(perception::BUNDLED[0]))?;
     let mut renderer = Renderer::new(&map.network, &RenderOptions::default())?;
     let camera = Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1);
     let frame = renderer.draw(&world.scene(), &camera)?;
@@ -141,9 +143,20 @@ fn measure(budgets: &mut Vec<Budget>) -> anyhow::Result<()> {
     drawn?;
     each("frame 256x128", 1e3 * s / f64::from(FRAMES), 100.0);
 
-    let (seen, s) = seconds_of(|| (0..FRAMES).try_for_each(|_| eye.see(frame.clone()).map(drop)));
-    seen?;
-    each("inference 256x128", 1e3 * s / f64::from(FRAMES), 100.0);
+    for compute in Compute::ALL {
+        let opened = Eye::open_on(compute, &CheckpointChoice::Bundled(perception::BUNDLED[0]), None);
+        let mut eye = match opened {
+            // Drives can do without a GPU.
+            Err(error) if compute != Compute::Cpu => {
+                findings.notes.push(sentence(&error));
+                continue;
+            }
+            opened => opened?,
+        };
+        let (seen, s) = seconds_of(|| (0..FRAMES).try_for_each(|_| eye.see(frame.clone()).map(drop)));
+        seen?;
+        each(&format!("inference 256x128 on {}", compute.name()), 1e3 * s / f64::from(FRAMES), 100.0);
+    }
     Ok(())
 }
 

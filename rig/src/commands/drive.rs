@@ -6,6 +6,7 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use kernel::arbiter::Outcome;
 use kernel::{Scenario, World};
+use perception::Compute;
 use render::{RenderOptions, Renderer};
 use replay::{Label, Recording};
 use serde::Serialize;
@@ -108,7 +109,7 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
 
 fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<Verdict> {
     let about = args.study.provenance()?;
-    let mut lineup = Lineup::open(&args.study, &args.checkpoint, None, scenario.seed)?;
+    let mut lineup = Lineup::open(&args.study, &args.checkpoint, None, Compute::Cpu, scenario.seed)?;
     let eye = lineup.of_run(1).clone();
     let mut manifest = simulate::manifest(scenario, map, &eye);
     manifest.provenance.extend(lineup.cast().provenance_of_run(1).clone());

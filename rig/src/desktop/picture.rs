@@ -29,8 +29,7 @@ impl Image {
 
     /// The classes of a frame in their colours.
     pub fn of_classes(frame: &Frame) -> Self {
-        let rgb = frame.class_ids.iter().flat_map(|id| render::tags::colour(*id)).collect();
-        Self { width: frame.width as usize, height: frame.height as usize, rgb }
+        Self { width: frame.width as usize, height: frame.height as usize, rgb: frame.class_colours() }
     }
 
     /// One image of several that are equally high, left one first.

@@ -42,7 +42,7 @@ pub fn watch_as_semantic(
     watch(&board.scene, &board.semantic, show, |look| {
         let frame = renderer.draw(&look.scene, &camera)?;
         let Mask { ids, .. } = lineup.see(look.run, frame)?;
-        let rgb = ids.iter().flat_map(|id| render::tags::colour(*id)).collect();
+        let rgb = render::tags::colours(&ids);
         let image = Image { width: width as usize, height: height as usize, rgb };
         let mask = ShownMask { digest: digest_of(&ids), ids };
         Ok(view(look, image, Some(mask), clock.now_us()))

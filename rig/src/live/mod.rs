@@ -34,7 +34,7 @@ use kernel::{Scenario, World};
 use render::Camera;
 
 use crate::chart::Chart;
-use crate::cli::{CheckpointChoice, DriveArgs, Screens, SizeArgs};
+use crate::cli::{CheckpointChoice, DriveArgs, PictureArgs, Screens};
 use crate::clock::SessionClock;
 use crate::exit::Verdict;
 use crate::maps::Map;
@@ -51,7 +51,8 @@ use windows::{Link, Waker, Windows};
 
 /// Runs `aeye drive` with windows.
 pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyhow::Result<Verdict> {
-    let lineup = Lineup::open(&args.study, &args.checkpoint, args.sizes.mask_size, scenario.seed)?;
+    let lineup =
+        Lineup::open(&args.study, &args.checkpoint, args.pictures.mask_size, args.pictures.inference, scenario.seed)?;
     let seats = [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default);
     let plan = Plan {
         about: about(&args.study, &lineup, &scenario),
@@ -66,7 +67,7 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
         unattended: None,
     };
     let seating = Seating::new(seats, &args.calibration)?;
-    let timings = session(plan, seating, lineup, &args.sizes)?;
+    let timings = session(plan, seating, lineup, &args.pictures)?;
     if let Some(figures) = timings.figures() {
         eprintln!("{figures}");
         figures.shortfalls().iter().for_each(|said| eprintln!("{said}"));
@@ -76,11 +77,11 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
 
 /// How well this machine keeps real time: bots drive in windows for so long, as people would. Nothing
 /// of it is kept.
-pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyhow::Result<LiveFigures> {
+pub fn trial(choice: &CheckpointChoice, pictures: &PictureArgs, seconds: u32) -> anyhow::Result<LiveFigures> {
     let dir = tempfile::tempdir()?;
     let map = Map::find(kernel::map::BUNDLED[0])?;
     let (study, scenario) = (StudyArgs::default(), map.scenario(1));
-    let lineup = Lineup::open(&study, choice, sizes.mask_size, scenario.seed)?;
+    let lineup = Lineup::open(&study, choice, pictures.mask_size, pictures.inference, scenario.seed)?;
     let plan = Plan {
         about: about(&study, &lineup, &scenario),
         scenario,
@@ -94,11 +95,11 @@ pub fn trial(choice: &CheckpointChoice, sizes: &SizeArgs, seconds: u32) -> anyho
         unattended: Some(Tick::from(seconds) * Tick::from(TICK_HZ)),
     };
     let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[])?;
-    session(plan, seating, lineup, sizes)?.figures().context("no picture came onto the semantic driver's screen")
+    session(plan, seating, lineup, pictures)?.figures().context("no picture came onto the semantic driver's screen")
 }
 
 /// Opens the windows and drives until the operators, or the plan, have had enough.
-fn session(plan: Plan, seating: Seating, lineup: Lineup, sizes: &SizeArgs) -> anyhow::Result<Timings> {
+fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &PictureArgs) -> anyhow::Result<Timings> {
     let windows = Windows::new()?;
     let network = plan.map.network.clone();
     World::new(&plan.scenario, &network)?;
@@ -119,8 +120,8 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, sizes: &SizeArgs) -> an
     };
     let simulation = Simulation::new(plan, seating, links)?;
 
-    let (width, height) = sizes.image_size;
-    let cameras = match sizes.screens {
+    let (width, height) = pictures.image_size;
+    let cameras = match pictures.screens {
         Screens::Three => Camera::driver_row(width, height).to_vec(),
         Screens::One => vec![Camera::driver(width, height)],
     };

@@ -2,7 +2,7 @@
 
 use anyhow::anyhow;
 use kernel::rng::{self, Stream};
-use perception::Mask;
+use perception::{Compute, Mask};
 use render::Frame;
 use replay::Provenance;
 
@@ -55,20 +55,22 @@ pub struct Lineup {
 
 impl Lineup {
     /// Opens the candidates of a blind session, or else the one checkpoint. All of them look at pictures
-    /// of one size, so that it gives nothing away: the one asked for, or else that of the first.
+    /// of one size, so that it gives nothing away: the one asked for, or else that of the first. All of
+    /// them are computed by the same.
     pub fn open(
         study: &StudyArgs,
         checkpoint: &CheckpointChoice,
         size: Option<(u32, u32)>,
+        compute: Compute,
         seed: u64,
     ) -> anyhow::Result<Self> {
         let (first, others) = study.blind.split_first().unwrap_or((checkpoint, &[]));
         // Ground truth can be drawn at any size, and is drawn at this one where nothing asks for another.
         let has_truth = std::iter::once(first).chain(others).any(|choice| *choice == CheckpointChoice::Truth);
         let wanted = size.or(has_truth.then_some(DEFAULT_SIZE));
-        let first = wanted.map_or_else(|| Eye::open(first), |size| Eye::open_at(first, size))?;
+        let first = Eye::open_on(compute, first, wanted)?;
         let size = wanted.unwrap_or(first.size());
-        let others = others.iter().map(|choice| Eye::open_at(choice, size));
+        let others = others.iter().map(|choice| Eye::open_on(compute, choice, Some(size)));
         let eyes = std::iter::once(Ok(first)).chain(others).collect::<anyhow::Result<Vec<_>>>()?;
         let cast = Cast { seed, public_name: public_name(&eyes), provenances: provenances(&eyes, size) };
         Ok(Self { eyes, size, cast })
@@ -144,7 +146,7 @@ mod tests {
             blind: vec![CheckpointChoice::Truth, CheckpointChoice::Bundled("early")],
             ..Default::default()
         };
-        let lineup = Lineup::open(&study, &CheckpointChoice::Truth, Some((64, 32)), 3).expect("bundled");
+        let lineup = Lineup::open(&study, &CheckpointChoice::Truth, Some((64, 32)), Compute::Cpu, 3).expect("bundled");
         let cast = lineup.cast();
         assert_eq!((cast.public_name(), lineup.size()), ("blind, one of 2", (64, 32)));
         for eye in &lineup.eyes {

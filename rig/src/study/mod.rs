@@ -29,7 +29,7 @@ const BLIND: &str = "blind";
 /// The checkpoints that it was drawn from.
 const CANDIDATES: &str = "blind_candidates";
 /// What a blind drive does not tell unless it is revealed.
-const HIDDEN: [&str; 3] = ["checkpoint", "checkpoint_digest", CANDIDATES];
+const HIDDEN: [&str; 4] = ["checkpoint", "checkpoint_digest", "inference", CANDIDATES];
 
 /// Arguments of a drive that is part of a study.
 #[derive(Args, Debug, Default)]

@@ -28,6 +28,9 @@ struct Digests {
     adapter: String,
     /// What drew them when they were shown; empty when the recording does not say.
     recorded_adapter: String,
+    /// What computes them now, and what did when they were shown.
+    inference: &'static str,
+    recorded_inference: &'static str,
     /// Masks in the log.
     masks: usize,
     /// Frames that were drawn and looked at again for them.
@@ -86,6 +89,8 @@ fn compare(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<Digests>
         camera: format!("{width}x{height}"),
         adapter: vision::adapter(),
         recorded_adapter: film.eye.adapter.clone(),
+        inference: eye.compute().name(),
+        recorded_inference: film.eye.compute.name(),
         masks: masks.len(),
         frames: rebuilt.len(),
         equal,
@@ -146,6 +151,9 @@ fn text(digests: &Digests) -> String {
             "\nequal masks are promised on one adapter: it was drawn by {drew}, and now by {}",
             digests.adapter
         );
+    }
+    if digests.inference != digests.recorded_inference {
+        text += &format!("\ncomputed by {}, and now by {}", digests.recorded_inference, digests.inference);
     }
     text
 }

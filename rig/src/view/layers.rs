@@ -83,11 +83,6 @@ fn doubt_colour(doubt: f32) -> [u8; 3] {
     std::array::from_fn(|c| (DOUBT[below][c] + (DOUBT[below + 1][c] - DOUBT[below][c]) * along + 0.5) as u8)
 }
 
-/// Tag ids in class colours. 3 bytes a pixel.
-pub fn classes(ids: &[u8]) -> Vec<u8> {
-    ids.iter().flat_map(|id| render::tags::colour(*id)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

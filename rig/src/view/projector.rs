@@ -203,7 +203,7 @@ impl Take {
             (Layer::Seen, ..) => self.seen.clone().unwrap_or_else(missing),
             (Layer::Rgb, Some(frame), _) => Ok(image(frame, frame.rgb.clone())),
             (Layer::Truth, Some(frame), _) => Ok(image(frame, frame.class_colours())),
-            (Layer::Prediction, _, Some(p)) => Ok(image(&p.frame, layers::classes(&p.mask.ids))),
+            (Layer::Prediction, _, Some(p)) => Ok(image(&p.frame, render::tags::colours(&p.mask.ids))),
             (Layer::Difference, _, Some(p)) => Ok(image(&p.frame, layers::difference(&p.frame.class_ids, &p.mask.ids))),
             (Layer::Confidence, _, Some(p)) => match &p.confidence {
                 Some(confidence) => Ok(image(&p.frame, layers::doubt(confidence))),

@@ -7,7 +7,6 @@ use render::{Camera, Renderer};
 use replay::MaskShown;
 
 use super::film::Film;
-use super::layers;
 use super::projector::Picture;
 use super::reel::Reel;
 use crate::desktop::Image;
@@ -84,7 +83,7 @@ impl<'a> SeenTrack<'a> {
             let (width, height) = self.film.eye.size;
             let moment = self.reel.at(tick_of_frame)?;
             let mask = eye.see(renderer.draw(&moment.scene, &Camera::driver(width, height))?)?;
-            let image = Image { width: mask.width, height: mask.height, rgb: layers::classes(&mask.ids) };
+            let image = Image { width: mask.width, height: mask.height, rgb: render::tags::colours(&mask.ids) };
             self.last = Some(Rebuilt { tick_of_frame, digest: digest_of(&mask.ids), image: Arc::new(image) });
         }
         Ok(self.last.as_ref())

@@ -24,12 +24,14 @@ const IMPORTS: [(&str, &[&str]); 7] = [
 const WINDOWS: [&str; 3] = ["rig/src/desktop/", "rig/src/live/windows/", "rig/src/view/windows/"];
 
 /// (word, crates that have its rule, files in which it may stand). A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str], &[&str]); 11] = [
+const NAMED_ONCE: [(&str, &[&str], &[&str]); 13] = [
     (
         "rapier3d::",
         &["kernel", "render", "perception", "replay", "rig"],
         &["kernel/src/physics.rs", "kernel/src/physics/"],
     ),
+    ("tract_onnx", &["kernel", "render", "perception", "replay", "rig"], &["perception/src/onnx.rs"]),
+    ("tract_cuda", &["kernel", "render", "perception", "replay", "rig"], &["perception/src/onnx.rs"]),
     ("bincode::", &["kernel", "render", "perception", "replay", "rig"], &["replay/src/wire.rs"]),
     ("mcap::", &["kernel", "render", "perception", "rig"], &[]),
     ("wgpu::", &["kernel", "perception", "replay", "rig"], &WINDOWS),
