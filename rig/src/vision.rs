@@ -132,9 +132,11 @@ pub fn provenance(eye: &Eye, (width, height): (u32, u32)) -> Provenance {
         ("checkpoint_digest", eye.digest()),
         ("camera", format!("driver {width}x{height}")),
         ("adapter", adapter()),
-        ("inference", eye.compute().name().to_owned()),
     ];
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    // Nothing is said of the CPU, which is the rule.
+    let elsewhere = Some(eye.compute()).filter(|compute| *compute != Compute::Cpu);
+    let inference = elsewhere.map(|compute| ("inference", compute.name().to_owned()));
+    entries.into_iter().chain(inference).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// Name and driver of the adapter that draws for drivers; empty where there is none.

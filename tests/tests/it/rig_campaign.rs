@@ -55,6 +55,18 @@ fn jobs_and_interruptions_do_not_change_a_campaign() {
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn runs_that_do_not_count_leave_nothing_behind() {
+    let dir = tempfile::tempdir().expect("a folder");
+    // The first run is enough, but others are driven beside it until that is known.
+    let plan = Plan { until: Until::Km(0.01), ..plan(dir.path()) };
+    let lines = drive_all(&plan, &Eye::Truth, 3, &Interrupt::default()).expect("a campaign");
+    assert_eq!(lines.len(), 1);
+    let names: Vec<String> = contents(dir.path()).into_keys().filter(|name| !name.contains("-0000.")).collect();
+    assert!(names.is_empty(), "{names:?}");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn recordings_of_another_campaign_are_not_taken_for_this_one() {
     let dir = tempfile::tempdir().expect("a folder");
     drive(dir.path(), 1);

@@ -129,7 +129,7 @@ fn a_counterfactual_is_kept_for_its_recording_alone() {
 
     let path = dir.path().join("a.counterfactual.json");
     assert_eq!(Counterfactual::read(&path, &case).unwrap(), None);
-    found.write(&path).unwrap();
+    fs::write(&path, found.encode().unwrap()).unwrap();
     assert_eq!(Counterfactual::read(&path, &case).unwrap(), Some(found));
     let mut log = case.log().clone();
     log.manifest.provenance.insert("remark".into(), "another".into());

@@ -80,12 +80,17 @@ impl Counterfactual {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(e) => return Err(e).with_context(|| path.display().to_string()),
         };
-        let known = serde_json::from_slice::<Self>(&bytes).ok();
-        Ok(known.filter(|known| known.key == Key::of(recording)))
+        Ok(Self::decode(&bytes, recording))
     }
 
-    /// Keeps it.
-    pub fn write(&self, path: &Path) -> anyhow::Result<()> {
-        output::write_file(path, output::json_file(self)?.as_bytes())
+    /// As it is in a file, unless that is of another recording.
+    pub fn decode(bytes: &[u8], recording: &Recording) -> Option<Self> {
+        let known = serde_json::from_slice::<Self>(bytes).ok();
+        known.filter(|known| known.key == Key::of(recording))
+    }
+
+    /// As a file.
+    pub fn encode(&self) -> anyhow::Result<Vec<u8>> {
+        Ok(output::json_file(self)?.into_bytes())
     }
 }
