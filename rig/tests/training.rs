@@ -66,6 +66,11 @@ fn a_training_that_is_killed_ends_with_the_same_files_and_is_done_once() {
     killed.kill().expect("killed");
     killed.wait().expect("ended");
     assert_eq!(results(&place("killed")).into_keys().collect::<Vec<_>>(), ["c.onnx.part"]);
+    fs::write(place("killed/c.onnx"), "mine").expect("writable");
+    let refused = train(dir.path(), "killed/c.onnx").output().expect("the program starts");
+    assert_eq!(refused.status.code(), Some(1), "{}", String::from_utf8_lossy(&refused.stderr));
+    assert_eq!(fs::read_to_string(place("killed/c.onnx")).expect("it is there"), "mine");
+    fs::remove_file(place("killed/c.onnx")).expect("it is there");
     let resumed = train(dir.path(), "killed/c.onnx").output().expect("the program starts");
     let said = String::from_utf8_lossy(&resumed.stderr).into_owned();
     assert!(resumed.status.success() && !said.contains("; 0 epochs are done"), "{said}");

@@ -169,24 +169,41 @@ pub fn train(
     run.finish(epochs).map(Some)
 }
 
-/// Whether a checkpoint is what [`train`] would give: it tells these options, this number of epochs
-/// and this dataset.
-pub fn is_trained(
+/// Which training a checkpoint comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// It is what [`train`] would give.
+    This,
+    /// The same training with another number of epochs.
+    OtherEpochs,
+    /// Another one, or none that it tells of.
+    Foreign,
+}
+
+/// Whether a checkpoint comes from [`train`] with these options, this number of epochs and this dataset,
+/// by what it tells of itself.
+pub fn origin(
     checkpoint: &Checkpoint,
     dataset: &Path,
     options: &TrainOptions,
     epochs: u32,
-) -> Result<bool, PerceptionError> {
+) -> Result<Origin, PerceptionError> {
     check(options)?;
     let text = checkpoint.recipe().unwrap_or_default();
     let told: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
     let (Some(digest), Some(epoch)) = (told["dataset"].as_str(), told["epochs"].as_u64()) else {
-        return Ok(false);
+        return Ok(Origin::Foreign);
     };
     // With patience the best epoch is known only afterwards.
-    let epoch = if options.patience.is_some() { epoch } else { u64::from(epochs) };
-    Ok(run::recipe(options, epoch, epochs, digest) == text
-        && run::digest(&run::read(dataset, options)?).to_hex().as_str() == digest)
+    let limit = told["limit"].as_u64().map_or(epochs, |limit| limit as u32);
+    let is_known = run::recipe(options, epoch, limit, digest) == text
+        && run::digest(&run::read(dataset, options)?).to_hex().as_str() == digest;
+    let is_long_enough = if options.patience.is_some() { limit == epochs } else { epoch == u64::from(epochs) };
+    Ok(match (is_known, is_long_enough) {
+        (false, _) => Origin::Foreign,
+        (true, false) => Origin::OtherEpochs,
+        (true, true) => Origin::This,
+    })
 }
 
 fn check(options: &TrainOptions) -> Result<(), PerceptionError> {

@@ -178,16 +178,18 @@ fn a_network_is_known_by_its_options_and_its_dataset() {
         fs::remove_file(dir.path().join("p")).unwrap();
         (patience, Checkpoint::from_bytes("c", &trained.onnx).unwrap())
     });
-    let known =
-        |checkpoint: &Checkpoint, options, epochs| is_trained(checkpoint, dir.path(), &options, epochs).unwrap();
+    let of = |checkpoint: &Checkpoint, options, epochs| origin(checkpoint, dir.path(), &options, epochs).unwrap();
     for (patience, checkpoint) in &trained {
-        assert!(known(checkpoint, options(*patience), 2) && !known(checkpoint, options(*patience), 3));
-        assert!(!known(checkpoint, TrainOptions { seed: 2, ..options(*patience) }, 2));
-        assert!(!known(checkpoint, options(Some(3)), 2));
+        assert_eq!(of(checkpoint, options(*patience), 2), Origin::This);
+        assert_eq!(of(checkpoint, options(*patience), 3), Origin::OtherEpochs);
+        assert_eq!(of(checkpoint, TrainOptions { seed: 2, ..options(*patience) }, 2), Origin::Foreign);
+        assert_eq!(of(checkpoint, options(Some(3)), 2), Origin::Foreign);
     }
-    assert!(!known(&crate::bundled("full").unwrap().unwrap(), options(None), 2));
+    assert_eq!(of(&crate::bundled("full").unwrap().unwrap(), options(None), 2), Origin::Foreign);
     dataset(dir.path(), 4, 2);
-    assert!(trained.iter().all(|(patience, checkpoint)| !known(checkpoint, options(*patience), 2)), "a picture more");
+    for (patience, checkpoint) in &trained {
+        assert_eq!(of(checkpoint, options(*patience), 2), Origin::Foreign, "a picture more");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CheckpointChoice;
+use super::values::jobs;
 use crate::lab::experiment::Preset;
 
 /// Arguments of `campaign`.
@@ -44,7 +45,7 @@ pub struct CampaignArgs {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
     /// Folder of the results; a campaign that was interrupted goes on there.
     #[arg(long, value_name = "DIR")]
@@ -65,8 +66,8 @@ pub struct DemoArgs {
 /// Arguments of `experiment`.
 #[derive(Args, Debug)]
 pub struct ExperimentArgs {
-    /// The experiment's numbers: half an hour, a night (both on two cores), or as in the paper.
-    #[arg(long, value_name = "smoke|desk|paper", required_unless_present = "recipe", conflicts_with = "recipe")]
+    /// The experiment's numbers: twenty minutes, an hour, a night (on two cores), or as in the paper.
+    #[arg(long, value_name = "smoke|small|desk|paper", required_unless_present = "recipe", conflicts_with = "recipe")]
     pub preset: Option<Preset>,
     /// A file with other numbers; `--print-recipe` shows what it has to hold.
     #[arg(long, value_name = "FILE.toml")]
@@ -75,7 +76,7 @@ pub struct ExperimentArgs {
     #[arg(long)]
     pub print_recipe: bool,
     /// Drives at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
     /// Folder of the results; an experiment that was interrupted goes on there.
     #[arg(long, value_name = "DIR", required_unless_present = "print_recipe")]

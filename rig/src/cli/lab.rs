@@ -6,7 +6,7 @@ use clap::Args;
 use kernel::time::{CLIP_FPS, Tick};
 
 use super::CheckpointChoice;
-use super::values::{duration, frame_rate, moment, size};
+use super::values::{duration, frame_rate, jobs, moment, size};
 use crate::lab::compare::Gate;
 
 /// Arguments of `rerender`.
@@ -28,7 +28,7 @@ pub struct RerenderArgs {
     #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what is whole and follows from
     /// the same files, checkpoints and options is kept.
@@ -88,7 +88,7 @@ pub struct CompareArgs {
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what follows from the same cases,
     /// checkpoints and size is kept.

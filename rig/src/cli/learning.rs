@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use replay::Label;
 
 use super::CheckpointChoice;
-use super::values::{rate, size};
+use super::values::{jobs, rate, size};
 
 /// The datasets that can be made.
 #[derive(Debug, Subcommand)]
@@ -77,7 +77,7 @@ pub struct RebuildArgs {
     #[arg(long, value_delimiter = ',', value_name = "FILE.xodr")]
     pub maps: Vec<String>,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
     /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]
@@ -115,7 +115,7 @@ pub struct NaturalArgs {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
     /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]

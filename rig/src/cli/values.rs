@@ -42,6 +42,12 @@ pub fn threshold(text: &str) -> Result<f32, String> {
     fraction.ok_or_else(|| "expected a fraction of 0.01 to 0.99, as in 0.1".into())
 }
 
+/// How much is done at the same time.
+pub fn jobs(text: &str) -> Result<u16, String> {
+    let jobs = text.parse::<u16>().ok().filter(|n| (1..=256).contains(n));
+    jobs.ok_or_else(|| "expected 1 to 256".into())
+}
+
 /// Frames a second that fall on ticks.
 pub fn frame_rate(text: &str) -> Result<u32, String> {
     let fps = text.parse::<u32>().ok().filter(|f| *f > 0 && TICK_HZ.is_multiple_of(*f));
@@ -65,6 +71,8 @@ mod tests {
         assert_eq!((force("0"), force("1")), (Ok(0.0), Ok(1.0)));
         assert!(force("1.1").is_err() && force("-0.1").is_err() && force("nan").is_err());
         assert!(threshold("0").is_err() && threshold("1").is_err() && threshold("nan").is_err());
+        assert_eq!((jobs("1"), jobs("256")), (Ok(1), Ok(256)));
+        assert!(jobs("0").is_err() && jobs("257").is_err() && jobs("two").is_err());
         assert!(frame_rate("7").is_err() && frame_rate("0").is_err());
     }
 }

@@ -8,6 +8,7 @@ use render::AdapterChoice;
 use crate::campaign::{CampaignFigures, Plan, Until, drive_all, figures};
 use crate::cli::CampaignArgs;
 use crate::exit::{Usage, Verdict};
+use crate::lab::spread::jobs;
 use crate::maps::{Map, read_scenario};
 use crate::output;
 use crate::progress::Interrupt;
@@ -31,8 +32,7 @@ pub fn drive(args: &CampaignArgs, interrupt: &Interrupt) -> anyhow::Result<Campa
     }
     AdapterChoice::default().find()?;
     output::create_folder(&plan.out)?;
-    let cores = || std::thread::available_parallelism().map_or(1, |n| n.get());
-    let jobs = args.jobs.map_or_else(cores, usize::from);
+    let jobs = jobs(args.jobs);
     let mut runs = Vec::new();
     for eye in &eyes {
         runs.extend(drive_all(&plan, eye, jobs, interrupt)?);

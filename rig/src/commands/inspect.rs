@@ -98,10 +98,14 @@ impl NoteLine {
 
 /// Runs `aeye inspect`.
 pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
-    let mut seen = Vec::new();
+    let (mut seen, mut verdict) = (Vec::new(), Verdict::Ok);
     for file in &args.files {
         let recording = Recording::open(file)?;
-        let contents = read(file, &recording, args.reveal)?;
+        let measured = measure(&recording);
+        if matches!(measured, Err(replay::Error::Diverged(_))) {
+            verdict = Verdict::CheckFailed;
+        }
+        let contents = read(file, &recording, measured, args.reveal)?;
         output::print(json, &contents, || text(&contents))?;
         seen.push((recording, contents.measures));
     }
@@ -110,7 +114,7 @@ pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
         let overall = Overall { kind: "overall", files: seen.len(), tally };
         output::print(json, &overall, || paragraph(overall.tally.lines()))?;
     }
-    Ok(Verdict::Ok)
+    Ok(verdict)
 }
 
 /// The measures of a recording, or why there are none.
@@ -118,7 +122,12 @@ fn measure(recording: &Recording) -> Result<Measures, replay::Error> {
     Measures::of(recording.log(), &recording.network()?)
 }
 
-fn read(file: &Path, recording: &Recording, reveal: bool) -> anyhow::Result<Contents> {
+fn read(
+    file: &Path,
+    recording: &Recording,
+    measured: Result<Measures, replay::Error>,
+    reveal: bool,
+) -> anyhow::Result<Contents> {
     let bytes = std::fs::metadata(file).with_context(|| file.display().to_string())?.len();
     let log = recording.log();
     let manifest = &log.manifest;
@@ -140,7 +149,6 @@ fn read(file: &Path, recording: &Recording, reveal: bool) -> anyhow::Result<Cont
         actor: e.actor,
         speed_mps: e.speed_mps,
     });
-    let measured = measure(recording);
     Ok(Contents {
         file: file.display().to_string(),
         kind: if window.is_some() { "case" } else { "recording" },

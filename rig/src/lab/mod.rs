@@ -17,6 +17,6 @@ pub mod png;
 pub mod redrive;
 pub mod report;
 pub mod rerender;
-mod spread;
+pub mod spread;
 pub mod store;
 pub mod train;

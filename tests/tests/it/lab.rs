@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use replay::Recording;
-use rig::cli::{CheckpointChoice, RerenderArgs};
+use rig::cli::{CheckpointChoice, InspectArgs, RerenderArgs};
+use rig::commands::inspect;
 use rig::exit::{self, Verdict};
 use rig::lab::{report, rerender};
 use tests::files::contents;
@@ -52,6 +53,8 @@ fn a_divergent_or_damaged_recording_leaves_no_pictures() {
     let out = dir.path().join("out");
     let diverged = rerender::run(&rerender_args(&forged, out.clone()), true);
     assert_eq!(exit::number(&diverged), 3, "{diverged:?}");
+    let looked_at = inspect::run(&InspectArgs { files: vec![forged.clone()], reveal: false }, true);
+    assert_eq!(exit::number(&looked_at), 3, "{looked_at:?}");
     let mut bytes = fs::read(&recording).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;

@@ -18,9 +18,9 @@ fn experiment(arguments: &[&str]) -> (u8, String) {
 fn a_recipe_is_read_and_refused_by_its_place() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("mine.toml");
-    let text = Preset::Smoke.recipe().to_toml().unwrap();
+    let text = Preset::Smoke.recipe().unwrap().to_toml().unwrap();
     fs::write(&path, &text).unwrap();
-    assert_eq!(Recipe::read(&path).unwrap(), Preset::Smoke.recipe());
+    assert_eq!(Recipe::read(&path).unwrap(), Preset::Smoke.recipe().unwrap());
     let (file, out) = (path.to_str().unwrap(), dir.path().join("out"));
     assert_eq!(experiment(&["--recipe", file, "--print-recipe"]), (0, String::new()));
     fs::write(&path, text.replace("[pool]", "[puddle]")).unwrap();
@@ -37,7 +37,7 @@ fn a_recipe_is_read_and_refused_by_its_place() {
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_folder_of_another_recipe_is_left_alone() {
     let dir = tempfile::tempdir().unwrap();
-    let recipe = Preset::Desk.recipe().to_toml().unwrap();
+    let recipe = Preset::Desk.recipe().unwrap().to_toml().unwrap();
     fs::write(dir.path().join("recipe.toml"), &recipe).unwrap();
     let (code, sentence) = experiment(&["--preset", "smoke", "--out", dir.path().to_str().unwrap()]);
     assert!(code == 1 && sentence.contains("another experiment"), "{sentence}");

@@ -106,7 +106,7 @@ pub fn run(args: &ExperimentArgs, json: bool) -> anyhow::Result<Verdict> {
 
 fn chosen(args: &ExperimentArgs) -> anyhow::Result<Recipe> {
     match (&args.preset, &args.recipe) {
-        (Some(preset), None) => Ok(preset.recipe()),
+        (Some(preset), None) => preset.recipe(),
         (None, Some(path)) => Recipe::read(path),
         _ => Err(Usage("expected one of --preset and --recipe".into()).into()),
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use clap::ValueEnum;
 use kernel::time::CLIP_FRAMES;
 use perception::training::TrainOptions;
@@ -109,8 +109,10 @@ pub struct SecondCampaign {
 /// Experiments with a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// Half an hour on two cores: shows that everything works.
+    /// Twenty minutes on two cores: shows that everything works.
     Smoke,
+    /// An hour on two cores: enough to see whether corner cases help.
+    Small,
     /// A night on two cores.
     Desk,
     /// The paper's numbers of scenes, corner cases, epochs, seeds and kilometres.
@@ -119,54 +121,14 @@ pub enum Preset {
 
 impl Preset {
     /// Its numbers.
-    pub fn recipe(self) -> Recipe {
-        match self {
-            Self::Smoke => Recipe {
-                maps: vec!["city".into()],
-                natural: Natural { scenes: 20, val_scenes: 4, frames: 24, test_scenes: 6, test_frames: 15 },
-                pool: Pool { scenes: 10, pedestrians: 400 },
-                driving: Driving { epochs: 3, horizon: 12 },
-                first_campaign: FirstCampaign {
-                    training_cases: 3,
-                    test_cases: 2,
-                    pedestrians: Some(400),
-                    run_seconds: 90,
-                },
-                training: Training { epochs: 8, seeds: 2 },
-                second_campaign: SecondCampaign { km: 2.0, pedestrians: Some(400), run_seconds: 90 },
-                ..Self::Paper.recipe()
-            },
-            Self::Desk => Recipe {
-                natural: Natural { scenes: 60, val_scenes: 12, frames: 40, test_scenes: 21, test_frames: 30 },
-                pool: Pool { scenes: 40, pedestrians: 400 },
-                driving: Driving { epochs: 5, horizon: 40 },
-                first_campaign: FirstCampaign {
-                    training_cases: 24,
-                    test_cases: 12,
-                    pedestrians: Some(400),
-                    run_seconds: 240,
-                },
-                training: Training { epochs: 40, seeds: 3 },
-                second_campaign: SecondCampaign { km: 40.0, pedestrians: Some(400), run_seconds: 240 },
-                ..Self::Paper.recipe()
-            },
-            Self::Paper => Recipe {
-                seed: 1,
-                size: (256, 128),
-                maps: vec!["all".into()],
-                natural: Natural { scenes: 85, val_scenes: 20, frames: 60, test_scenes: 21, test_frames: 30 },
-                pool: Pool { scenes: 85, pedestrians: 400 },
-                driving: Driving { epochs: 5, horizon: 200 },
-                first_campaign: FirstCampaign {
-                    training_cases: 50,
-                    test_cases: 21,
-                    pedestrians: None,
-                    run_seconds: 600,
-                },
-                training: Training { epochs: 200, seeds: 5 },
-                second_campaign: SecondCampaign { km: 150.0, pedestrians: None, run_seconds: 600 },
-            },
-        }
+    pub fn recipe(self) -> anyhow::Result<Recipe> {
+        let text = match self {
+            Self::Smoke => include_str!("presets/smoke.toml"),
+            Self::Small => include_str!("presets/small.toml"),
+            Self::Desk => include_str!("presets/desk.toml"),
+            Self::Paper => include_str!("presets/paper.toml"),
+        };
+        Recipe::parse(text)
     }
 }
 
@@ -175,9 +137,12 @@ impl Recipe {
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let context = || path.display().to_string();
         let text = std::fs::read_to_string(path).with_context(context)?;
-        let recipe: Self =
-            toml::from_str(&text).map_err(|e| anyhow::anyhow!(one_line(&e, &text))).with_context(context)?;
-        recipe.check().with_context(context)?;
+        Self::parse(&text).with_context(context)
+    }
+
+    fn parse(text: &str) -> anyhow::Result<Self> {
+        let recipe: Self = toml::from_str(text).map_err(|e| anyhow!(one_line(&e, text)))?;
+        recipe.check()?;
         Ok(recipe)
     }
 
@@ -251,7 +216,7 @@ mod tests {
         let dir = tempfile::tempdir().expect("a folder");
         let path = dir.path().join("recipe.toml");
         for preset in Preset::value_variants() {
-            let recipe = preset.recipe();
+            let recipe = preset.recipe().expect("valid");
             std::fs::write(&path, recipe.to_toml().expect("text")).expect("written");
             assert_eq!(Recipe::read(&path).expect("valid"), recipe, "{preset:?}");
         }
@@ -265,7 +230,7 @@ mod tests {
             std::fs::write(&path, text).expect("written");
             format!("{:#}", Recipe::read(&path).expect_err("refused"))
         };
-        let good = Preset::Smoke.recipe().to_toml().expect("text");
+        let good = Preset::Smoke.recipe().expect("valid").to_toml().expect("text");
         for (from, to, said) in [
             ("seeds = 2", "seeds = 0", "training.seeds is 0"),
             ("training_cases = 3", "training_cases = 30", "replace 900 frames"),

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use indicatif::ProgressBar;
 use perception::Checkpoint;
-use perception::training::{self, Progress, TrainOptions, Trained};
+use perception::training::{self, Origin, Progress, TrainOptions, Trained};
 use serde::Serialize;
 
 pub use curves::Epoch;
@@ -51,15 +51,21 @@ pub fn train(
 ) -> anyhow::Result<Summary> {
     output::check_file(&args.out)?;
     let options = options(args);
-    if let Ok(checkpoint) = Checkpoint::load(&args.out)
-        && training::is_trained(&checkpoint, &args.dataset, &options, args.epochs)?
-    {
-        return Ok(summary(args, &checkpoint, true));
-    }
     let unfinished = beside(&args.out, "onnx.part");
-    if args.out.exists() && !unfinished.exists() {
-        let out = args.out.display();
-        bail!("{out}: exists already and is not what these options make of this dataset; expected another place");
+    if args.out.exists() {
+        let known = Checkpoint::load(&args.out).ok();
+        let origin = |known| training::origin(known, &args.dataset, &options, args.epochs);
+        match (known.as_ref().map(origin).transpose()?, known) {
+            (Some(Origin::This), Some(known)) => return Ok(summary(args, &known, true)),
+            // What is unfinished goes on from there.
+            (Some(Origin::OtherEpochs), _) if unfinished.exists() => {}
+            _ => {
+                let out = args.out.display();
+                bail!(
+                    "{out}: exists already and is not what these options make of this dataset; expected another place"
+                );
+            }
+        }
     }
     let mut screen = Screen { bar: ProgressBar::hidden(), options: &options, epochs: args.epochs, show, failed: None };
     let watch = &mut |progress: Progress<'_>| {
