@@ -2,8 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::PerceptionError;
-use crate::onnx::{self, Output};
+use crate::onnx::Output;
 
 /// What computes a network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,12 +25,6 @@ impl Compute {
             Self::Cpu => "cpu",
             Self::Cuda => "cuda",
         }
-    }
-
-    /// Whether this machine has it; the error says what is missing.
-    pub fn check(self) -> Result<(), PerceptionError> {
-        let found = onnx::runtime(self.name()).map(drop);
-        found.map_err(|reason| PerceptionError::Compute { name: self.name(), reason })
     }
 }
 
@@ -83,7 +76,6 @@ mod tests {
             assert_eq!(compute.name().parse(), Ok(compute));
         }
         assert!("gpu".parse::<Compute>().unwrap_err().contains("expected cpu or cuda"));
-        assert!(Compute::Cpu.check().is_ok());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use kernel::arbiter::{Outcome, TAKEOVER_TICKS};
-use kernel::time::{CLIP_FRAMES, CLIP_STRIDE_TICKS, Tick};
+use kernel::time::{CLIP_FRAMES, CLIP_STRIDE_TICKS, CLIP_TICKS, Tick};
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::{CaseInfo, Error, Log, Mark, Recording, Replayer, RunSummary};
@@ -28,18 +28,18 @@ impl Case {
         Some(from..=to)
     }
 
-    /// Cuts a window out of a recording by replaying it; every tick is compared on the way. The
+    /// Cuts a window out of a recording by replaying it; every tick of the case is compared. The
     /// scenes kept are those of the window's first tick and of every `CLIP_STRIDE_TICKS` after it. A case
     /// without the intervention has no annotation.
     pub fn cut(recording: &Recording, network: &Arc<RoadNetwork>, window: RangeInclusive<Tick>) -> Result<Self, Error> {
         let log = recording.log();
         let (from, to) = (*window.start(), *window.end());
         let mut replayer = Replayer::new(log, network.clone())?;
-        replayer.seek(from)?;
+        replayer.seek(start_of(log, from, to))?;
         let end = log.last_tick().min(to + TAKEOVER_TICKS);
         let scenes = scenes(&mut replayer, window)?;
-        replayer.seek(end)?;
-        let info = CaseInfo { source: recording.digest(), from, to };
+        replayer.run_to(end)?;
+        let info = CaseInfo { source: recording.source(), from, to };
         Ok(Self { log: cut_log(&replayer, &info, scenes), info })
     }
 
@@ -71,14 +71,20 @@ impl Case {
 
 fn scenes(replayer: &mut Replayer<'_>, window: RangeInclusive<Tick>) -> Result<Vec<SceneSnapshot>, Error> {
     let ticks = window.step_by(CLIP_STRIDE_TICKS as usize);
-    ticks.map(|tick| replayer.seek(tick).map(|()| replayer.world().scene())).collect()
+    ticks.map(|tick| replayer.run_to(tick).map(|()| replayer.world().scene())).collect()
+}
+
+/// The keyframe that a case begins with: from there forks of case and recording are the same.
+fn start_of(log: &Log, from: Tick, to: Tick) -> Tick {
+    let reach = from.min(to.saturating_sub(CLIP_TICKS));
+    log.keyframes.iter().map(|k| k.tick).rfind(|t| *t <= reach).unwrap_or(log.first_tick())
 }
 
 /// The log from the keyframe before the window to where the replayer stands.
 fn cut_log(replayer: &Replayer<'_>, info: &CaseInfo, scenes: Vec<SceneSnapshot>) -> Log {
     let (log, world) = (replayer.log(), replayer.world());
     let end = world.tick();
-    let start = log.keyframes.iter().map(|k| k.tick).rfind(|t| *t <= info.from).unwrap_or(log.first_tick());
+    let start = start_of(log, info.from, info.to);
     let inside = |tick: Tick| start < tick && tick <= end;
     let rows = (start - log.first_tick()) as usize..(end - log.first_tick()) as usize;
     let mark = Mark { tick: end, hash: world.hash(), parts: world.part_hashes(), odometer_mm: world.odometer_mm() };

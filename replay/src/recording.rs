@@ -55,6 +55,11 @@ impl Recording {
         self.digest
     }
 
+    /// Digest of the recording that it is, or was cut from.
+    pub fn source(&self) -> [u8; 32] {
+        self.log.manifest.case.as_ref().map_or(self.digest, |case| case.source)
+    }
+
     /// The map of the run: a bundled one, or the one embedded in the log; its digest is checked.
     pub fn network(&self) -> Result<Arc<RoadNetwork>, Error> {
         self.log.manifest.network()

@@ -26,7 +26,7 @@ impl<'a> Replayer<'a> {
     }
 
     /// Goes to a tick: resumes from the nearest keyframe before it unless the world stands between
-    /// the two, and steps from there.
+    /// the two, and steps from there. What it jumps over is not compared.
     pub fn seek(&mut self, tick: Tick) -> Result<(), Error> {
         let (first, last) = (self.log.first_tick(), self.log.last_tick());
         let before = self.log.keyframes.iter().rev().find(|k| k.tick <= tick);
@@ -36,8 +36,15 @@ impl<'a> Replayer<'a> {
         if !(keyframe.tick..=tick).contains(&self.world.tick()) {
             self.resume(keyframe)?;
         }
+        self.run_to(tick)
+    }
+
+    /// Goes on to a tick that is not behind, simulating every tick on the way.
+    pub fn run_to(&mut self, tick: Tick) -> Result<(), Error> {
         while self.world.tick() < tick {
-            self.step()?;
+            if self.step()?.is_none() {
+                return Err(Error::Unsuited(format!("the log ends at tick {}, before {tick}", self.world.tick())));
+            }
         }
         Ok(())
     }

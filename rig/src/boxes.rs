@@ -5,6 +5,8 @@ use kernel::ego::{CENTRE_M, SIZE_M};
 use kernel::scene::{ActorKind, ActorScene, SceneSnapshot};
 use render::SemanticTag;
 
+use crate::words;
+
 /// Frame of everything that stands still.
 pub const MAP: &str = "map";
 /// Frame of the ego car, and the name of its box.
@@ -49,7 +51,7 @@ fn actor(actor: &ActorScene) -> RoadUser {
 
 /// What an actor is called within its run: kind and number.
 pub fn name(actor: &ActorScene) -> String {
-    format!("{:?} {}", actor.kind, actor.id).to_lowercase()
+    format!("{} {}", words::road_user(actor.kind), actor.id)
 }
 
 /// A colour of 0 to 255 as fractions.

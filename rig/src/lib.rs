@@ -25,9 +25,11 @@ pub mod simulate;
 pub mod statistics;
 pub mod stats;
 pub mod study;
+mod toml_text;
 pub mod units;
 mod view;
 pub mod vision;
+mod words;
 
 use cli::{Cli, Command};
 use exit::Verdict;

@@ -41,16 +41,27 @@ impl RecordedEye {
         Ok(Self { name, digest, size, adapter, compute })
     }
 
-    /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest. Where what
-    /// computed it is not at hand, the CPU does.
+    /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest; the CPU computes
+    /// it.
     pub fn find(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<Eye>> {
+        Ok(self.choice(choices)?.map(|(_, eye)| eye))
+    }
+
+    /// As [`RecordedEye::find`], computed by what computed it then, if that is at hand.
+    pub fn find_as_it_was(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<Eye>> {
+        let Some((choice, eye)) = self.choice(choices)? else { return Ok(None) };
+        if eye.compute() == self.compute {
+            return Ok(Some(eye));
+        }
+        Ok(Some(Eye::open_on(self.compute, &choice, Some(self.size)).unwrap_or(eye)))
+    }
+
+    fn choice(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<(CheckpointChoice, Eye)>> {
         let bundled = perception::BUNDLED.map(CheckpointChoice::Bundled);
         for choice in choices.iter().chain(&bundled).chain(&[CheckpointChoice::Truth]) {
             let eye = Eye::open_at(choice, self.size)?;
             if eye.digest() == self.digest {
-                let is_same = eye.compute() == self.compute;
-                let again = || Eye::open_on(self.compute, choice, Some(self.size));
-                return Ok(Some(if is_same { eye } else { again().unwrap_or(eye) }));
+                return Ok(Some((choice.clone(), eye)));
             }
         }
         Ok(None)

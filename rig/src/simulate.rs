@@ -13,8 +13,8 @@ use crate::maps::Map;
 use crate::session::{Session, SessionState};
 use crate::vision::{self, Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
 
-/// A fork starts at least this long before the intervention, so that nothing is decided yet.
-fn fork_before_ticks(label: Label) -> Tick {
+/// A fork that bots drive starts at least this long before the intervention, so that nothing is decided yet.
+pub fn fork_before_ticks(label: Label) -> Tick {
     if label == Label::Boredom { BORING_TICKS + CLIP_TICKS } else { CLIP_TICKS }
 }
 /// A fork that is still going this long after the intervention did not need it.

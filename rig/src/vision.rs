@@ -141,8 +141,13 @@ pub fn provenance(eye: &Eye, (width, height): (u32, u32)) -> Provenance {
 
 /// Name and driver of the adapter that draws for drivers; empty where there is none.
 pub fn adapter() -> String {
-    let found = RenderOptions::default().adapter.find();
-    found.map_or_else(|_| String::new(), |adapter| format!("{}, {}", adapter.name, adapter.driver))
+    find_adapter().unwrap_or_default()
+}
+
+/// As [`adapter`]; the error says what to install where there is none.
+pub fn find_adapter() -> anyhow::Result<String> {
+    let found = RenderOptions::default().adapter.find()?;
+    Ok(format!("{}, {}", found.name, found.driver))
 }
 
 /// First 8 bytes of the blake3 digest of a mask's tag ids, as recordings hold it.

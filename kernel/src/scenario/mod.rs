@@ -6,6 +6,9 @@ mod text;
 use crate::scene::Weather;
 use crate::state;
 
+/// Most actors of one kind.
+pub const MOST_OF_A_KIND: u16 = 500;
+
 state! {
     /// How many actors of each kind there are, and how they behave.
     #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +21,7 @@ state! {
         pub bicycles: u16,
         /// Pedestrians.
         pub pedestrians: u16,
-        /// Mean number of times that a pedestrian walking beside a road steps onto it, per minute.
+        /// Mean number of times a minute that anyone walking beside a road steps onto it, of all together.
         pub jaywalks_per_min: f32,
     }
 }
@@ -42,7 +45,7 @@ state! {
     /// Where the ego car starts.
     #[derive(Clone, Debug, PartialEq)]
     pub struct EgoStart {
-        /// Lane index and distance along it in metres; chosen from the seed when absent.
+        /// Lane index; chosen from the seed when absent.
         pub lane: Option<u32>,
         /// Distance along the lane, metres.
         pub s_m: f32,

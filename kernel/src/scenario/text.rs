@@ -5,10 +5,7 @@ use std::ops::{Bound, RangeBounds};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Scenario, ScenarioError};
-
-/// Most actors of one kind.
-const MOST_OF_A_KIND: u16 = 500;
+use super::{MOST_OF_A_KIND, Scenario, ScenarioError};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,7 +1,8 @@
 //! Other road users: vehicles on lanes, people on foot.
 //!
 //! Everyone decides from the state of the previous tick and writes only its own next state, so the
-//! order of actors cannot matter. State is what cannot be derived: places, speeds and waiting times.
+//! order of actors cannot matter, but for two who enter the map at one place in one tick. State is what
+//! cannot be derived: places, speeds and waiting times.
 //! Poses follow from the map's geometry, individual differences from stateless random numbers.
 
 mod crossing;

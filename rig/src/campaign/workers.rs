@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard};
 
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 use indicatif::ProgressBar;
 
 use super::driver::{Driven, Driver};
@@ -78,14 +78,6 @@ impl Board<'_> {
         if state.failure.is_some() || self.interrupt.is_raised() || self.plan.until.is_met(&state.runs) {
             return None;
         }
-        if self.plan.until.is_out_of_reach(&state.runs) {
-            state.failure = Some(anyhow!(
-                "{}: {STALLED_RUNS} runs in a row brought the campaign no further; expected a checkpoint that drives, and \
-                 traffic that makes such corner cases",
-                self.eye.name()
-            ));
-            return None;
-        }
         // Only runs can be counted before they are driven.
         if matches!(self.plan.until, Until::Runs(n) if state.next >= n) {
             return None;
@@ -102,6 +94,13 @@ impl Board<'_> {
             let turn = state.runs.len() as u32;
             let Some(driven) = state.waiting.remove(&turn) else { break };
             state.runs.push(driven.keep()?);
+            if self.plan.until.is_out_of_reach(&state.runs) {
+                bail!(
+                    "{}: {STALLED_RUNS} runs in a row brought the campaign no further; expected a checkpoint that drives, \
+                     and traffic that makes such corner cases",
+                    self.eye.name()
+                );
+            }
         }
         self.bar.set_position(self.plan.until.progress(&state.runs).0);
         Ok(())

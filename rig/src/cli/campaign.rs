@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CheckpointChoice;
-use super::values::jobs;
+use super::values::{jobs, people};
 use crate::lab::experiment::Preset;
 
 /// Arguments of `campaign`.
@@ -36,7 +36,7 @@ pub struct CampaignArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub pedestrian_cases: Option<u32>,
     /// People on foot, instead of as many as the scenario or the map's default has.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_parser = people, value_name = "N")]
     pub pedestrians: Option<u16>,
     /// Longest simulated time of a run, seconds.
     #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(10..=86_400))]

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use replay::Label;
 
 use super::CheckpointChoice;
-use super::values::{jobs, rate, size};
+use super::values::{jobs, people, rate, size};
 
 /// The datasets that can be made.
 #[derive(Debug, Subcommand)]
@@ -109,7 +109,7 @@ pub struct NaturalArgs {
     #[arg(long, value_delimiter = ',', default_value = "all", value_name = "NAMES|all")]
     pub maps: Vec<String>,
     /// People on foot in each scene, instead of as many as the map's default scenario has.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_parser = people, value_name = "N")]
     pub pedestrians: Option<u16>,
     /// Seed of the dataset.
     #[arg(long, default_value_t = 1)]

@@ -30,7 +30,7 @@ pub struct DriveArgs {
     #[arg(long, value_name = "FILE.toml", conflicts_with = "headless")]
     pub calibration: Vec<PathBuf>,
     /// Greatest force of wheels and gamepads, 0 (off) to 1 (all that they can).
-    #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION")]
+    #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION", conflicts_with = "headless")]
     pub force: f32,
     /// Shows the drive to Foxglove at this port of this machine, or at this address.
     #[arg(long, value_parser = foxglove::address, value_name = "PORT|ADDRESS:PORT")]
@@ -73,7 +73,7 @@ pub struct DriveArgs {
 #[derive(Args, Clone, Debug)]
 pub struct PictureArgs {
     /// Size of the safety driver's picture.
-    #[arg(long, default_value = "640x360", value_parser = size, value_name = "WxH")]
+    #[arg(long, default_value = IMAGE_SIZE, value_parser = size, value_name = "WxH")]
     pub image_size: (u32, u32),
     /// Size of the semantic driver's mask (default: the checkpoint's own, 256x128).
     #[arg(long, value_parser = size, value_name = "WxH")]
@@ -86,6 +86,19 @@ pub struct PictureArgs {
     /// `--image-size`.
     #[arg(long, default_value = "1")]
     pub screens: Screens,
+}
+
+const IMAGE_SIZE: &str = "640x360";
+
+impl PictureArgs {
+    /// Whether anything is asked for that is not the default.
+    pub fn is_special(&self) -> bool {
+        let Self { image_size, mask_size, inference, screens } = self;
+        Ok(*image_size) != size(IMAGE_SIZE)
+            || mask_size.is_some()
+            || *inference != Compute::default()
+            || *screens != Screens::One
+    }
 }
 
 /// Monitors that a view is spread over.

@@ -1,5 +1,6 @@
 //! Values of arguments, read from text.
 
+use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::{TICK_HZ, Tick};
 
 /// `WxH`, as in `512x256`.
@@ -48,6 +49,12 @@ pub fn jobs(text: &str) -> Result<u16, String> {
     jobs.ok_or_else(|| "expected 1 to 256".into())
 }
 
+/// How many people are on foot.
+pub fn people(text: &str) -> Result<u16, String> {
+    let people = text.parse::<u16>().ok().filter(|n| *n <= MOST_OF_A_KIND);
+    people.ok_or_else(|| format!("expected 0 to {MOST_OF_A_KIND}"))
+}
+
 /// Frames a second that fall on ticks.
 pub fn frame_rate(text: &str) -> Result<u32, String> {
     let fps = text.parse::<u32>().ok().filter(|f| *f > 0 && TICK_HZ.is_multiple_of(*f));
@@ -71,6 +78,8 @@ mod tests {
         assert_eq!((force("0"), force("1")), (Ok(0.0), Ok(1.0)));
         assert!(force("1.1").is_err() && force("-0.1").is_err() && force("nan").is_err());
         assert!(threshold("0").is_err() && threshold("1").is_err() && threshold("nan").is_err());
+        assert_eq!((people("0"), people("500")), (Ok(0), Ok(500)));
+        assert!(people("501").is_err() && people("-1").is_err());
         assert_eq!((jobs("1"), jobs("256")), (Ok(1), Ok(256)));
         assert!(jobs("0").is_err() && jobs("257").is_err() && jobs("two").is_err());
         assert!(frame_rate("7").is_err() && frame_rate("0").is_err());

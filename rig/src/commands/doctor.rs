@@ -25,6 +25,8 @@ const FRAMES: u32 = 20;
 const SIZES: [(u32, u32); 5] = [(1280, 720), (960, 540), (640, 360), (480, 270), (320, 180)];
 /// Pictures a second that leave room for a busy street.
 const ENOUGH_FPS: f64 = 18.0;
+/// Pictures a second from which on nearly every tick has one, and the machine may have more to give.
+const ALL_FPS: f64 = 50.0;
 /// Median age of masks from which on they should be made quicker, milliseconds.
 const OLD_MASK_MS: f64 = 100.0;
 
@@ -102,10 +104,14 @@ fn advice(args: &DoctorArgs, figures: &LiveFigures) -> Vec<String> {
     // As if the time of a picture went with its pixels, which overstates what smaller ones bring.
     let fps = |size| figures.safety_fps * pixels(args.pictures.image_size) / pixels(size);
     let size = SIZES.into_iter().find(|size| fps(*size) >= ENOUGH_FPS).unwrap_or(SIZES[SIZES.len() - 1]);
+    let larger = SIZES.into_iter().rev().find(|size| pixels(*size) > pixels(args.pictures.image_size));
     let mut said = figures.shortfalls();
-    said.push(match size == args.pictures.image_size {
-        true => "the safety driver's pictures suit this machine".into(),
-        false => format!("drive with --image-size {}x{}", size.0, size.1),
+    said.push(match larger {
+        Some((width, height)) if figures.safety_fps >= ALL_FPS => {
+            format!("there is room for larger pictures: measure --image-size {width}x{height}")
+        }
+        _ if size == args.pictures.image_size => "the safety driver's pictures suit this machine".into(),
+        _ => format!("drive with --image-size {}x{}", size.0, size.1),
     });
     let masks_are_old =
         figures.mask_age_ms.is_none_or(|age| age.median > OLD_MASK_MS) || figures.semantic_fps < ENOUGH_FPS;

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::cli::DriveArgs;
 use crate::clock::EverySecond;
-use crate::exit::Verdict;
+use crate::exit::{Usage, Verdict};
 use crate::live;
 use crate::live::foxglove::Publisher;
 use crate::maps::{Map, read_scenario};
@@ -92,6 +92,11 @@ fn outcome_name(outcome: Option<Outcome>) -> &'static str {
 
 /// Runs `aeye drive`.
 pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
+    if args.headless && args.pictures.is_special() {
+        let said =
+            "--headless shows no pictures; expected none of --image-size, --mask-size, --inference and --screens";
+        return Err(Usage(said.into()).into());
+    }
     let (mut scenario, map) = match &args.scenario {
         Some(path) => read_scenario(path)?,
         None => {

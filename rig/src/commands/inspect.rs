@@ -14,6 +14,7 @@ use crate::exit::Verdict;
 use crate::measures::{self, Criticality, Measures, Tally};
 use crate::output;
 use crate::study::{self, Questionnaire};
+use crate::words;
 
 /// What is printed for a file.
 #[derive(Debug, Serialize)]
@@ -76,6 +77,8 @@ struct Window {
 /// An event.
 #[derive(Debug, Serialize)]
 struct EventLine {
+    #[serde(skip)]
+    words: String,
     tick: Tick,
     kind: String,
     actor: u32,
@@ -92,7 +95,7 @@ struct NoteLine {
 
 impl NoteLine {
     fn of(note: &Note) -> Self {
-        Self { tick: note.tick, kind: note.kind.name(), seat: format!("{:?}", note.seat).to_lowercase() }
+        Self { tick: note.tick, kind: note.kind.name(), seat: words::seat(note.seat).into() }
     }
 }
 
@@ -144,6 +147,7 @@ fn read(
         speed_mps: i.speed_mps,
     });
     let events = log.events.iter().map(|(tick, e)| EventLine {
+        words: words::event(e),
         tick: *tick,
         kind: format!("{:?}", e.kind),
         actor: e.actor,
@@ -216,8 +220,7 @@ fn text(c: &Contents) -> String {
         line("window", format!("ticks {} to {}, {} scenes", w.from, w.to, w.scenes));
     }
     for e in &c.events {
-        let actor = if e.actor == 0 { String::new() } else { format!(", actor {}", e.actor) };
-        line("event", format!("{}: {} at {:.1} km/h{actor}", at(e.tick), e.kind, 3.6 * e.speed_mps));
+        line("event", format!("{}: {}", at(e.tick), e.words));
     }
     for n in &c.notes {
         line("note", format!("{}: {} ({} driver)", at(n.tick), n.kind, n.seat));

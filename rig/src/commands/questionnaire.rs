@@ -1,12 +1,13 @@
 //! Attaches answers that were given after a drive to its recordings.
 
+use anyhow::bail;
 use replay::Recording;
 use serde::Serialize;
 
 use crate::cli::QuestionnaireArgs;
 use crate::exit::Verdict;
 use crate::output;
-use crate::study::{Questionnaire, attached};
+use crate::study::{self, Questionnaire, attached};
 
 /// What is printed for a recording.
 #[derive(Serialize)]
@@ -15,10 +16,24 @@ struct Attached {
     answers: String,
 }
 
+/// Answers are of a seat: in all of the recordings the same people must have sat there.
+fn check_seats(args: &QuestionnaireArgs, recordings: &[Recording]) -> anyhow::Result<()> {
+    let is_swapped = |recording: &Recording| study::is_swapped(&recording.log().manifest.provenance);
+    let first = recordings.first().map(is_swapped);
+    match args.files.iter().zip(recordings).find(|(_, recording)| Some(is_swapped(recording)) != first) {
+        Some((path, _)) => bail!(
+            "{}: the operators had swapped seats; expected it in a call of its own, with answers of who sat where then",
+            path.display()
+        ),
+        None => Ok(()),
+    }
+}
+
 /// Runs `aeye questionnaire`.
 pub fn run(args: &QuestionnaireArgs, json: bool) -> anyhow::Result<Verdict> {
     let answers = Questionnaire::read(&args.answers)?;
     let recordings = args.files.iter().map(|path| Recording::open(path)).collect::<Result<Vec<_>, _>>()?;
+    check_seats(args, &recordings)?;
     let files = args.files.iter().zip(&recordings);
     let texts = files.map(|(path, recording)| attached(path, recording, answers.clone()));
     // Every file is checked before any is written.

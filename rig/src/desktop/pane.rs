@@ -82,6 +82,9 @@ impl Pane {
         let at = monitors.iter().position(|monitor| Some(monitor) == here.as_ref()).unwrap_or(0);
         let Some(next) = monitors.get((at + 1) % monitors.len().max(1)) else { return };
         self.window.set_outer_position(next.position());
+        if let (true, Some(windowed)) = (self.window.fullscreen().is_some(), self.windowed.get()) {
+            self.windowed.set(Some(Placement { position: next.position().into(), ..windowed }));
+        }
         if self.window.fullscreen().is_some() {
             self.window.set_fullscreen(Some(Fullscreen::Borderless(Some(next.clone()))));
         }
@@ -178,6 +181,12 @@ impl Pane {
     }
 }
 
+/// Three monitors side by side may be wider than what every adapter has to offer.
+fn as_large_as_it_gets(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let limits = wgpu::Limits::default().using_resolution(adapter.limits());
+    wgpu::DeviceDescriptor { label: Some("windows"), required_limits: limits, ..Default::default() }
+}
+
 async fn painter(
     events: &ActiveEventLoop,
     context: &egui::Context,
@@ -188,7 +197,11 @@ async fn painter(
         Some(RenderState { instance, adapter, device, queue, .. }) => {
             WgpuSetup::Existing(WgpuSetupExisting { instance, adapter, device, queue })
         }
-        None => WgpuSetup::CreateNew(WgpuSetupCreateNew::from_display_handle(events.owned_display_handle())),
+        None => {
+            let mut setup = WgpuSetupCreateNew::from_display_handle(events.owned_display_handle());
+            setup.device_descriptor = Arc::new(as_large_as_it_gets);
+            WgpuSetup::CreateNew(setup)
+        }
     };
     let config = WgpuConfiguration { surface: SURFACE, wgpu_setup, ..Default::default() };
     let mut painter = Painter::new(

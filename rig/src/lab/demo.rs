@@ -82,12 +82,9 @@ fn campaign_args(args: &DemoArgs, checkpoint: CheckpointChoice, out: &Path) -> C
     }
 }
 
-/// The window of every case through every checkpoint; what an earlier demo drew makes room.
+/// The window of every case through every checkpoint; what an earlier demo drew is kept.
 fn rerender_args(args: &DemoArgs, cases: &[PathBuf], checkpoint: &[CheckpointChoice]) -> anyhow::Result<RerenderArgs> {
     let out = args.out.join("rerendered");
-    if out.exists() {
-        fs::remove_dir_all(&out).with_context(|| out.display().to_string())?;
-    }
     let (last, fps) = (CLIP_TICKS, CLIP_FPS);
     Ok(RerenderArgs { files: cases.to_vec(), checkpoint: checkpoint.to_vec(), last, fps, size: SIZE, jobs: None, out })
 }

@@ -1,4 +1,4 @@
-//! The scenes of a window of a recording or case, from a replay that compared every tick.
+//! The scenes of a window of a recording or case, from a replay that compared every tick of it.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -78,9 +78,10 @@ fn scenes(
         });
     }
     let mut replayer = Replayer::new(log, network.clone())?;
+    replayer.seek(ticks.first().copied().unwrap_or(log.first_tick()))?;
     let mut scenes = Vec::with_capacity(ticks.len());
     for &tick in ticks {
-        replayer.seek(tick)?;
+        replayer.run_to(tick)?;
         let scene = replayer.world().scene();
         if stored(tick).is_some_and(|stored| *stored != scene) {
             return Err(Error::from(Box::new(other_scene(tick))).into());

@@ -1,6 +1,6 @@
 //! Results that a command finds again when it is called again, each with what it depends on.
 
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
@@ -72,6 +72,8 @@ struct Kept<T> {
 pub struct Store {
     out: PathBuf,
     folder: PathBuf,
+    /// Locked as long as its process works here; none where the file system knows no locks.
+    _claim: Option<File>,
 }
 
 impl Store {
@@ -84,7 +86,11 @@ impl Store {
             bail!("{out}: exists already; expected a new or an empty folder, or one that aeye {kind} began");
         }
         output::create_folder(&folder)?;
-        let store = Self { out: out.to_owned(), folder };
+        let claim = File::open(&folder).ok();
+        if let Some(Err(TryLockError::WouldBlock)) = claim.as_ref().map(File::try_lock) {
+            bail!("{}: another aeye {kind} is at work there; expected another folder, or to wait", out.display());
+        }
+        let store = Self { out: out.to_owned(), folder, _claim: claim };
         store.sweep()?;
         Ok(store)
     }
@@ -191,6 +197,8 @@ mod tests {
         drop(store);
         let store = Store::open(&out, "test").expect("of the same kind");
         assert!(!begun.exists());
+        let said = Store::open(&out, "test").err().expect("in use").to_string();
+        assert!(said.contains("another aeye test is at work there"), "{said}");
         store.keep("a", key("x"), 1).expect("writable");
         let said = Store::open(&out, "other").err().expect("of another kind").to_string();
         assert!(said.contains("expected a new or an empty folder, or one that aeye other began"), "{said}");

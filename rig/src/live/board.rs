@@ -142,6 +142,8 @@ pub struct Status {
     pub slowed_us: u64,
     /// Age of the mask on the semantic driver's screen, microseconds.
     pub mask_age_us: Option<u64>,
+    /// Age of the image on the safety driver's screen, microseconds.
+    pub image_age_us: Option<u64>,
     /// The latest events, newest last.
     pub events: Events,
     /// How the units of both seats are, semantic driver's first.
@@ -172,7 +174,8 @@ pub struct Totals {
 impl Totals {
     /// Adds a run that has ended.
     pub fn add(&mut self, world: &World) {
-        self.count(world.odometer_mm(), world.tick(), is_case(world.arbiter().outcome));
+        let (odometer_mm, arbiter) = (world.odometer_mm(), world.arbiter());
+        self.count(odometer_mm, world.tick(), is_case(arbiter.intervention.is_some(), arbiter.outcome));
     }
 
     /// Adds a recorded run, unless it was for familiarisation.
@@ -180,13 +183,8 @@ impl Totals {
         if study::is_familiarisation(&log.manifest.provenance) {
             return;
         }
-        match &log.summary {
-            Some(summary) => self.count(summary.odometer_mm, summary.ticks, is_case(summary.outcome)),
-            None => {
-                let odometer_mm = log.marks.last().map_or(0, |mark| mark.odometer_mm);
-                self.count(odometer_mm, log.last_tick(), log.intervention.is_some());
-            }
-        }
+        let outcome = log.summary.as_ref().and_then(|summary| summary.outcome);
+        self.count(log.odometer_mm(), log.last_tick(), is_case(log.intervention.is_some(), outcome));
     }
 
     fn count(&mut self, odometer_mm: u64, ticks: Tick, is_case: bool) {
@@ -197,9 +195,9 @@ impl Totals {
     }
 }
 
-/// An intervention, or a collision that nobody prevented.
-fn is_case(outcome: Option<Outcome>) -> bool {
-    matches!(outcome, Some(Outcome::Intervened | Outcome::Missed))
+/// An intervention, or a collision that nobody prevented; the run need not have come to its end.
+fn is_case(intervened: bool, outcome: Option<Outcome>) -> bool {
+    intervened || outcome == Some(Outcome::Missed)
 }
 
 /// What does not change in a session.

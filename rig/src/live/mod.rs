@@ -38,6 +38,7 @@ use crate::cli::{CheckpointChoice, DriveArgs, PictureArgs, Screens};
 use crate::clock::SessionClock;
 use crate::exit::Verdict;
 use crate::maps::Map;
+use crate::output;
 use crate::progress::Interrupt;
 use crate::study::{Lineup, StudyArgs};
 use crate::units::SeatChoice;
@@ -51,6 +52,7 @@ use windows::{Link, Waker, Windows};
 
 /// Runs `aeye drive` with windows.
 pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyhow::Result<Verdict> {
+    output::check_file(&args.record)?;
     let lineup =
         Lineup::open(&args.study, &args.checkpoint, args.pictures.mask_size, args.pictures.inference, scenario.seed)?;
     let seats = [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default);
@@ -66,7 +68,7 @@ pub fn drive(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> anyh
         json,
         unattended: None,
     };
-    let seating = Seating::new(seats, &args.calibration)?;
+    let seating = Seating::new(seats, &args.calibration, &plan.scenario.rules)?;
     let timings = session(plan, seating, lineup, &args.pictures)?;
     if let Some(figures) = timings.figures() {
         eprintln!("{figures}");
@@ -94,7 +96,7 @@ pub fn trial(choice: &CheckpointChoice, pictures: &PictureArgs, seconds: u32) ->
         json: false,
         unattended: Some(Tick::from(seconds) * Tick::from(TICK_HZ)),
     };
-    let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[])?;
+    let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[], &plan.scenario.rules)?;
     session(plan, seating, lineup, pictures)?.figures().context("no picture came onto the semantic driver's screen")
 }
 

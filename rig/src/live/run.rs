@@ -16,6 +16,7 @@ use crate::drivers::semantic::SemanticBot;
 use crate::drivers::{Driver, MaskView, SemanticView};
 use crate::session::{Session, SessionState};
 use crate::units::{CarState, Polled, SeatChoice};
+use crate::words;
 
 /// The bots of those seats that no one sits in.
 #[derive(Debug, Default)]
@@ -136,11 +137,10 @@ pub fn car_state(world: &World) -> CarState {
     CarState { speed_mps: world.hud().speed_mps, taken_over: world.arbiter().intervention.is_some() }
 }
 
-/// An event in words.
+/// An event in words, with its time.
 pub fn event_text(tick: u64, event: &Event) -> String {
     let seconds = tick as f64 / f64::from(kernel::time::TICK_HZ);
-    let actor = if event.actor == 0 { String::new() } else { format!(", actor {}", event.actor) };
-    format!("{seconds:7.2} s  {:?} at {:.0} km/h{actor}", event.kind, 3.6 * event.speed_mps)
+    format!("{seconds:7.2} s  {}", words::event(event))
 }
 
 #[cfg(test)]

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use kernel::Seat;
+use kernel::scenario::Rules;
 use replay::Provenance;
 
 use super::run::Bots;
+use crate::study;
 use crate::units::source::DeviceInfo;
-use crate::units::{CarState, Polled, SeatChoice, Seats, UnitEvent, UnitEventKind, UnitState, UnitStatus};
-
-const NAMES: [&str; 2] = ["semantic", "safety"];
+use crate::units::{CarState, KEYBOARD, Polled, SeatChoice, Seats, UnitEvent, UnitEventKind, UnitState, UnitStatus};
+use crate::words::{self, SEATS};
 
 /// Both seats of a session.
 pub struct Seating {
@@ -24,9 +25,11 @@ pub struct Seating {
 }
 
 impl Seating {
-    /// Takes the seats, with calibrations from files.
-    pub fn new(choices: [SeatChoice; 2], calibrations: &[PathBuf]) -> anyhow::Result<Self> {
-        Ok(Self::of(Seats::calibrated(choices.clone(), calibrations)?, choices))
+    /// Takes the seats, with calibrations from files, for drives by these rules.
+    pub fn new(choices: [SeatChoice; 2], calibrations: &[PathBuf], rules: &Rules) -> anyhow::Result<Self> {
+        let mut seats = Seats::calibrated(choices.clone(), calibrations)?;
+        seats.set_takeover_steer(rules.steer_threshold);
+        Ok(Self::of(seats, choices))
     }
 
     /// With seats that are taken already, by what was chosen.
@@ -103,8 +106,8 @@ impl Seating {
         let status = self.status.as_ref()?;
         let troubles: Vec<String> = status
             .iter()
-            .zip(NAMES)
-            .filter_map(|(s, name)| Some(format!("{name} driver's {}: {}", s.unit, s.trouble()?)))
+            .zip(SEATS)
+            .filter_map(|(s, seat)| Some(format!("{seat} driver's {}: {}", s.unit, s.trouble()?)))
             .collect();
         (!troubles.is_empty()).then(|| troubles.join("\n"))
     }
@@ -118,13 +121,13 @@ impl Seating {
     /// units have changed seats since the session began.
     pub fn provenance(&self) -> Provenance {
         let mut entries = Provenance::default();
-        for (status, name) in self.status.iter().flatten().zip(NAMES) {
+        for (status, name) in self.status.iter().flatten().zip(SEATS) {
             entries.insert(name.into(), status.unit.clone());
             if !status.place.is_empty() {
                 entries.insert(format!("{name}_at"), status.place.clone());
             }
         }
-        entries.insert("seats_swapped".into(), self.is_swapped.to_string());
+        entries.insert(study::SWAPPED.into(), self.is_swapped.to_string());
         entries
     }
 }
@@ -135,9 +138,10 @@ pub fn event_text(event: &UnitEvent) -> String {
         UnitEventKind::Bound => "is in use",
         UnitEventKind::Armed => "is armed",
         UnitEventKind::Lost => "is lost: the car brakes to a stop",
+        UnitEventKind::Returned if event.unit == KEYBOARD => "is back",
         UnitEventKind::Returned => "is back, and has to be armed again",
     };
-    format!("{} driver's {} {what}", NAMES[event.seat as usize], event.unit)
+    format!("{} driver's {} {what}", words::seat(event.seat), event.unit)
 }
 
 /// Whether nobody watches over the car any more.

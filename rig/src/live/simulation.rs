@@ -98,6 +98,8 @@ pub struct Simulation {
     timings: Timings,
     traces: Traces,
     screen: Option<Screen>,
+    /// When the scene of the safety driver's image was captured, microseconds.
+    image_of_us: Option<u64>,
     input: TickInput,
     last: Option<TickOutput>,
     events: Events,
@@ -150,6 +152,7 @@ impl Simulation {
             timings: Timings::default(),
             traces: Traces::default(),
             screen: None,
+            image_of_us: None,
             input: TickInput::default(),
             last: None,
             events: Events::default(),
@@ -161,9 +164,11 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// A campaign goes on in a new session under the same name.
+    /// A campaign goes on in a new session under the same name, with the runs after the last one.
     fn count_earlier_runs(&mut self) {
-        for path in disk::recorded(&self.plan.record) {
+        for number in disk::numbers(&self.plan.record) {
+            self.number = number;
+            let path = disk::numbered(&self.plan.record, number);
             match Recording::open(&path) {
                 Ok(recording) => self.totals.add_recorded(recording.log()),
                 Err(error) => self.say(format_args!("not counted: {error:#}")),
@@ -180,13 +185,15 @@ impl Simulation {
         let helpers = std::mem::take(&mut self.helpers).into_iter();
         let cut: Vec<_> = helpers.map(|helper| helper.join().unwrap_or_else(gone)).collect();
         let is_attended = self.plan.unattended.is_none();
-        if let (Ok(Some(path)), Ok(why), true) = (&unfinished, &end, is_attended) {
-            self.say(format_args!("the run is over: {}; its recording is complete: {}", why.words(), path.display()));
-            aftermath::figures_of(path, self.plan.json)?;
-            aftermath::cut(path)?;
+        let mut last = Ok(None);
+        if let (Ok(Some(path)), true) = (&unfinished, is_attended) {
+            let why = end.as_ref().map_or("it could not go on", End::words);
+            self.say(format_args!("the run is over: {why}; its recording is complete: {}", path.display()));
+            last = aftermath::of(path, self.plan.json);
         }
         end?;
         unfinished?;
+        last?;
         cut.into_iter().collect::<anyhow::Result<()>>()?;
         Ok(std::mem::take(&mut self.timings))
     }
@@ -225,6 +232,7 @@ impl Simulation {
         for event in &polled.events {
             self.note(seating::event_text(event));
         }
+        self.input = polled.input();
         match &self.stage {
             Stage::Ready if self.plan.unattended.is_some() && self.screen.is_some() => self.start()?,
             Stage::Driving => self.tick(&polled)?,
@@ -321,8 +329,9 @@ impl Simulation {
         if self.stage == Stage::Driving {
             self.timings.shown(seat, presented_us.saturating_sub(view.captured_us));
         }
-        if seat == Seat::Semantic {
-            self.screen = Some(Screen { view, presented_us });
+        match seat {
+            Seat::Semantic => self.screen = Some(Screen { view, presented_us }),
+            Seat::Safety => self.image_of_us = Some(view.captured_us),
         }
     }
 
@@ -346,7 +355,9 @@ impl Simulation {
         self.say(format_args!("run {} is ready: N starts it", self.number));
         self.run = None;
         self.screen = None;
+        self.image_of_us = None;
         self.last = None;
+        self.pacing = Pacing::starting_at(self.links.clock.now_us());
         self.stage = Stage::Ready;
         self.show_scene();
         self.show_status(Some(Wake::All));
@@ -367,9 +378,14 @@ impl Simulation {
         provenance.extend(cast.provenance_of_run(self.number).clone());
         provenance.extend(self.seating.provenance());
         let manifest = Manifest::new(world.scenario(), &map.network, map.foreign.clone(), provenance);
-        let (path, file) = disk::create_next(record)?;
+        let (path, file) = disk::create(record, self.number)?;
         self.say(format_args!("run {}: recording {}", self.number, path.display()));
-        self.run = Some(Run::start(world, &manifest, self.seating.bots(), path, BackgroundFile::new(file))?);
+        let (outbox, name) = (self.links.outbox.clone(), path.display().to_string());
+        // When nobody listens any more the session is over, and meets the error itself.
+        let file = BackgroundFile::new(file, move |error| {
+            drop(outbox.send(Message::Failed(anyhow!("{name}: {error}"))));
+        });
+        self.run = Some(Run::start(world, &manifest, self.seating.bots(), path, file)?);
         self.pacing = Pacing::starting_at(self.links.clock.now_us());
         self.events.clear();
         self.seating.seats().engage_forward();
@@ -411,7 +427,7 @@ impl Simulation {
         self.helpers.push(std::thread::spawn(move || {
             // When nobody listens any more the session is over, and says itself what failed.
             let note = |text: String| drop(outbox.send(Message::Note(text)));
-            let cut = aftermath::figures_of(&path, json).and_then(|()| aftermath::cut(&path));
+            let cut = aftermath::of(&path, json);
             match &cut {
                 Ok(Some(case)) => {
                     // A note draws the control centre anew, with the strip.
@@ -472,6 +488,8 @@ impl Simulation {
         let now_us = self.links.clock.now_us();
         let applied = self.last.as_ref().map(|output| output.applied);
         let seat = |by: Option<Seat>| by.unwrap_or(Seat::Semantic);
+        let is_driving = self.stage == Stage::Driving;
+        let age_us = |of_us: Option<u64>| of_us.filter(|_| is_driving).map(|us| now_us.saturating_sub(us));
         Some(Status {
             stage: self.stage.clone(),
             run: self.number,
@@ -486,11 +504,8 @@ impl Simulation {
             totals: self.totals,
             late_us: self.pacing.late_us(),
             slowed_us: self.pacing.slowed_us(),
-            mask_age_us: self
-                .screen
-                .as_ref()
-                .filter(|_| self.stage == Stage::Driving)
-                .map(|s| now_us.saturating_sub(s.view.captured_us)),
+            mask_age_us: age_us(self.screen.as_ref().map(|screen| screen.view.captured_us)),
+            image_age_us: age_us(self.image_of_us),
             events: self.events.clone(),
             units: self.operators(),
             units_note: self.seating.note(),

@@ -22,6 +22,7 @@ use replay::{Error, Log};
 use serde::Serialize;
 
 pub use crate::stats::Spread;
+use crate::words;
 pub use criticality::Criticality;
 pub use reactions::Response;
 pub use screen::ScreenAge;
@@ -90,7 +91,7 @@ impl Measures {
         let mut onsets = episodes.iter().skip(1).map(|e| e.onset).collect::<Vec<_>>().into_iter();
         let times = |episode: Episode| {
             let next = onsets.next().map_or(Tick::MAX, |onset| onset - 1);
-            let until = episode.end.max(episode.onset + ANSWER_TICKS).min(next).min(log.last_tick());
+            let until = episode.end.max(episode.onset + ANSWER_TICKS).min(next).min(end_of_driving(log));
             HazardTimes::of(log, episode, until)
         };
         Self {
@@ -127,7 +128,7 @@ fn presses(log: &Log) -> Vec<Press> {
     let ticks = log.first_tick() + 1..=end_of_driving(log);
     let pressed = |tick| {
         let seats = [Seat::Semantic, Seat::Safety].into_iter();
-        seats.filter(move |seat| is_pressed(log, *seat, tick)).map(move |seat| Press { tick, seat: seat_name(seat) })
+        seats.filter(move |seat| is_pressed(log, *seat, tick)).map(move |seat| Press { tick, seat: words::seat(seat) })
     };
     ticks.flat_map(pressed).collect()
 }
@@ -142,14 +143,6 @@ fn controls(input: &TickInput, seat: Seat) -> &Controls {
     match seat {
         Seat::Semantic => &input.semantic,
         Seat::Safety => &input.safety,
-    }
-}
-
-/// What files and figures call a seat.
-pub fn seat_name(seat: Seat) -> &'static str {
-    match seat {
-        Seat::Semantic => "semantic",
-        Seat::Safety => "safety",
     }
 }
 

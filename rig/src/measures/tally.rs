@@ -40,13 +40,18 @@ pub struct Tally {
 
 impl Tally {
     /// That of recordings and cases with their measures, where these are known. A case counts as the
-    /// recording that it was cut from, once.
+    /// recording that it was cut from, once: by the recording if that is among them, else by a cut with
+    /// the intervention.
     pub fn of<'a>(files: impl IntoIterator<Item = (&'a Recording, Option<&'a Measures>)>) -> Self {
         let (mut tally, mut counted, mut hazards) = (Self::default(), BTreeSet::new(), Vec::new());
+        let mut files: Vec<_> = files.into_iter().collect();
+        files.sort_by_key(|(recording, _)| {
+            let log = recording.log();
+            (log.manifest.case.is_some(), log.intervention.is_none())
+        });
         for (recording, measures) in files {
             let log = recording.log();
-            let source = log.manifest.case.as_ref().map_or(recording.digest(), |case| case.source);
-            if !counted.insert(source) {
+            if !counted.insert(recording.source()) {
                 continue;
             }
             if study::is_familiarisation(&log.manifest.provenance) {

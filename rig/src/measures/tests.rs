@@ -87,6 +87,18 @@ fn times_run_from_the_onset() {
 }
 
 #[test]
+fn what_a_driver_does_after_the_takeover_is_no_answer() {
+    let mut log = log();
+    intervene(&mut log, 260);
+    from(&mut log, 262, Seat::Semantic, |controls| {
+        (controls.throttle, controls.flags) = (0, Controls::SEEN);
+    });
+    let measures = Measures::with_truth(&log, truth(vec![episode(200, 260)]));
+    assert_eq!(measures.hazards[0].semantic, Response::default());
+    assert_eq!((measures.hazards[0].intervention_ms, measures.seen.len()), (Some(1000), 0));
+}
+
+#[test]
 fn what_happens_before_or_long_after_a_hazard_is_no_answer_to_it() {
     let mut log = log();
     from(&mut log, 190, Seat::Semantic, brake);

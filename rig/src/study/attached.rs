@@ -8,6 +8,7 @@ use replay::Recording;
 use toml::{Table, Value};
 
 use super::Questionnaire;
+use crate::toml_text;
 
 /// The key of the recording's digest.
 const RECORDING: &str = "recording";
@@ -28,7 +29,7 @@ pub fn attached(path: &Path, recording: &Recording, answers: Questionnaire) -> a
     let attached = before.joined(answers).map_err(contradiction)?;
     recorded(recording).joined(attached.clone()).map_err(contradiction)?;
     // Plain values stand before tables in TOML.
-    let (digest, tables) = (hex(source(recording)), toml::to_string(&attached.to_table())?);
+    let (digest, tables) = (hex(recording.source()), toml::to_string(&attached.to_table())?);
     Ok((beside, format!("{RECORDING} = \"{digest}\"\n\n{tables}")))
 }
 
@@ -50,18 +51,13 @@ fn read(beside: &Path, recording: &Recording) -> anyhow::Result<Option<Questionn
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         read => read.with_context(file)?,
     };
-    let mut table: Table = toml::from_str(&text).with_context(file)?;
-    let expected = hex(source(recording));
+    let mut table: Table = toml_text::read(&text).map_err(|problem| anyhow!("{}: {problem}", file()))?;
+    let expected = hex(recording.source());
     match table.remove(RECORDING) {
         Some(Value::String(digest)) if digest == expected => {}
         _ => bail!("{}: is about another recording; expected {RECORDING} = \"{expected}\"", file()),
     }
     Ok(Some(Questionnaire::from_table(table).map_err(|problem| anyhow!("{}: {problem}", file()))?))
-}
-
-/// The recording that a file is, or was cut from.
-fn source(recording: &Recording) -> [u8; 32] {
-    recording.log().manifest.case.as_ref().map_or(recording.digest(), |case| case.source)
 }
 
 fn hex(digest: [u8; 32]) -> String {

@@ -24,6 +24,8 @@ pub use questionnaire::{Answer, Questionnaire};
 const NAMES: [&str; 2] = ["semantic_name", "safety_name"];
 /// The drive is one for familiarisation.
 const FAMILIARISATION: &str = "familiarisation";
+/// Whether the operators had swapped seats since the session began, `true` or `false`.
+pub const SWAPPED: &str = "seats_swapped";
 /// The checkpoint was drawn, and nobody was told which it is.
 const BLIND: &str = "blind";
 /// The checkpoints that it was drawn from.
@@ -80,6 +82,11 @@ pub fn swapped(provenance: &Provenance) -> Provenance {
         key => questionnaire::of_other_seat(key).unwrap_or_else(|| key.to_owned()),
     };
     provenance.iter().map(|(key, value)| (swap(key), value.clone())).collect()
+}
+
+/// Whether the operators had swapped seats since their session began.
+pub fn is_swapped(provenance: &Provenance) -> bool {
+    provenance.get(SWAPPED).is_some_and(|swapped| swapped == "true")
 }
 
 /// Whether a drive was one to get used to the rig, which does not count.

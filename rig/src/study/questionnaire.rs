@@ -10,6 +10,9 @@ use replay::Provenance;
 use serde::Serialize;
 use toml::{Table, Value};
 
+use crate::toml_text;
+use crate::words::SEATS;
+
 /// The questions whose answers are whole numbers, with the range of these.
 ///
 /// Fatigue is the Karolinska Sleepiness Scale (Åkerstedt and Gillberg 1990): 1 extremely alert, 9 very
@@ -26,7 +29,6 @@ const NUMBERS: [(&str, RangeInclusive<i64>); 6] = [
 const REMARK: &str = "remark";
 /// Longest answer in words, characters.
 const MAX_REMARK: usize = 1000;
-const SEATS: [&str; 2] = ["semantic", "safety"];
 /// What the names of answers begin with in provenance.
 const PREFIX: &str = "questionnaire.";
 
@@ -63,12 +65,7 @@ impl Questionnaire {
 
     /// Reads the text of a file.
     pub fn from_toml(text: &str) -> Result<Self, String> {
-        let table: Table = toml::from_str(text).map_err(|error: toml::de::Error| {
-            let at = error.span().map_or(0, |span| span.start);
-            let line = 1 + text.bytes().take(at).filter(|&byte| byte == b'\n').count();
-            format!("line {line}: {}", error.message().replace('\n', " "))
-        })?;
-        Self::from_table(table)
+        Self::from_table(toml_text::read(text)?)
     }
 
     /// From what a file holds.

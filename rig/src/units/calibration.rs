@@ -5,6 +5,8 @@ use std::path::Path;
 use anyhow::{Context, anyhow};
 use serde::{Deserialize, Serialize};
 
+use crate::toml_text;
+
 /// How a fraction of the travel becomes a fraction of the control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -147,11 +149,7 @@ pub struct Calibration {
 impl Calibration {
     /// Reads a calibration; what is wrong is said in a sentence that names the line or the section.
     pub fn from_toml(text: &str) -> Result<Self, String> {
-        let read: Self = toml::from_str(text).map_err(|error| {
-            let at = error.span().map_or(0, |span| span.start);
-            let line = 1 + text.bytes().take(at).filter(|&byte| byte == b'\n').count();
-            format!("line {line}: {}", error.message().replace('\n', " "))
-        })?;
+        let read: Self = toml_text::read(text)?;
         match read.problem() {
             Some(problem) => Err(problem),
             None => Ok(read),

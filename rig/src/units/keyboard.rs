@@ -85,6 +85,8 @@ pub struct Keyboard {
     half: Seat,
     /// The seat that it drives.
     seat: Seat,
+    /// Steering of the safety driver beyond which it takes over, fraction of full steering.
+    takeover_steer: f32,
     held: Vec<Action>,
     gear_asked: bool,
     /// "I see it" went down since the last tick.
@@ -101,6 +103,7 @@ impl Keyboard {
         Self {
             half,
             seat: half,
+            takeover_steer: 0.0,
             held: Vec::new(),
             gear_asked: false,
             seen_asked: false,
@@ -113,7 +116,12 @@ impl Keyboard {
 
     /// Drives another seat from now on, with the keys that it has.
     pub fn sit(&mut self, seat: Seat) {
-        *self = Self { seat, ..Self::new(self.half) };
+        *self = Self { seat, takeover_steer: self.takeover_steer, ..Self::new(self.half) };
+    }
+
+    /// From now on the safety driver takes over beyond such steering.
+    pub fn set_takeover_steer(&mut self, fraction: f32) {
+        self.takeover_steer = fraction;
     }
 
     /// What tells it from the other half.
@@ -184,7 +192,7 @@ impl Keyboard {
     /// A key knows no halves: at speed it may not turn the wheel fully. The safety driver must pass
     /// the threshold of a takeover at any speed.
     fn most_steer(&self, speed_mps: f32) -> f32 {
-        let least = if self.seat == Seat::Safety { 0.25 } else { 0.12 };
+        let least = if self.seat == Seat::Safety { (self.takeover_steer + 0.05).clamp(0.25, 1.0) } else { 0.12 };
         (COMFORT_M2PS2 / (speed_mps * speed_mps).max(COMFORT_M2PS2)).max(least)
     }
 
@@ -242,6 +250,11 @@ mod tests {
         }
         assert!(hold(&mut safety, Key::Down, 60, 10.0).brake_fraction() > 0.99);
         assert!(hold(&mut safety, Key::Left, 60, 14.0).steer_fraction() < -0.2, "beyond the threshold at 50 km/h");
+        for threshold in [0.1, 0.3, 0.99] {
+            safety.set_takeover_steer(threshold);
+            safety.sit(Seat::Safety);
+            assert!(hold(&mut safety, Key::Left, 120, 14.0).steer_fraction() < -threshold, "{threshold}");
+        }
         assert!(hold(&mut safety, Key::RightShift, 1, 0.0).has(Controls::SEEN));
         assert!(hold(&mut safety, Key::RightCtrl, 1, 0.0).has(Controls::HAND_BRAKE));
     }

@@ -32,7 +32,9 @@ pub use keyboard::Key;
 use keyboard::Keyboard;
 use slot::{Binding, Unit};
 use source::{DeviceId, DeviceInfo, InputSource, RawEvent, Simulated};
-pub use status::{SeatChoice, UnitEvent, UnitEventKind, UnitState, UnitStatus};
+pub use status::{KEYBOARD, SeatChoice, UnitEvent, UnitEventKind, UnitState, UnitStatus};
+
+use crate::words;
 
 /// How hard a car without a driver brakes, fraction of the pedal.
 const STOP_BRAKE: f32 = 0.6;
@@ -167,6 +169,12 @@ impl Seats {
         self.unfocused_ticks = if is_ours { None } else { self.unfocused_ticks.or(Some(0)) };
     }
 
+    /// Steering of the safety driver beyond which it takes over, fraction of full steering: keys must
+    /// pass it at any speed.
+    pub fn set_takeover_steer(&mut self, fraction: f32) {
+        self.keyboards().for_each(|keyboard| keyboard.set_takeover_steer(fraction));
+    }
+
     /// Both units' gear is D.
     pub fn engage_forward(&mut self) {
         self.units.iter_mut().for_each(Unit::engage_forward);
@@ -181,7 +189,7 @@ impl Seats {
             {
                 *is_there = has_keyboard;
                 let kind = if has_keyboard { UnitEventKind::Returned } else { UnitEventKind::Lost };
-                self.events.push(UnitEvent { seat, kind, unit: "keyboard".into() });
+                self.events.push(UnitEvent { seat, kind, unit: KEYBOARD.into() });
             }
         }
     }
@@ -196,7 +204,7 @@ impl Seats {
             }
             None => format!("found no wheel or gamepad {PERMISSION}; one plugged in now is found at the next start"),
         });
-        let seats = SEATS.map(|seat| format!("{} driver: {}", slot::name(seat), self.units[seat as usize].summary()));
+        let seats = SEATS.map(|seat| format!("{} driver: {}", words::seat(seat), self.units[seat as usize].summary()));
         found.chain(none).chain(seats).chain([String::from(HOW_TO_CHOOSE)]).collect()
     }
 
@@ -289,8 +297,8 @@ impl Seats {
 
     /// Gives a device to the seat that misses its make, else to the first that waits for any.
     fn claim(&mut self, device: &DeviceInfo) {
-        let waiting: Vec<Seat> =
-            SEATS.into_iter().filter(|seat| self.binding(*seat).is_some_and(|b| b.waits())).collect();
+        let is_open = |binding: &mut Binding| binding.waits() && !binding.is_reserved();
+        let waiting: Vec<Seat> = SEATS.into_iter().filter(|seat| self.binding(*seat).is_some_and(is_open)).collect();
         let missed = waiting.iter().find(|seat| self.binding(**seat).is_some_and(|b| b.misses_make(device)));
         if let Some(seat) = missed.or(waiting.first()) {
             self.bind(*seat, device);

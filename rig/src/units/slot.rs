@@ -5,7 +5,7 @@ use kernel::{Controls, Seat};
 use super::device::DeviceUnit;
 use super::keyboard::Keyboard;
 use super::source::{DeviceId, DeviceInfo};
-use super::status::{UnitState, UnitStatus};
+use super::status::{KEYBOARD, UnitState, UnitStatus};
 
 /// What moves the controls of a seat.
 #[derive(Debug)]
@@ -43,6 +43,11 @@ impl Binding {
     /// Whether it has no device that is there.
     pub fn waits(&self) -> bool {
         self.bound.as_ref().is_none_or(|b| !b.present)
+    }
+
+    /// Whether it waits for the device at its path, which has not been there yet.
+    pub fn is_reserved(&self) -> bool {
+        self.path.is_some() && self.bound.is_none()
     }
 
     /// Whether its device is one with this number.
@@ -157,17 +162,9 @@ impl Unit {
             Self::Bot => armed("bot", ""),
             Self::Keyboard { keyboard, is_there } => {
                 let state = if *is_there { UnitState::Armed } else { UnitState::Unfocused };
-                UnitStatus { state, ..armed("keyboard", keyboard.name()) }
+                UnitStatus { state, ..armed(KEYBOARD, keyboard.name()) }
             }
             Self::Device(binding) => binding.status(),
         }
-    }
-}
-
-/// What people call a seat.
-pub(super) fn name(seat: Seat) -> &'static str {
-    match seat {
-        Seat::Semantic => "semantic",
-        Seat::Safety => "safety",
     }
 }

@@ -8,6 +8,9 @@ use kernel::Seat;
 use kernel::time::Tick;
 use replay::{Note, NoteKind};
 
+/// The unit that is the keyboard.
+pub const KEYBOARD: &str = "keyboard";
+
 /// What a seat is to be driven with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SeatChoice {
@@ -33,7 +36,7 @@ impl FromStr for SeatChoice {
     fn from_str(text: &str) -> Result<Self, Infallible> {
         Ok(match text {
             "auto" => Self::Auto,
-            "keyboard" => Self::Keyboard,
+            KEYBOARD => Self::Keyboard,
             "press" => Self::Press,
             "bot" => Self::Bot,
             path => Self::Device(path.to_owned()),

@@ -156,6 +156,18 @@ fn a_button_claims_a_wheel_for_the_semantic_driver_first() {
 }
 
 #[test]
+fn a_button_claims_no_seat_that_waits_for_its_own_wheel() {
+    let absent = "/dev/input/event9".parse().unwrap();
+    let (mut seats, devices) = simulated([absent, SeatChoice::Press]);
+    press(&devices, 0);
+    assert_eq!(kinds(&seats.poll(CarState::default())), [(Seat::Safety, UnitEventKind::Bound)]);
+    press(&devices, 1);
+    assert_eq!(kinds(&seats.poll(CarState::default())), []);
+    devices.push(RawEvent::Connected(device(2, "/dev/input/event9")));
+    assert_eq!(kinds(&seats.poll(CarState::default())), [(Seat::Semantic, UnitEventKind::Bound)]);
+}
+
+#[test]
 fn two_equal_wheels_that_come_back_elsewhere_are_claimed_by_a_button() {
     let (mut seats, devices) = simulated(by_path());
     (0..2).for_each(|id| devices.push(RawEvent::Lost(id)));

@@ -71,7 +71,7 @@ fn compare(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<Digests>
     if let Some(mask) = masks.iter().find(|mask| mask.camera != 0) {
         bail!("the mask of tick {} is of camera {}; expected 0, the driver's", mask.tick_shown, mask.camera);
     }
-    let mut eye = film.eye.find(choices)?.ok_or_else(|| stranger(film))?;
+    let mut eye = film.eye.find_as_it_was(choices)?.ok_or_else(|| stranger(film))?;
     let rebuilt = rebuild(film, &mut eye)?;
     let logged = |mask: &&MaskShown| rebuilt.get(&mask.tick_of_frame).is_some_and(|digest| *digest == mask.digest);
     let found = |mask: &&MaskShown| rebuilt.contains_key(&mask.tick_of_frame);

@@ -44,7 +44,7 @@ pub fn run(args: &ViewArgs, json: bool) -> anyhow::Result<Verdict> {
         return digests::run(&film, &args.checkpoint, json);
     }
     let window = Window::new()?;
-    let recorded = film.eye.find(&args.checkpoint)?;
+    let recorded = film.eye.find_as_it_was(&args.checkpoint)?;
     let eyes = eyes(&film, recorded.as_ref(), &args.checkpoint)?;
     let viewing = Viewing::new(film.log(), eyes.iter().map(|eye| eye.name().to_owned()).collect());
     let projector = Projector::new(&film, eyes, recorded).with_context(|| args.file.display().to_string())?;

@@ -4,6 +4,8 @@ use kernel::events::{Event, EventKind};
 use kernel::time::{TICK_HZ, Tick};
 use replay::{Log, Note};
 
+use crate::words;
+
 /// What a mark on the timeline stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkKind {
@@ -82,28 +84,16 @@ pub fn seconds(tick: Tick) -> f64 {
 }
 
 fn event_mark(tick: Tick, event: &Event) -> Mark {
-    let what = match event.kind {
-        EventKind::CollisionActor => format!("collision with actor {}", event.actor),
-        EventKind::CollisionScenery => "collision with scenery".into(),
-        EventKind::RedLight => "red light passed".into(),
-        EventKind::Speeding => "speeding".into(),
-        EventKind::OffRoad => "off the road".into(),
-        EventKind::WrongWay => "wrong way".into(),
-        EventKind::Armed => "run armed".into(),
-        EventKind::Intervention => "intervention".into(),
-        EventKind::Seen => "\"I see it\"".into(),
-        EventKind::Ended => "run ended".into(),
-    };
     let kind = match event.kind {
         EventKind::Intervention | EventKind::CollisionActor | EventKind::CollisionScenery => MarkKind::CornerCase,
         _ => MarkKind::Event,
     };
-    Mark { tick, kind, text: format!("{what}, {:.0} km/h", 3.6 * event.speed_mps) }
+    Mark { tick, kind, text: words::event(event) }
 }
 
 fn note_mark(note: &Note) -> Mark {
-    let seat = format!("{:?}", note.seat).to_lowercase();
-    Mark { tick: note.tick, kind: MarkKind::Note, text: format!("{} ({seat} driver)", note.kind.name()) }
+    let text = format!("{} ({} driver)", note.kind.name(), words::seat(note.seat));
+    Mark { tick: note.tick, kind: MarkKind::Note, text }
 }
 
 #[cfg(test)]

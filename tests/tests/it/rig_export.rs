@@ -94,7 +94,7 @@ fn an_export_holds_every_frame_pose_and_event_at_its_time() {
     assert_eq!(times(&topics["/telemetry"]), nanos(&mut ticks[1..].iter()));
     assert_eq!(times(&topics["/events"]), nanos(&mut log.events.iter().map(|(tick, _)| tick)));
     let lines: Vec<Line> = read(&topics["/events"]);
-    assert!(lines.iter().any(|l| l.message.starts_with("Intervention") && l.message.contains("as scripted")));
+    assert!(lines.iter().any(|l| l.message.starts_with("intervention") && l.message.contains("as scripted")));
     places_are_those_of_the_world(&topics, &log);
 
     let masks: Vec<CompressedImage> = read(&topics["/camera/truth"]);

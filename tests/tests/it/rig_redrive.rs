@@ -65,7 +65,7 @@ fn without_the_intervention_the_past_is_the_same_and_the_fork_is_made_again() {
         let fork_tick = TAKEOVER - earlier;
         assert_eq!(line["fork_tick"], fork_tick);
         let fork = Recording::open(&dir.path().join("first").join(line["recording"].as_str().unwrap())).unwrap();
-        verify(fork.log(), &case.network().unwrap()).unwrap();
+        assert_eq!(verify(fork.log(), &case.network().unwrap()).unwrap().divergence, None);
         let first = fork.log().first_tick();
         assert!(first + 180 <= fork_tick, "{first}");
         for tick in first + 1..fork_tick {
@@ -96,7 +96,7 @@ fn through_another_checkpoint_the_verdict_is_what_the_recording_shows() {
     redrive::run(&args(case(dir.path()), Some(CheckpointChoice::Truth), out.clone()), true).unwrap();
     let line = &lines(&out)[0];
     let fork = Recording::open(&out.join("a.fork.mcap")).unwrap();
-    verify(fork.log(), &fork.network().unwrap()).unwrap();
+    assert_eq!(verify(fork.log(), &fork.network().unwrap()).unwrap().divergence, None);
     assert_eq!(line["intervention_again"].as_u64(), fork.log().intervention.map(|i| i.tick));
     assert_eq!(line["verdict"] == "again", fork.log().intervention.is_some() || !line["collision"].is_null());
 }

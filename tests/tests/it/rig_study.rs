@@ -160,10 +160,19 @@ fn boredom_is_counted_over_recordings_that_count_and_cases_only_once() {
     let network = recordings[0].network().expect("bundled");
     let case = Case::cut(&recordings[0], &network, window).expect("a case").encode().expect("a log");
     recordings.push(Recording::from_bytes(&case).expect("a case"));
-    let tally = Tally::of(recordings.iter().map(|recording| (recording, None)));
-    assert_eq!((tally.runs, tally.familiarisation_runs), (2, 1));
-    assert_eq!((tally.interventions, tally.labelled, tally.boredom), (2, 2, 1));
-    assert_eq!((tally.boredom_share, tally.hazards), (Some(0.5), 0));
+    // A cut of the case, and one of the recording without its takeover.
+    let again = Case::cut(&recordings[3], &network, TAKEOVER - 60..=TAKEOVER).expect("a case").encode().expect("a log");
+    recordings.push(Recording::from_bytes(&again).expect("a case"));
+    let calm = Case::cut(&recordings[0], &network, 200..=300).expect("a case").encode().expect("a log");
+    recordings.push(Recording::from_bytes(&calm).expect("a case"));
+    assert!(recordings[5].log().intervention.is_none());
+    for _ in 0..recordings.len() {
+        recordings.rotate_left(1);
+        let tally = Tally::of(recordings.iter().map(|recording| (recording, None)));
+        assert_eq!((tally.runs, tally.familiarisation_runs), (2, 1));
+        assert_eq!((tally.interventions, tally.labelled, tally.boredom), (2, 2, 1));
+        assert_eq!((tally.boredom_share, tally.hazards), (Some(0.5), 0));
+    }
 }
 
 #[test]
@@ -209,6 +218,11 @@ fn answers_are_attached_beside_a_recording_and_never_to_another() {
     assert!(code == 1 && sentence.contains("run-1.mcap: safety.before.stress is 3"), "{sentence}");
     let beside = dir.path().join("run-1.questionnaire.toml");
     assert!(!beside.exists() && !dir.path().join("run-2.questionnaire.toml").exists(), "all or nothing");
+
+    let swapped = labelled(dir.path(), 3, Label::Walker, &[("seats_swapped", "true")]);
+    let (code, sentence) = aeye(&["questionnaire", &second, &swapped, "--answers", &after]);
+    assert!(code == 1 && sentence.contains("run-3.mcap: the operators had swapped seats"), "{sentence}");
+    assert_eq!(aeye(&["questionnaire", &swapped, "--answers", &after]), (0, String::new()));
 
     assert_eq!(aeye(&["questionnaire", &first, "--answers", &after]), (0, String::new()));
     assert_eq!(fs::read(&first).expect("there"), bytes, "the recording is as it was");

@@ -11,6 +11,7 @@ use replay::Label;
 use super::forecast::{EgoWay, actor_after, driven_m};
 use super::looks::Looks;
 use crate::footprint::{Footprint, forward, middle};
+use crate::words;
 
 /// An encroachment predicted within this time is critical (Westhofen et al. 2022), seconds.
 pub const CRITICAL_S: f32 = 2.0;
@@ -132,8 +133,7 @@ fn hazard(label: Label, comment: String) -> Hazard {
 }
 
 fn of_actor(id: u32, kind: ActorKind, t_s: f32) -> Hazard {
-    let what = format!("{kind:?}").to_lowercase();
-    hazard(label_of(kind), format!("{what} {id}, {t_s:.1} s before contact"))
+    hazard(label_of(kind), format!("{} {id}, {t_s:.1} s before contact", words::road_user(kind)))
 }
 
 /// What it is called to overlook an actor.

@@ -15,12 +15,15 @@ const BELIEVED_MPS2: f32 = 4.0;
 #[derive(Clone, Debug, Default)]
 pub struct Looks {
     /// Of the ego car, newest last, m/s.
-    ego_mps: [f32; 3],
+    ego_mps: [f32; Self::ENOUGH],
     /// Of the others by their id: speed, m/s, and acceleration, m/s^2.
     others: BTreeMap<u32, (f32, f32)>,
 }
 
 impl Looks {
+    /// So many looks tell how the ego car changes speed.
+    pub const ENOUGH: usize = 3;
+
     /// Takes in what is to be seen now.
     pub fn look(&mut self, scene: &SceneSnapshot) {
         self.ego_mps.rotate_left(1);

@@ -10,6 +10,7 @@ use replay::{KERNEL_VERSION, Label, Log};
 use serde::{Deserialize, Serialize};
 
 use crate::drivers::safety::{Looks, Touched, encroachers, label_of};
+use crate::words;
 
 /// What is true of a case, whoever looks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,7 +35,7 @@ pub struct Hazard {
 }
 
 /// Watches a replay, frame by frame. A frame is as long after the one before as the safety driver's looks
-/// are apart, so that both predict the same.
+/// are apart, so that both predict the same, once there were looks enough to feel whether the car brakes.
 #[derive(Default)]
 pub struct Witness {
     looks: Looks,
@@ -49,7 +50,8 @@ impl Witness {
     pub fn look(&mut self, world: &World, scene: &SceneSnapshot) {
         self.looks.look(scene);
         self.ticks.push(scene.tick);
-        self.touched.push(encroachers(world, scene, &self.looks));
+        let feels = self.ticks.len() >= Looks::ENOUGH;
+        self.touched.push(if feels { encroachers(world, scene, &self.looks) } else { Vec::new() });
         self.actors = scene.actors.iter().map(|actor: &ActorScene| (actor.id, actor.kind)).collect();
     }
 
@@ -100,7 +102,7 @@ fn instance(touched: Touched) -> u16 {
 
 fn what(touched: Touched) -> String {
     match touched {
-        Touched::Actor(id, kind) => format!("{kind:?} {id}").to_lowercase(),
+        Touched::Actor(id, kind) => format!("{} {id}", words::road_user(kind)),
         Touched::Parked(_) => "parked car".into(),
     }
 }

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use kernel::time::{CLIP_FPS, CLIP_TICKS, Tick};
-use render::RenderOptions;
 use replay::Recording;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +19,7 @@ use crate::lab::library::{self, Entry};
 use crate::lab::looks::Studio;
 use crate::output::{self, PendingFolder};
 use crate::progress::{self, Interrupt};
+use crate::vision;
 
 /// What a dataset of corner cases is made from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -102,7 +102,7 @@ pub(super) fn build(recipe: &Recipe, files: &[PathBuf], out: &Path, interrupt: &
     if let Some(finished) = Manifest::of_finished(out, &whole)? {
         return Ok(finished);
     }
-    let adapter = RenderOptions::default().adapter.find()?.name;
+    let adapter = vision::find_adapter()?;
     let mut studio = Studio::new(recipe.size);
     let pending = PendingFolder::new(out)?;
     let mut lines = Vec::new();

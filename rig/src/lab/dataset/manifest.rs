@@ -14,6 +14,8 @@ use super::{cases, mix, natural};
 use crate::output;
 
 const MANIFEST: &str = "dataset.json";
+/// What a natural dataset holds besides until it is finished: its scenes so far.
+pub(super) const PARTS: &str = "parts";
 const FRAMES: &str = "frames.jsonl";
 
 /// What a dataset is made from; the same recipe gives the same files on the same adapter.
@@ -58,7 +60,7 @@ pub struct Manifest {
     pub kernel: String,
     /// Version of the renderer that drew it.
     pub renderer: String,
-    /// The graphics adapter that drew it; colours depend on it, labels do not.
+    /// The graphics adapter and driver that drew it; colours depend on them, and labels at the edges of triangles.
     pub adapter: String,
     /// Frames to learn from.
     pub train_frames: u32,
@@ -161,4 +163,12 @@ pub(super) fn read_frames(folder: &Path, manifest: &Manifest) -> anyhow::Result<
         bail!("{}: was changed since; expected the digest that {MANIFEST} tells", path.display());
     }
     provenance::parse(&text).with_context(|| path.display().to_string())
+}
+
+/// Refuses a dataset that is not finished.
+pub fn check_whole(dataset: &Path) -> anyhow::Result<()> {
+    if dataset.join(PARTS).is_dir() && !dataset.join(MANIFEST).is_file() {
+        bail!("{}: is unfinished; expected the command that began it to complete it first", dataset.display());
+    }
+    Ok(())
 }

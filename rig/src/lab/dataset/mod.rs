@@ -19,7 +19,7 @@ pub mod natural;
 mod provenance;
 pub mod rebuild;
 
-pub use manifest::{Manifest, Recipe};
+pub use manifest::{Manifest, Recipe, check_whole};
 pub use provenance::{FrameLine, Part, WeatherLine};
 
 use crate::cli::DatasetCommand;

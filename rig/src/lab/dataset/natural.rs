@@ -16,7 +16,7 @@ use replay::KERNEL_VERSION;
 use serde::{Deserialize, Serialize};
 
 use super::drive::ExpertDrive;
-use super::manifest::{self, Manifest};
+use super::manifest::{self, Manifest, PARTS};
 use super::provenance::{self, Drive, FrameLine};
 use crate::cli::NaturalArgs;
 use crate::exit::{Usage, Verdict};
@@ -25,6 +25,7 @@ use crate::lab::spread::{jobs, spread};
 use crate::maps::Map;
 use crate::output;
 use crate::progress::{self, Interrupt};
+use crate::vision;
 
 /// What a natural dataset is made from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -98,7 +99,7 @@ pub(super) fn build(
         return Ok(finished);
     }
     let options = RenderOptions::default();
-    let adapter = options.adapter.find()?.name;
+    let adapter = vision::find_adapter()?;
     let parts = prepare(out, recipe, &adapter)?;
     let scenes = recipe.scenes();
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
@@ -136,12 +137,12 @@ struct Begun {
 fn only_parts(out: &Path) -> bool {
     let names = |path: &Path| fs::read_dir(path).map(|entries| entries.flatten().map(|e| e.file_name()).collect());
     let inside: Vec<_> = names(out).unwrap_or_default();
-    inside == ["parts"] && names(&out.join("parts")).is_ok_and(|inside: Vec<_>| inside.is_empty())
+    inside == [PARTS] && names(&out.join(PARTS)).is_ok_and(|inside: Vec<_>| inside.is_empty())
 }
 
 /// The folder of finished scenes, once it is certain that they belong to this recipe.
 fn prepare(out: &Path, recipe: &Recipe, adapter: &str) -> anyhow::Result<PathBuf> {
-    let parts = out.join("parts");
+    let parts = out.join(PARTS);
     let file = parts.join("begun.json");
     let is_foreign = !file.exists() && fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
     if is_foreign && !only_parts(out) {

@@ -47,7 +47,7 @@ pub struct FrameLine {
     pub camera: String,
     /// Version of the renderer.
     pub renderer: String,
-    /// The graphics adapter.
+    /// The graphics adapter and its driver.
     pub adapter: String,
     /// Pixels of each class that counts; those that are not in the picture are left out.
     pub class_pixels: BTreeMap<String, u64>,

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use render::{RENDERER_VERSION, RenderOptions};
+use render::RENDERER_VERSION;
 use replay::KERNEL_VERSION;
 use serde::Serialize;
 
@@ -17,6 +17,7 @@ use crate::exit::Verdict;
 use crate::maps::Map;
 use crate::output::{self, PendingFolder};
 use crate::progress::Interrupt;
+use crate::vision;
 
 /// A dataset made again, and what it has in common with the first one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -72,7 +73,7 @@ pub fn make(args: &RebuildArgs, interrupt: &Interrupt) -> anyhow::Result<Rebuilt
 
 /// What draws now that did not draw the first time.
 fn difference(first: &Manifest) -> anyhow::Result<Option<String>> {
-    let adapter = RenderOptions::default().adapter.find()?.name;
+    let adapter = vision::find_adapter()?;
     let compared = [
         ("graphics adapter", first.adapter.as_str(), adapter.as_str()),
         ("renderer", &first.renderer, RENDERER_VERSION),

@@ -19,6 +19,7 @@ use serde::Serialize;
 
 pub use people::{Pedestrians, Person, Range, Recall, people};
 
+use super::dataset::check_whole;
 use super::figures::{Confusion, Figures, decimal, pixels_per, table};
 use super::png;
 use super::spread::{jobs, spread};
@@ -125,6 +126,7 @@ fn look(
     jobs: usize,
 ) -> anyhow::Result<Evaluation> {
     let interrupt = Interrupt::listen()?;
+    check_whole(dataset)?;
     let images = split::images(dataset, split)?;
     let (first, _) = png::read(&images[0], 3)?;
     let eye = Eye::open_at(checkpoint, first)?;

@@ -4,9 +4,12 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
 use clap::ValueEnum;
+use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::CLIP_FRAMES;
 use perception::training::TrainOptions;
 use serde::{Deserialize, Serialize};
+
+use crate::toml_text;
 
 /// Everything that decides an experiment's results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -141,7 +144,7 @@ impl Recipe {
     }
 
     fn parse(text: &str) -> anyhow::Result<Self> {
-        let recipe: Self = toml::from_str(text).map_err(|e| anyhow!(one_line(&e, text)))?;
+        let recipe: Self = toml_text::read(text).map_err(|problem| anyhow!(problem))?;
         recipe.check()?;
         Ok(recipe)
     }
@@ -184,6 +187,14 @@ impl Recipe {
         if natural.scenes * natural.frames < batch {
             bail!("natural.scenes of natural.frames are too few to learn from; expected {batch} frames");
         }
+        let people = [
+            ("pool", Some(pool.pedestrians)),
+            ("first_campaign", self.first_campaign.pedestrians),
+            ("second_campaign", self.second_campaign.pedestrians),
+        ];
+        if let Some((name, _)) = people.iter().find(|(_, people)| people.is_some_and(|n| n > MOST_OF_A_KIND)) {
+            bail!("{name}.pedestrians are too many; expected up to {MOST_OF_A_KIND}");
+        }
         if self.first_campaign.pedestrians == Some(0) {
             bail!("first_campaign.pedestrians is 0; expected people on foot, for cases with them");
         }
@@ -199,12 +210,6 @@ impl Recipe {
         }
         Ok(())
     }
-}
-
-/// A message of the TOML reader as one sentence with its line.
-fn one_line(error: &toml::de::Error, text: &str) -> String {
-    let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
-    format!("line {line}: {}", error.message())
 }
 
 #[cfg(test)]
@@ -237,6 +242,7 @@ mod tests {
             ("size = [256, 128]", "size = [256, 100]", "multiples of 32"),
             ("km = 2.0", "km = -1.0", "more than 0"),
             ("epochs = 3", "epochs = 30", "at least driving.epochs"),
+            ("pedestrians = 400", "pedestrians = 501", "pool.pedestrians are too many"),
             ("run_seconds = 90", "run_seconds = 1", "10 to 86400"),
             ("seed = 1", "sead = 1", "line 1: unknown field"),
         ] {

@@ -9,7 +9,7 @@ use kernel::time::Tick;
 use replay::{Annotation, Log, Note, NoteKind};
 
 use super::messages::stamp;
-use crate::measures::seat_name;
+use crate::words;
 
 /// Events of the car and notes of the rig within a range of ticks, by ascending tick.
 pub fn lines(log: &Log, ticks: &RangeInclusive<Tick>) -> Vec<(Tick, Line)> {
@@ -22,26 +22,20 @@ pub fn lines(log: &Log, ticks: &RangeInclusive<Tick>) -> Vec<(Tick, Line)> {
 }
 
 fn of_event(tick: Tick, event: &Event, annotation: Option<&Annotation>) -> Line {
-    let at = format!("at {:.0} km/h", 3.6 * event.speed_mps);
-    let said = annotation.map_or(String::new(), |a| format!(": {}, {}", a.label, a.comment));
-    let (level, message) = match event.kind {
-        EventKind::CollisionActor => (Level::Error, format!("Collision with actor {} {at}", event.actor)),
-        EventKind::CollisionScenery => (Level::Error, format!("Collision with scenery {at}")),
-        EventKind::Intervention => (Level::Error, format!("Intervention {at}{said}")),
-        EventKind::RedLight => (Level::Warning, format!("Red light passed {at}")),
-        EventKind::Speeding => (Level::Warning, format!("Limit exceeded {at}")),
-        EventKind::OffRoad => (Level::Warning, format!("Off the road {at}")),
-        EventKind::WrongWay => (Level::Warning, format!("Wrong way {at}")),
-        EventKind::Armed => (Level::Info, format!("Armed {at}")),
-        EventKind::Seen => (Level::Info, format!("\"I see it\" {at}")),
-        EventKind::Ended => (Level::Info, format!("The run ended {at}")),
+    let level = match event.kind {
+        EventKind::CollisionActor | EventKind::CollisionScenery | EventKind::Intervention => Level::Error,
+        EventKind::RedLight | EventKind::Speeding | EventKind::OffRoad | EventKind::WrongWay => Level::Warning,
+        EventKind::Armed | EventKind::Seen | EventKind::Ended => Level::Info,
     };
+    let said = annotation.filter(|_| event.kind == EventKind::Intervention);
+    let said = said.map_or(String::new(), |a| format!(": {}, {}", a.label, a.comment));
+    let message = words::event(event) + &said;
     line(tick, level, "drive", message)
 }
 
 fn of_note(note: &Note) -> Line {
     let level = if note.kind == NoteKind::UnitLost { Level::Warning } else { Level::Info };
-    line(note.tick, level, "rig", format!("{} ({} driver)", note.kind.name(), seat_name(note.seat)))
+    line(note.tick, level, "rig", format!("{} ({} driver)", note.kind.name(), words::seat(note.seat)))
 }
 
 fn line(tick: Tick, level: Level, name: &str, message: String) -> Line {

@@ -6,7 +6,7 @@ use kernel::time::{TICK_HZ, Tick};
 use kernel::{TickInput, TickOutput, World};
 use replay::{Log, MaskShown};
 
-use crate::measures::seat_name;
+use crate::words;
 
 /// What the car does, both drivers' controls, and who is in control. Pedals are fractions, [0, 1];
 /// steering is a fraction, [-1, 1], positive to the right.
@@ -59,8 +59,8 @@ impl Telemetry {
             limit_mps: hud.limit_mps.into(),
             odometer_m: output.odometer_mm as f64 / 1e3,
             phase: phase(world.arbiter().phase).into(),
-            steering_by: seat_name(applied.steering).into(),
-            pedals_by: seat_name(applied.pedals).into(),
+            steering_by: words::seat(applied.steering).into(),
+            pedals_by: words::seat(applied.pedals).into(),
             steer: applied.controls.steer_fraction().into(),
             throttle: applied.controls.throttle_fraction().into(),
             brake: applied.controls.brake_fraction().into(),

@@ -5,17 +5,19 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use kernel::arbiter::Phase;
 use kernel::events::{Event, EventKind};
-use kernel::scene::{ActorKind, Weather};
+use kernel::scene::Weather;
 use kernel::time::{CLIP_TICKS, TICK_HZ, Tick};
 use kernel::{Controls, Keyframe, RoadNetwork, TickInput, World};
-use replay::{Log, Recorder, Recording, Replayer};
+use replay::{Label, Log, Recorder, Recording, Replayer};
 use serde::{Deserialize, Serialize};
 
 use crate::crew::Crew;
 use crate::drivers::safety::SafetyBot;
 use crate::measures::Criticality;
 use crate::measures::criticality::Extremes;
+use crate::simulate::fork_before_ticks;
 use crate::vision::Vision;
+use crate::words;
 
 /// What is done otherwise than in the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,11 +106,11 @@ pub struct Harm {
 }
 
 impl Fork {
-    /// Drives it from the last keyframe that is at least 3 s before the intervention (the first one if
-    /// there is none). Vision is that of the semantic bot.
+    /// Drives it from the last keyframe that is at least 3 s before the intervention, or where bots may get
+    /// bored again, long enough for that (the first one if there is none). Vision is that of the semantic bot.
     pub fn drive(&self, log: &Log, network: &Arc<RoadNetwork>, vision: Vision) -> anyhow::Result<(Course, Vision)> {
         let at = log.intervention.context("holds no intervention")?.tick;
-        let start = start_of(log, at)?;
+        let start = self.start_of(log, at)?;
         let fork_tick = match self.otherwise {
             Otherwise::NoIntervention { earlier_ticks } => at.saturating_sub(earlier_ticks).max(start.tick + 1),
             Otherwise::OtherEye { .. } => start.tick + 1,
@@ -150,6 +152,23 @@ impl Fork {
         Ok((Course { recording, fork_tick, harm, collision, intervention, closest }, crew.into_vision()))
     }
 
+    fn start_of<'a>(&self, log: &'a Log, at: Tick) -> anyhow::Result<&'a Keyframe> {
+        let label = log.annotation.as_ref().map(|annotation| annotation.label);
+        let bored =
+            label.filter(|label| *label == Label::Boredom && matches!(self.otherwise, Otherwise::OtherEye { .. }));
+        let before = bored.map_or(CLIP_TICKS, fork_before_ticks);
+        let early = log.keyframes.iter().rev().find(|keyframe| keyframe.tick + before <= at);
+        let first = log.keyframes.first().filter(|first| bored.is_none() || first.tick == 0);
+        early.or(first).with_context(|| match bored {
+            Some(_) => format!(
+                "begins less than {} s before a takeover out of boredom, which takes that long to come again; \
+                 expected the recording instead of the case",
+                before / Tick::from(TICK_HZ)
+            ),
+            None => "holds no keyframe to start from".into(),
+        })
+    }
+
     fn safety_driver(&self) -> SafetyBot {
         match self.otherwise {
             Otherwise::NoIntervention { .. } => SafetyBot::default(),
@@ -182,16 +201,11 @@ impl Fork {
     }
 }
 
-fn start_of(log: &Log, at: Tick) -> anyhow::Result<&Keyframe> {
-    let early = log.keyframes.iter().rev().find(|keyframe| keyframe.tick + CLIP_TICKS <= at);
-    early.or(log.keyframes.first()).context("holds no keyframe to start from")
-}
-
 fn logged(log: &Log, tick: Tick) -> anyhow::Result<TickInput> {
     log.input(tick).copied().with_context(|| format!("holds no controls of tick {tick}"))
 }
 
-/// The fork must start from the recorded run, every tick of which is compared on the way.
+/// The fork must leave the recorded run where that really was.
 fn check(log: &Log, network: &Arc<RoadNetwork>, world: &World) -> anyhow::Result<()> {
     let mut replayer = Replayer::new(log, network.clone())?;
     replayer.seek(world.tick())?;
@@ -223,7 +237,7 @@ impl Harm {
         };
         let with = match event.kind {
             EventKind::CollisionActor => {
-                world.scene().actors.iter().find(|a| a.id == event.actor).map(|a| name(a.kind))
+                world.scene().actors.iter().find(|a| a.id == event.actor).map(|a| words::road_user(a.kind))
             }
             EventKind::CollisionScenery => Some("scenery"),
             _ => None,
@@ -234,22 +248,16 @@ impl Harm {
     /// What it was, how fast, and how long after a takeover.
     pub fn words(&self, after_s: f64) -> String {
         let with = self.with.as_ref().map(|with| format!(" with {with}")).unwrap_or_default();
-        format!("{}{with} at {:.0} km/h, {after_s:.1} s after the takeover", self.what.name(), self.speed_kmh)
+        format!("{}{with} at {:.0} km/h, {}", self.what.name(), self.speed_kmh, from_takeover(after_s))
     }
 
-    /// Seconds from a tick.
+    /// Seconds from a tick; negative before it.
     pub fn seconds_after(&self, tick: Tick) -> f64 {
-        self.tick.saturating_sub(tick) as f64 / f64::from(TICK_HZ)
+        (self.tick as f64 - tick as f64) / f64::from(TICK_HZ)
     }
 }
 
-fn name(kind: ActorKind) -> &'static str {
-    match kind {
-        ActorKind::Car => "car",
-        ActorKind::Truck => "truck",
-        ActorKind::Bus => "bus",
-        ActorKind::Motorcycle => "motorcycle",
-        ActorKind::Bicycle => "bicycle",
-        ActorKind::Pedestrian => "pedestrian",
-    }
+/// So many seconds after the takeover, in words.
+pub fn from_takeover(after_s: f64) -> String {
+    format!("{:.1} s {} the takeover", after_s.abs(), if after_s < 0.0 { "before" } else { "after" })
 }

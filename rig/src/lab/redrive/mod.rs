@@ -20,7 +20,7 @@ use replay::{Log, Recording};
 use serde::Serialize;
 
 pub use self::counterfactual::Counterfactual;
-use self::fork::{Fork, Harm, Otherwise};
+use self::fork::{Fork, Harm, Otherwise, from_takeover};
 use self::verdict::Verdict;
 use crate::cli::RedriveArgs;
 use crate::exit::{self, Usage};
@@ -49,11 +49,11 @@ struct Line {
     fork_tick: Tick,
     verdict: Verdict,
     harm: Option<Harm>,
-    /// From the recorded intervention to the harm, seconds.
+    /// From the recorded intervention to the harm, seconds; negative before it.
     harm_after_s: Option<f64>,
     /// The first collision, which may come after other harm.
     collision: Option<Harm>,
-    /// From the recorded intervention to the collision, seconds.
+    /// From the recorded intervention to the collision, seconds; negative before it.
     collision_after_s: Option<f64>,
     /// Tick of an intervention in the fork.
     intervention_again: Option<Tick>,
@@ -179,10 +179,8 @@ impl Line {
             return None;
         }
         let Extreme { value, tick, with } = self.closest.min_ttc_s.as_ref()?;
-        let away_s = tick.abs_diff(self.intervention_tick) as f64 / f64::from(TICK_HZ);
-        let side = if *tick < self.intervention_tick { "before" } else { "after" };
-        (*value <= NEAR_MISS_S)
-            .then(|| format!(", {value:.1} s from a collision with {with} {away_s:.1} s {side} the takeover"))
+        let when = from_takeover((*tick as f64 - self.intervention_tick as f64) / f64::from(TICK_HZ));
+        (*value <= NEAR_MISS_S).then(|| format!(", {value:.1} s from a collision with {with} {when}"))
     }
 }
 

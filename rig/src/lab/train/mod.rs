@@ -18,6 +18,7 @@ pub use curves::Epoch;
 
 use crate::cli::TrainArgs;
 use crate::exit::Verdict;
+use crate::lab::dataset::check_whole;
 use crate::output;
 use crate::progress::{self, Interrupt};
 
@@ -31,6 +32,9 @@ pub struct Summary {
     /// Whether it was there already, from the same options and the same dataset.
     pub was_there: bool,
 }
+
+/// Endings of what is written beside a checkpoint: its card, its learning curves, and their picture.
+const BESIDE: [&str; 3] = ["md", "jsonl", "svg"];
 
 /// Runs `aeye train`. Ctrl-C stops it; the same command goes on from the last finished epoch.
 pub fn run(args: &TrainArgs, json: bool) -> anyhow::Result<Verdict> {
@@ -50,6 +54,7 @@ pub fn train(
     show: &mut dyn FnMut(&Epoch) -> anyhow::Result<()>,
 ) -> anyhow::Result<Summary> {
     output::check_file(&args.out)?;
+    check_whole(&args.dataset)?;
     let options = options(args);
     let unfinished = beside(&args.out, "onnx.part");
     if args.out.exists() {
@@ -67,6 +72,7 @@ pub fn train(
             }
         }
     }
+    check_beside(args, &unfinished)?;
     let mut screen = Screen { bar: ProgressBar::hidden(), options: &options, epochs: args.epochs, show, failed: None };
     let watch = &mut |progress: Progress<'_>| {
         screen.watch(progress);
@@ -91,11 +97,22 @@ pub fn train(
     Ok(summary(args, &Checkpoint::load(&args.out)?, false))
 }
 
+/// What stands beside a checkpoint may be overwritten with it only.
+fn check_beside(args: &TrainArgs, unfinished: &Path) -> anyhow::Result<()> {
+    let is_own = args.out.exists() || unfinished.exists();
+    let there = BESIDE.iter().map(|ending| beside(&args.out, ending)).find(|path| path.exists());
+    match there.filter(|_| !is_own) {
+        Some(path) => bail!("{}: exists already; expected another place", path.display()),
+        None => Ok(()),
+    }
+}
+
 fn write(args: &TrainArgs, options: &TrainOptions, trained: &Trained) -> anyhow::Result<()> {
     let epochs: Vec<Epoch> = trained.history.iter().map(|report| Epoch::new(report, options)).collect();
-    output::write_file(&beside(&args.out, "md"), card::card(args, options, trained).as_bytes())?;
-    output::write_file(&beside(&args.out, "jsonl"), curves::lines(&epochs)?.as_bytes())?;
-    output::write_file(&beside(&args.out, "svg"), curves::picture(&epochs).as_bytes())?;
+    let texts = [card::card(args, options, trained), curves::lines(&epochs)?, curves::picture(&epochs)];
+    for (ending, text) in BESIDE.iter().zip(texts) {
+        output::write_file(&beside(&args.out, ending), text.as_bytes())?;
+    }
     output::write_file(&args.out, &trained.onnx)
 }
 
@@ -116,8 +133,11 @@ fn options(args: &TrainArgs) -> TrainOptions {
     }
 }
 
+/// `C.ENDING` for the checkpoint `C.onnx`, or `C` with any other name.
 fn beside(out: &Path, ending: &str) -> PathBuf {
-    out.with_extension(ending)
+    let mut name = if out.extension().is_some_and(|e| e == "onnx") { out.with_extension("") } else { out.into() };
+    name.as_mut_os_string().push(format!(".{ending}"));
+    name
 }
 
 /// What is seen of a training: a bar an epoch on stderr, and what the caller makes of it.

@@ -17,7 +17,7 @@ use crate::newest::Newest;
 use effects::{Effects, Feel};
 
 /// Longest wait for a device to fall silent at the end. The system ends the effects of a program that
-/// is gone.
+/// is gone, but does not give it back the centring of its own.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// What is felt at both seats.
@@ -130,7 +130,7 @@ impl Drop for Hand {
 /// What a thread knows of its device.
 enum Device<A> {
     None,
-    /// At this path; none when it has failed, which is said once.
+    /// At this path; none when it has failed, which is said then.
     At(String, Option<A>),
 }
 

@@ -131,6 +131,7 @@ fn figures(ui: &mut Ui, status: &Status) {
         ),
         ("corner cases so far", status.totals.cases.to_string()),
         ("mask age", status.mask_age_us.map_or("no mask yet".into(), |us| format!("{} ms", us / 1000))),
+        ("image age", status.image_age_us.map_or("no image yet".into(), |us| format!("{} ms", us / 1000))),
         ("last tick was late by", format!("{:.1} ms", status.late_us as f64 / 1e3)),
     ];
     if status.totals.cases > 0 {

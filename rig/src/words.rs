@@ -1,0 +1,42 @@
+//! Seats, road users and events in the words that people read.
+
+use kernel::Seat;
+use kernel::events::{Event, EventKind};
+use kernel::scene::ActorKind;
+
+/// What people and files call the seats.
+pub const SEATS: [&str; 2] = ["semantic", "safety"];
+
+/// What people and files call a seat.
+pub fn seat(seat: Seat) -> &'static str {
+    SEATS[seat as usize]
+}
+
+/// What kind of road user it is.
+pub fn road_user(kind: ActorKind) -> &'static str {
+    match kind {
+        ActorKind::Car => "car",
+        ActorKind::Truck => "truck",
+        ActorKind::Bus => "bus",
+        ActorKind::Motorcycle => "motorcycle",
+        ActorKind::Bicycle => "bicycle",
+        ActorKind::Pedestrian => "pedestrian",
+    }
+}
+
+/// What happened to the ego car, as in `red light passed at 43 km/h`.
+pub fn event(event: &Event) -> String {
+    let what = match event.kind {
+        EventKind::CollisionActor => format!("collision with actor {}", event.actor),
+        EventKind::CollisionScenery => "collision with scenery".into(),
+        EventKind::RedLight => "red light passed".into(),
+        EventKind::Speeding => "limit exceeded".into(),
+        EventKind::OffRoad => "off the road".into(),
+        EventKind::WrongWay => "wrong way".into(),
+        EventKind::Armed => "run armed".into(),
+        EventKind::Intervention => "intervention".into(),
+        EventKind::Seen => "\"I see it\"".into(),
+        EventKind::Ended => "run ended".into(),
+    };
+    format!("{what} at {:.0} km/h", 3.6 * event.speed_mps)
+}
