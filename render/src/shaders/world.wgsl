@@ -134,7 +134,8 @@ fn span(x: f32, low: f32, high: f32, width: f32) -> f32 {
 @fragment
 fn fragment_facade(in: Lit) -> Pixel {
     let uv = in.uv_param.xy;
-    let seed = in.uv_param.z * 255.0;
+    // Whole, as the vertices have it: what interpolation leaves over would tip the hash from pixel to pixel.
+    let seed = round(in.uv_param.z * 255.0);
     let code = code_of(in.ids);
     let pixel = max(fwidth(uv), vec2f(0.001));
     let cell = floor(uv);

@@ -1,8 +1,10 @@
 //! A frame is the same bits whenever it is drawn, its planes belong together, and what cannot be
 //! drawn is refused with a sentence.
 
+use glam::{Quat, Vec3};
 use kernel::scene::ActorKind;
-use render::{AdapterChoice, Camera, Preset, RenderError, RenderOptions, Renderer, SemanticTag};
+use kernel::{Scenario, World, map};
+use render::{AdapterChoice, Camera, Frame, Preset, RenderError, RenderOptions, Renderer, SemanticTag};
 use tests::street;
 
 fn renderer() -> Renderer {
@@ -99,4 +101,26 @@ fn an_unknown_adapter_is_refused_with_what_to_do() {
     let options = RenderOptions { adapter: AdapterChoice::Named("no such adapter".into()), ..Default::default() };
     let sentence = Renderer::new(&street::network(), &options).err().unwrap().to_string();
     assert!(sentence.contains("no such adapter") && sentence.contains("mesa-vulkan-drivers"), "{sentence}");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn windows_do_not_flicker_when_the_car_creeps() {
+    let network = map::bundled("rural").expect("it is bundled");
+    let world = World::new(&Scenario::default_for("rural", 1), &network).expect("it fits");
+    let mut scene = world.scene();
+    scene.actors.clear();
+    // Between houses whose windows lie near the boundary of two kinds.
+    scene.ego.position = Vec3::new(421.4912, 1007.1074, 3.630_859_4);
+    scene.ego.rotation = Quat::from_xyzw(-0.000_244_140_63, -0.000_671_386_7, -0.303_588_87, 0.952_819_8);
+    let options = RenderOptions { preset: Preset::Cheap, ..Default::default() };
+    let mut renderer = Renderer::new(&network, &options).unwrap();
+    let before = renderer.draw(&scene, &Camera::driver(640, 360)).unwrap();
+    scene.ego.position += scene.ego.rotation * Vec3::X * 0.001;
+    let after = renderer.draw(&scene, &Camera::driver(640, 360)).unwrap();
+    let house = |frame: &Frame, at: usize| frame.fine_ids[at] == SemanticTag::Building as u8;
+    let houses: Vec<usize> = (0..640 * 360).filter(|at| house(&before, *at) && house(&after, *at)).collect();
+    let flickers = |at: usize| (3 * at..3 * at + 3).any(|i| before.rgb[i].abs_diff(after.rgb[i]) > 30);
+    let flickering = houses.iter().filter(|at| flickers(**at)).count();
+    assert!(houses.len() > 20_000 && flickering < 50, "{flickering} of {}", houses.len());
 }
