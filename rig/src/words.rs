@@ -38,5 +38,11 @@ pub fn event(event: &Event) -> String {
         EventKind::Seen => "\"I see it\"".into(),
         EventKind::Ended => "run ended".into(),
     };
-    format!("{what} at {:.0} km/h", 3.6 * event.speed_mps)
+    // The tick of a collision ends with what the impact has left of the speed.
+    let at = match event.kind {
+        EventKind::CollisionActor | EventKind::CollisionScenery => ", after it at",
+        _ => " at",
+    };
+    // Adding 0 makes a negative zero positive.
+    format!("{what}{at} {:.0} km/h", (3.6 * event.speed_mps).round() + 0.0)
 }

@@ -57,7 +57,7 @@ pub struct CheckpointFigures {
     /// Statistics of its runs.
     #[serde(flatten)]
     pub statistics: Statistics,
-    /// How many interventions were necessary, early, or needless.
+    /// How many interventions were necessary, early, needless, or in vain.
     pub interventions: BTreeMap<&'static str, u32>,
     /// Against the first checkpoint; absent for the first itself.
     pub against_first: Option<Comparison>,

@@ -11,6 +11,7 @@ use crate::lab::compare::Gate;
 
 /// Arguments of `rerender`.
 #[derive(Args, Debug)]
+#[command(override_usage = "aeye rerender <FILE>... --checkpoint <C>... --out <DIR> [OPTIONS]")]
 pub struct RerenderArgs {
     /// Recordings or cases, or folders with cases anywhere below.
     #[arg(required = true, value_name = "FILE")]
@@ -38,8 +39,9 @@ pub struct RerenderArgs {
 
 /// Arguments of `export`.
 #[derive(Args, Debug)]
+#[command(override_usage = "aeye export <FILE>... [--checkpoint <C>...] --out <OUT.mcap|DIR> [OPTIONS]")]
 pub struct ExportArgs {
-    /// Recordings or cases.
+    /// Recordings or cases, or folders with cases anywhere below.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Checkpoints whose masks come along with the ground truth.
@@ -68,6 +70,7 @@ pub struct ExportArgs {
 
 /// Arguments of `compare`.
 #[derive(Args, Debug)]
+#[command(override_usage = "aeye compare <CASE>... --checkpoint <A> <B>... --out <DIR> [OPTIONS]")]
 pub struct CompareArgs {
     /// Corner cases, or folders with cases anywhere below.
     #[arg(required = true, value_name = "CASE")]
@@ -100,7 +103,8 @@ pub struct CompareArgs {
 #[derive(Args, Debug)]
 #[command(group = clap::ArgGroup::new("counterfactual").required(true).args(["without_intervention", "checkpoint"]))]
 pub struct RedriveArgs {
-    /// Recordings or cases with an intervention.
+    /// Recordings or cases with an intervention (or a collision that nobody prevented, for
+    /// `--checkpoint`), or folders with cases anywhere below.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// The safety driver does nothing from the tick of the intervention on; the semantic driver is a bot
@@ -132,8 +136,9 @@ pub struct RedriveArgs {
 
 /// Arguments of `report`.
 #[derive(Args, Debug)]
+#[command(override_usage = "aeye report <CASE>... --checkpoint <C>... --out <FILE.html> [OPTIONS]")]
 pub struct ReportArgs {
-    /// Corner cases; the recordings beside them give route and kilometres.
+    /// Corner cases, or folders with cases anywhere below; the recordings beside them give route and kilometres.
     #[arg(required = true, value_name = "CASE")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.

@@ -7,7 +7,7 @@ use clap::Args;
 /// Arguments of `verify`.
 #[derive(Args, Debug)]
 pub struct VerifyArgs {
-    /// Recordings or cases.
+    /// Recordings or cases, or folders with such files anywhere below.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Also go back this many ticks again and again and compare (rollback self-check).
@@ -21,7 +21,7 @@ pub struct VerifyArgs {
 /// Arguments of `inspect`.
 #[derive(Args, Debug)]
 pub struct InspectArgs {
-    /// Recordings or cases.
+    /// Recordings or cases, or folders with such files anywhere below.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Tell which checkpoint drove blind drives.

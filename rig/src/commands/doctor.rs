@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::wheel;
 use crate::cli::{CheckpointChoice, DoctorArgs};
 use crate::clock::seconds_of;
-use crate::exit::{Verdict, sentence};
+use crate::exit::{Usage, Verdict, sentence};
 use crate::live::{self, LiveFigures};
 use crate::maps::Map;
 use crate::output;
@@ -90,6 +90,7 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
                 findings.advice.extend(advice(args, &figures));
                 findings.live = Some(figures);
             }
+            Err(error) if error.is::<Usage>() => return Err(error),
             Err(error) => findings.notes.push(format!("real time was not measured: {}", sentence(&error))),
         }
     }

@@ -14,6 +14,7 @@ use serde::Serialize;
 use crate::cli::DriveArgs;
 use crate::clock::EverySecond;
 use crate::exit::{Usage, Verdict};
+use crate::lab::library;
 use crate::live;
 use crate::live::foxglove::Publisher;
 use crate::maps::{Map, read_scenario};
@@ -96,6 +97,11 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
         let said =
             "--headless shows no pictures; expected none of --image-size, --mask-size, --inference and --screens";
         return Err(Usage(said.into()).into());
+    }
+    if library::is_case_name(&args.record) {
+        return Err(
+            Usage(format!("{}: is named as a corner case; expected another name", args.record.display())).into()
+        );
     }
     let (mut scenario, map) = match &args.scenario {
         Some(path) => read_scenario(path)?,

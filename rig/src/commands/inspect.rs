@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::drive::RunFigures;
 use crate::cli::InspectArgs;
 use crate::exit::Verdict;
+use crate::lab::library;
 use crate::measures::{self, Criticality, Measures, Tally};
 use crate::output;
 use crate::study::{self, Questionnaire};
@@ -102,7 +103,7 @@ impl NoteLine {
 /// Runs `aeye inspect`.
 pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
     let (mut seen, mut verdict) = (Vec::new(), Verdict::Ok);
-    for file in &args.files {
+    for file in &library::recordings(&args.files)? {
         let recording = Recording::open(file)?;
         let measured = measure(&recording);
         if matches!(measured, Err(replay::Error::Diverged(_))) {
@@ -229,7 +230,7 @@ fn text(c: &Contents) -> String {
         (Some(measures), _) => measures::lines(measures).into_iter().for_each(|(name, value)| line(name, value)),
         (None, why) => line("measures", format!("none: {}", why.as_deref().unwrap_or_default())),
     }
-    for (name, value) in c.criticality.iter().flat_map(|criticality| criticality.extremes.lines()) {
+    for (name, value) in c.criticality.iter().flat_map(Criticality::lines) {
         line(name, value);
     }
     paragraph(lines)

@@ -33,6 +33,10 @@ fn check_seats(args: &QuestionnaireArgs, recordings: &[Recording]) -> anyhow::Re
 pub fn run(args: &QuestionnaireArgs, json: bool) -> anyhow::Result<Verdict> {
     let answers = Questionnaire::read(&args.answers)?;
     let recordings = args.files.iter().map(|path| Recording::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let is_case = |(_, recording): &(_, &Recording)| recording.log().manifest.case.is_some();
+    if let Some((path, _)) = args.files.iter().zip(&recordings).find(is_case) {
+        bail!("{}: is a corner case; expected the recording", path.display());
+    }
     check_seats(args, &recordings)?;
     let files = args.files.iter().zip(&recordings);
     let texts = files.map(|(path, recording)| attached(path, recording, answers.clone()));

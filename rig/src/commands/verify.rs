@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::VerifyArgs;
 use crate::exit::{Verdict, sentence};
+use crate::lab::library;
 use crate::output;
 use crate::progress;
 
@@ -57,9 +58,10 @@ impl From<Divergence> for Where {
 
 /// Runs `aeye verify`.
 pub fn run(args: &VerifyArgs, json: bool) -> anyhow::Result<Verdict> {
-    let bar = progress::bar("verify", args.files.len() as u64);
+    let files = library::recordings(&args.files)?;
+    let bar = progress::bar("verify", files.len() as u64);
     let (mut diverged, mut failures) = (false, Vec::new());
-    for file in &args.files {
+    for file in &files {
         let checked = match check(file, args) {
             Ok(checked) => checked,
             Err(error) => {
@@ -77,7 +79,7 @@ pub fn run(args: &VerifyArgs, json: bool) -> anyhow::Result<Verdict> {
         0 if diverged => Ok(Verdict::CheckFailed),
         0 => Ok(Verdict::Ok),
         1 => anyhow::bail!("{}", failures[0]),
-        n => anyhow::bail!("{n} of {} files cannot be checked; the first: {}", args.files.len(), failures[0]),
+        n => anyhow::bail!("{n} of {} files cannot be checked; the first: {}", files.len(), failures[0]),
     }
 }
 

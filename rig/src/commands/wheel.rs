@@ -100,6 +100,10 @@ fn by_import(args: &WheelImportArgs, json: bool) -> anyhow::Result<()> {
 }
 
 fn write(calibration: &Calibration, path: &Path, json: bool) -> anyhow::Result<()> {
+    if let Some(there) = calibration::read(path).ok().filter(|there| there.device != calibration.device) {
+        let (path, other, device) = (path.display(), there.device, &calibration.device);
+        bail!("{path}: holds the calibration of {other}; expected another place for {device}");
+    }
     output::write_file(path, calibration.to_toml()?.as_bytes())?;
     output::print(json, calibration, || format!("{}: calibration of {}", path.display(), calibration.device))
 }

@@ -10,12 +10,15 @@ use replay::Recording;
 
 use crate::exit::Usage;
 
-/// What the names of corner cases end with.
+/// What the names of recordings and corner cases end with, and of corner cases alone.
+const ENDING: &str = ".mcap";
 const CASE_ENDING: &str = ".case.mcap";
 
 /// A recording or case whose bytes have been checked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
+    /// Whether it is a corner case.
+    pub is_case: bool,
     /// Where it is.
     pub path: PathBuf,
     /// Its file name without `.mcap`, of a file found in a folder with the way from there.
@@ -29,32 +32,52 @@ pub struct Entry {
 pub fn find(paths: &[PathBuf]) -> anyhow::Result<Vec<Entry>> {
     let mut found = Vec::new();
     for path in paths {
-        if path.is_dir() {
-            let mut cases = Vec::new();
-            collect(path, &mut cases)?;
-            if cases.is_empty() {
-                bail!("{}: holds no corner case; expected at least one *{CASE_ENDING}", path.display());
-            }
-            cases.sort();
-            found.extend(cases.into_iter().map(|case| (name_of(&case, path), case)));
-        } else {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            found.push((name_of(path, folder), path.clone()));
-        }
+        let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
+        found.extend(below(path, CASE_ENDING)?.into_iter().map(|file| (name_of(&file, folder), file)));
     }
     check_names(&found)?;
     open(found)
 }
 
-fn collect(folder: &Path, cases: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+/// As [`find`], unopened.
+pub fn cases(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    paths.iter().map(|path| below(path, CASE_ENDING)).collect::<Result<Vec<_>, _>>().map(|files| files.concat())
+}
+
+/// Files as they are given and, of folders, every recording and corner case below, by path.
+pub fn recordings(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    paths.iter().map(|path| below(path, ENDING)).collect::<Result<Vec<_>, _>>().map(|files| files.concat())
+}
+
+/// Whether a file is named as corner cases are.
+pub fn is_case_name(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(CASE_ENDING))
+}
+
+/// A file, or what has this ending below a folder, by path.
+fn below(path: &Path, ending: &str) -> anyhow::Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut files = Vec::new();
+    collect(path, ending, &mut files)?;
+    if files.is_empty() {
+        let what = if ending == CASE_ENDING { "corner case" } else { "recording" };
+        bail!("{}: holds no {what}; expected at least one *{ending}", path.display());
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn collect(folder: &Path, ending: &str, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     let place = || folder.display().to_string();
     for entry in fs::read_dir(folder).with_context(place)? {
         let entry = entry.with_context(place)?;
         // A link to a folder is not followed, so that no circle is.
         if entry.file_type().with_context(place)?.is_dir() {
-            collect(&entry.path(), cases)?;
-        } else if entry.file_name().to_string_lossy().ends_with(CASE_ENDING) {
-            cases.push(entry.path());
+            collect(&entry.path(), ending, files)?;
+        } else if entry.file_name().to_string_lossy().ends_with(ending) {
+            files.push(entry.path());
         }
     }
     Ok(())
@@ -94,9 +117,22 @@ fn open(found: Vec<(String, PathBuf)>) -> anyhow::Result<Vec<Entry>> {
             let what = if identity.1.is_some() { "case" } else { "recording" };
             bail!("{}: holds the same {what} as {}; expected each once", path.display(), twin.display());
         }
-        entries.push(Entry { path, name, digest: blake3::Hash::from_bytes(recording.digest()) });
+        entries.push(Entry {
+            is_case: identity.1.is_some(),
+            path,
+            name,
+            digest: blake3::Hash::from_bytes(recording.digest()),
+        });
     }
     Ok(entries)
+}
+
+/// Refuses recordings.
+pub fn check_cases(entries: &[Entry]) -> anyhow::Result<()> {
+    match entries.iter().find(|entry| !entry.is_case) {
+        Some(entry) => bail!("{}: is a recording, expected a corner case", entry.path.display()),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

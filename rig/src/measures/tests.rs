@@ -163,12 +163,12 @@ proptest! {
         let mut ages: Vec<Tick> =
             (standing as Tick + 1..=TICKS).filter_map(|tick| Some(tick - newest(tick)?.tick_of_frame)).collect();
         ages.sort_unstable();
-        let median = ages[ages.len().div_ceil(2) - 1];
-        prop_assert_eq!((age.ticks.n, age.ticks.median, age.ticks.max), (ages.len(), median as f64, ages[ages.len() - 1] as f64));
+        let median = (ages[(ages.len() - 1) / 2] + ages[ages.len() / 2]) as f64 / 2.0;
+        prop_assert_eq!((age.ticks.n, age.ticks.median, age.ticks.max), (ages.len(), median, ages[ages.len() - 1] as f64));
         let ms = age.ms.expect("a live drive");
         // Beyond the last capture ticks are taken to keep real time.
         let slack_ms = 1e-3 * (late + every) as f64 * (tick_us as f64 - 1e6 / 60.0).abs() + 1e-6;
-        prop_assert!((ms.median - median as f64 * tick_us as f64 / 1e3).abs() <= slack_ms, "{ms:?}");
+        prop_assert!((ms.median - median * tick_us as f64 / 1e3).abs() <= slack_ms, "{ms:?}");
         let screen = age.frame_to_screen_ms.expect("a live drive");
         prop_assert_eq!((screen.n, screen.median, screen.max), (log.masks.len(), 12.5, 12.5));
     }

@@ -2,7 +2,7 @@
 
 use kernel::time::{TICK_HZ, Tick};
 
-use super::criticality::{Extreme, Extremes};
+use super::criticality::{Criticality, Extreme, Extremes, Sample};
 use super::{HazardTimes, Measures, Response, ScreenAge, Spread, Tally};
 
 /// The measures of a recording as names and values.
@@ -33,6 +33,20 @@ impl Extremes {
             line("braking", "m/s^2 required", &self.max_required_deceleration_mps2),
         ];
         lines.into_iter().flatten().collect()
+    }
+}
+
+impl Criticality {
+    /// As names and values.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let predicted = |sample: &Sample| Some((sample.tick, sample.encroachment.clone()?));
+        let predicted: Vec<_> = self.samples.iter().filter_map(predicted).collect();
+        let (n, of) = (predicted.len(), self.samples.len());
+        let encroachment = predicted.last().map_or_else(
+            || "none predicted".into(),
+            |(tick, what)| format!("predicted in {n} of {of} samples, last at {}: {what}", at(*tick)),
+        );
+        std::iter::once(("encroachment", encroachment)).chain(self.extremes.lines()).collect()
     }
 }
 

@@ -46,7 +46,7 @@ pub fn rate_ratio_interval(events: (u64, u64), exposure: (f64, f64)) -> (f64, f6
 pub struct Spread {
     /// Number of values.
     pub n: usize,
-    /// Half of the values are not greater.
+    /// The value in the middle, or the mean of the two there.
     pub median: f64,
     /// 99 % of the values are not greater.
     pub p99: f64,
@@ -57,12 +57,13 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// That of some values by nearest rank; `None` of none.
+    /// That of some values, all but the median by nearest rank; `None` of none.
     pub fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let n = values.len();
         let rank = |permille: usize| values.get((permille * n).div_ceil(1000).max(1) - 1).copied();
-        Some(Self { n, median: rank(500)?, p99: rank(990)?, p999: rank(999)?, max: rank(1000)? })
+        let middle = (rank(500)? + values[n / 2]) / 2.0;
+        Some(Self { n, median: middle, p99: rank(990)?, p999: rank(999)?, max: rank(1000)? })
     }
 }
 
@@ -77,7 +78,8 @@ mod tests {
         fn so_many_values_are_not_greater(values in prop::collection::vec(0u8..30, 1..300)) {
             let spread = Spread::of(values.iter().map(|v| f64::from(*v)).collect()).expect("values");
             let share = |limit: f64| values.iter().filter(|v| f64::from(**v) <= limit).count() as f64 / values.len() as f64;
-            prop_assert!(share(spread.median) >= 0.5 && share(spread.median - 1.0) < 0.5);
+            let above = values.iter().filter(|v| f64::from(**v) >= spread.median).count() as f64 / values.len() as f64;
+            prop_assert!(share(spread.median) >= 0.5 && above >= 0.5);
             prop_assert!(share(spread.p99) >= 0.99 && share(spread.p99 - 1.0) < 0.99);
             prop_assert!(share(spread.max) == 1.0 && share(spread.max - 1.0) < 1.0);
         }
@@ -86,7 +88,7 @@ mod tests {
     #[test]
     fn quantiles_are_of_the_nearest_rank() {
         let all = Spread::of((1..=1000).rev().map(f64::from).collect());
-        assert_eq!(all, Some(Spread { n: 1000, median: 500.0, p99: 990.0, p999: 999.0, max: 1000.0 }));
+        assert_eq!(all, Some(Spread { n: 1000, median: 500.5, p99: 990.0, p999: 999.0, max: 1000.0 }));
         assert_eq!(Spread::of(vec![7.0]), Some(Spread { n: 1, median: 7.0, p99: 7.0, p999: 7.0, max: 7.0 }));
         assert_eq!(Spread::of(Vec::new()), None);
     }

@@ -55,6 +55,7 @@ fn compare(args: &CompareArgs, interrupt: &Interrupt) -> anyhow::Result<(Summary
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "compare")?;
     let cases = library::find(&args.files)?;
+    library::check_cases(&cases)?;
     let eyes = open_eyes(&args.checkpoint, args.size)?;
     let reference = reference(args, &eyes)?;
     let settings = Settings::new(CLIP_TICKS, CLIP_FPS, args.size);

@@ -7,6 +7,9 @@ use super::contest::Difference;
 use super::metrics::Metric;
 use super::summary::{CaseLine, LookLine, Printed, Speed, Summary};
 
+/// With fewer cases than these, intervals are not to be trusted.
+const FEW_CASES: usize = 10;
+
 /// All of it.
 pub fn of(printed: &Printed<'_>) -> String {
     let summary = printed.summary;
@@ -21,6 +24,10 @@ pub fn of(printed: &Printed<'_>) -> String {
         let none = contest.no_hazard;
         Some(format!("{name} against {baseline}: {fixed} fixed, {broken} broken, {unchanged} unchanged, {none} without a hazard to see"))
     }));
+    let few = summary.cases.len() < FEW_CASES;
+    lines.extend(
+        few.then(|| format!("{} cases are few: intervals from drawing them again are too narrow", summary.cases.len())),
+    );
     lines.extend(summary.gates.iter().map(|passage| passage.sentence.clone()));
     lines.extend(printed.speed.map(speed));
     lines.join("\n")

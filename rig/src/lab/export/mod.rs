@@ -23,6 +23,7 @@ use replay::{Exported, Log, Recording, exported};
 use serde::Serialize;
 
 use super::footage::decisive_tick;
+use super::library;
 use super::looks::{Studio, open_eyes};
 use crate::cli::ExportArgs;
 use crate::exit::{Usage, Verdict};
@@ -82,8 +83,8 @@ fn export(args: &ExportArgs) -> anyhow::Result<Summary> {
     let mut camera = Camera { studio: &mut studio, eyes: &mut eyes };
     let mut exports = Vec::new();
     for (file, out) in files {
-        let recording = Recording::open(file)?;
-        let export = export_one(args, (file, &recording), out, &mut camera, &interrupt);
+        let recording = Recording::open(&file)?;
+        let export = export_one(args, (&file, &recording), out, &mut camera, &interrupt);
         exports.push(export.with_context(|| file.display().to_string())?);
     }
     let panels = layout::layout(eyes.iter().map(Eye::name));
@@ -92,32 +93,35 @@ fn export(args: &ExportArgs) -> anyhow::Result<Summary> {
 }
 
 /// Where everything goes.
-struct Places<'a> {
+struct Places {
     layout: PathBuf,
-    files: Vec<(&'a Path, PathBuf)>,
+    /// What is exported, and to where.
+    files: Vec<(PathBuf, PathBuf)>,
 }
 
 /// One file goes to `OUT.mcap`, or into a folder as several do.
-fn places(args: &ExportArgs) -> anyhow::Result<Places<'_>> {
+fn places(args: &ExportArgs) -> anyhow::Result<Places> {
+    let given = library::cases(&args.files)?;
     let is_file = args.out.extension().is_some_and(|ending| ending == "mcap") && !args.out.is_dir();
-    if is_file && args.files.len() > 1 {
+    if is_file && given.len() > 1 {
         let sentence = format!("{}: is one file; expected a folder for several", args.out.display());
         return Err(Usage(sentence).into());
     }
     if is_file {
         output::check_file(&args.out)?;
         let layout = args.out.with_extension("layout.json");
-        return Ok(Places { layout, files: vec![(&args.files[0], args.out.clone())] });
+        return Ok(Places { layout, files: given.into_iter().map(|file| (file, args.out.clone())).collect() });
     }
     let mut names = BTreeSet::new();
     let mut files = Vec::new();
-    for file in &args.files {
-        let name = file.file_name().unwrap_or_default();
-        if !names.insert(name) {
+    for file in given {
+        let name = file.file_name().unwrap_or_default().to_owned();
+        let to = args.out.join(&name);
+        files.push((file, to));
+        if !names.insert(name.clone()) {
             let name = name.to_string_lossy();
             return Err(Usage(format!("two files are named {name}; expected names that differ")).into());
         }
-        files.push((file.as_path(), args.out.join(name)));
     }
     Ok(Places { layout: args.out.join("layout.json"), files })
 }

@@ -16,13 +16,15 @@ use crate::measures::criticality::Extremes;
 use crate::output;
 use crate::vision::Vision;
 
+/// Raised when verdicts are given otherwise.
+const VERDICTS: u32 = 2;
 /// How long after the intervention a fork goes on.
 const AFTER_TICKS: Tick = seconds(10);
 
 /// What would have happened without an intervention.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Counterfactual {
-    /// Whether the intervention was necessary, early, or needless.
+    /// Whether the intervention was necessary, early, needless, or in vain.
     pub verdict: Verdict,
     /// The first thing that goes wrong without it.
     pub harm: Option<Harm>,
@@ -32,6 +34,8 @@ pub struct Counterfactual {
     pub collision: Option<Harm>,
     /// From the intervention to the collision, seconds.
     pub collision_after_s: Option<f64>,
+    /// The first thing that went wrong all the same with it.
+    pub recorded_harm: Option<Harm>,
     /// How close it came to harm without it, whatever the verdict.
     pub closest: Extremes,
     /// What it follows from.
@@ -45,12 +49,18 @@ struct Key {
     recording: String,
     kernel: String,
     after_ticks: Tick,
+    verdicts: u32,
 }
 
 impl Key {
     fn of(recording: &Recording) -> Self {
         let digest = blake3::Hash::from_bytes(recording.digest()).to_hex();
-        Self { recording: digest.to_string(), kernel: KERNEL_VERSION.to_owned(), after_ticks: AFTER_TICKS }
+        Self {
+            recording: digest.to_string(),
+            kernel: KERNEL_VERSION.to_owned(),
+            after_ticks: AFTER_TICKS,
+            verdicts: VERDICTS,
+        }
     }
 }
 
@@ -67,6 +77,7 @@ impl Counterfactual {
             harm: course.harm,
             collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
             collision: course.collision,
+            recorded_harm: course.recorded_harm,
             closest: course.closest,
             key: Key::of(recording),
         };

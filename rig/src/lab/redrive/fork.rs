@@ -8,7 +8,7 @@ use kernel::events::{Event, EventKind};
 use kernel::scene::Weather;
 use kernel::time::{CLIP_TICKS, TICK_HZ, Tick};
 use kernel::{Controls, Keyframe, RoadNetwork, TickInput, World};
-use replay::{Label, Log, Recorder, Recording, Replayer};
+use replay::{Case, Label, Log, Recorder, Recording, Replayer};
 use serde::{Deserialize, Serialize};
 
 use crate::crew::Crew;
@@ -57,6 +57,8 @@ pub struct Course {
     pub harm: Option<Harm>,
     /// The first collision from then on.
     pub collision: Option<Harm>,
+    /// The first thing that went wrong in the recorded run from its takeover on.
+    pub recorded_harm: Option<Harm>,
     /// Tick of an intervention, which there is only with a safety bot.
     pub intervention: Option<Tick>,
     /// How critical it was from then on.
@@ -101,7 +103,7 @@ pub struct Harm {
     pub what: HarmKind,
     /// With what kind of road user a collision was; `scenery` stands for everything else.
     pub with: Option<String>,
-    /// Speed of the ego car, km/h.
+    /// Speed of the ego car just before, km/h.
     pub speed_kmh: f64,
 }
 
@@ -109,7 +111,7 @@ impl Fork {
     /// Drives it from the last keyframe that is at least 3 s before the intervention, or where bots may get
     /// bored again, long enough for that (the first one if there is none). Vision is that of the semantic bot.
     pub fn drive(&self, log: &Log, network: &Arc<RoadNetwork>, vision: Vision) -> anyhow::Result<(Course, Vision)> {
-        let at = log.intervention.context("holds no intervention")?.tick;
+        let at = takeover(log).context("holds neither an intervention nor a collision that nobody prevented")?;
         let start = self.start_of(log, at)?;
         let fork_tick = match self.otherwise {
             Otherwise::NoIntervention { earlier_ticks } => at.saturating_sub(earlier_ticks).max(start.tick + 1),
@@ -137,19 +139,21 @@ impl Fork {
             }
             let input = if tick < fork_tick { logged(log, tick)? } else { self.controls(bots) };
             recorder.mask_shown(shown);
+            let speed_mps = world.hud().speed_mps;
             let output = world.step(&input);
             recorder.tick(&input, &output, &world.part_hashes())?;
             if tick >= fork_tick {
-                let mut harms = output.events.iter().filter_map(|event| Harm::of(tick, event, &world));
+                let mut harms = output.events.iter().filter_map(|event| Harm::of(event, &world, speed_mps));
                 harm = harm.or_else(|| harms.clone().next());
                 collision = collision.or_else(|| harms.find(|harm| harm.what == HarmKind::Collision));
             }
         }
         let intervention = world.arbiter().intervention.map(|i| i.tick);
         let recording = recorder.finish(world.arbiter().outcome)?;
+        let recorded_harm = recorded_harm(log, network, at)?;
         let driven = Recording::from_bytes(&recording)?.into_log();
         let closest = Criticality::of(&driven, network, fork_tick..=driven.last_tick())?.extremes;
-        Ok((Course { recording, fork_tick, harm, collision, intervention, closest }, crew.into_vision()))
+        Ok((Course { recording, fork_tick, harm, collision, recorded_harm, intervention, closest }, crew.into_vision()))
     }
 
     fn start_of<'a>(&self, log: &'a Log, at: Tick) -> anyhow::Result<&'a Keyframe> {
@@ -205,6 +209,25 @@ fn logged(log: &Log, tick: Tick) -> anyhow::Result<TickInput> {
     log.input(tick).copied().with_context(|| format!("holds no controls of tick {tick}"))
 }
 
+/// Where a run was taken over, or a collision that nobody prevented ended it.
+pub fn takeover(log: &Log) -> Option<Tick> {
+    log.intervention.map(|i| i.tick).or_else(|| Case::window(log).map(|window| *window.end()))
+}
+
+/// What went wrong all the same from the takeover on.
+fn recorded_harm(log: &Log, network: &Arc<RoadNetwork>, at: Tick) -> anyhow::Result<Option<Harm>> {
+    let mut replayer = Replayer::new(log, network.clone())?;
+    replayer.seek(at - 1)?;
+    loop {
+        let speed_mps = replayer.world().hud().speed_mps;
+        let Some(output) = replayer.step()? else { return Ok(None) };
+        let harm = output.events.iter().find_map(|event| Harm::of(event, replayer.world(), speed_mps));
+        if harm.is_some() {
+            return Ok(harm);
+        }
+    }
+}
+
 /// The fork must leave the recorded run where that really was.
 fn check(log: &Log, network: &Arc<RoadNetwork>, world: &World) -> anyhow::Result<()> {
     let mut replayer = Replayer::new(log, network.clone())?;
@@ -227,7 +250,8 @@ impl Harm {
         Some(Self { tick: world.tick() + 1, what, with: None, speed_kmh: 3.6 * f64::from(world.hud().speed_mps) })
     }
 
-    fn of(tick: Tick, event: &Event, world: &World) -> Option<Self> {
+    /// That of an event of the world's tick, before which the ego car had a speed.
+    fn of(event: &Event, world: &World, speed_mps: f32) -> Option<Self> {
         let what = match event.kind {
             EventKind::CollisionActor | EventKind::CollisionScenery => HarmKind::Collision,
             EventKind::RedLight => HarmKind::RedLight,
@@ -242,7 +266,8 @@ impl Harm {
             EventKind::CollisionScenery => Some("scenery"),
             _ => None,
         };
-        Some(Self { tick, what, with: with.map(str::to_owned), speed_kmh: 3.6 * f64::from(event.speed_mps) })
+        let with = with.map(str::to_owned);
+        Some(Self { tick: world.tick(), what, with, speed_kmh: 3.6 * f64::from(speed_mps) })
     }
 
     /// What it was, how fast, and how long after a takeover.

@@ -20,10 +20,11 @@ use replay::{Log, Recording};
 use serde::Serialize;
 
 pub use self::counterfactual::Counterfactual;
-use self::fork::{Fork, Harm, Otherwise, from_takeover};
+use self::fork::{Fork, Harm, Otherwise, from_takeover, takeover};
 use self::verdict::Verdict;
 use crate::cli::RedriveArgs;
 use crate::exit::{self, Usage};
+use crate::lab::library;
 use crate::measures::criticality::{Extreme, Extremes};
 use crate::output::{self, PendingFolder, json_line};
 use crate::progress;
@@ -45,6 +46,7 @@ struct Line {
     recording: String,
     /// What the semantic bot looked through.
     checkpoint: String,
+    /// Of the takeover, or of the collision that nobody prevented.
     intervention_tick: Tick,
     fork_tick: Tick,
     verdict: Verdict,
@@ -55,6 +57,8 @@ struct Line {
     collision: Option<Harm>,
     /// From the recorded intervention to the collision, seconds; negative before it.
     collision_after_s: Option<f64>,
+    /// The first thing that went wrong in the recorded run from the takeover on.
+    recorded_harm: Option<Harm>,
     /// Tick of an intervention in the fork.
     intervention_again: Option<Tick>,
     /// How critical it was from the fork on.
@@ -72,8 +76,9 @@ struct Summary {
 pub fn run(args: &RedriveArgs, json: bool) -> anyhow::Result<exit::Verdict> {
     let out = PendingFolder::new(&args.out)?;
     let mut forks = Vec::new();
-    let bar = progress::bar("files", args.files.len() as u64);
-    for path in &args.files {
+    let files = library::cases(&args.files)?;
+    let bar = progress::bar("files", files.len() as u64);
+    for path in &files {
         forks.extend(redrive(args, path, out.path()).with_context(|| path.display().to_string())?);
         bar.inc(1);
     }
@@ -94,7 +99,10 @@ fn redrive(args: &RedriveArgs, path: &Path, out: &Path) -> anyhow::Result<Vec<Li
     let recording = Recording::open(path)?;
     let network = recording.network()?;
     let log = recording.into_log();
-    let at = log.intervention.context("holds no intervention, from which to go another way")?.tick;
+    if args.without_intervention {
+        log.intervention.context("holds no intervention that could be left out")?;
+    }
+    let at = takeover(&log).context("holds nothing that could be avoided: no intervention, no collision")?;
     if study::is_blind(&log.manifest.provenance) && !args.reveal {
         return Err(Usage("a blind drive; expected --reveal, which tells its checkpoint".into()).into());
     }
@@ -126,6 +134,7 @@ fn redrive(args: &RedriveArgs, path: &Path, out: &Path) -> anyhow::Result<Vec<Li
             harm: course.harm,
             collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
             collision: course.collision,
+            recorded_harm: course.recorded_harm,
             intervention_again: course.intervention,
             closest: course.closest,
         });
@@ -170,7 +179,10 @@ impl Line {
         let later = words(&self.collision, self.collision_after_s).filter(|_| self.collision != self.harm);
         let harm = harm.map(|harm| harm + &later.map(|later| format!("; {later}")).unwrap_or_default());
         let what = harm.or_else(|| self.near_miss()).unwrap_or_default();
-        format!("{}{variation}: {}{what}", self.file, self.verdict.name())
+        let came = self.recorded_harm.as_ref().filter(|_| self.verdict == Verdict::InVain);
+        let came =
+            came.map(|harm| format!("; with the takeover: {}", harm.words(harm.seconds_after(self.intervention_tick))));
+        format!("{}{variation}: {}{what}{}", self.file, self.verdict.name(), came.unwrap_or_default())
     }
 
     /// How close it came where nothing went wrong and nobody had to take over.
@@ -202,6 +214,7 @@ mod tests {
             harm_after_s: None,
             collision: None,
             collision_after_s: None,
+            recorded_harm: None,
             intervention_again: None,
             closest: Extremes {
                 min_ttc_s: Some(extreme),

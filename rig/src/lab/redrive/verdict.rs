@@ -12,6 +12,9 @@ const EARLY_TICKS: Tick = seconds(3);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
+    /// Harm of the same kind comes without it and came with it.
+    #[serde(rename = "in vain")]
+    InVain,
     /// Without it, harm comes within 3 s: a collision, a red light, the wrong way, or off the road.
     Necessary,
     /// Without it, harm comes later.
@@ -29,6 +32,7 @@ impl Verdict {
     pub fn of(course: &Course, otherwise: Otherwise, at: Tick) -> Self {
         match otherwise {
             Otherwise::NoIntervention { .. } => match &course.harm {
+                Some(harm) if course.recorded_harm.as_ref().is_some_and(|came| came.what == harm.what) => Self::InVain,
                 Some(harm) if harm.tick <= at + EARLY_TICKS => Self::Necessary,
                 Some(_) => Self::Early,
                 None => Self::Needless,
@@ -46,6 +50,7 @@ impl Verdict {
     /// As it is written.
     pub fn name(self) -> &'static str {
         match self {
+            Self::InVain => "in vain",
             Self::Necessary => "necessary",
             Self::Early => "early",
             Self::Needless => "needless",
@@ -65,7 +70,7 @@ mod tests {
         let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
         let collision = harm.clone().filter(|harm| harm.what == HarmKind::Collision);
         let closest = Extremes { min_ttc_s: None, min_pret_s: None, max_required_deceleration_mps2: None, pet_s: None };
-        Course { recording: Vec::new(), fork_tick: 1, harm, collision, intervention, closest }
+        Course { recording: Vec::new(), fork_tick: 1, harm, collision, recorded_harm: None, intervention, closest }
     }
 
     #[test]
@@ -76,6 +81,19 @@ mod tests {
         assert_eq!(verdict(Some((1180, HarmKind::RedLight))), Verdict::Necessary);
         assert_eq!(verdict(Some((1181, HarmKind::Collision))), Verdict::Early);
         assert_eq!(verdict(None), Verdict::Needless);
+    }
+
+    #[test]
+    fn harm_that_came_all_the_same_makes_an_intervention_vain() {
+        let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
+        let verdict = |harm, came| {
+            let recorded_harm = course(came, None).harm;
+            Verdict::of(&Course { recorded_harm, ..course(harm, None) }, otherwise, 1000)
+        };
+        let collision = |tick| Some((tick, HarmKind::Collision));
+        assert_eq!(verdict(collision(1010), collision(1012)), Verdict::InVain);
+        assert_eq!(verdict(collision(1010), Some((1012, HarmKind::OffRoad))), Verdict::Necessary);
+        assert_eq!(verdict(None, collision(1012)), Verdict::Needless);
     }
 
     #[test]

@@ -19,6 +19,7 @@ use replay::Recording;
 use serde::Serialize;
 
 use super::footage::Footage;
+use super::library;
 use super::looks::{Studio, look, open_eyes};
 use crate::cli::{CheckpointChoice, ReportArgs};
 use crate::exit::Verdict;
@@ -45,9 +46,10 @@ struct Summary {
 /// Runs `aeye report`.
 pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
     output::check_file(&args.out)?;
-    let html = render(&args.files, &args.checkpoint, args.size)?;
+    let files = library::cases(&args.files)?;
+    let html = render(&files, &args.checkpoint, args.size)?;
     output::write_file(&args.out, html.as_bytes())?;
-    let summary = Summary { report: args.out.display().to_string(), cases: args.files.len(), bytes: html.len() };
+    let summary = Summary { report: args.out.display().to_string(), cases: files.len(), bytes: html.len() };
     output::print(json, &summary, || summary.report.clone())?;
     Ok(Verdict::Ok)
 }
@@ -87,7 +89,7 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
         bail!("no case is left: expected one of a drive that counts");
     }
     let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
-    Page::new(&eyes, &overall, &seen, (&exposure(files)?, &tally), cases).render()
+    Page::new(&eyes, size, &overall, &seen, (&exposure(files)?, &tally), cases).render()
 }
 
 /// What was driven.

@@ -119,6 +119,8 @@ pub struct Page {
     style: &'static str,
     version: &'static str,
     fps: u32,
+    /// Of the pictures, as in `256x128`.
+    size: String,
     checkpoints: Vec<Checkpoint>,
     tiles: Vec<Tile>,
     overall: Vec<Row>,
@@ -130,6 +132,7 @@ impl Page {
     /// From its parts; `seen` is what appears in any picture.
     pub fn new(
         eyes: &[Eye],
+        (width, height): (u32, u32),
         overall: &[ConfusionMatrix],
         seen: &Seen,
         (exposure, tally): (&Exposure, &Tally),
@@ -154,6 +157,7 @@ impl Page {
             style: STYLE,
             version: env!("CARGO_PKG_VERSION"),
             fps: CLIP_FPS,
+            size: format!("{width}x{height}"),
             checkpoints: eyes.iter().map(checkpoint).collect(),
             tiles,
             overall: score_rows(overall, true),

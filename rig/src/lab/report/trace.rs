@@ -29,7 +29,7 @@ pub fn of(footage: &Footage) -> Option<Trace> {
     let end = decisive_tick(&footage.log);
     let moment = if footage.log.intervention.is_some() { "takeover" } else { "collision" };
     let svg = STANDARD.encode(picture(&criticality.samples, end, moment));
-    let extremes = criticality.extremes.lines().into_iter().map(|(name, value)| format!("{name} {value}"));
+    let extremes = criticality.lines().into_iter().map(|(name, value)| format!("{name} {value}"));
     let caption = extremes.collect::<Vec<_>>().join("; ");
     Some(Trace { svg, caption })
 }

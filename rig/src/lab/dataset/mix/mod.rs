@@ -116,6 +116,9 @@ pub fn run(args: &MixArgs, json: bool) -> anyhow::Result<Verdict> {
 pub fn make(args: &MixArgs, interrupt: &Interrupt) -> anyhow::Result<Sets> {
     let natural = Dataset::read(&args.natural)?;
     let (pool, cases) = (Dataset::read(&args.pool)?, Dataset::read(&args.cases)?);
+    natural.check_kind(false)?;
+    pool.check_kind(false)?;
+    cases.check_kind(true)?;
     let replace = args.replace.unwrap_or(cases.manifest.train_frames);
     let recipe = |by| Recipe { seed: args.seed, replace, natural: natural.manifest.recipe.clone(), by };
     let corner_case = recipe(Replacement::CornerCase { cases: cases.manifest.recipe.clone() });

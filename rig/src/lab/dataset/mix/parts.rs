@@ -31,6 +31,15 @@ impl Dataset {
         self.frames.iter().filter(|line| line.split == "train")
     }
 
+    /// Refuses what is no dataset of corner cases, or what is one.
+    pub fn check_kind(&self, of_cases: bool) -> anyhow::Result<()> {
+        if matches!(self.manifest.recipe, manifest::Recipe::Cases(_)) == of_cases {
+            return Ok(());
+        }
+        let expected = if of_cases { "a dataset of corner cases" } else { "natural frames, not corner cases" };
+        bail!("{}: expected {expected}", self.folder.display())
+    }
+
     /// Refuses to take more training frames than there are.
     pub fn check_holds(&self, wanted: u32) -> anyhow::Result<()> {
         let there = self.manifest.train_frames;
