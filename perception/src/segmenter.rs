@@ -300,7 +300,7 @@ mod tests {
         match Segmenter::on(Compute::Cuda, &checkpoint, 256, 128) {
             Ok(mut cuda) => agree(&cpu.output(image).unwrap(), &cuda.output(image).unwrap()).unwrap(),
             Err(error) => {
-                let lacks = onnx::runtime("cuda").err().expect("else it would work");
+                let lacks = onnx::runtime("cuda").expect_err("else it would work");
                 assert_eq!(error.to_string(), format!("inference on cuda does not work here: {lacks}"));
             }
         }
