@@ -57,12 +57,12 @@ impl Rig {
         Self { child, said }
     }
 
-    /// Waits for a line that contains the words.
-    pub fn says(&self, words: &str) {
+    /// Waits for a line that contains the words; gives the lines before it.
+    pub fn says(&self, words: &str) -> Vec<String> {
         let mut heard = Vec::new();
         while let Ok(line) = self.said.recv_timeout(PATIENCE) {
             if line.contains(words) {
-                return;
+                return heard;
             }
             heard.push(line);
         }

@@ -130,8 +130,7 @@ fn figures(ui: &mut Ui, status: &Status) {
             format!("{}, {}", status.totals.runs, exposure(status.totals.odometer_mm, status.totals.ticks)),
         ),
         ("corner cases so far", status.totals.cases.to_string()),
-        ("mask age", status.mask_age_us.map_or("no mask yet".into(), |us| format!("{} ms", us / 1000))),
-        ("image age", status.image_age_us.map_or("no image yet".into(), |us| format!("{} ms", us / 1000))),
+        ("age of mask, image", format!("{}, {}", age(status.mask_age_us), age(status.image_age_us))),
         ("last tick was late by", format!("{:.1} ms", status.late_us as f64 / 1e3)),
     ];
     if status.totals.cases > 0 {
@@ -155,6 +154,11 @@ fn figures(ui: &mut Ui, status: &Status) {
             ui.end_row();
         }
     });
+}
+
+/// Of what is on a screen.
+fn age(age_us: Option<u64>) -> String {
+    age_us.map_or("none yet".into(), |us| format!("{} ms", us / 1000))
 }
 
 /// What the safety driver has to do to take over.
