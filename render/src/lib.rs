@@ -30,5 +30,5 @@ pub use renderer::{Preset, RenderOptions, Renderer};
 pub use scenery::FIRST_PARKED_INSTANCE;
 pub use tags::SemanticTag;
 
-/// Version of the renderer; another one may draw a scene differently.
-pub const RENDERER_VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Version of the renderer: raised whenever the same scene gives other pixels.
+pub const RENDERER_VERSION: &str = "0.1.1";

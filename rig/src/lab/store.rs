@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use kernel::time::Tick;
+use render::RENDERER_VERSION;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
@@ -24,8 +25,10 @@ pub struct Key {
     pub fps: u32,
     /// Width and height of the pictures, pixels.
     pub size: (u32, u32),
-    /// Version of the program, hence of the renderer and the measures.
+    /// Version of the program, hence of the measures.
     pub program: String,
+    /// Version of the renderer.
+    pub renderer: String,
     /// The graphics adapter and its driver.
     pub adapter: String,
     /// Digest of the checkpoint, if one looks.
@@ -55,6 +58,7 @@ impl Settings {
             fps: self.fps,
             size: self.size,
             program: env!("CARGO_PKG_VERSION").into(),
+            renderer: RENDERER_VERSION.into(),
             adapter: self.adapter.clone(),
             checkpoint: eye.map(Eye::digest),
         }
@@ -168,8 +172,8 @@ mod tests {
     use super::*;
 
     fn key(log: &str) -> Key {
-        let (program, adapter) = ("1".to_owned(), "cpu".to_owned());
-        Key { log: log.into(), last_ticks: 180, fps: 10, size: (64, 32), program, adapter, checkpoint: None }
+        let [program, renderer, adapter] = ["1", "1", "cpu"].map(str::to_owned);
+        Key { log: log.into(), last_ticks: 180, fps: 10, size: (64, 32), program, renderer, adapter, checkpoint: None }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::Context;
 use kernel::RoadNetwork;
 use kernel::time::{Tick, seconds};
+use render::RENDERER_VERSION;
 use replay::{KERNEL_VERSION, Recording};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +49,7 @@ struct Key {
     /// Digest of the recording, which names the checkpoint.
     recording: String,
     kernel: String,
+    renderer: String,
     after_ticks: Tick,
     verdicts: u32,
 }
@@ -58,6 +60,7 @@ impl Key {
         Self {
             recording: digest.to_string(),
             kernel: KERNEL_VERSION.to_owned(),
+            renderer: RENDERER_VERSION.to_owned(),
             after_ticks: AFTER_TICKS,
             verdicts: VERDICTS,
         }
