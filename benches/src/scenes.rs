@@ -5,10 +5,11 @@ use std::fs;
 use std::io::Cursor;
 use std::path::PathBuf;
 
-use ::tests::scenes::{Scene, busy_hamlet, follow_route};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{SceneSnapshot, TickInput, World};
 use replay::{Log, Manifest, Provenance, Recorder, Recording};
+
+use ::tests::scenes::{Scene, busy_hamlet, follow_route};
 
 /// Ticks of driving before measuring starts: traffic has spread by then.
 pub const WARM_UP_TICKS: Tick = seconds(20);

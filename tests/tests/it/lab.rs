@@ -3,11 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use aeye::cli::{InspectArgs, RerenderArgs};
+use aeye::commands::{inspect, rerender};
+use aeye::exit::{self, Verdict};
+use drivers::checkpoint::CheckpointChoice;
+use lab::report;
 use replay::Recording;
-use rig::cli::{CheckpointChoice, InspectArgs, RerenderArgs};
-use rig::commands::inspect;
-use rig::exit::{self, Verdict};
-use rig::lab::{report, rerender};
 use tests::files::contents;
 use tests::recordings::{TAKEOVER, recorded};
 

@@ -1,12 +1,12 @@
 //! The simulated semantic driver is a function of mask and HUD: what the mask shows changes what it
 //! does, and the truth behind it does not.
 
+use drivers::semantic::SemanticBot;
+use drivers::{Driver, MaskView, SemanticView};
 use kernel::Controls;
 use kernel::events::{Hud, RouteArrow};
 use kernel::map::Turn;
 use render::SemanticTag;
-use rig::drivers::semantic::SemanticBot;
-use rig::drivers::{Driver, MaskView, SemanticView};
 
 const WIDTH: usize = 256;
 const HEIGHT: usize = 128;

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::Path;
 
+use base::maps::Map;
+use base::progress::Interrupt;
+use drivers::simulate;
+use drivers::vision::{Eye, Vision};
+use lab::campaign::{Plan, RunLine, Until, drive_all};
 use render::{RenderOptions, Renderer};
 use replay::Recording;
-use rig::campaign::{Plan, RunLine, Until, drive_all};
-use rig::maps::Map;
-use rig::progress::Interrupt;
-use rig::simulate;
-use rig::vision::{Eye, Vision};
 
 fn plan(out: &Path) -> Plan {
     let maps = Map::find_all(&["all".to_owned()]).expect("bundled maps");

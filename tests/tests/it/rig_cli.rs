@@ -4,9 +4,10 @@
 use std::fs;
 use std::path::Path;
 
+use aeye::cli::Cli;
+use aeye::exit;
+use base::failure::sentence;
 use clap::{CommandFactory, Parser};
-use rig::cli::Cli;
-use rig::exit;
 
 /// A map, to be cut in half.
 const CITY: &str = include_str!("../../../kernel/maps/city.xodr");
@@ -14,8 +15,8 @@ const CITY: &str = include_str!("../../../kernel/maps/city.xodr");
 /// Exit code and sentence of a command.
 fn aeye(arguments: &[&str]) -> (u8, String) {
     let cli = Cli::try_parse_from([&["aeye"], arguments].concat()).expect("a valid command line");
-    let result = rig::run(&cli);
-    (exit::number(&result), result.err().map(|e| exit::sentence(&e)).unwrap_or_default())
+    let result = aeye::run(&cli);
+    (exit::number(&result), result.err().map(|e| sentence(&e)).unwrap_or_default())
 }
 
 /// What remains in a folder, by name.

@@ -4,12 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use aeye::cli::CompareArgs;
+use aeye::commands::compare;
+use aeye::exit::{self, Verdict};
+use base::failure::sentence;
+use drivers::checkpoint::CheckpointChoice;
 use kernel::events::EventKind;
 use render::{Camera, RenderOptions, Renderer};
 use replay::{Case, Recording};
-use rig::cli::{CheckpointChoice, CompareArgs};
-use rig::exit::{self, Verdict};
-use rig::lab::compare;
 use serde_json::Value;
 use tests::files::contents;
 use tests::recordings::{ALONE, record};
@@ -155,7 +157,7 @@ fn what_cannot_be_compared_is_said_and_another_kernels_case_counts_by_its_pictur
     let said = |args: &CompareArgs| {
         let result = compare::run(args, true);
         assert_eq!(exit::number(&result), 2);
-        exit::sentence(&result.unwrap_err())
+        sentence(&result.unwrap_err())
     };
     let sentence = said(&args(&[&case], &[TRUTH], &out));
     assert!(sentence.contains("two or more checkpoints"), "{sentence}");

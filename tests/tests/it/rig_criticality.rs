@@ -3,9 +3,9 @@
 use glam::{Vec2, Vec3};
 use kernel::scene::SceneSnapshot;
 use kernel::time::{TICK_HZ, Tick};
+use measures::Criticality;
+use measures::criticality::{HORIZON_S, Sample};
 use replay::{Case, Recording, Replayer};
-use rig::measures::Criticality;
-use rig::measures::criticality::{HORIZON_S, Sample};
 use tests::recordings::{TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
 

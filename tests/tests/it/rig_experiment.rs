@@ -2,16 +2,17 @@
 
 use std::fs;
 
+use aeye::cli::Cli;
+use aeye::exit;
+use base::failure::sentence;
 use clap::Parser;
-use rig::cli::Cli;
-use rig::exit;
-use rig::lab::experiment::{Preset, Recipe};
+use lab::experiment::{Preset, Recipe};
 
 /// Exit code and sentence of `aeye experiment`.
 fn experiment(arguments: &[&str]) -> (u8, String) {
     let cli = Cli::try_parse_from([&["aeye", "experiment"], arguments].concat()).expect("a valid command line");
-    let result = rig::run(&cli);
-    (exit::number(&result), result.err().map(|e| exit::sentence(&e)).unwrap_or_default())
+    let result = aeye::run(&cli);
+    (exit::number(&result), result.err().map(|e| sentence(&e)).unwrap_or_default())
 }
 
 #[test]

@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use aeye::cli::Cli;
+use aeye::exit;
+use base::failure::sentence;
 use clap::Parser;
 use foxglove::messages::{CompressedImage, FrameTransform, FrameTransforms, Log as Line, PoseInFrame, SceneUpdate};
 use glam::{DQuat, DVec3};
@@ -11,8 +14,6 @@ use kernel::time::Tick;
 use prost::Message;
 use render::Camera;
 use replay::{Case, Log, Recording, Replayer, nanoseconds};
-use rig::cli::Cli;
-use rig::exit;
 use tests::recordings::{TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
 
@@ -32,8 +33,8 @@ fn files(folder: &Path) -> (PathBuf, PathBuf) {
 /// Exit code and sentence of `aeye export`.
 fn export(arguments: &[&str]) -> (u8, String) {
     let cli = Cli::try_parse_from([&["aeye", "--json", "export"], arguments].concat()).expect("a valid command line");
-    let result = rig::run(&cli);
-    (exit::number(&result), result.err().map(|e| exit::sentence(&e)).unwrap_or_default())
+    let result = aeye::run(&cli);
+    (exit::number(&result), result.err().map(|e| sentence(&e)).unwrap_or_default())
 }
 
 /// Messages by topic: their times and bytes.

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use lab::eval::people;
 use perception::classes::PEDESTRIAN_TAG;
 use render::{Camera, Frame, Preset, RenderOptions, Renderer};
-use rig::lab::eval::people;
 use tests::scenes::{busy_city, busy_hamlet};
 
 /// The pedestrians of a frame, by number in the order of their ids: the instances as a dataset has them,

@@ -5,11 +5,11 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
+use base::progress::Interrupt;
+use drivers::vision::Eye;
+use lab::pipeline::{Crew, Film, Studios, Work};
+use measures::footage::Footage;
 use render::Frame;
-use rig::lab::footage::Footage;
-use rig::lab::pipeline::{Crew, Film, Studios, Work};
-use rig::progress::Interrupt;
-use rig::vision::Eye;
 use tests::recordings::recorded;
 
 /// Looks at one file and panics at a frame, or at each.

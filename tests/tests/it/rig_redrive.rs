@@ -3,14 +3,16 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use aeye::cli::RedriveArgs;
+use aeye::commands::redrive;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::{Eye, Vision};
 use kernel::Controls;
 use kernel::arbiter::Outcome;
+use lab::redrive::Counterfactual;
+use measures::Criticality;
 use render::{RenderOptions, Renderer};
 use replay::{Case, Recording, verify};
-use rig::cli::{CheckpointChoice, RedriveArgs};
-use rig::lab::redrive::{self, Counterfactual};
-use rig::measures::Criticality;
-use rig::vision::{Eye, Vision};
 use serde_json::Value;
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;

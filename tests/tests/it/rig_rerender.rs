@@ -5,10 +5,12 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use aeye::cli::RerenderArgs;
+use aeye::commands::rerender;
+use aeye::exit::Verdict;
+use base::failure::sentence;
+use drivers::checkpoint::CheckpointChoice;
 use replay::Recording;
-use rig::cli::{CheckpointChoice, RerenderArgs};
-use rig::exit::{self, Verdict};
-use rig::lab::rerender;
 use tests::files::contents;
 use tests::recordings::recorded_in;
 use tests::scenes::{busy_city, country_road};
@@ -94,7 +96,7 @@ fn what_cannot_be_rendered_is_said_in_a_sentence_and_leaves_nothing() {
     ];
     for (files, checkpoint, out, words) in cases {
         let error = rerender::run(&args(files, std::slice::from_ref(checkpoint), 2, out), true).unwrap_err();
-        let said = exit::sentence(&error);
+        let said = sentence(&error);
         assert!(said.contains(words) && said.len() < 300, "{said}");
         assert!(!place("out").exists(), "{said}");
     }

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use measures::statistics::of_recordings;
 use replay::{Case, Recording};
-use rig::statistics::of_recordings;
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
 

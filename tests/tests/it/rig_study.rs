@@ -3,24 +3,26 @@
 use std::fs;
 use std::path::Path;
 
+use aeye::cli::Cli;
+use aeye::exit;
+use base::failure::sentence;
 use clap::Parser;
+use drivers::Driver;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::safety::SafetyBot;
 use kernel::arbiter::{Intervention, Outcome, Phase};
 use kernel::events::EventKind;
 use kernel::{Controls, TickInput, World};
+use lab::report;
+use measures::{Measures, Tally};
 use replay::{Annotation, Case, Label, Manifest, Provenance, Recorder, Recording};
-use rig::cli::{CheckpointChoice, Cli};
-use rig::drivers::Driver;
-use rig::drivers::safety::SafetyBot;
-use rig::exit;
-use rig::lab::report;
-use rig::measures::{Measures, Tally};
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::{Scene, busy_city, follow_route, scene};
 
 /// Exit code and sentence of a command.
 fn aeye(arguments: &[&str]) -> (u8, String) {
-    let result = rig::run(&Cli::try_parse_from([&["aeye"], arguments].concat()).expect("a valid command line"));
-    (exit::number(&result), result.err().map(|e| exit::sentence(&e)).unwrap_or_default())
+    let result = aeye::run(&Cli::try_parse_from([&["aeye"], arguments].concat()).expect("a valid command line"));
+    (exit::number(&result), result.err().map(|e| sentence(&e)).unwrap_or_default())
 }
 
 fn city(seed: u64) -> Scene {
@@ -227,7 +229,7 @@ fn answers_are_attached_beside_a_recording_and_never_to_another() {
     assert_eq!(aeye(&["questionnaire", &first, "--answers", &after]), (0, String::new()));
     assert_eq!(fs::read(&first).expect("there"), bytes, "the recording is as it was");
     let recording = Recording::open(Path::new(&first)).expect("a recording");
-    let answers = rig::study::answers_of(Path::new(&first), &recording).expect("valid");
+    let answers = study::answers_of(Path::new(&first), &recording).expect("valid");
     let answers: Vec<String> = answers.answers().map(|(key, answer)| format!("{key} {answer}")).collect();
     assert_eq!(answers, ["safety.after.stress 6", "safety.before.stress 2", "semantic.remark tired"]);
     assert_eq!(aeye(&["inspect", &first]).0, 0);

@@ -1,14 +1,14 @@
 //! A drive with two simulated wheels: whatever happens to them is in the recording, and a wheel that
 //! is lost stops the car without being an intervention.
 
+use drivers::session::Session;
 use kernel::time::Tick;
 use kernel::{Controls, Seat, World};
+use live::units::calibration::{Axis, Buttons, Calibration, Curve};
+use live::units::source::{AxisRange, DeviceInfo, RawEvent, Simulated};
+use live::units::{CarState, Polled, SeatChoice, Seats};
 use proptest::prelude::*;
 use replay::{Manifest, Note, NoteKind, Provenance, Recording, verify};
-use rig::session::Session;
-use rig::units::calibration::{Axis, Buttons, Calibration, Curve};
-use rig::units::source::{AxisRange, DeviceInfo, RawEvent, Simulated};
-use rig::units::{CarState, Polled, SeatChoice, Seats};
 use tests::scenes::{Scene, follow_route, scene};
 
 const NAME: &str = "simulated wheel";

@@ -1,0 +1,84 @@
+//! Arguments of simulated drives.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use drivers::checkpoint::CheckpointChoice;
+use lab::experiment::Preset;
+
+use super::values::{jobs, people, preset};
+
+/// Arguments of `campaign`.
+#[derive(Args, Clone, Debug)]
+#[command(group = clap::ArgGroup::new("until").required(true).args(["runs", "km", "cases", "pedestrian_cases"]))]
+pub struct CampaignArgs {
+    /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
+    /// the same runs.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones (default: the scenario's
+    /// map, or all).
+    #[arg(long, value_delimiter = ',', value_name = "NAMES|all")]
+    pub maps: Vec<String>,
+    /// A scenario file; its seed and length are replaced for each run.
+    #[arg(long, value_name = "FILE.toml")]
+    pub scenario: Option<PathBuf>,
+    /// Number of runs of each checkpoint.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub runs: Option<u32>,
+    /// Kilometres of each checkpoint.
+    #[arg(long)]
+    pub km: Option<f64>,
+    /// Corner cases of each checkpoint.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub cases: Option<u32>,
+    /// Corner cases of each checkpoint with the label `walker`: takeovers because of people on foot.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub pedestrian_cases: Option<u32>,
+    /// People on foot, instead of as many as the scenario or the map's default has.
+    #[arg(long, value_parser = people, value_name = "N")]
+    pub pedestrians: Option<u16>,
+    /// Longest simulated time of a run, seconds.
+    #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(10..=86_400))]
+    pub run_seconds: u32,
+    /// Seed of the campaign; run `i` follows from it and `i` alone.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs)]
+    pub jobs: Option<u16>,
+    /// Folder of the results; a campaign that was interrupted goes on there.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `demo`.
+#[derive(Args, Clone, Debug)]
+pub struct DemoArgs {
+    /// Seed of the campaign.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Folder of the results; a demo that was interrupted goes on there.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `experiment`.
+#[derive(Args, Clone, Debug)]
+pub struct ExperimentArgs {
+    /// The experiment's numbers: twenty minutes, an hour, a night (on two cores), or as in the paper.
+    #[arg(long, value_parser = preset(), required_unless_present = "recipe", conflicts_with = "recipe")]
+    pub preset: Option<Preset>,
+    /// A file with other numbers; `--print-recipe` shows what it has to hold.
+    #[arg(long, value_name = "FILE.toml")]
+    pub recipe: Option<PathBuf>,
+    /// Print the recipe as TOML and do nothing.
+    #[arg(long)]
+    pub print_recipe: bool,
+    /// Drives at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs)]
+    pub jobs: Option<u16>,
+    /// Folder of the results; an experiment that was interrupted goes on there.
+    #[arg(long, value_name = "DIR", required_unless_present = "print_recipe")]
+    pub out: Option<PathBuf>,
+}

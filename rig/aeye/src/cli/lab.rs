@@ -1,0 +1,153 @@
+//! Arguments of what looks at corner cases again.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use drivers::checkpoint::CheckpointChoice;
+use kernel::time::{CLIP_FPS, Tick};
+use lab::compare::Gate;
+
+use super::values::{duration, frame_rate, jobs, moment, size};
+
+/// Arguments of `rerender`.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = "aeye rerender <FILE>... --checkpoint <C>... --out <DIR> [OPTIONS]")]
+pub struct RerenderArgs {
+    /// Recordings or cases, or folders with cases anywhere below.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Length of the window that ends at the intervention (or at the end), as in `3s`.
+    #[arg(long, default_value = "3s", value_parser = duration)]
+    pub last: Tick,
+    /// Frames a second; must divide 60.
+    #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
+    pub fps: u32,
+    /// Size of the pictures.
+    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs)]
+    pub jobs: Option<u16>,
+    /// Folder of the results. One that this command began is completed: what is whole and follows from
+    /// the same files, checkpoints and options is kept.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `export`.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = "aeye export <FILE>... [--checkpoint <C>...] --out <OUT.mcap|DIR> [OPTIONS]")]
+pub struct ExportArgs {
+    /// Recordings or cases, or folders with cases anywhere below.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints whose masks come along with the ground truth.
+    #[arg(long, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
+    /// window everything is exported.
+    #[arg(long, value_parser = duration, conflicts_with_all = ["from", "to"])]
+    pub last: Option<Tick>,
+    /// Only from this time of the run on, as in `10s`.
+    #[arg(long, value_parser = moment, value_name = "TIME")]
+    pub from: Option<Tick>,
+    /// Only up to this time of the run, as in `20s`.
+    #[arg(long, value_parser = moment, value_name = "TIME")]
+    pub to: Option<Tick>,
+    /// Pictures a second; must divide 60. What is measured is exported at every tick.
+    #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
+    pub fps: u32,
+    /// Size of the pictures.
+    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// File of the export, with its layout for viewers beside it; or a folder, for several files.
+    #[arg(long, value_name = "OUT.mcap|DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `compare`.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = "aeye compare <CASE>... --checkpoint <A> <B>... --out <DIR> [OPTIONS]")]
+pub struct CompareArgs {
+    /// Corner cases, or folders with cases anywhere below.
+    #[arg(required = true, value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Two or more checkpoints; the first is the baseline.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// A condition on every checkpoint but the baseline, as in `ped_iou>=0.5`. Metrics: ped_iou, miou,
+    /// ped_recall_on_path, hazards_seen (share of the hazards seen 1 s or more before the intervention),
+    /// first_sight_s (mean), and against the baseline the numbers of cases fixed and broken.
+    #[arg(long, value_name = "METRIC>=NUMBER")]
+    pub gate: Vec<Gate>,
+    /// A checkpoint than which no other may be worse: of no metric may the paired 95 % interval of the
+    /// difference lie below 0 as a whole.
+    #[arg(long, value_name = "NAME")]
+    pub no_worse_than: Option<String>,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs)]
+    pub jobs: Option<u16>,
+    /// Folder of the results. One that this command began is completed: what follows from the same cases,
+    /// checkpoints and size is kept.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `redrive`.
+#[derive(Args, Clone, Debug)]
+#[command(group = clap::ArgGroup::new("counterfactual").required(true).args(["without_intervention", "checkpoint"]))]
+pub struct RedriveArgs {
+    /// Recordings or cases with an intervention (or a collision that nobody prevented, for
+    /// `--checkpoint`), or folders with cases anywhere below.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// The safety driver does nothing from the tick of the intervention on; the semantic driver is a bot
+    /// that looks through the recorded checkpoint. What would have happened?
+    #[arg(long)]
+    pub without_intervention: bool,
+    /// Bots drive from the first tick at hand, at least 3 s before the intervention, the semantic one
+    /// looking through this checkpoint. Is there an intervention again?
+    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Option<CheckpointChoice>,
+    /// Where the recorded checkpoint may be found, if it does not come with the program.
+    #[arg(long, value_name = "FILE.onnx")]
+    pub recorded: Vec<CheckpointChoice>,
+    /// Tell the checkpoint of blind drives.
+    #[arg(long)]
+    pub reveal: bool,
+    /// Further forks of each file with other weather of the paper's ranges and, without the
+    /// intervention, with the safety driver gone 0.1 s earlier each; through another checkpoint, with
+    /// safety drivers of other reaction times.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=30))]
+    pub vary: u16,
+    /// How long after the intervention a fork goes on, seconds.
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=60))]
+    pub seconds: u16,
+    /// Folder of the forks' recordings and of `redrive.jsonl`; must not exist or be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `report`.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = "aeye report <CASE>... --checkpoint <C>... --out <FILE.html> [OPTIONS]")]
+pub struct ReportArgs {
+    /// Corner cases, or folders with cases anywhere below; the recordings beside them give route and kilometres.
+    #[arg(required = true, value_name = "CASE")]
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Size of the pictures.
+    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Where the page goes.
+    #[arg(long, value_name = "FILE.html")]
+    pub out: PathBuf,
+}

@@ -1,0 +1,99 @@
+//! The command line of `aeye`.
+
+mod campaign;
+mod lab;
+mod learning;
+mod live;
+mod recordings;
+mod values;
+
+use clap::{Parser, Subcommand};
+
+pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
+pub use lab::{CompareArgs, ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
+pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, RebuildArgs, TrainArgs};
+pub use live::{
+    DoctorArgs, DriveArgs, PictureArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs, WheelListArgs,
+};
+pub use recordings::{InspectArgs, QuestionnaireArgs, StatisticsArgs, VerifyArgs};
+
+/// Drive by the eyes of a network, record every tick, and learn from every takeover.
+///
+/// Data goes to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 error (unreadable,
+/// damaged), 2 usage, 3 a check failed.
+#[derive(Debug, Parser)]
+#[command(name = "aeye", version)]
+pub struct Cli {
+    /// Print JSON on stdout instead of text.
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Every command.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Drive in windows, or one run without, and record it.
+    Drive(Box<DriveArgs>),
+    /// Simulated drives, headless, until so many runs, kilometres or corner cases.
+    Campaign(CampaignArgs),
+    /// Simulate recordings again and compare every tick.
+    Verify(VerifyArgs),
+    /// Say what is in recordings or cases.
+    Inspect(InspectArgs),
+    /// How often corner cases happened: kilometres, rates with intervals, ratios.
+    Statistics(StatisticsArgs),
+    /// Look at a recording or case in a window, tick by tick.
+    View(ViewArgs),
+    /// Attach answers that were given after a drive.
+    Questionnaire(QuestionnaireArgs),
+    /// Render the window of recordings or cases through checkpoints.
+    Rerender(RerenderArgs),
+    /// Which corner cases another checkpoint fixes and breaks.
+    Compare(CompareArgs),
+    /// Drive corner cases on from before the intervention: was it necessary?
+    Redrive(RedriveArgs),
+    /// Write recordings or cases with pictures and scene for Foxglove, Lichtblick or Rerun.
+    Export(ExportArgs),
+    /// Make datasets.
+    #[command(subcommand)]
+    Dataset(DatasetCommand),
+    /// Train Fast-SCNN from a dataset folder.
+    Train(TrainArgs),
+    /// Measure a checkpoint on a dataset folder.
+    Eval(EvalArgs),
+    /// One self-contained page about corner cases.
+    Report(ReportArgs),
+    /// The paper from end to end: do corner cases make networks better?
+    Experiment(ExperimentArgs),
+    /// Drive until three corner cases, verify, render them again, and write a report.
+    Demo(DemoArgs),
+    /// List and calibrate wheels and gamepads.
+    #[command(subcommand)]
+    Wheel(WheelCommand),
+    /// Say what this machine has and how fast it is.
+    Doctor(DoctorArgs),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_campaign_needs_exactly_one_end() {
+        let parse = |tail: &[&str]| {
+            let head = ["aeye", "campaign", "--checkpoint", "truth", "--out", "d"];
+            Cli::try_parse_from(head.iter().chain(tail)).is_ok()
+        };
+        assert!(parse(&["--runs", "4"]) && parse(&["--km", "1.5"]));
+        assert!(!parse(&[]) && !parse(&["--runs", "4", "--cases", "1"]));
+    }
+}

@@ -1,0 +1,56 @@
+//! Arguments of what reads recordings and corner cases, one by one.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Arguments of `verify`.
+#[derive(Args, Clone, Debug)]
+pub struct VerifyArgs {
+    /// Recordings or cases, or folders with such files anywhere below.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Also go back this many ticks again and again and compare (rollback self-check).
+    #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(1..=600))]
+    pub rewind: Option<u16>,
+    /// Compare with this recording tick by tick, and name the field that differs first.
+    #[arg(long, value_name = "FILE")]
+    pub against: Option<PathBuf>,
+}
+
+/// Arguments of `inspect`.
+#[derive(Args, Clone, Debug)]
+pub struct InspectArgs {
+    /// Recordings or cases, or folders with such files anywhere below.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Tell which checkpoint drove blind drives.
+    #[arg(long)]
+    pub reveal: bool,
+}
+
+/// Arguments of `questionnaire`.
+#[derive(Args, Clone, Debug)]
+pub struct QuestionnaireArgs {
+    /// Recordings.
+    #[arg(required = true, value_name = "RECORDING")]
+    pub files: Vec<PathBuf>,
+    /// The drivers' answers.
+    #[arg(long, value_name = "FILE.toml")]
+    pub answers: PathBuf,
+}
+
+/// Arguments of `statistics`.
+#[derive(Args, Clone, Debug)]
+pub struct StatisticsArgs {
+    /// Recordings, in the order in which they were driven, or folders of them. Corner cases in folders
+    /// and drives to get used to the rig do not count.
+    #[arg(required = true, value_name = "FILE|DIR")]
+    pub files: Vec<PathBuf>,
+    /// The checkpoint that rates are compared with (default: that of the first recording).
+    #[arg(long, value_name = "NAME")]
+    pub reference: Option<String>,
+    /// Tell the checkpoints of blind drives; without this they are all one.
+    #[arg(long)]
+    pub reveal: bool,
+}

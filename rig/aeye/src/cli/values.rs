@@ -1,0 +1,101 @@
+//! Values of arguments, read from text.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use kernel::scenario::MOST_OF_A_KIND;
+use kernel::time::{TICK_HZ, Tick};
+use lab::experiment::Preset;
+use live::drive::Screens;
+
+/// An experiment with a name.
+pub fn preset() -> impl TypedValueParser<Value = Preset> {
+    let named = |name: String| Preset::ALL.into_iter().find(|preset| preset.name() == name);
+    PossibleValuesParser::new(Preset::ALL.map(Preset::name)).try_map(move |name| named(name).ok_or("no such preset"))
+}
+
+/// Monitors that a view is spread over.
+pub fn screens() -> impl TypedValueParser<Value = Screens> {
+    PossibleValuesParser::new(["1", "3"]).map(|number| if number == "3" { Screens::Three } else { Screens::One })
+}
+
+/// `WxH`, as in `512x256`.
+pub fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |s: &str| s.parse::<u32>().ok().filter(|n| (8..=8192).contains(n));
+    text.split_once('x')
+        .and_then(|(w, h)| Some((side(w)?, side(h)?)))
+        .ok_or_else(|| "expected WIDTHxHEIGHT with sides of 8 to 8192 pixels, as in 512x256".into())
+}
+
+/// A number of seconds such as `3s` or `0.5s`, as ticks.
+pub fn duration(text: &str) -> Result<Tick, String> {
+    let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
+    let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (1.0..=1e9).contains(t));
+    ticks.map(|t| t as Tick).ok_or_else(|| "expected a number of seconds, as in 3s".into())
+}
+
+/// A time of a run such as `0s` or `12.5s`, as a tick.
+pub fn moment(text: &str) -> Result<Tick, String> {
+    let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
+    let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (0.0..=1e9).contains(t));
+    ticks.map(|t| t as Tick).ok_or_else(|| "expected a time in seconds, as in 12.5s".into())
+}
+
+/// A first learning rate.
+pub fn rate(text: &str) -> Result<f32, String> {
+    let rate = text.parse::<f32>().ok().filter(|r| (1e-7..=1.0).contains(r));
+    rate.ok_or_else(|| "expected a number above 0 and up to 1, as in 0.002".into())
+}
+
+/// A fraction of the greatest force.
+pub fn force(text: &str) -> Result<f32, String> {
+    let fraction = text.parse::<f32>().ok().filter(|f| (0.0..=1.0).contains(f));
+    fraction.ok_or_else(|| "expected a fraction of 0 to 1, as in 0.6".into())
+}
+
+/// A threshold of an intervention.
+pub fn threshold(text: &str) -> Result<f32, String> {
+    let fraction = text.parse::<f32>().ok().filter(|f| (0.01..=0.99).contains(f));
+    fraction.ok_or_else(|| "expected a fraction of 0.01 to 0.99, as in 0.1".into())
+}
+
+/// How much is done at the same time.
+pub fn jobs(text: &str) -> Result<u16, String> {
+    let jobs = text.parse::<u16>().ok().filter(|n| (1..=256).contains(n));
+    jobs.ok_or_else(|| "expected 1 to 256".into())
+}
+
+/// How many people are on foot.
+pub fn people(text: &str) -> Result<u16, String> {
+    let people = text.parse::<u16>().ok().filter(|n| *n <= MOST_OF_A_KIND);
+    people.ok_or_else(|| format!("expected 0 to {MOST_OF_A_KIND}"))
+}
+
+/// Frames a second that fall on ticks.
+pub fn frame_rate(text: &str) -> Result<u32, String> {
+    let fps = text.parse::<u32>().ok().filter(|f| *f > 0 && TICK_HZ.is_multiple_of(*f));
+    fps.ok_or_else(|| format!("expected a divisor of {TICK_HZ}, as in 10"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_and_nonsense_is_refused() {
+        assert_eq!(size("512x256"), Ok((512, 256)));
+        assert!(size("512").is_err() && size("0x9").is_err() && size("12x99999999").is_err());
+        assert_eq!(duration("3s"), Ok(180));
+        assert_eq!(duration("0.5"), Ok(30));
+        assert!(duration("-1s").is_err() && duration("NaN").is_err());
+        assert_eq!((moment("0s"), moment("1.5")), (Ok(0), Ok(90)));
+        assert!(moment("-1").is_err() && moment("s").is_err());
+        assert_eq!(threshold("0.2"), Ok(0.2));
+        assert_eq!((force("0"), force("1")), (Ok(0.0), Ok(1.0)));
+        assert!(force("1.1").is_err() && force("-0.1").is_err() && force("nan").is_err());
+        assert!(threshold("0").is_err() && threshold("1").is_err() && threshold("nan").is_err());
+        assert_eq!((people("0"), people("500")), (Ok(0), Ok(500)));
+        assert!(people("501").is_err() && people("-1").is_err());
+        assert_eq!((jobs("1"), jobs("256")), (Ok(1), Ok(256)));
+        assert!(jobs("0").is_err() && jobs("257").is_err() && jobs("two").is_err());
+        assert!(frame_rate("7").is_err() && frame_rate("0").is_err());
+    }
+}

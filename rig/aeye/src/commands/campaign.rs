@@ -1,0 +1,34 @@
+//! Simulated drives in parallel, resumable, and their figures.
+
+use base::failure::Usage;
+use base::progress::Interrupt;
+use lab::campaign::{Options, Until, drive};
+
+use crate::cli::CampaignArgs;
+use crate::exit::Verdict;
+use crate::print;
+
+/// Runs `aeye campaign`.
+pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
+    print::result(json, &drive(&options(args)?, &Interrupt::listen()?)?)?;
+    Ok(Verdict::Ok)
+}
+
+fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
+    if args.pedestrian_cases.is_some() && args.pedestrians == Some(0) {
+        return Err(Usage("--pedestrian-cases without people on foot; expected --pedestrians above 0".into()).into());
+    }
+    let until = until(args)?;
+    let CampaignArgs { checkpoint, maps, scenario, pedestrians, run_seconds, seed, jobs, out, .. } = args.clone();
+    Ok(Options { checkpoint, maps, scenario, until, pedestrians, run_seconds, seed, jobs, out })
+}
+
+fn until(args: &CampaignArgs) -> anyhow::Result<Until> {
+    match (args.runs, args.km, args.cases, args.pedestrian_cases) {
+        (Some(runs), None, None, None) => Ok(Until::Runs(runs)),
+        (None, Some(km), None, None) if km > 0.0 && km.is_finite() => Ok(Until::Km(km)),
+        (None, None, Some(cases), None) => Ok(Until::Cases(cases)),
+        (None, None, None, Some(cases)) => Ok(Until::PedestrianCases(cases)),
+        _ => Err(Usage("expected one of --runs, --km (more than 0), --cases and --pedestrian-cases".into()).into()),
+    }
+}

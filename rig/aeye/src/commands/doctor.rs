@@ -1,0 +1,207 @@
+//! Says what this machine has and how fast it is.
+
+use std::fmt::Write;
+
+use base::clock::seconds_of;
+use base::failure::{Usage, sentence};
+use base::maps::Map;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::{DEFAULT_SIZE, Eye};
+use kernel::{TickInput, World};
+use live::drive::{self, LiveFigures};
+use live::units::hardware::Hardware;
+use perception::Compute;
+use render::{Camera, RenderOptions, Renderer};
+use serde::Serialize;
+
+use super::wheel;
+use crate::cli::DoctorArgs;
+use crate::exit::Verdict;
+use crate::print::print;
+
+/// Ticks, frames and inferences that are measured.
+const TICKS: u32 = 600;
+const FRAMES: u32 = 20;
+
+/// Sizes of the safety driver's picture, largest first.
+const SIZES: [(u32, u32); 5] = [(1280, 720), (960, 540), (640, 360), (480, 270), (320, 180)];
+/// Pictures a second that leave room for a busy street.
+const ENOUGH_FPS: f64 = 18.0;
+/// Pictures a second from which on nearly every tick has one, and the machine may have more to give.
+const ALL_FPS: f64 = 50.0;
+/// Median age of masks from which on they should be made quicker, milliseconds.
+const OLD_MASK_MS: f64 = 100.0;
+
+/// What this machine has.
+#[derive(Debug, Serialize)]
+struct Findings {
+    cores: usize,
+    adapters: Vec<Adapter>,
+    devices: Vec<String>,
+    budgets: Vec<Budget>,
+    /// How well drives in windows keep real time, where there is a display.
+    live: Option<LiveFigures>,
+    /// What to use here.
+    advice: Vec<String>,
+    /// What drives need and does not work, and what to do about it.
+    problems: Vec<String>,
+    /// What does not work and drives can do without.
+    notes: Vec<String>,
+}
+
+/// A graphics adapter.
+#[derive(Debug, Serialize)]
+struct Adapter {
+    name: String,
+    backend: String,
+    driver: String,
+    is_cpu: bool,
+}
+
+/// A measured time.
+#[derive(Debug, Serialize)]
+struct Budget {
+    what: String,
+    ms: f64,
+    /// How many of it fit into the time that a live drive gives it.
+    times_real_time: f64,
+}
+
+/// Runs `aeye doctor`.
+pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
+    let mut findings = Findings {
+        cores: std::thread::available_parallelism().map_or(1, |n| n.get()),
+        adapters: adapters(),
+        devices: Vec::new(),
+        budgets: Vec::new(),
+        live: None,
+        advice: Vec::new(),
+        problems: Vec::new(),
+        notes: Vec::new(),
+    };
+    match devices() {
+        Ok(devices) => findings.devices = devices,
+        Err(error) => findings.notes.push(sentence(&error)),
+    }
+    if let Err(error) = measure(&mut findings) {
+        findings.problems.push(sentence(&error));
+    }
+    if args.seconds > 0 && findings.problems.is_empty() {
+        match drive::trial(&args.checkpoint, &(&args.pictures).into(), args.seconds) {
+            Ok(figures) => {
+                findings.advice.extend(advice(args, &figures));
+                findings.live = Some(figures);
+            }
+            Err(error) if error.is::<Usage>() => return Err(error),
+            Err(error) => findings.notes.push(format!("real time was not measured: {}", sentence(&error))),
+        }
+    }
+    print(json, &findings, || text(&findings))?;
+    Ok(if findings.problems.is_empty() { Verdict::Ok } else { Verdict::CheckFailed })
+}
+
+/// What to use here, from how it went with these sizes: pictures of the largest of [`SIZES`] that should
+/// come often enough, and masks that should be young enough.
+fn advice(args: &DoctorArgs, figures: &LiveFigures) -> Vec<String> {
+    let pixels = |(width, height): (u32, u32)| f64::from(width * height);
+    // As if the time of a picture went with its pixels, which overstates what smaller ones bring.
+    let fps = |size| figures.safety_fps * pixels(args.pictures.image_size) / pixels(size);
+    let size = SIZES.into_iter().find(|size| fps(*size) >= ENOUGH_FPS).unwrap_or(SIZES[SIZES.len() - 1]);
+    let larger = SIZES.into_iter().rev().find(|size| pixels(*size) > pixels(args.pictures.image_size));
+    let mut said = figures.shortfalls();
+    said.push(match larger {
+        Some((width, height)) if figures.safety_fps >= ALL_FPS => {
+            format!("there is room for larger pictures: measure --image-size {width}x{height}")
+        }
+        _ if size == args.pictures.image_size => "the safety driver's pictures suit this machine".into(),
+        _ => format!("drive with --image-size {}x{}", size.0, size.1),
+    });
+    let masks_are_old =
+        figures.mask_age_ms.is_none_or(|age| age.median > OLD_MASK_MS) || figures.semantic_fps < ENOUGH_FPS;
+    said.push(match masks_are_old {
+        true => "for younger masks: a smaller --mask-size or checkpoint, and no other window over the drivers'".into(),
+        false => "masks of this checkpoint and size suit this machine, with all three windows".into(),
+    });
+    said
+}
+
+fn adapters() -> Vec<Adapter> {
+    let adapters = render::adapters().into_iter();
+    adapters.map(|a| Adapter { name: a.name, backend: a.backend, driver: a.driver, is_cpu: a.is_cpu }).collect()
+}
+
+/// Names of the wheels and gamepads that are plugged in.
+fn devices() -> anyhow::Result<Vec<String>> {
+    Ok(Hardware::open()?.devices().into_iter().map(|d| format!("{} at {}", d.name, d.path)).collect())
+}
+
+/// World step, rendering and inference, as a drive needs them.
+fn measure(findings: &mut Findings) -> anyhow::Result<()> {
+    let mut each = |what: &str, ms: f64, needed_ms: f64| {
+        findings.budgets.push(Budget { what: what.into(), ms, times_real_time: needed_ms / ms });
+    };
+    let map = Map::find(kernel::map::BUNDLED[0])?;
+    let mut world = World::new(&map.scenario(1), &map.network)?;
+    let ((), s) = seconds_of(|| (0..TICKS).for_each(|_| drop(world.step(&TickInput::default()))));
+    each("world step", 1e3 * s / f64::from(TICKS), 1e3 / f64::from(kernel::time::TICK_HZ));
+
+    let mut renderer = Renderer::new(&map.network, &RenderOptions::default())?;
+    let camera = Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1);
+    let frame = renderer.draw(&world.scene(), &camera)?;
+    let (drawn, s) = seconds_of(|| (0..FRAMES).try_for_each(|_| renderer.draw(&world.scene(), &camera).map(drop)));
+    drawn?;
+    each("frame 256x128", 1e3 * s / f64::from(FRAMES), 100.0);
+
+    for compute in Compute::ALL {
+        let opened = Eye::open_on(compute, &CheckpointChoice::Bundled(perception::BUNDLED[0]), None);
+        let mut eye = match opened {
+            // Drives can do without a GPU.
+            Err(error) if compute != Compute::Cpu => {
+                findings.notes.push(sentence(&error));
+                continue;
+            }
+            opened => opened?,
+        };
+        let (seen, s) = seconds_of(|| (0..FRAMES).try_for_each(|_| eye.see(frame.clone()).map(drop)));
+        seen?;
+        each(&format!("inference 256x128 on {}", compute.name()), 1e3 * s / f64::from(FRAMES), 100.0);
+    }
+    Ok(())
+}
+
+fn text(findings: &Findings) -> String {
+    let mut text = format!("cores     {}", findings.cores);
+    // Writing to a string cannot fail.
+    let mut line = |name: &str, value: String| {
+        let _ = write!(text, "\n{name:<9} {value}");
+    };
+    if findings.adapters.is_empty() {
+        line("adapter", "none".into());
+    }
+    for a in &findings.adapters {
+        let kind = if a.is_cpu { "CPU" } else { "GPU" };
+        line("adapter", format!("{} ({kind}, {}, {})", a.name, a.backend, a.driver));
+    }
+    if findings.devices.is_empty() {
+        line("device", wheel::none_found());
+    }
+    for device in &findings.devices {
+        line("device", device.clone());
+    }
+    for b in &findings.budgets {
+        line("measured", format!("{}: {:.3} ms, {:.1} times real time", b.what, b.ms, b.times_real_time));
+    }
+    if let Some(figures) = &findings.live {
+        line("measured", figures.to_string());
+    }
+    for advice in &findings.advice {
+        line("advice", advice.clone());
+    }
+    for problem in &findings.problems {
+        line("problem", problem.clone());
+    }
+    for note in &findings.notes {
+        line("note", note.clone());
+    }
+    text
+}

@@ -1,0 +1,112 @@
+//! One run, recorded as it goes.
+
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+use base::clock::EverySecond;
+use base::failure::Usage;
+use base::library;
+use base::maps::{Map, read_scenario};
+use base::progress::Interrupt;
+use drivers::simulate;
+use drivers::vision::Vision;
+use kernel::{Scenario, World};
+use live::drive::Options;
+use measures::RunFigures;
+use perception::Compute;
+use render::{RenderOptions, Renderer};
+use replay::Recording;
+use study::{Lineup, Study};
+use viewers::server::Publisher;
+
+use crate::cli::DriveArgs;
+use crate::exit::Verdict;
+use crate::print::print;
+
+/// Map of a drive when none is named.
+const DEFAULT_MAP: &str = "city";
+
+/// Runs `aeye drive`.
+pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
+    if args.headless && args.pictures.is_special() {
+        let said =
+            "--headless shows no pictures; expected none of --image-size, --mask-size, --inference and --screens";
+        return Err(Usage(said.into()).into());
+    }
+    if library::is_case_name(&args.record) {
+        return Err(
+            Usage(format!("{}: is named as a corner case; expected another name", args.record.display())).into()
+        );
+    }
+    let (mut scenario, map) = match &args.scenario {
+        Some(path) => read_scenario(path)?,
+        None => {
+            let map = Map::find(args.map.as_deref().unwrap_or(DEFAULT_MAP))?;
+            (map.scenario(args.seed.unwrap_or(1)), map)
+        }
+    };
+    scenario.seed = args.seed.unwrap_or(scenario.seed);
+    let rules = &mut scenario.rules;
+    rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
+    rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
+    rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
+    if args.headless {
+        headless(args, &scenario, &map, json)?
+    } else {
+        live::drive::drive(options(args, scenario, map, json))?
+    };
+    Ok(Verdict::Ok)
+}
+
+fn options(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> Options {
+    Options {
+        map,
+        scenario,
+        seats: [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default),
+        calibration: args.calibration.clone(),
+        force: args.force,
+        foxglove: args.foxglove,
+        checkpoint: args.checkpoint.clone(),
+        pictures: (&args.pictures).into(),
+        study: (&args.study).into(),
+        record: args.record.clone(),
+        tell: Arc::new(move |path, figures| tell(path, figures, json)),
+    }
+}
+
+/// Prints what a recording at a path holds.
+fn tell(path: &Path, figures: &RunFigures, json: bool) -> anyhow::Result<()> {
+    print(json, figures, || format!("{}: {figures}", path.display()))
+}
+
+fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<()> {
+    let study = Study::from(&args.study);
+    let about = study.provenance()?;
+    let mut lineup = Lineup::open(&study, &args.checkpoint, None, Compute::Cpu, scenario.seed)?;
+    let eye = lineup.of_run(1).clone();
+    let mut manifest = simulate::manifest(scenario, map, &eye);
+    manifest.provenance.extend(lineup.cast().provenance_of_run(1).clone());
+    manifest.provenance.extend(about);
+    let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
+    World::new(scenario, &map.network)?;
+
+    let mut publisher = args.foxglove.map(Publisher::bind).transpose()?;
+    let path = &args.record;
+    if path.is_file() {
+        bail!("{}: exists already; expected a new file", path.display());
+    }
+    let file = File::create(path).with_context(|| path.display().to_string())?;
+    let interrupt = Interrupt::listen()?;
+    let mut second = EverySecond::new();
+    let keep_on = |world: &World| {
+        publisher.iter_mut().for_each(|publisher| publisher.show(world));
+        if second.is_due() {
+            eprintln!("tick {}", world.tick());
+        }
+        !interrupt.is_raised()
+    };
+    simulate::drive_as(&manifest, map, vision, file, keep_on).with_context(|| path.display().to_string())?;
+    tell(path, &RunFigures::of(&Recording::open(path)?), json)
+}

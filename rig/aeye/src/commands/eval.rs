@@ -1,0 +1,18 @@
+//! A checkpoint measured on a split of a dataset folder.
+
+use lab::eval::{Summary, evaluate, evaluate_and_keep};
+
+use crate::cli::EvalArgs;
+use crate::exit::Verdict;
+use crate::print;
+
+/// Runs `aeye eval`.
+pub fn run(args: &EvalArgs, json: bool) -> anyhow::Result<Verdict> {
+    let EvalArgs { checkpoint, dataset, split, save_predictions } = args;
+    let evaluation = match save_predictions {
+        Some(folder) => evaluate_and_keep(checkpoint, dataset, split, folder)?,
+        None => evaluate(checkpoint, dataset, split)?,
+    };
+    print::result(json, &Summary::new(&evaluation, dataset, split))?;
+    Ok(Verdict::Ok)
+}

@@ -1,0 +1,30 @@
+//! The paper from end to end.
+
+use base::failure::Usage;
+use base::progress::Interrupt;
+use lab::experiment::{self, Recipe};
+
+use crate::cli::ExperimentArgs;
+use crate::exit::Verdict;
+use crate::print::{self, print};
+
+/// Runs `aeye experiment`.
+pub fn run(args: &ExperimentArgs, json: bool) -> anyhow::Result<Verdict> {
+    let recipe = chosen(args)?;
+    if args.print_recipe {
+        let text = recipe.to_toml()?;
+        print(json, &recipe, || text.trim_end().to_owned())?;
+        return Ok(Verdict::Ok);
+    }
+    let Some(out) = &args.out else { return Err(Usage("expected --out DIR or --print-recipe".into()).into()) };
+    print::result(json, &experiment::run(&recipe, out, args.jobs, &Interrupt::listen()?)?)?;
+    Ok(Verdict::Ok)
+}
+
+fn chosen(args: &ExperimentArgs) -> anyhow::Result<Recipe> {
+    match (&args.preset, &args.recipe) {
+        (Some(preset), None) => preset.recipe(),
+        (None, Some(path)) => Recipe::read(path),
+        _ => Err(Usage("expected one of --preset and --recipe".into()).into()),
+    }
+}

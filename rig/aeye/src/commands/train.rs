@@ -1,0 +1,20 @@
+//! A checkpoint trained from a dataset folder.
+
+use base::progress::Interrupt;
+use lab::train::{Epoch, Options, Summary, train};
+
+use crate::cli::TrainArgs;
+use crate::exit::Verdict;
+use crate::print;
+
+/// Runs `aeye train`. Ctrl-C stops it; the same command goes on from the last finished epoch.
+pub fn run(args: &TrainArgs, json: bool) -> anyhow::Result<Verdict> {
+    let TrainArgs { dataset, out, epochs, seed, size, horizon, patience, batch, replicas, rate } = args.clone();
+    let options = Options { dataset, out, epochs, seed, size, horizon, patience, batch, replicas, rate };
+    let show = &mut |epoch: &Epoch| print::result(json, epoch);
+    let Summary { checkpoint, was_there, .. } = train(&options, &Interrupt::listen()?, show)?;
+    if was_there {
+        eprintln!("{}: is trained already, with these options on this dataset", checkpoint.display());
+    }
+    Ok(Verdict::Ok)
+}

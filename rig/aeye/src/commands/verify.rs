@@ -1,0 +1,147 @@
+//! Simulates recordings again and compares every tick.
+
+use std::path::Path;
+
+use base::failure::sentence;
+use base::library;
+use base::progress;
+use replay::{Divergence, Error, Recording, Report};
+use serde::Serialize;
+
+use crate::cli::VerifyArgs;
+use crate::exit::Verdict;
+use crate::print::print;
+
+/// What is printed for a file.
+#[derive(Debug, Serialize)]
+struct Checked {
+    file: String,
+    /// Ticks simulated and compared.
+    ticks: u64,
+    ok: bool,
+    /// Whether the writer came to its end; if not, up to a second is missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    finished: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    keyframes: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    divergence: Option<Where>,
+    /// Why the file cannot be checked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+}
+
+/// Where a replay first differs.
+#[derive(Debug, Serialize)]
+struct Where {
+    tick: u64,
+    part: String,
+    actor: Option<u32>,
+    field: String,
+    expected: String,
+    got: String,
+    seen_at: u64,
+}
+
+impl From<Divergence> for Where {
+    fn from(d: Divergence) -> Self {
+        Self {
+            tick: d.tick,
+            part: d.part,
+            actor: d.actor,
+            field: d.field,
+            expected: d.expected,
+            got: d.got,
+            seen_at: d.seen_at,
+        }
+    }
+}
+
+/// Runs `aeye verify`.
+pub fn run(args: &VerifyArgs, json: bool) -> anyhow::Result<Verdict> {
+    let files = library::recordings(&args.files)?;
+    let bar = progress::bar("verify", files.len() as u64);
+    let (mut diverged, mut failures) = (false, Vec::new());
+    for file in &files {
+        let checked = match check(file, args) {
+            Ok(checked) => checked,
+            Err(error) => {
+                let error = sentence(&error);
+                failures.push(error.clone());
+                failed(file, error)
+            }
+        };
+        diverged |= checked.divergence.is_some();
+        bar.suspend(|| print(json, &checked, || text(&checked)))?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    match failures.len() {
+        0 if diverged => Ok(Verdict::CheckFailed),
+        0 => Ok(Verdict::Ok),
+        1 => anyhow::bail!("{}", failures[0]),
+        n => anyhow::bail!("{n} of {} files cannot be checked; the first: {}", files.len(), failures[0]),
+    }
+}
+
+fn failed(file: &Path, error: String) -> Checked {
+    let file = file.display().to_string();
+    Checked { file, ticks: 0, ok: false, finished: None, keyframes: None, divergence: None, error: Some(error) }
+}
+
+fn check(file: &Path, args: &VerifyArgs) -> anyhow::Result<Checked> {
+    let recording = Recording::open(file)?;
+    let report = reports(&recording, args).or_else(diverged)?;
+    Ok(Checked {
+        file: file.display().to_string(),
+        ticks: report.ticks,
+        ok: report.divergence.is_none(),
+        finished: Some(recording.finished()),
+        keyframes: Some(report.keyframes),
+        divergence: report.divergence.map(Where::from),
+        error: None,
+    })
+}
+
+/// The checks that were asked for, up to the first that fails.
+fn reports(recording: &Recording, args: &VerifyArgs) -> Result<Report, Error> {
+    let (log, network) = (recording.log(), recording.network()?);
+    let mut report = match &args.against {
+        None => replay::verify(log, &network)?,
+        Some(path) => {
+            let other = Recording::open(path)?;
+            replay::against(log, &network, other.log(), &other.network()?)?
+        }
+    };
+    if let (Some(ticks), None) = (args.rewind, &report.divergence) {
+        report.divergence = replay::rewind(log, &network, ticks.into())?.divergence;
+    }
+    Ok(report)
+}
+
+/// A divergence that stopped the replay is a result, not an error.
+fn diverged(error: Error) -> Result<Report, Error> {
+    match error {
+        Error::Diverged(divergence) => {
+            Ok(Report { ticks: divergence.tick, keyframes: 0, divergence: Some(*divergence) })
+        }
+        error => Err(error),
+    }
+}
+
+fn text(checked: &Checked) -> String {
+    let Checked { file, ticks, .. } = checked;
+    match (&checked.divergence, &checked.error) {
+        (_, Some(error)) => format!("{file}: not checked: {error}"),
+        (Some(d), None) => {
+            let actor = d.actor.map(|a| format!(" of actor {a}")).unwrap_or_default();
+            let seen = if d.seen_at == d.tick { String::new() } else { format!(" (read at tick {})", d.seen_at) };
+            let Where { tick, part, field, expected, got, .. } = d;
+            format!("{file}: diverges at tick {tick}: {part}: {field}{actor}: expected {expected}, got {got}{seen}")
+        }
+        (None, None) => {
+            let cut = if checked.finished == Some(false) { "; its writer was stopped before the end" } else { "" };
+            format!("{file}: {ticks} ticks identical{cut}")
+        }
+    }
+}

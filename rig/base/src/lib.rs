@@ -1,0 +1,16 @@
+//! What every part of the rig stands on: recordings and maps found by name, results that appear whole or not
+//! at all, progress and Ctrl-C, the clock, work spread over threads, pictures as files, and the words for it all.
+
+pub mod chart;
+pub mod clock;
+pub mod failure;
+pub mod image;
+pub mod library;
+pub mod maps;
+pub mod newest;
+pub mod output;
+pub mod png;
+pub mod progress;
+pub mod spread;
+pub mod toml_text;
+pub mod words;

@@ -1,0 +1,64 @@
+//! Maps and scenarios by the names that people give on the command line.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, anyhow};
+use kernel::map::{BUNDLED, bake, bundled};
+use kernel::{RoadNetwork, Scenario};
+
+use crate::failure::Usage;
+
+/// A map to drive on.
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// Its roads.
+    pub network: Arc<RoadNetwork>,
+    /// Text of its OpenDRIVE file, when it is not a bundled one.
+    pub foreign: Option<String>,
+}
+
+impl Map {
+    /// A bundled map by name, or an OpenDRIVE file by its path.
+    pub fn find(name: &str) -> anyhow::Result<Self> {
+        if let Some(network) = bundled(name) {
+            return Ok(Self { network, foreign: None });
+        }
+        if !Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("xodr")) {
+            let known = BUNDLED.join(", ");
+            return Err(Usage(format!("unknown map {name:?}: expected one of {known}, or an .xodr file")).into());
+        }
+        let text = fs::read_to_string(name).with_context(|| name.to_owned())?;
+        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+        let network = bake(&stem, &text).with_context(|| name.to_owned())?;
+        Ok(Self { network: Arc::new(network), foreign: Some(text) })
+    }
+
+    /// Several maps; `all` are the bundled ones.
+    pub fn find_all(names: &[String]) -> anyhow::Result<Vec<Self>> {
+        let all = || BUNDLED.map(str::to_owned).to_vec();
+        let names = names.iter().flat_map(|n| if n == "all" { all() } else { vec![n.clone()] });
+        names.map(|name| Self::find(&name)).collect()
+    }
+
+    /// The default scenario of the map for a seed.
+    pub fn scenario(&self, seed: u64) -> Scenario {
+        Scenario::default_for(&self.network.name, seed)
+    }
+}
+
+/// A scenario file and its map; a map file is looked for beside it.
+pub fn read_scenario(path: &Path) -> anyhow::Result<(Scenario, Map)> {
+    let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    let mut scenario = Scenario::from_toml(&text).map_err(|e| usage_in(path, &e.to_string()))?;
+    let beside: PathBuf = path.parent().unwrap_or(Path::new("")).join(&scenario.map);
+    let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { scenario.map.clone() };
+    let map = Map::find(&name).map_err(|e| if e.is::<Usage>() { usage_in(path, &e.to_string()) } else { e })?;
+    scenario.map = map.network.name.clone();
+    Ok((scenario, map))
+}
+
+fn usage_in(path: &Path, reason: &str) -> anyhow::Error {
+    anyhow!(Usage(format!("{}: {reason}", path.display())))
+}

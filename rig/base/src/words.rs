@@ -1,0 +1,59 @@
+//! Seats, road users and events in the words that people read.
+
+use kernel::Seat;
+use kernel::events::{Event, EventKind};
+use kernel::scene::{ActorKind, ActorScene};
+
+/// What people and files call the seats.
+pub const SEATS: [&str; 2] = ["semantic", "safety"];
+
+/// What people and files call a seat.
+pub fn seat(seat: Seat) -> &'static str {
+    SEATS[seat as usize]
+}
+
+/// What kind of road user it is.
+pub fn road_user(kind: ActorKind) -> &'static str {
+    match kind {
+        ActorKind::Car => "car",
+        ActorKind::Truck => "truck",
+        ActorKind::Bus => "bus",
+        ActorKind::Motorcycle => "motorcycle",
+        ActorKind::Bicycle => "bicycle",
+        ActorKind::Pedestrian => "pedestrian",
+    }
+}
+
+/// What an actor is called within its run: kind and number, as in `pedestrian 12`.
+pub fn actor(actor: &ActorScene) -> String {
+    format!("{} {}", road_user(actor.kind), actor.id)
+}
+
+/// What happened to the ego car, as in `red light passed at 43 km/h`.
+pub fn event(event: &Event) -> String {
+    let what = match event.kind {
+        EventKind::CollisionActor => format!("collision with actor {}", event.actor),
+        EventKind::CollisionScenery => "collision with scenery".into(),
+        EventKind::RedLight => "red light passed".into(),
+        EventKind::Speeding => "limit exceeded".into(),
+        EventKind::OffRoad => "off the road".into(),
+        EventKind::WrongWay => "wrong way".into(),
+        EventKind::Armed => "run armed".into(),
+        EventKind::Intervention => "intervention".into(),
+        EventKind::Seen => "\"I see it\"".into(),
+        EventKind::Ended => "run ended".into(),
+    };
+    // The tick of a collision ends with what the impact has left of the speed.
+    let at = match event.kind {
+        EventKind::CollisionActor | EventKind::CollisionScenery => ", after it at",
+        _ => " at",
+    };
+    // Adding 0 makes a negative zero positive.
+    format!("{what}{at} {:.0} km/h", (3.6 * event.speed_mps).round() + 0.0)
+}
+
+/// An event in words, with its time.
+pub fn event_at(tick: u64, event: &Event) -> String {
+    let seconds = tick as f64 / f64::from(kernel::time::TICK_HZ);
+    format!("{seconds:7.2} s  {}", self::event(event))
+}

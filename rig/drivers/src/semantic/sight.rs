@@ -1,0 +1,260 @@
+//! What a mask says about the ground ahead, taken as flat: inverse perspective, pixel by pixel.
+//!
+//! Points are in the car's frame: metres from the middle of the rear axle, x forward, y left.
+
+use render::{Camera, SemanticTag};
+
+use crate::MaskView;
+
+/// Height above the ground by which a person is recognised, metres; lower blobs are noise.
+const PERSON_HEIGHT_M: f32 = 1.7;
+/// The same for vehicles.
+const VEHICLE_HEIGHT_M: f32 = 1.4;
+/// Share of the expected height in pixels from which a blob counts.
+const LEAST_SHARE: f32 = 0.35;
+/// Least height of a blob in pixels.
+const LEAST_ROWS: usize = 2;
+/// Farthest contact with the ground that is told apart from the horizon, metres.
+const FARTHEST_M: f32 = 55.0;
+
+/// What a piece of ground shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// Asphalt.
+    Road,
+    /// Paint on asphalt.
+    Line,
+    /// A vehicle or a person hides it.
+    Hidden,
+    /// Not to be driven on.
+    Other,
+    /// Outside the picture.
+    Unseen,
+}
+
+/// Where something that must not be hit touches the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// Metres forward of the rear axle.
+    pub x_m: f32,
+    /// Metres to the left.
+    pub y_m: f32,
+    /// A person, not a vehicle.
+    pub is_person: bool,
+    /// The pixel below it is asphalt or paint.
+    pub on_road: bool,
+}
+
+/// A mask with the geometry of the camera that both drivers look through.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<'a> {
+    mask: MaskView<'a>,
+    camera: Camera,
+    focal_px: f32,
+}
+
+impl<'a> Sight<'a> {
+    /// Looks at a mask.
+    pub fn new(mask: MaskView<'a>) -> Self {
+        let camera = Camera::driver(mask.width as u32, mask.height as u32);
+        let focal_px = 0.5 * mask.width as f32 / kernel::ops::tan(0.5 * camera.fov_x_rad);
+        Self { mask, camera, focal_px }
+    }
+
+    fn tag(&self, column: usize, row: usize) -> u8 {
+        self.mask.ids[row * self.mask.width + column]
+    }
+
+    /// First row below the horizon.
+    fn horizon(&self) -> usize {
+        self.mask.height / 2
+    }
+
+    /// Distance of the ground seen in a row below the horizon, metres from the rear axle.
+    fn row_x_m(&self, row: usize) -> f32 {
+        let below = row as f32 + 0.5 - 0.5 * self.mask.height as f32;
+        self.camera.position.x + self.focal_px * self.camera.position.z / below
+    }
+
+    /// Metres to the left at a distance, for the middle of a column.
+    fn column_y_m(&self, column: usize, x_m: f32) -> f32 {
+        (0.5 * self.mask.width as f32 - column as f32 - 0.5) * (x_m - self.camera.position.x) / self.focal_px
+    }
+
+    /// What lies at a point.
+    pub fn ground(&self, x_m: f32, y_m: f32) -> Ground {
+        let ahead = x_m - self.camera.position.x;
+        if ahead < 0.5 {
+            return Ground::Unseen;
+        }
+        let column = 0.5 * self.mask.width as f32 - self.focal_px * y_m / ahead;
+        let row = 0.5 * self.mask.height as f32 + self.focal_px * self.camera.position.z / ahead;
+        if column < 0.0 || column >= self.mask.width as f32 || row >= self.mask.height as f32 {
+            return Ground::Unseen;
+        }
+        ground_of(self.tag(column as usize, row as usize))
+    }
+
+    /// Where people and vehicles stand. Blobs that are too low for their distance are noise; so are
+    /// single columns.
+    pub fn contacts(&self) -> Vec<Contact> {
+        let mut contacts = self.vehicles();
+        contacts.extend(self.people());
+        contacts
+    }
+
+    /// Where vehicles stand, column by column: a long one reaches from near to far.
+    fn vehicles(&self) -> Vec<Contact> {
+        let columns: Vec<Vec<Contact>> = (0..self.mask.width).map(|c| self.vehicles_of_column(c)).collect();
+        let agree = |a: &Contact, b: &Contact| (a.x_m - b.x_m).abs() < 1.0 + 0.15 * b.x_m;
+        let seen_beside = |column: usize, contact: &Contact| {
+            let beside = [column.checked_sub(1), Some(column + 1)];
+            beside.into_iter().flatten().filter_map(|c| columns.get(c)).flatten().any(|other| agree(other, contact))
+        };
+        let all = columns.iter().enumerate().flat_map(|(column, contacts)| contacts.iter().map(move |c| (column, c)));
+        all.filter(|(column, contact)| seen_beside(*column, contact)).map(|(_, contact)| *contact).collect()
+    }
+
+    /// The vehicles of a column, nearest first. A rider and his bicycle are one blob, and a person
+    /// behind a car is one with the car: what touches the ground counts.
+    fn vehicles_of_column(&self, column: usize) -> Vec<Contact> {
+        let mut found = Vec::new();
+        let mut row = self.mask.height;
+        while row > self.horizon() {
+            let hides = |r: &usize| ground_of(self.tag(column, *r)) == Ground::Hidden;
+            let rows = (0..row).rev().take_while(hides).count();
+            if rows > 0 && is_vehicle(self.tag(column, row - 1)) {
+                found.extend(self.contact(column, row, rows));
+            }
+            row -= rows.max(1);
+        }
+        found
+    }
+
+    /// Where people stand: a walking one touches the ground with one foot, so the lowest pixel of the
+    /// whole figure says how far all of it is.
+    fn people(&self) -> Vec<Contact> {
+        let mut seen = vec![false; self.mask.ids.len()];
+        let mut found = Vec::new();
+        for row in (self.horizon()..self.mask.height).rev() {
+            for column in 0..self.mask.width {
+                let Some(figure) = self.figure(column, row, &mut seen).filter(|f| f.left < f.right) else { continue };
+                let (column, end) = self.vehicle_under(&figure).unwrap_or((column, row + 1));
+                let foot = self.contact(column, end, end - figure.top);
+                let part = |foot: Contact, column| Contact { y_m: self.column_y_m(column, foot.x_m), ..foot };
+                found.extend(foot.iter().flat_map(|foot| (figure.left..=figure.right).map(|c| part(*foot, c))));
+            }
+        }
+        found
+    }
+
+    /// Where the vehicle ends that carries or hides a figure: a column, and the row below its wheels.
+    fn vehicle_under(&self, figure: &Figure) -> Option<(usize, usize)> {
+        let below = figure.pixels.iter().map(|&(column, row)| (column, row + 1));
+        let on_vehicle = below.filter(|&(c, r)| r < self.mask.height && is_vehicle(self.tag(c, r)));
+        let ends = on_vehicle.map(|(column, row)| {
+            let hides = |r: &usize| ground_of(self.tag(column, *r)) == Ground::Hidden;
+            (column, row + (row..self.mask.height).take_while(hides).count())
+        });
+        let ends: Vec<(usize, usize)> = ends.collect();
+        let is_carried = 4 * ends.len() > figure.right - figure.left;
+        ends.into_iter().filter(|_| is_carried).max_by_key(|(_, end)| *end)
+    }
+
+    /// The connected pixels of people around a pixel, if they were not seen before.
+    fn figure(&self, column: usize, row: usize, seen: &mut [bool]) -> Option<Figure> {
+        let mut figure = Figure { left: column, right: column, top: row, pixels: Vec::new() };
+        let mut open = vec![(column, row)];
+        while let Some((column, row)) = open.pop() {
+            let is_new = !std::mem::replace(&mut seen[row * self.mask.width + column], true);
+            if !is_new || !is_person(self.tag(column, row)) {
+                continue;
+            }
+            figure.pixels.push((column, row));
+            figure.left = figure.left.min(column);
+            figure.right = figure.right.max(column);
+            figure.top = figure.top.min(row);
+            let columns = column.saturating_sub(1)..(column + 2).min(self.mask.width);
+            let rows = row.saturating_sub(1)..(row + 2).min(self.mask.height);
+            open.extend(columns.flat_map(|c| rows.clone().map(move |r| (c, r))));
+        }
+        (!figure.pixels.is_empty()).then_some(figure)
+    }
+
+    /// The contact of a blob of `rows` rows that ends above `row`.
+    fn contact(&self, column: usize, row: usize, rows: usize) -> Option<Contact> {
+        let is_person = is_person(self.tag(column, row - 1));
+        let x_m = self.row_x_m(row - 1);
+        let height_m = if is_person { PERSON_HEIGHT_M } else { VEHICLE_HEIGHT_M };
+        let expected_rows = height_m * self.focal_px / (x_m - self.camera.position.x);
+        let is_tall_enough = rows >= LEAST_ROWS && rows as f32 >= LEAST_SHARE * expected_rows;
+        let below = (row < self.mask.height).then(|| ground_of(self.tag(column, row)));
+        let on_road = below.is_none_or(|ground| ground != Ground::Other);
+        let y_m = self.column_y_m(column, x_m);
+        (is_tall_enough && x_m < FARTHEST_M).then_some(Contact { x_m, y_m, is_person, on_road })
+    }
+
+    /// What borders the lane around a point of a row: metres to the left and to the right of
+    /// `y_m`, each to a line or to the edge of the road, within `reach_m`.
+    pub fn borders(&self, row: usize, y_m: f32, reach_m: f32) -> [Option<Border>; 2] {
+        [1.0, -1.0].map(|side| self.border(row, y_m, side, reach_m))
+    }
+
+    fn border(&self, row: usize, y_m: f32, side: f32, reach_m: f32) -> Option<Border> {
+        let x_m = self.row_x_m(row);
+        let step_m = (x_m - self.camera.position.x) / self.focal_px;
+        // Paint right below the middle of the lane belongs to an arrow or a crossing.
+        let mut distance_m = 0.5;
+        while distance_m < reach_m {
+            match self.ground(x_m, y_m + side * distance_m) {
+                Ground::Line => return Some(Border { distance_m, is_line: true }),
+                Ground::Other => return Some(Border { distance_m, is_line: false }),
+                Ground::Road => {}
+                Ground::Hidden | Ground::Unseen => return None,
+            }
+            distance_m += step_m;
+        }
+        None
+    }
+
+    /// The rows that show the ground between two distances from the rear axle.
+    pub fn rows_between(&self, from_m: f32, to_m: f32) -> impl Iterator<Item = (usize, f32)> + '_ {
+        (self.horizon()..self.mask.height)
+            .map(|row| (row, self.row_x_m(row)))
+            .filter(move |(_, x)| (from_m..=to_m).contains(x))
+    }
+}
+
+/// Pixels that are connected, as column and row.
+struct Figure {
+    pixels: Vec<(usize, usize)>,
+    left: usize,
+    right: usize,
+    top: usize,
+}
+
+/// Where a lane ends on one side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Border {
+    /// Metres from the point asked about.
+    pub distance_m: f32,
+    /// Paint, not the edge of the asphalt.
+    pub is_line: bool,
+}
+
+fn is_vehicle(tag: u8) -> bool {
+    tag == SemanticTag::Vehicles as u8 || tag == SemanticTag::Dynamic as u8
+}
+
+fn is_person(tag: u8) -> bool {
+    tag == SemanticTag::Pedestrian as u8
+}
+
+fn ground_of(tag: u8) -> Ground {
+    match tag {
+        t if t == SemanticTag::Road as u8 => Ground::Road,
+        t if t == SemanticTag::RoadLine as u8 => Ground::Line,
+        t if is_vehicle(t) || is_person(t) => Ground::Hidden,
+        _ => Ground::Other,
+    }
+}

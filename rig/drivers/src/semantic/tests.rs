@@ -1,0 +1,198 @@
+//! Closed loops on painted roads: no renderer, no world.
+
+use kernel::events::{Hud, RouteArrow};
+use kernel::map::Turn;
+use kernel::signals::LightPhase;
+use kernel::{Controls, ops};
+use render::{Camera, SemanticTag};
+
+use super::*;
+use crate::MaskView;
+
+const WIDTH: usize = 256;
+const HEIGHT: usize = 128;
+
+/// A two-lane road bent to the left with this curvature; the car belongs in the right lane.
+struct Road {
+    curvature: f32,
+}
+
+/// Pose of the rear axle.
+#[derive(Clone, Copy)]
+struct Pose {
+    x: f32,
+    y: f32,
+    heading: f32,
+}
+
+impl Road {
+    /// Metres to the left of the middle of the right lane.
+    fn offset_m(&self, x: f32, y: f32) -> f32 {
+        let radius = 1.0 / self.curvature;
+        if self.curvature == 0.0 { y } else { radius - radius.signum() * ops::hypot(x, y - radius) }
+    }
+
+    fn tag(&self, x: f32, y: f32) -> SemanticTag {
+        match self.offset_m(x, y) {
+            o if (o - 1.75).abs() < 0.08 => SemanticTag::RoadLine,
+            o if (-1.75..5.25).contains(&o) => SemanticTag::Road,
+            _ => SemanticTag::SideWalk,
+        }
+    }
+
+    fn mask(&self, pose: Pose) -> Vec<u8> {
+        let mut ids = vec![SemanticTag::Sky as u8; WIDTH * HEIGHT];
+        let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
+        let focal = 0.5 * WIDTH as f32 / ops::tan(0.5 * camera.fov_x_rad);
+        for row in HEIGHT / 2..HEIGHT {
+            for column in 0..WIDTH {
+                let ahead = focal * camera.position.z / (row as f32 + 0.5 - 0.5 * HEIGHT as f32);
+                let left = (0.5 * WIDTH as f32 - column as f32 - 0.5) * ahead / focal;
+                let (x, y) = pose.place(camera.position.x + ahead, left);
+                ids[row * WIDTH + column] = self.tag(x, y) as u8;
+            }
+        }
+        ids
+    }
+
+    /// The arrow of the HUD: bearing of the lane 12 m ahead in steps of 5 degrees.
+    fn arrow(&self, pose: Pose) -> RouteArrow {
+        let middle = pose.place(ego::CENTRE_M.x, 0.0);
+        let travelled = if self.curvature == 0.0 {
+            middle.0
+        } else {
+            ops::atan2(middle.0 * self.curvature, 1.0 - middle.1 * self.curvature) / self.curvature
+        };
+        let (x, y, _) = Arc { curvature: self.curvature }.at(travelled + path::ARROW_M);
+        let bearing = ops::wrap_angle(ops::atan2(y - middle.1, x - middle.0) - pose.heading).to_degrees();
+        RouteArrow { turn: Turn::Straight, distance_m: 100, bearing_deg: -(5.0 * (bearing / 5.0).round()) as i16 }
+    }
+}
+
+impl Pose {
+    fn place(&self, forward: f32, left: f32) -> (f32, f32) {
+        let (sin, cos) = (ops::sin(self.heading), ops::cos(self.heading));
+        (self.x + forward * cos - left * sin, self.y + forward * sin + left * cos)
+    }
+
+    fn drive(&mut self, controls: Controls, speed_mps: f32) {
+        let wheel = -controls.steer_fraction() * ego::MAX_WHEEL_ANGLE_RAD;
+        self.heading += speed_mps * TICK_S * ops::tan(wheel) / ego::WHEELBASE_M;
+        (self.x, self.y) = self.place(speed_mps * TICK_S, 0.0);
+    }
+}
+
+fn hud(speed_mps: f32, arrow: RouteArrow) -> Hud {
+    Hud { speed_mps, limit_mps: 50.0 / 3.6, light: None, light_distance_m: 0, arrow }
+}
+
+fn straight_on() -> RouteArrow {
+    RouteArrow { turn: Turn::Straight, distance_m: 100, bearing_deg: 0 }
+}
+
+fn controls(ids: &[u8], hud: Hud) -> Controls {
+    SemanticBot::default().controls(&SemanticView { mask: MaskView { width: WIDTH, height: HEIGHT, ids }, hud })
+}
+
+/// Largest offset from the lane's middle in the last 10 of 15 s.
+fn worst_offset_m(road: &Road, start_left_m: f32, speed_mps: f32) -> f32 {
+    let mut pose = Pose { x: 0.0, y: start_left_m, heading: 0.0 };
+    let mut bot = SemanticBot::default();
+    let mut worst: f32 = 0.0;
+    let mut ids = Vec::new();
+    for tick in 0..900 {
+        if tick % 6 == 0 {
+            ids = road.mask(pose);
+        }
+        let mask = MaskView { width: WIDTH, height: HEIGHT, ids: &ids };
+        let controls = bot.controls(&SemanticView { mask, hud: hud(speed_mps, road.arrow(pose)) });
+        pose.drive(controls, speed_mps);
+        if tick >= 300 {
+            worst = worst.max(road.offset_m(pose.x, pose.y).abs());
+        }
+    }
+    worst
+}
+
+#[test]
+fn it_keeps_its_lane_on_straights_and_bends() {
+    for (curvature, speed_mps) in [(0.0, 13.0), (0.01, 12.0), (-0.01, 12.0), (0.03, 8.0), (-0.03, 8.0), (0.06, 5.5)] {
+        let worst = worst_offset_m(&Road { curvature }, 0.6, speed_mps);
+        assert!(worst < 0.5, "curvature {curvature}: {worst} m off the middle of the lane");
+    }
+}
+
+#[test]
+fn it_drives_on_a_free_road_and_stops_at_red() {
+    let ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    let free = controls(&ids, hud(8.0, straight_on()));
+    assert!(free.throttle > 0 && free.brake == 0, "{free:?}");
+    let red = Hud { light: Some(LightPhase::Red), light_distance_m: 12, ..hud(8.0, straight_on()) };
+    let red = controls(&ids, red);
+    assert!(red.brake > 10_000 && red.throttle == 0, "{red:?}");
+}
+
+#[test]
+fn it_brakes_for_a_person_but_not_for_specks() {
+    let road = Road { curvature: 0.0 };
+    let free = road.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    let with_person = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
+        let mut ids = free.clone();
+        for row in rows {
+            ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(SemanticTag::Pedestrian as u8);
+        }
+        controls(&ids, hud(8.0, straight_on()))
+    };
+    // 12.8 m in front of the camera a person is 17 pixels high and 5 wide.
+    assert!(with_person(126..131, 62..79).brake > 0);
+    assert_eq!(with_person(126..131, 76..79).brake, 0, "too low for a person");
+    assert_eq!(with_person(126..127, 62..79).brake, 0, "a single column");
+    assert_eq!(with_person(190..195, 62..79).brake, 0, "on the far side");
+}
+
+#[test]
+fn a_figure_is_as_far_as_its_lowest_foot() {
+    let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    // Trunk, one leg to the left, and the other, which stands, to the right.
+    for (columns, rows) in [(126..130, 60..70), (124..127, 70..75), (129..132, 70..79)] {
+        for row in rows {
+            ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(SemanticTag::Pedestrian as u8);
+        }
+    }
+    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids });
+    let (_, foot_m) = sight.rows_between(0.0, 60.0).find(|(row, _)| *row == 78).expect("in view");
+    let contacts = sight.contacts();
+    assert_eq!(contacts.len(), 8, "a contact for every column: {contacts:?}");
+    assert!(contacts.iter().all(|c| c.is_person && c.x_m == foot_m), "{foot_m} m: {contacts:?}");
+}
+
+#[test]
+fn a_bend_ahead_is_no_farther_than_it_is_along_the_route() {
+    for curvature in [0.04, -0.08, 0.11] {
+        let road = Road { curvature };
+        let pose = Pose { x: 0.0, y: 0.0, heading: 0.0 };
+        let middle = pose.place(ego::CENTRE_M.x, 0.0);
+        let (x, y) = path::arrow_point(&road.arrow(pose));
+        let along = Arc { curvature }.project(x, y).0 - Arc { curvature }.project(middle.0, middle.1).0;
+        // Half a step of the arrow is 0.52 m at this distance.
+        assert!((along - path::ARROW_M).abs() < 0.53, "curvature {curvature}: {along} m");
+    }
+}
+
+#[test]
+fn a_rider_is_where_his_wheels_are() {
+    let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    for (tag, columns, rows) in [(SemanticTag::Vehicles, 128..130, 70..79), (SemanticTag::Pedestrian, 127..131, 60..72)]
+    {
+        for row in rows {
+            ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(tag as u8);
+        }
+    }
+    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids });
+    let (_, wheels_m) = sight.rows_between(0.0, 60.0).find(|(row, _)| *row == 78).expect("in view");
+    let contacts = sight.contacts();
+    assert!(
+        contacts.len() >= 4 && contacts.iter().all(|c| !c.is_person && c.x_m == wheels_m),
+        "{wheels_m} m: {contacts:?}"
+    );
+}

@@ -1,0 +1,87 @@
+//! Simulated drives in parallel, resumable, and their figures.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::PathBuf;
+
+use base::failure::Usage;
+use base::maps::{Map, read_scenario};
+use base::output;
+use base::progress::Interrupt;
+use base::spread::jobs;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::Eye;
+use measures::statistics::table;
+use render::AdapterChoice;
+
+use super::figures::{CampaignFigures, figures};
+use super::workers::drive_all;
+use super::{Plan, Until};
+
+/// What is driven, and until when.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What the semantic driver sees; each of them drives the same runs.
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones. None: the scenario's map, or all.
+    pub maps: Vec<String>,
+    /// A scenario file; its seed and length are replaced for each run.
+    pub scenario: Option<PathBuf>,
+    /// When each checkpoint has driven enough.
+    pub until: Until,
+    /// People on foot, instead of as many as the scenario or the map's default has.
+    pub pedestrians: Option<u16>,
+    /// Longest simulated time of a run, seconds.
+    pub run_seconds: u32,
+    /// Seed of the campaign; run `i` follows from it and `i` alone.
+    pub seed: u64,
+    /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
+    /// Folder of the results; a campaign that was interrupted goes on there.
+    pub out: PathBuf,
+}
+
+/// Drives a campaign, writes its files, and gives its figures.
+pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<CampaignFigures> {
+    let plan = plan(options)?;
+    let eyes = options.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;
+    let names: Vec<String> = eyes.iter().map(|eye| eye.name().to_owned()).collect();
+    if names.iter().collect::<BTreeSet<_>>().len() < names.len() {
+        return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
+    }
+    AdapterChoice::default().find()?;
+    output::create_folder(&plan.out)?;
+    let jobs = jobs(options.jobs);
+    let mut runs = Vec::new();
+    for eye in &eyes {
+        runs.extend(drive_all(&plan, eye, jobs, interrupt)?);
+    }
+    let figures = figures(plan.seed, &names, runs);
+    output::write_file(&plan.out.join("campaign.json"), output::json_file(&figures)?.as_bytes())?;
+    Ok(figures)
+}
+
+fn plan(options: &Options) -> anyhow::Result<Plan> {
+    let scenario = options.scenario.as_deref().map(read_scenario).transpose()?;
+    let maps = match &scenario {
+        Some((_, map)) if options.maps.is_empty() => vec![map.clone()],
+        _ if options.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
+        _ => Map::find_all(&options.maps)?,
+    };
+    let scenario = scenario.map(|(scenario, _)| scenario);
+    let Options { until, pedestrians, run_seconds, seed, .. } = *options;
+    Ok(Plan { maps, scenario, pedestrians, run_seconds, seed, until, out: options.out.clone() })
+}
+
+impl fmt::Display for CampaignFigures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = self.checkpoints.iter();
+        let columns = columns.map(|c| (c.checkpoint.as_str(), &c.statistics, c.against_first.as_ref()));
+        f.write_str(&table(columns))?;
+        for each in self.checkpoints.iter().filter(|each| !each.interventions.is_empty()) {
+            let verdicts: Vec<_> = each.interventions.iter().map(|(verdict, n)| format!("{n} {verdict}")).collect();
+            write!(f, "\n{}: without the interventions: {}", each.checkpoint, verdicts.join(", "))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,143 @@
+//! Frames in the layout of Cityscapes, which trainers read as it is.
+//!
+//! `leftImg8bit/SPLIT/CITY/CITY_SEQ_FRAME_leftImg8bit.png` and, below `gtFine/SPLIT/CITY`,
+//! `_gtFine_labelIds.png` (tags of CARLA 0.9.10), `_gtFine_labelTrainIds.png` (train ids of
+//! `perception::classes`; 255 counts nowhere), `_gtFine_instanceIds.png` (16 bits: tag * 1000 +
+//! number for road users, else the tag) and `_gtFine_color.png` (the tags' colours).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use base::png;
+use perception::classes::TRAIN_ID_OF_TAG;
+use render::Frame;
+
+/// Which frame of which scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place<'a> {
+    /// `train`, `val` or `test`.
+    pub split: &'a str,
+    /// The map; must not contain `_`, which separates the parts of a name.
+    pub city: &'a str,
+    /// Number of the scene within its split.
+    pub scene: u32,
+    /// Number of the frame within its scene.
+    pub frame: u32,
+}
+
+impl Place<'_> {
+    /// Path of one of the frame's files below the dataset folder.
+    pub fn path(&self, kind: Kind) -> String {
+        let Self { split, city, scene, frame } = self;
+        let (top, ending) = kind.names();
+        format!("{top}/{split}/{city}/{city}_{scene:06}_{frame:06}_{ending}.png")
+    }
+}
+
+/// The files of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The picture.
+    Image,
+    /// Tags.
+    LabelIds,
+    /// Train ids.
+    TrainIds,
+    /// Tags with numbers.
+    InstanceIds,
+    /// Tags in their colours.
+    Color,
+}
+
+impl Kind {
+    /// Every one.
+    pub const ALL: [Self; 5] = [Self::Image, Self::LabelIds, Self::TrainIds, Self::InstanceIds, Self::Color];
+
+    /// The folder below the dataset's, and the end of the file's name.
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Image => ("leftImg8bit", "leftImg8bit"),
+            Self::LabelIds => ("gtFine", "gtFine_labelIds"),
+            Self::TrainIds => ("gtFine", "gtFine_labelTrainIds"),
+            Self::InstanceIds => ("gtFine", "gtFine_instanceIds"),
+            Self::Color => ("gtFine", "gtFine_color"),
+        }
+    }
+}
+
+/// Another file of the frame with this picture; `None` when the path is not that of a picture
+/// (`.../leftImg8bit/SPLIT/CITY/NAME_leftImg8bit.png`).
+pub fn sibling(image: &Path, kind: Kind) -> Option<PathBuf> {
+    let (top, ending) = kind.names();
+    let stem = image.file_name()?.to_str()?.strip_suffix("_leftImg8bit.png")?;
+    let city = image.parent()?;
+    let split = city.parent()?;
+    let dataset = split.parent()?.parent()?;
+    let folder = dataset.join(top).join(split.file_name()?).join(city.file_name()?);
+    Some(folder.join(format!("{stem}_{ending}.png")))
+}
+
+/// Writes all files of a frame below `dir`.
+pub fn write(dir: &Path, place: &Place<'_>, frame: &Frame) -> anyhow::Result<()> {
+    let size = (frame.width, frame.height);
+    let files = [
+        (Kind::Image, png::rgb(size, &frame.rgb)?),
+        (Kind::LabelIds, png::grey(size, &frame.class_ids)?),
+        (Kind::TrainIds, png::grey(size, &train_ids(&frame.class_ids))?),
+        (Kind::InstanceIds, png::grey16(size, &instances(frame))?),
+        (Kind::Color, png::tags(size, &frame.class_ids)?),
+    ];
+    for (kind, bytes) in files {
+        let path = dir.join(place.path(kind));
+        let folder = path.parent().unwrap_or(dir);
+        fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+        fs::write(&path, bytes).with_context(|| path.display().to_string())?;
+    }
+    Ok(())
+}
+
+/// Train ids of tags.
+pub fn train_ids(tags: &[u8]) -> Vec<u8> {
+    tags.iter().map(|&tag| TRAIN_ID_OF_TAG[usize::from(tag)]).collect()
+}
+
+/// `tag * 1000 + n` for the n-th instance of the picture (by id), the tag alone for all else.
+pub fn instances(frame: &Frame) -> Vec<u16> {
+    let mut ids: Vec<u16> = frame.instance_ids.iter().copied().filter(|id| *id != 0).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    let number = |tag: u8, instance: u16| match ids.binary_search(&instance) {
+        Ok(n) => u16::from(tag) * 1000 + n.min(999) as u16,
+        Err(_) => u16::from(tag),
+    };
+    frame.class_ids.iter().zip(&frame.instance_ids).map(|(&tag, &instance)| number(tag, instance)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_have_the_names_and_ids_that_trainers_expect() {
+        let place = Place { split: "val", city: "city", scene: 3, frame: 12 };
+        assert_eq!(place.path(Kind::Image), "leftImg8bit/val/city/city_000003_000012_leftImg8bit.png");
+        assert_eq!(place.path(Kind::TrainIds), "gtFine/val/city/city_000003_000012_gtFine_labelTrainIds.png");
+        let frame = Frame {
+            width: 4,
+            height: 1,
+            rgb: vec![0; 12],
+            class_ids: vec![7, 4, 4, 10],
+            instance_ids: vec![0, 31, 7, 31],
+            ..Frame::default()
+        };
+        assert_eq!(instances(&frame), [7, 4001, 4000, 10001]);
+        let dir = tempfile::tempdir().expect("a folder");
+        write(dir.path(), &place, &frame).expect("written");
+        let image = dir.path().join(place.path(Kind::Image));
+        assert_eq!(sibling(&image, Kind::TrainIds), Some(dir.path().join(place.path(Kind::TrainIds))));
+        for kind in Kind::ALL {
+            assert!(dir.path().join(place.path(kind)).is_file(), "{kind:?}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Checkpoints side by side over a library of corner cases.
+//!
+//! `OUT/compare.json`, `OUT/report.html`, and in `OUT/.compare` what each checkpoint made of each case, so
+//! that a further checkpoint or case costs only itself.
+
+mod contest;
+mod differing;
+mod gate;
+mod looking;
+mod metrics;
+mod page;
+mod score;
+mod summary;
+mod text;
+mod witness;
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+use drivers::checkpoint::CheckpointChoice;
+use kernel::time::{CLIP_FPS, CLIP_FRAMES, CLIP_TICKS};
+use render::AdapterChoice;
+
+use self::contest::Contest;
+pub use self::gate::Passage;
+use self::gate::no_worse;
+use self::looking::{Looked, Looking};
+use self::metrics::CaseSums;
+use self::summary::Speed;
+pub use self::summary::{Compared, Summary};
+use super::looks::open_eyes;
+use super::pipeline::{Crew, Studios};
+use super::store::{Settings, Store};
+use base::failure::Usage;
+use base::library;
+use base::output;
+use base::progress::{self, Interrupt};
+use base::spread::jobs;
+use drivers::vision::Eye;
+
+pub use gate::Gate;
+
+/// What is compared.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Corner cases, or folders with cases anywhere below.
+    pub files: Vec<PathBuf>,
+    /// Two or more checkpoints; the first is the baseline.
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// A condition on every checkpoint but the baseline, as in `ped_iou>=0.5`. Metrics: ped_iou, miou,
+    /// ped_recall_on_path, hazards_seen (share of the hazards seen 1 s or more before the intervention),
+    /// first_sight_s (mean), and against the baseline the numbers of cases fixed and broken.
+    pub gate: Vec<Gate>,
+    /// A checkpoint than which no other may be worse: of no metric may the paired 95 % interval of the
+    /// difference lie below 0 as a whole.
+    pub no_worse_than: Option<String>,
+    /// Size of the pictures.
+    pub size: (u32, u32),
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
+    /// Folder of the results. One that this command began is completed: what follows from the same cases,
+    /// checkpoints and size is kept.
+    pub out: PathBuf,
+}
+
+/// Draws every case, looks at it through each checkpoint, and writes `compare.json` and `report.html`.
+pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared> {
+    AdapterChoice::default().find()?;
+    let store = Store::open(&args.out, "compare")?;
+    let cases = library::find(&args.files)?;
+    library::check_cases(&cases)?;
+    let eyes = open_eyes(&args.checkpoint, args.size)?;
+    let reference = reference(args, &eyes)?;
+    let settings = Settings::new(CLIP_TICKS, CLIP_FPS, args.size);
+    let bar = progress::bar("frames", 0);
+    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings, bar: &bar };
+    let left = work.left();
+    bar.set_length(left.len() as u64 * u64::from(CLIP_FRAMES));
+    let (size, jobs, studios) = (args.size, jobs(args.jobs), Studios::default());
+    let crew = Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
+    let alone = crew.alone()?;
+    let pace = crew.run()?;
+    bar.finish_and_clear();
+    let Some(looked) = work.all() else {
+        bail!("{}: interrupted; the same command goes on from there", args.out.display());
+    };
+    for (case, looked) in cases.iter().zip(&looked) {
+        if let Some(kernel) = &looked.facts.other_kernel {
+            let path = case.path.display();
+            eprintln!("{path}: made by kernel {kernel}; its pictures count, who was in the way is not known");
+        }
+    }
+    let sums = sums(&looked, eyes.len());
+    let mut summary = Summary::new(args.size, &cases, &eyes, &looked, &sums);
+    summary.gates = passages(args, &eyes, &sums, reference);
+    let differing = differing::most(&looked);
+    let render = |studio: &mut _| page::render(&summary, &cases, (&mut eyes.clone(), studio), &differing, interrupt);
+    let page = crew.studios.with(size, render)?;
+    output::write_file(&args.out.join("report.html"), page.as_bytes())?;
+    output::write_file(&args.out.join("compare.json"), output::json_file(&summary)?.as_bytes())?;
+    Ok(Compared { summary, speed: Speed::of(pace, alone, eyes.len()) })
+}
+
+/// Number of the checkpoint that none of the others may be worse than.
+fn reference(args: &Options, eyes: &[Eye]) -> anyhow::Result<Option<usize>> {
+    if eyes.len() < 2 {
+        return Err(Usage("expected two or more checkpoints, the first of which is the baseline".into()).into());
+    }
+    let Some(name) = &args.no_worse_than else { return Ok(None) };
+    let found = eyes.iter().position(|eye| eye.name() == name);
+    let names = || eyes.iter().map(Eye::name).collect::<Vec<_>>().join(", ");
+    let sentence = || format!("--no-worse-than {name}: no such checkpoint; expected one of {}", names());
+    Ok(Some(found.ok_or_else(|| Usage(sentence()))?))
+}
+
+/// What counts, by checkpoint and case.
+fn sums(looked: &[Looked], checkpoints: usize) -> Vec<Vec<CaseSums>> {
+    let of = |checkpoint: usize| looked.iter().map(move |case| CaseSums::of(&case.facts, &case.scores[checkpoint]));
+    (0..checkpoints).map(|checkpoint| of(checkpoint).collect()).collect()
+}
+
+/// How every checkpoint but the baseline did at every gate.
+fn passages(args: &Options, eyes: &[Eye], sums: &[Vec<CaseSums>], reference: Option<usize>) -> Vec<Passage> {
+    let all: Vec<usize> = (0..sums[0].len()).collect();
+    let mut passages = Vec::new();
+    for (eye, own) in eyes.iter().zip(sums).skip(1) {
+        let contest = Contest::of(&sums[0], own);
+        let passage = |gate: &Gate| gate.passage(eye.name(), |metric| metric.of(own, &all), &contest);
+        passages.extend(args.gate.iter().map(passage));
+    }
+    if let Some(reference) = reference {
+        let others = eyes.iter().zip(sums).enumerate().filter(|(other, _)| *other != reference);
+        for (_, (eye, own)) in others {
+            passages.extend(no_worse(eye.name(), eyes[reference].name(), &Contest::of(&sums[reference], own)));
+        }
+    }
+    passages
+}

@@ -1,0 +1,135 @@
+//! A dataset of corner cases: the 3 s up to each takeover at 10 frames a second (paper, section 5), with
+//! ground truth.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use base::library::{self, Entry};
+use base::output::PendingFolder;
+use base::progress::{self, Interrupt};
+use drivers::vision;
+use kernel::time::{CLIP_FPS, CLIP_TICKS, Tick};
+use measures::footage::Footage;
+use replay::{Label, Recording};
+use serde::{Deserialize, Serialize};
+
+use super::manifest::{self, Manifest};
+use super::natural::city;
+use super::provenance::{Drive, FrameLine};
+use crate::cityscapes::{self, Place};
+use crate::looks::Studio;
+
+/// What a dataset of corner cases is made from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Recipe {
+    /// Which split they are.
+    pub split: String,
+    /// Width and height of the pictures, pixels.
+    pub size: (u32, u32),
+    /// The cases, in the order of their scenes' numbers.
+    pub cases: Vec<CaseUsed>,
+}
+
+/// A case of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseUsed {
+    /// Name of its file, for people; it is found by its digest.
+    pub name: String,
+    /// BLAKE3 of its file.
+    pub digest: String,
+    /// BLAKE3 of the recording it was cut from.
+    pub recording: String,
+    /// The window's last tick.
+    pub to: Tick,
+    /// The map, as it stands in file names.
+    pub map: String,
+    /// The drive's seed.
+    pub seed: u64,
+    /// What the takeover was labelled as.
+    pub label: Option<String>,
+}
+
+/// Which corner cases become a dataset.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Corner cases, or folders of them.
+    pub files: Vec<PathBuf>,
+    /// Take only cases with this label: walker, vehicle, rules or boredom; may be given again.
+    pub label: Vec<Label>,
+    /// Which split they become.
+    pub split: String,
+    /// Size of the pictures.
+    pub size: (u32, u32),
+    /// Folder of the dataset; must not exist, be empty, or hold this dataset already.
+    pub out: PathBuf,
+}
+
+/// Makes a dataset; one that is complete stays as it is.
+pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
+    let mut found = cases_in(&args.files)?;
+    if !args.label.is_empty() {
+        let wanted = |case: &CaseUsed| args.label.iter().any(|label| case.label.as_deref() == Some(label.name()));
+        found.retain(|(_, case)| wanted(case));
+    }
+    if found.is_empty() {
+        let labels: Vec<&str> = args.label.iter().map(|label| label.name()).collect();
+        bail!("none of the corner cases is labelled {}", labels.join(" or "));
+    }
+    let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+    build(&Recipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, interrupt)
+}
+
+/// The corner cases among files and folders, each once.
+pub(super) fn cases_in(places: &[PathBuf]) -> anyhow::Result<Vec<(PathBuf, CaseUsed)>> {
+    let read = |entry: Entry| Ok((entry.path.clone(), CaseUsed::read(&entry)?));
+    library::find(places)?.into_iter().map(read).collect()
+}
+
+impl CaseUsed {
+    fn read(entry: &Entry) -> anyhow::Result<Self> {
+        let log = Recording::open(&entry.path)?.into_log();
+        let info = log.manifest.case.as_ref();
+        let info = info.with_context(|| format!("{}: is a recording, expected a corner case", entry.path.display()))?;
+        Ok(Self {
+            name: entry.name.clone(),
+            digest: entry.digest.to_hex().to_string(),
+            recording: blake3::Hash::from_bytes(info.source).to_hex().to_string(),
+            to: info.to,
+            map: city(&log.manifest.scenario.map),
+            seed: log.manifest.scenario.seed,
+            label: log.annotation.as_ref().map(|annotation| annotation.label.name().to_owned()),
+        })
+    }
+}
+
+/// Makes a dataset from a recipe and the files of its cases.
+pub(super) fn build(recipe: &Recipe, files: &[PathBuf], out: &Path, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
+    let whole = manifest::Recipe::Cases(recipe.clone());
+    if let Some(finished) = Manifest::of_finished(out, &whole)? {
+        return Ok(finished);
+    }
+    let adapter = vision::find_adapter()?;
+    let mut studio = Studio::new(recipe.size);
+    let pending = PendingFolder::new(out)?;
+    let mut lines = Vec::new();
+    let bar = progress::bar("cases", files.len() as u64);
+    for (scene, (path, case)) in (0..).zip(files.iter().zip(&recipe.cases)) {
+        let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
+        let drive = Drive { recording: case.recording.clone(), seed: case.seed, label: case.label.as_deref() };
+        for (number, snapshot) in (0..).zip(&footage.scenes) {
+            if interrupt.is_raised() {
+                bail!("{}: interrupted; nothing of it is kept", out.display());
+            }
+            let frame = studio.draw(&footage.network, snapshot)?;
+            let place = Place { split: &recipe.split, city: &case.map, scene, frame: number };
+            cityscapes::write(pending.path(), &place, &frame)?;
+            let state_hash = footage.log.hash(frame.tick);
+            lines.push(FrameLine::new(&place, &frame, (snapshot, state_hash), &drive, &adapter));
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let manifest = Manifest::complete(pending.path(), whole, adapter, &lines)?;
+    pending.finish()?;
+    Ok(manifest)
+}

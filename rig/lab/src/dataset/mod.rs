@@ -1,0 +1,23 @@
+//! Datasets: frames with ground truth in the layout of Cityscapes, each with its provenance.
+//!
+//! | kind | frames | module |
+//! |---|---|---|
+//! | natural | simulated drives, one frame a second | [`natural`], driven by [`expert`] in [`drive`] |
+//! | cases | the 3 s up to each takeover, ten frames a second | [`cases`] |
+//! | mix | natural ones, some replaced by others | [`mix`] |
+//!
+//! A folder is a dataset as soon as it holds `dataset.json` ([`Manifest`]: the recipe and what came of
+//! it), which is written last. `frames.jsonl` says where each frame comes from ([`FrameLine`]). The
+//! pictures are a function of the recipe, on one adapter ([`rebuild`]).
+
+pub mod cases;
+mod drive;
+mod expert;
+mod manifest;
+pub mod mix;
+pub mod natural;
+mod provenance;
+pub mod rebuild;
+
+pub use manifest::{Manifest, Recipe, check_whole};
+pub use provenance::{FrameLine, Part, WeatherLine};

@@ -1,0 +1,332 @@
+//! The natural dataset: frames with ground truth from simulated drives (paper, section 4).
+//!
+//! A scene is a drive of the expert on one map, with weather, traffic and route of its own seed, one
+//! frame a second. A collision or a jam ends the drive, and the scene goes on with the next leg. The
+//! recordings of the drives lie below `drives`. Each scene depends on the recipe and its number alone,
+//! so scenes run in parallel and an interrupted dataset is completed by the same command.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use base::failure::Usage;
+use base::maps::Map;
+use base::output;
+use base::progress::{self, Interrupt};
+use base::spread::{jobs, spread};
+use drivers::vision;
+use indicatif::ProgressBar;
+use kernel::World;
+use render::{Camera, RENDERER_VERSION, RenderOptions, Renderer};
+use replay::KERNEL_VERSION;
+use serde::{Deserialize, Serialize};
+
+use super::drive::ExpertDrive;
+use super::manifest::{self, Manifest, PARTS};
+use super::provenance::{self, Drive, FrameLine};
+use crate::cityscapes::{self, Place};
+
+/// What a natural dataset is made from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Recipe {
+    /// Seed of every scene's own.
+    pub seed: u64,
+    /// Scenes of the training split.
+    pub scenes: u32,
+    /// Scenes of the validation split.
+    pub val_scenes: u32,
+    /// Scenes of the test split.
+    #[serde(default)]
+    pub test_scenes: u32,
+    /// Frames a scene of training and validation.
+    pub frames: u32,
+    /// Frames a scene of the test split.
+    #[serde(default)]
+    pub test_frames: u32,
+    /// Width and height of the pictures, pixels.
+    pub size: (u32, u32),
+    /// People on foot, where not as many as in the map's default scenario.
+    pub pedestrians: Option<u16>,
+    /// The scenes' maps, in turn.
+    pub maps: Vec<MapUsed>,
+}
+
+/// A map of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MapUsed {
+    /// Its name, as it stands in file names.
+    pub name: String,
+    /// Digest of the baked map.
+    pub digest: String,
+}
+
+impl MapUsed {
+    /// What a recipe says of a map.
+    pub fn new(map: &Map) -> Self {
+        Self { name: city(&map.network.name), digest: format!("{:032x}", map.network.digest) }
+    }
+}
+
+/// The name of a map as it stands in file names, whose parts `_` separates.
+pub(super) fn city(map: &str) -> String {
+    map.replace('_', "-")
+}
+
+/// What natural frames are asked for.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Scenes (drives) of the training split (paper: 85).
+    pub scenes: u32,
+    /// Scenes of the validation split, with seeds of their own (paper: 20).
+    pub val_scenes: u32,
+    /// Scenes of the test split, with seeds of their own (paper: 21).
+    pub test_scenes: u32,
+    /// Frames a scene of training and validation, one a second (paper: 60).
+    pub frames: u32,
+    /// Frames a scene of the test split (paper: 30).
+    pub test_frames: u32,
+    /// Size of the pictures.
+    pub size: (u32, u32),
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
+    pub maps: Vec<String>,
+    /// People on foot in each scene, instead of as many as the map's default scenario has.
+    pub pedestrians: Option<u16>,
+    /// Seed of the dataset.
+    pub seed: u64,
+    /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
+    /// Folder of the dataset; one that was interrupted is completed.
+    pub out: PathBuf,
+}
+
+/// Makes a dataset, or completes one that was interrupted; one that is complete stays as it is.
+pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
+    let maps = Map::find_all(&args.maps)?;
+    build(&Recipe::new(args, &maps)?, &maps, &args.out, args.jobs, interrupt)
+}
+
+/// As [`make`], from a recipe and its maps.
+pub(super) fn build(
+    recipe: &Recipe,
+    maps: &[Map],
+    out: &Path,
+    threads: Option<u16>,
+    interrupt: &Interrupt,
+) -> anyhow::Result<Manifest> {
+    let whole = manifest::Recipe::Natural(recipe.clone());
+    if let Some(finished) = Manifest::of_finished(out, &whole)? {
+        return Ok(finished);
+    }
+    let options = RenderOptions::default();
+    let adapter = vision::find_adapter()?;
+    let parts = prepare(out, recipe, &adapter)?;
+    let scenes = recipe.scenes();
+    let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
+    let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
+    spread(jobs(threads), scenes.len(), fresh, |renderers, index| {
+        let scene = &scenes[index];
+        let part = parts.join(scene.part());
+        if part.is_file() {
+            bar.inc(u64::from(scene.frames));
+            return Ok(());
+        }
+        let map = &maps[scene.map];
+        let renderer = match &mut renderers[scene.map] {
+            Some(renderer) => renderer,
+            none => none.insert(Renderer::new(&map.network, &options)?),
+        };
+        let mut studio = Studio { recipe, out, adapter: &adapter, renderer, interrupt, bar: &bar };
+        let lines = provenance::text(&studio.shoot(scene, map)?)?;
+        output::write_file(&part, lines.as_bytes())
+    })?;
+    bar.finish_and_clear();
+    finish(out, whole, &scenes, &parts, adapter)
+}
+
+/// What an unfinished dataset was begun with.
+#[derive(PartialEq, Serialize, Deserialize)]
+struct Begun {
+    recipe: Recipe,
+    kernel: String,
+    renderer: String,
+    adapter: String,
+}
+
+/// Whether a folder holds nothing but an empty `parts`, as a kill at the very begin leaves it.
+fn only_parts(out: &Path) -> bool {
+    let names = |path: &Path| fs::read_dir(path).map(|entries| entries.flatten().map(|e| e.file_name()).collect());
+    let inside: Vec<_> = names(out).unwrap_or_default();
+    inside == [PARTS] && names(&out.join(PARTS)).is_ok_and(|inside: Vec<_>| inside.is_empty())
+}
+
+/// The folder of finished scenes, once it is certain that they belong to this recipe.
+fn prepare(out: &Path, recipe: &Recipe, adapter: &str) -> anyhow::Result<PathBuf> {
+    let parts = out.join(PARTS);
+    let file = parts.join("begun.json");
+    let is_foreign = !file.exists() && fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
+    if is_foreign && !only_parts(out) {
+        bail!("{}: holds something else; expected a new or an empty folder, or this dataset", out.display());
+    }
+    output::create_folder(&parts)?;
+    let now = Begun {
+        recipe: recipe.clone(),
+        kernel: KERNEL_VERSION.to_owned(),
+        renderer: RENDERER_VERSION.to_owned(),
+        adapter: adapter.to_owned(),
+    };
+    if !file.exists() {
+        output::write_file(&file, serde_json::to_string_pretty(&now)?.as_bytes())?;
+        return Ok(parts);
+    }
+    let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+    let begun: Begun = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
+    if begun.recipe != now.recipe {
+        bail!("{}: was begun with other arguments; expected the same to complete it", out.display());
+    }
+    if begun != now {
+        let Begun { adapter: first, kernel, renderer, .. } = begun;
+        bail!(
+            "{}: was begun with kernel {kernel} and renderer {renderer} on {first}; expected the same to complete it, \
+             not {KERNEL_VERSION}, {RENDERER_VERSION} and {adapter}",
+            out.display()
+        );
+    }
+    Ok(parts)
+}
+
+/// Joins the scenes' lines and writes the manifest, which makes the dataset complete.
+fn finish(
+    out: &Path,
+    recipe: manifest::Recipe,
+    scenes: &[Scene],
+    parts: &Path,
+    adapter: String,
+) -> anyhow::Result<Manifest> {
+    let mut frames = Vec::new();
+    for scene in scenes {
+        let part = parts.join(scene.part());
+        let context = || part.display().to_string();
+        let text = fs::read_to_string(&part).with_context(context)?;
+        frames.extend(provenance::parse(&text).with_context(context)?);
+    }
+    let manifest = Manifest::complete(out, recipe, adapter, &frames)?;
+    fs::remove_dir_all(parts).with_context(|| parts.display().to_string())?;
+    Ok(manifest)
+}
+
+/// A scene of the recipe.
+struct Scene {
+    split: &'static str,
+    number: u32,
+    frames: u32,
+    /// Index in the list of maps.
+    map: usize,
+}
+
+impl Scene {
+    fn part(&self) -> String {
+        format!("{}_{:06}.jsonl", self.split, self.number)
+    }
+
+    /// Seed of a leg: the first 8 bytes of BLAKE3 over what names it, so that no two splits, scenes
+    /// or datasets share a drive.
+    fn seed(&self, recipe: &Recipe, leg: u32) -> u64 {
+        let name = format!("natural {} {} {} {leg}", recipe.seed, self.split, self.number);
+        let hash = blake3::hash(name.as_bytes());
+        u64::from_le_bytes(*hash.as_bytes().first_chunk().unwrap_or(&[0; 8]))
+    }
+}
+
+impl Recipe {
+    fn new(args: &Options, maps: &[Map]) -> anyhow::Result<Self> {
+        let recipe = Self {
+            seed: args.seed,
+            scenes: args.scenes,
+            val_scenes: args.val_scenes,
+            test_scenes: args.test_scenes,
+            frames: args.frames,
+            test_frames: args.test_frames,
+            size: args.size,
+            pedestrians: args.pedestrians,
+            maps: maps.iter().map(MapUsed::new).collect(),
+        };
+        let scenes = recipe.scenes();
+        if scenes.is_empty() || scenes.iter().any(|scene| scene.frames == 0) {
+            return Err(Usage("a dataset needs at least one map, one scene and one frame a scene".into()).into());
+        }
+        Ok(recipe)
+    }
+
+    fn scenes(&self) -> Vec<Scene> {
+        let splits = [
+            ("train", self.scenes, self.frames),
+            ("val", self.val_scenes, self.frames),
+            ("test", self.test_scenes, self.test_frames),
+        ];
+        let maps = self.maps.len().max(1);
+        let of = |(split, count, frames)| {
+            (0..count).map(move |number| Scene { split, number, frames, map: number as usize % maps })
+        };
+        splits.into_iter().flat_map(of).collect()
+    }
+}
+
+/// Where the frames of a scene are made.
+struct Studio<'a> {
+    recipe: &'a Recipe,
+    out: &'a Path,
+    adapter: &'a str,
+    renderer: &'a mut Renderer,
+    interrupt: &'a Interrupt,
+    bar: &'a ProgressBar,
+}
+
+impl Studio<'_> {
+    /// Drives a scene and writes its frames and recordings.
+    fn shoot(&mut self, scene: &Scene, map: &Map) -> anyhow::Result<Vec<FrameLine>> {
+        let mut lines: Vec<FrameLine> = Vec::new();
+        let mut leg = 0;
+        while lines.len() < scene.frames as usize {
+            let before = lines.len();
+            let mut scenario = map.scenario(scene.seed(self.recipe, leg));
+            scenario.traffic.pedestrians = self.recipe.pedestrians.unwrap_or(scenario.traffic.pedestrians);
+            let mut drive = ExpertDrive::new(&scenario, map)?;
+            while lines.len() < scene.frames as usize && drive.next_frame()? {
+                lines.push(self.keep(scene, drive.world(), lines.len() as u32)?);
+            }
+            if lines.len() > before {
+                let recording = self.record(scene, leg, &drive.into_recording()?)?;
+                lines[before..].iter_mut().for_each(|line| line.recording.clone_from(&recording));
+            } else if leg > scene.frames + 20 {
+                bail!("map {}: no drive lasts a second from where it starts", map.network.name);
+            }
+            leg += 1;
+        }
+        Ok(lines)
+    }
+
+    /// Draws and writes a frame; the digest of its drive's recording is not known yet.
+    fn keep(&mut self, scene: &Scene, world: &World, number: u32) -> anyhow::Result<FrameLine> {
+        if self.interrupt.is_raised() {
+            bail!("{}: interrupted; the same command completes it", self.out.display());
+        }
+        let ((width, height), snapshot) = (self.recipe.size, world.scene());
+        let frame = self.renderer.draw(&snapshot, &Camera::driver(width, height))?;
+        let map = &self.recipe.maps[scene.map].name;
+        let place = Place { split: scene.split, city: map, scene: scene.number, frame: number };
+        cityscapes::write(self.out, &place, &frame)?;
+        self.bar.inc(1);
+        let drive = Drive { recording: String::new(), seed: world.scenario().seed, label: None };
+        Ok(FrameLine::new(&place, &frame, (&snapshot, Some(world.hash().0 as u32)), &drive, self.adapter))
+    }
+
+    /// Writes the recording of a drive; gives its digest.
+    fn record(&self, scene: &Scene, leg: u32, recording: &[u8]) -> anyhow::Result<String> {
+        let map = &self.recipe.maps[scene.map].name;
+        let folder = self.out.join("drives").join(scene.split);
+        fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+        let name = format!("{map}_{:06}_{leg}.mcap", scene.number);
+        output::write_file(&folder.join(name), recording)?;
+        Ok(blake3::hash(recording).to_hex().to_string())
+    }
+}

@@ -1,0 +1,338 @@
+//! Measures a checkpoint on a split of a dataset folder.
+//!
+//! Integers are counted over all pixels of all frames before anything is divided, so nothing depends
+//! on the number of threads.
+
+mod people;
+mod split;
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Write};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use anyhow::{Context, bail};
+use perception::ConfusionMatrix;
+use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
+use serde::Serialize;
+
+pub use people::{Pedestrians, Person, Range, Recall, people};
+
+use super::dataset::check_whole;
+use super::figures::{Confusion, Figures, decimal, pixels_per, table};
+use base::output::PendingFolder;
+use base::png;
+use base::progress::{self, Interrupt};
+use base::spread::{jobs, spread};
+use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::Eye;
+
+/// What a checkpoint sees of a split.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evaluation {
+    /// `truth`, or the checkpoint's name.
+    pub checkpoint: String,
+    /// Its digest in hexadecimal digits.
+    pub digest: String,
+    /// The scenes of the split, by name.
+    pub scenes: Vec<Scene>,
+    /// Over all scenes.
+    pub matrix: ConfusionMatrix,
+    /// Those of that matrix.
+    pub figures: Figures,
+    /// The pedestrians of all frames.
+    pub pedestrians: Pedestrians,
+}
+
+/// A scene of a split.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Scene {
+    /// `CITY_SEQ`, what the names of its files begin with.
+    pub name: String,
+    /// How many pictures it has.
+    pub frames: usize,
+    /// Over them.
+    pub matrix: ConfusionMatrix,
+}
+
+impl Evaluation {
+    /// How many pictures the split has.
+    pub fn frames(&self) -> usize {
+        self.scenes.iter().map(|scene| scene.frames).sum()
+    }
+}
+
+/// An evaluation as it is printed.
+#[derive(Serialize)]
+pub struct Summary<'a> {
+    checkpoint: &'a str,
+    digest: &'a str,
+    dataset: String,
+    split: &'a str,
+    scenes: usize,
+    frames: usize,
+    #[serde(flatten)]
+    figures: &'a Figures,
+    /// Mean of the labelled pixels a scene and a frame, by class.
+    pixels_per_scene: BTreeMap<&'static str, f64>,
+    pixels_per_frame: BTreeMap<&'static str, f64>,
+    pedestrians: &'a Pedestrians,
+    confusion: Confusion<'a>,
+}
+
+impl<'a> Summary<'a> {
+    /// That of a split of a dataset.
+    pub fn new(evaluation: &'a Evaluation, dataset: &Path, split: &'a str) -> Self {
+        let Evaluation { checkpoint, digest, scenes, matrix, figures, pedestrians } = evaluation;
+        Self {
+            checkpoint,
+            digest,
+            dataset: dataset.display().to_string(),
+            split,
+            scenes: scenes.len(),
+            frames: evaluation.frames(),
+            figures,
+            pixels_per_scene: pixels_per(matrix, scenes.len()),
+            pixels_per_frame: pixels_per(matrix, evaluation.frames()),
+            pedestrians,
+            confusion: matrix.into(),
+        }
+    }
+}
+
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&text(self))
+    }
+}
+
+/// Measures a checkpoint on a split, on all cores.
+pub fn evaluate(checkpoint: &CheckpointChoice, dataset: &Path, split: &str) -> anyhow::Result<Evaluation> {
+    look(checkpoint, dataset, split, None, jobs(None))
+}
+
+/// As [`evaluate`]; the masks go below a new folder.
+pub fn evaluate_and_keep(
+    checkpoint: &CheckpointChoice,
+    dataset: &Path,
+    split: &str,
+    predictions: &Path,
+) -> anyhow::Result<Evaluation> {
+    let folder = PendingFolder::new(predictions)?;
+    let evaluation = look(checkpoint, dataset, split, Some(folder.path()), jobs(None))?;
+    folder.finish()?;
+    Ok(evaluation)
+}
+
+/// What is kept of a frame.
+struct Seen {
+    matrix: ConfusionMatrix,
+    people: Vec<Person>,
+}
+
+/// Looks at every frame on so many threads, and writes the masks below a folder if there is one.
+fn look(
+    checkpoint: &CheckpointChoice,
+    dataset: &Path,
+    split: &str,
+    predictions: Option<&Path>,
+    jobs: usize,
+) -> anyhow::Result<Evaluation> {
+    let interrupt = Interrupt::listen()?;
+    check_whole(dataset)?;
+    let images = split::images(dataset, split)?;
+    let (first, _) = png::read(&images[0], 3)?;
+    let eye = Eye::open_at(checkpoint, first)?;
+    let seen: Vec<OnceLock<Seen>> = images.iter().map(|_| OnceLock::new()).collect();
+    let bar = progress::bar("frames", images.len() as u64);
+    spread(
+        jobs,
+        images.len(),
+        || eye.clone(),
+        |eye, index| {
+            if interrupt.is_raised() {
+                bail!("interrupted");
+            }
+            let image = &images[index];
+            let labelled = split::read(image)?;
+            let size = (labelled.frame.width, labelled.frame.height);
+            if !matches!(eye, Eye::Truth) && eye.size() != size {
+                *eye = Eye::open_at(checkpoint, size)?;
+            }
+            let truth = labelled.frame.class_ids.clone();
+            let mask = eye.see(labelled.frame)?.ids;
+            let mut matrix = ConfusionMatrix::default();
+            matrix.add(&truth, &mask);
+            if let Some(folder) = predictions {
+                write(&prediction(folder, image), &png::grey(size, &mask)?)?;
+            }
+            let _ = seen[index].set(Seen { matrix, people: people(&labelled.instances, size, &mask) });
+            bar.inc(1);
+            Ok(())
+        },
+    )?;
+    bar.finish_and_clear();
+    let seen = seen.into_iter().map(|seen| seen.into_inner().context("every frame was looked at"));
+    Ok(sum(&eye, &images, &seen.collect::<anyhow::Result<Vec<_>>>()?))
+}
+
+fn sum(eye: &Eye, images: &[PathBuf], seen: &[Seen]) -> Evaluation {
+    let mut scenes: Vec<Scene> = Vec::new();
+    let mut matrix = ConfusionMatrix::default();
+    for (image, seen) in images.iter().zip(seen) {
+        let name = split::scene(image);
+        if scenes.last().is_none_or(|scene| scene.name != name) {
+            scenes.push(Scene { name, frames: 0, matrix: ConfusionMatrix::default() });
+        }
+        if let Some(scene) = scenes.last_mut() {
+            scene.frames += 1;
+            scene.matrix.merge(&seen.matrix);
+        }
+        matrix.merge(&seen.matrix);
+    }
+    let people: Vec<Person> = seen.iter().flat_map(|seen| seen.people.iter().copied()).collect();
+    Evaluation {
+        checkpoint: eye.name().to_owned(),
+        digest: eye.digest(),
+        scenes,
+        figures: (&matrix).into(),
+        matrix,
+        pedestrians: Pedestrians::of(&people),
+    }
+}
+
+/// Where the mask of a picture goes, under a name by which cityscapesscripts finds it:
+/// `CITY/CITY_SEQ_FRAME_pred_labelIds.png`, in tags.
+fn prediction(folder: &Path, image: &Path) -> PathBuf {
+    let city = image.parent().and_then(Path::file_name).unwrap_or_default();
+    folder.join(city).join(format!("{}_pred_labelIds.png", split::name(image)))
+}
+
+fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let folder = path.parent().unwrap_or(path);
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    fs::write(path, bytes).with_context(|| path.display().to_string())
+}
+
+fn text(summary: &Summary<'_>) -> String {
+    let Summary { scenes, frames, split, pedestrians, .. } = summary;
+    let a_scene = summary.pixels_per_scene.get(TRAIN_CLASSES[PEDESTRIAN].name).copied();
+    let mut text = format!(
+        "{}\n{frames} frames of {scenes} scenes of {split}; {:.1} pixels of pedestrians a scene\n\n{:<14} {:>12} {:>12} {:>12} {:>12}",
+        table(&[(summary.checkpoint.to_owned(), summary.figures.clone())]),
+        a_scene.unwrap_or_default(),
+        "pedestrians",
+        "people",
+        "pixels",
+        "recall",
+        "half seen",
+    );
+    // Writing to a string cannot fail.
+    let mut row = |name: &str, Recall { people, pixels, pixel_recall, half_seen, .. }: &Recall| {
+        let (recall, half) = (decimal(*pixel_recall), decimal(*half_seen));
+        let _ = write!(text, "\n{name:<14} {people:>12} {pixels:>12} {recall:>12} {half:>12}");
+    };
+    row("all", &pedestrians.all);
+    for (ranges, unit) in [(&pedestrians.by_height_px, "px high"), (&pedestrians.by_distance_m, "m away")] {
+        for Range { from, to, recall } in ranges {
+            row(&to.map_or_else(|| format!("{from}+ {unit}"), |to| format!("{from}-{to} {unit}")), recall);
+        }
+    }
+    row("feet hidden", &pedestrians.feet_hidden);
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cityscapes::{self, Kind, Place};
+    use render::Frame;
+
+    const SIZE: (u32, u32) = (64, 32);
+
+    /// Two scenes of two pictures with stripes of classes and somebody on a road.
+    fn dataset(dir: &Path) {
+        for (scene, number) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let tag = |i: u32| match (i % SIZE.0, i / SIZE.0) {
+                (x, 18..26) if (8 * scene..8 * scene + 4).contains(&x) => 4,
+                (x, 0..16) => [13, 9, 1, 14][(x / 8 + number) as usize % 4],
+                _ => 7,
+            };
+            let class_ids: Vec<u8> = (0..SIZE.0 * SIZE.1).map(tag).collect();
+            let frame = Frame {
+                width: SIZE.0,
+                height: SIZE.1,
+                rgb: class_ids.iter().flat_map(|tag| [9 * tag, 200, 80]).collect(),
+                instance_ids: class_ids.iter().map(|tag| 30 * u16::from(*tag == 4)).collect(),
+                class_ids,
+                ..Frame::default()
+            };
+            cityscapes::write(dir, &Place { split: "val", city: "toy", scene, frame: number }, &frame)
+                .expect("written");
+        }
+    }
+
+    #[test]
+    fn truth_is_perfect_and_ignored_pixels_stay_ignored() {
+        let dir = tempfile::tempdir().expect("a folder");
+        dataset(dir.path());
+        let all = evaluate(&CheckpointChoice::Truth, dir.path(), "val").expect("measured");
+        assert_eq!((all.figures.miou, all.frames()), (Some(1.0), 4));
+        assert_eq!(all.figures.pixels, 4 * 64 * 32 - 4 * 16 * 16, "a quarter of the upper half is Ground");
+        assert_eq!(
+            all.scenes.iter().map(|scene| scene.name.as_str()).collect::<Vec<_>>(),
+            ["toy_000000", "toy_000001"]
+        );
+        assert_eq!((all.pedestrians.all.people, all.pedestrians.all.half_seen), (4, Some(1.0)));
+        // Feet 10 rows below the horizon are 32 px * 1.5 m / 10 px = 4.8 m away, 8 rows there 1.2 m.
+        assert_eq!(all.pedestrians.by_distance_m[0].recall.people, 4);
+    }
+
+    #[test]
+    fn a_network_gives_the_same_on_any_number_of_threads_and_its_masks_are_kept() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let (data, masks) = (dir.path().join("data"), dir.path().join("masks"));
+        dataset(&data);
+        let early = CheckpointChoice::Bundled("early");
+        let one = look(&early, &data, "val", Some(&masks), 1).expect("measured");
+        assert_eq!(one, look(&early, &data, "val", None, 3).expect("measured"));
+        let mut sum = ConfusionMatrix::default();
+        for image in split::images(&data, "val").expect("pictures") {
+            let mask = png::read(&prediction(&masks, &image), 1).expect("a mask").1;
+            let labels = cityscapes::sibling(&image, Kind::LabelIds).expect("a path");
+            sum.add(&png::read(&labels, 1).expect("labels").1, &mask);
+        }
+        assert_eq!((sum, 2), (one.matrix, one.scenes.len()));
+        assert!(masks.join("toy/toy_000001_000000_pred_labelIds.png").is_file());
+    }
+
+    #[test]
+    fn what_cannot_be_measured_is_named_in_a_sentence() {
+        let dir = tempfile::tempdir().expect("a folder");
+        dataset(dir.path());
+        let said = |checkpoint: &CheckpointChoice, split: &str| {
+            let said = evaluate(checkpoint, dir.path(), split).expect_err("refused").to_string();
+            assert!(!said.contains('\n'), "{said}");
+            said
+        };
+        let truth = |words: &str| {
+            let said = said(&CheckpointChoice::Truth, "val");
+            assert!(said.contains(words), "{said}");
+        };
+        assert!(said(&CheckpointChoice::Truth, "test").contains("leftImg8bit/test: is not there"));
+        let gone = dir.path().join("gone.onnx");
+        assert!(said(&CheckpointChoice::File(gone.clone()), "val").contains("gone.onnx: no such checkpoint"));
+        fs::write(&gone, "not a network").expect("writable");
+        assert!(said(&CheckpointChoice::File(gone), "val").contains("gone.onnx"));
+
+        let label = dir.path().join("gtFine/val/toy/toy_000001_000000_gtFine_labelTrainIds.png");
+        let write = |bytes: anyhow::Result<Vec<u8>>| fs::write(&label, bytes.expect("a PNG")).expect("writable");
+        write(png::grey((32, 32), &[0; 32 * 32]));
+        truth("toy_000001_000000_gtFine_labelTrainIds.png: 32x32 pixels; expected 64x32 like its picture");
+        write(png::grey(SIZE, &[18; 64 * 32]));
+        truth("holds train id 18; expected 0 to 15 or 255");
+        fs::remove_file(&label).expect("there");
+        truth("toy_000001_000000_gtFine_labelTrainIds.png: is missing; expected the ground truth of");
+    }
+}

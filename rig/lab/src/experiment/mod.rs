@@ -1,0 +1,120 @@
+//! The paper from end to end: a network that was stopped early drives until it has made corner cases;
+//! networks learn from them and from other data of the same size; they are measured (Table 1) and drive
+//! themselves (Table 2).
+//!
+//! Every stage leaves its results in a folder of its own and does nothing when they are there, so the same
+//! command goes on where it was interrupted, and ends with the same tables.
+//!
+//! ```text
+//! OUT/recipe.toml       the numbers
+//! OUT/datasets/         natural, pool, cases, critical, and sets/{natural,pedestrian,corner-case}
+//! OUT/networks/         driving.onnx, SET-SEED.onnx
+//! OUT/campaign-1/       drives of the early-stopped network
+//! OUT/campaign-2/       drives of the three kinds of network
+//! OUT/tables.json       Tables 1 and 2
+//! OUT/report.html       all of it on one page
+//! ```
+
+mod forest;
+mod page;
+mod paper;
+mod pictures;
+mod recipe;
+mod stages;
+mod table_1;
+mod text;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+use render::AdapterChoice;
+use serde::Serialize;
+
+pub use recipe::{Preset, Recipe};
+
+use self::stages::Stages;
+use base::output;
+use base::progress::Interrupt;
+use measures::statistics::CheckpointStatistics;
+
+/// What a network learned from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Set {
+    /// Ordinary drives.
+    Natural,
+    /// With frames that show more pedestrians.
+    Pedestrian,
+    /// With the frames before takeovers.
+    CornerCase,
+}
+
+impl Set {
+    /// All of them, in the paper's order.
+    pub const ALL: [Self; 3] = [Self::Natural, Self::Pedestrian, Self::CornerCase];
+
+    /// As folders and files are called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Natural => "natural",
+            Self::Pedestrian => "pedestrian",
+            Self::CornerCase => "corner-case",
+        }
+    }
+}
+
+/// The content of `tables.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tables {
+    /// How good the networks are.
+    pub table_1: Vec<table_1::Row>,
+    /// How they drive, a network of each set; the natural one is the reference.
+    pub table_2: Vec<CheckpointStatistics>,
+}
+
+/// What an experiment came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outcome {
+    /// The page about it.
+    pub report: PathBuf,
+    /// Its figures.
+    #[serde(flatten)]
+    pub tables: Tables,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}
+
+{}",
+            text::tables(&self.tables),
+            self.report.display()
+        )
+    }
+}
+
+/// Does what a recipe says in a folder, or what is left of it there; `jobs` drives at the same time.
+pub fn run(recipe: &Recipe, out: &Path, jobs: Option<u16>, interrupt: &Interrupt) -> anyhow::Result<Outcome> {
+    AdapterChoice::default().find()?;
+    output::create_folder(out)?;
+    keep_recipe(recipe, &out.join("recipe.toml"))?;
+    let results = Stages { recipe, out, jobs, interrupt: interrupt.clone() }.run()?;
+    output::write_file(&out.join("tables.json"), output::json_file(&results.tables)?.as_bytes())?;
+    let report = out.join("report.html");
+    output::write_file(&report, page::render(recipe, &results)?.as_bytes())?;
+    Ok(Outcome { report, tables: results.tables })
+}
+
+/// A folder belongs to one recipe.
+fn keep_recipe(recipe: &Recipe, path: &Path) -> anyhow::Result<()> {
+    if !path.exists() {
+        return output::write_file(path, recipe.to_toml()?.as_bytes());
+    }
+    if Recipe::read(path)? != *recipe {
+        bail!("{}: is another experiment's; expected a new folder, or this one as --recipe", path.display());
+    }
+    Ok(())
+}

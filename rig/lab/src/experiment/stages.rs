@@ -1,0 +1,282 @@
+//! The stages, one after the other.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use base::output;
+use base::progress::Interrupt;
+use drivers::checkpoint::CheckpointChoice;
+use measures::statistics;
+use perception::training::TrainOptions;
+
+use super::table_1::{Row, Scenes, test_scores};
+use super::{Recipe, Set, Tables};
+use crate::campaign;
+use crate::campaign::CampaignFigures;
+use crate::campaign::Until;
+use crate::dataset::{Manifest, cases, mix, natural};
+use crate::{eval, train};
+
+/// Where frames are measured at last, in all datasets.
+const TEST: &str = "test";
+/// Folders of the campaigns.
+const FIRST_CAMPAIGN: &str = "campaign-1";
+const SECOND_CAMPAIGN: &str = "campaign-2";
+/// What is added to the experiment's seed for drives that are to share no start.
+const POOL_SEED: u64 = 1000;
+const SECOND_CAMPAIGN_SEED: u64 = 2000;
+
+/// What an experiment came to.
+pub struct Results {
+    /// Tables 1 and 2.
+    pub tables: Tables,
+    /// The drives of the early-stopped network.
+    pub first_campaign: CampaignFigures,
+    /// Corner cases that were learned from.
+    pub training_cases: Vec<PathBuf>,
+    /// Corner cases of the safety-critical test.
+    pub test_cases: Vec<PathBuf>,
+    /// The network of the first campaign, with its curves beside it.
+    pub driving: PathBuf,
+    /// The first network of each set.
+    pub networks: Vec<PathBuf>,
+    /// The drives of these.
+    pub second_campaign: CampaignFigures,
+    /// All datasets, by the names of their folders.
+    pub datasets: Vec<(String, Manifest)>,
+}
+
+/// An experiment on its way.
+pub struct Stages<'a> {
+    /// The numbers.
+    pub recipe: &'a Recipe,
+    /// Where everything goes.
+    pub out: &'a Path,
+    /// Drives at the same time.
+    pub jobs: Option<u16>,
+    /// Looked at between steps.
+    pub interrupt: Interrupt,
+}
+
+impl Stages<'_> {
+    /// All of them.
+    pub fn run(&self) -> anyhow::Result<Results> {
+        say(1, "drawing the natural data and a pool of scenes with more pedestrians");
+        self.draw()?;
+        say(2, "training the network that drives, and stopping it early");
+        let driving = self.train_driving()?;
+        say(3, "driving with it until there are enough corner cases with pedestrians");
+        let first_campaign = self.first_campaign(&driving)?;
+        let (training_cases, test_cases) = self.share_out(&first_campaign)?;
+        say(4, "making three training sets of equal size");
+        self.mix(&training_cases, &test_cases)?;
+        say(5, "training on each of them");
+        let networks = self.train_all()?;
+        say(6, "measuring every network on safety-critical and on natural frames");
+        let table_1 = self.measure(&networks)?;
+        say(7, "driving with a network of each set");
+        let firsts: Vec<PathBuf> = networks.iter().filter_map(|of_set| of_set.first().cloned()).collect();
+        let second_campaign = self.second_campaign(&firsts)?;
+        let folder = self.out.join(SECOND_CAMPAIGN);
+        let recordings: Vec<PathBuf> = second_campaign.runs.iter().map(|run| folder.join(&run.file)).collect();
+        let table_2 = statistics::of_recordings(&recordings, None, false)?;
+        say(8, "writing tables and report");
+        let tables = Tables { table_1, table_2 };
+        let (networks, datasets) = (firsts, self.datasets()?);
+        Ok(Results { tables, first_campaign, training_cases, test_cases, driving, networks, second_campaign, datasets })
+    }
+
+    fn dataset(&self, name: &str) -> PathBuf {
+        self.out.join("datasets").join(name)
+    }
+
+    fn set(&self, set: Set) -> PathBuf {
+        self.dataset("sets").join(set.name())
+    }
+
+    fn datasets(&self) -> anyhow::Result<Vec<(String, Manifest)>> {
+        let sets = Set::ALL.map(|set| format!("sets/{}", set.name()));
+        let names = ["natural", "pool", "cases", "critical"].map(str::to_owned).into_iter().chain(sets);
+        names.map(|name| Ok((format!("datasets/{name}"), Manifest::read(&self.dataset(&name))?))).collect()
+    }
+
+    fn draw(&self) -> anyhow::Result<()> {
+        let (n, pool) = (&self.recipe.natural, &self.recipe.pool);
+        let args = natural::Options {
+            scenes: n.scenes,
+            val_scenes: n.val_scenes,
+            test_scenes: n.test_scenes,
+            frames: n.frames,
+            test_frames: n.test_frames,
+            size: self.recipe.size,
+            maps: self.recipe.maps.clone(),
+            pedestrians: None,
+            seed: self.recipe.seed,
+            jobs: self.jobs,
+            out: self.dataset("natural"),
+        };
+        natural::make(&args, &self.interrupt)?;
+        let pool = natural::Options {
+            scenes: pool.scenes,
+            val_scenes: 0,
+            test_scenes: 0,
+            pedestrians: Some(pool.pedestrians),
+            seed: self.recipe.seed + POOL_SEED,
+            out: self.dataset("pool"),
+            ..args
+        };
+        natural::make(&pool, &self.interrupt)?;
+        Ok(())
+    }
+
+    fn train_driving(&self) -> anyhow::Result<PathBuf> {
+        let driving = &self.recipe.driving;
+        self.train(&self.dataset("natural"), "driving", self.recipe.seed, driving.epochs, driving.horizon)
+    }
+
+    fn train(&self, dataset: &Path, name: &str, seed: u64, epochs: u32, horizon: u32) -> anyhow::Result<PathBuf> {
+        let folder = self.out.join("networks");
+        output::create_folder(&folder)?;
+        let (out, standard) = (folder.join(format!("{name}.onnx")), TrainOptions::default());
+        let args = train::Options {
+            dataset: dataset.to_owned(),
+            out: out.clone(),
+            epochs,
+            seed,
+            size: self.recipe.size,
+            horizon: Some(horizon),
+            patience: None,
+            batch: standard.batch as u32,
+            replicas: standard.replicas as u32,
+            rate: standard.rate,
+        };
+        train::train(&args, &self.interrupt, &mut |epoch| {
+            eprintln!("{name}: {}", epoch);
+            Ok(())
+        })?;
+        Ok(out)
+    }
+
+    fn first_campaign(&self, driving: &Path) -> anyhow::Result<CampaignFigures> {
+        let c = &self.recipe.first_campaign;
+        let until = Until::PedestrianCases(c.training_cases + c.test_cases);
+        let plan = self.campaign(vec![driving.to_owned()], until, FIRST_CAMPAIGN, (c.pedestrians, c.run_seconds));
+        campaign::drive(&plan, &self.interrupt)
+    }
+
+    fn second_campaign(&self, networks: &[PathBuf]) -> anyhow::Result<CampaignFigures> {
+        let c = &self.recipe.second_campaign;
+        let drives = (c.pedestrians, c.run_seconds);
+        let plan = self.campaign(networks.to_vec(), Until::Km(c.km), SECOND_CAMPAIGN, drives);
+        let plan = campaign::Options { seed: self.recipe.seed + SECOND_CAMPAIGN_SEED, ..plan };
+        campaign::drive(&plan, &self.interrupt)
+    }
+
+    fn campaign(
+        &self,
+        checkpoints: Vec<PathBuf>,
+        until: Until,
+        name: &str,
+        (pedestrians, run_seconds): (Option<u16>, u32),
+    ) -> campaign::Options {
+        campaign::Options {
+            checkpoint: checkpoints.into_iter().map(CheckpointChoice::File).collect(),
+            maps: self.recipe.maps.clone(),
+            scenario: None,
+            until,
+            pedestrians,
+            run_seconds,
+            seed: self.recipe.seed,
+            jobs: self.jobs,
+            out: self.out.join(name),
+        }
+    }
+
+    /// The campaign's pedestrian cases: the first ones to learn from, later ones to measure on.
+    fn share_out(&self, figures: &CampaignFigures) -> anyhow::Result<(Vec<PathBuf>, Vec<PathBuf>)> {
+        let folder = self.out.join(FIRST_CAMPAIGN);
+        let pedestrian = figures.runs.iter().filter(|run| run.is_pedestrian_case());
+        let mut cases: Vec<PathBuf> = pedestrian.filter_map(|run| Some(folder.join(run.case.as_ref()?))).collect();
+        let c = &self.recipe.first_campaign;
+        if cases.len() < (c.training_cases + c.test_cases) as usize {
+            bail!("{}: {} pedestrian cases are too few", folder.display(), cases.len());
+        }
+        let test = cases.split_off(c.training_cases as usize);
+        Ok((cases, test))
+    }
+
+    fn mix(&self, training: &[PathBuf], test: &[PathBuf]) -> anyhow::Result<()> {
+        for (files, split, name) in [(training, "train", "cases"), (test, TEST, "critical")] {
+            let args = cases::Options {
+                files: files.to_vec(),
+                label: Vec::new(),
+                split: split.into(),
+                size: self.recipe.size,
+                out: self.dataset(name),
+            };
+            cases::make(&args, &self.interrupt)?;
+        }
+        let args = mix::Options {
+            natural: self.dataset("natural"),
+            pool: self.dataset("pool"),
+            cases: self.dataset("cases"),
+            replace: None,
+            seed: self.recipe.seed,
+            out: self.dataset("sets"),
+        };
+        mix::make(&args, &self.interrupt)?;
+        Ok(())
+    }
+
+    /// The networks of each set, in the order of their seeds.
+    fn train_all(&self) -> anyhow::Result<Vec<Vec<PathBuf>>> {
+        let training = &self.recipe.training;
+        // Seed by seed, so that an experiment that is looked at early has seen every set.
+        let mut networks = vec![Vec::new(); Set::ALL.len()];
+        for number in 1..=training.seeds {
+            for (set, trained) in Set::ALL.into_iter().zip(&mut networks) {
+                let name = format!("{}-{number}", set.name());
+                let seed = self.recipe.seed + u64::from(number);
+                trained.push(self.train(&self.set(set), &name, seed, training.epochs, training.epochs)?);
+            }
+        }
+        Ok(networks)
+    }
+
+    fn measure(&self, networks: &[Vec<PathBuf>]) -> anyhow::Result<Vec<Row>> {
+        let tests = [self.dataset("critical"), self.dataset("natural")];
+        let of_test = |of_set: &Vec<PathBuf>, test: &Path| -> anyhow::Result<Vec<Scenes>> {
+            of_set.iter().map(|network| self.scenes(network, test)).collect()
+        };
+        let of_set = |of_set| anyhow::Ok([of_test(of_set, &tests[0])?, of_test(of_set, &tests[1])?]);
+        let scenes = networks.iter().map(of_set).collect::<anyhow::Result<Vec<[Vec<Scenes>; 2]>>>()?;
+        let row = |(set, of_set): (Set, &[Vec<Scenes>; 2])| -> anyhow::Result<Row> {
+            let is_natural = set == Set::Natural;
+            Ok(Row {
+                set,
+                pedestrian_pixels_per_frame: self.pedestrian_pixels(set)?,
+                safety_critical: test_scores(&scenes[0][0], &of_set[0], is_natural),
+                natural: test_scores(&scenes[0][1], &of_set[1], is_natural),
+            })
+        };
+        Set::ALL.into_iter().zip(&scenes).map(row).collect()
+    }
+
+    fn scenes(&self, network: &Path, dataset: &Path) -> anyhow::Result<Scenes> {
+        if self.interrupt.is_raised() {
+            bail!("interrupted; the same command goes on from there");
+        }
+        let evaluation = eval::evaluate(&CheckpointChoice::File(network.to_owned()), dataset, TEST)?;
+        Ok(evaluation.scenes.into_iter().map(|scene| scene.matrix).collect())
+    }
+
+    fn pedestrian_pixels(&self, set: Set) -> anyhow::Result<f64> {
+        let folder = self.set(set);
+        let manifest = Manifest::read(&folder)?;
+        manifest.pedestrian_pixels.with_context(|| format!("{}: no training frames", folder.display()))
+    }
+}
+
+fn say(stage: u32, what: &str) {
+    eprintln!("{stage}/8 {what}");
+}

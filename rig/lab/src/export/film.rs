@@ -1,0 +1,154 @@
+//! Puts a window of a log into a file: simulates it again, comparing every tick, and draws.
+
+use std::io::Write;
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use anyhow::Context;
+use base::png;
+use drivers::vision::Eye;
+use kernel::scene::{EgoScene, SceneSnapshot};
+use kernel::time::{CLIP_STRIDE_TICKS, Tick};
+use kernel::{RoadNetwork, World};
+use measures::criticality::{SAMPLE_TICKS, Sampler, WARM_UP_SAMPLES};
+use replay::{Log, Replayer};
+use serde::Serialize;
+
+use super::criticality::Criticality;
+use super::sink::Sink;
+use super::telemetry::Telemetry;
+use super::topics::Topics;
+use super::{entities, happenings, messages};
+use crate::looks::{Studio, look};
+
+/// What is exported of a log.
+pub struct Window {
+    /// The ticks.
+    pub ticks: RangeInclusive<Tick>,
+    /// Ticks from one picture to the next.
+    pub stride: Tick,
+    /// A tick that has a picture, if it is within.
+    pub anchor: Tick,
+}
+
+impl Window {
+    /// Whether a tick has a picture.
+    fn has_picture(&self, tick: Tick) -> bool {
+        tick.abs_diff(self.anchor).is_multiple_of(self.stride)
+    }
+}
+
+/// What is written of a window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Ticks with a picture.
+    pub frames: usize,
+    /// Poses of the ego car.
+    pub poses: usize,
+    /// Happenings.
+    pub events: usize,
+}
+
+impl Counts {
+    /// That of a window of a log.
+    pub fn of(log: &Log, window: &Window) -> Self {
+        Self {
+            frames: window.ticks.clone().filter(|tick| window.has_picture(*tick)).count(),
+            poses: window.ticks.clone().count(),
+            events: happenings::lines(log, &window.ticks).len(),
+        }
+    }
+}
+
+/// What turns scenes into pictures and masks.
+pub struct Camera<'a> {
+    /// Draws.
+    pub studio: &'a mut Studio,
+    /// Look at what was drawn.
+    pub eyes: &'a mut [Eye],
+}
+
+/// Writes a window of a log. `go_on` is asked after each picture; when it says no, an error ends the work.
+pub fn shoot<W: Write>(
+    (log, network): (&Log, &Arc<RoadNetwork>),
+    window: &Window,
+    camera: &mut Camera<'_>,
+    sink: &mut Sink<W>,
+    mut go_on: impl FnMut() -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let topics = Topics::declare(sink, camera.eyes.iter().map(Eye::name))?;
+    let (first, last) = (*window.ticks.start(), *window.ticks.end());
+    sink.put(&topics.ground, first, &entities::ground(first, network))?;
+    sink.put(&topics.path, first, &messages::ego_path(first, &path(log, network, window)?))?;
+    let mut happenings = happenings::lines(log, &window.ticks).into_iter().peekable();
+    let mut replayer = Replayer::new(log, network.clone())?;
+    // Some ticks before the window, so that everyone's change of speed is known in it.
+    let mut sampler = Sampler::default();
+    replayer.seek(first.saturating_sub(WARM_UP_SAMPLES * SAMPLE_TICKS).max(log.first_tick()))?;
+    loop {
+        let scene = replayer.world().scene();
+        let (tick, inside) = (scene.tick, window.ticks.contains(&scene.tick));
+        if tick.abs_diff(window.anchor).is_multiple_of(SAMPLE_TICKS) {
+            let sample = sampler.look(replayer.world(), &scene);
+            if inside {
+                sink.put(&topics.criticality, tick, &Criticality::of(&sample))?;
+            }
+        }
+        if inside {
+            sink.put(&topics.pose, tick, &messages::ego_pose(tick, &scene.ego))?;
+            while let Some((_, line)) = happenings.next_if(|(at, _)| *at <= tick) {
+                sink.put(&topics.events, tick, &line)?;
+            }
+            if window.has_picture(tick) {
+                picture(&scene, network, camera, &topics, sink)?;
+                go_on()?;
+            }
+        }
+        if tick >= last {
+            return Ok(());
+        }
+        let (telemetry, tick) = (step(&mut replayer)?, tick + 1);
+        if window.ticks.contains(&tick) {
+            sink.put(&topics.telemetry, tick, &telemetry)?;
+        }
+    }
+}
+
+/// Goes on by a tick and gives its figures.
+fn step(replayer: &mut Replayer<'_>) -> anyhow::Result<Telemetry> {
+    let log = replayer.log();
+    let output = replayer.step()?.context("the log ends within the window")?;
+    let input = log.input(output.tick).context("a tick without input")?;
+    Ok(Telemetry::of(replayer.world(), input, &output, log))
+}
+
+/// Ten places of the ego car a second.
+fn path(log: &Log, network: &Arc<RoadNetwork>, window: &Window) -> anyhow::Result<Vec<EgoScene>> {
+    let mut replayer = Replayer::new(log, network.clone())?;
+    let mut place = |tick| {
+        replayer.seek(tick)?;
+        Ok(World::scene(replayer.world()).ego)
+    };
+    window.ticks.clone().step_by(CLIP_STRIDE_TICKS as usize).map(&mut place).collect()
+}
+
+fn picture<W: Write>(
+    scene: &SceneSnapshot,
+    network: &RoadNetwork,
+    camera: &mut Camera<'_>,
+    topics: &Topics,
+    sink: &mut Sink<W>,
+) -> anyhow::Result<()> {
+    let (tick, pinhole) = (scene.tick, *camera.studio.camera());
+    let frame = camera.studio.draw(network, scene)?;
+    let size = (frame.width, frame.height);
+    sink.put(&topics.transforms, tick, &messages::transforms(scene, &pinhole))?;
+    sink.put(&topics.actors, tick, &entities::actors(scene))?;
+    sink.put(&topics.calibration, tick, &messages::calibration(tick, &pinhole))?;
+    sink.put(&topics.rgb, tick, &messages::image(tick, png::rgb(size, &frame.rgb)?))?;
+    sink.put(&topics.truth, tick, &messages::image(tick, png::tags(size, &frame.class_ids)?))?;
+    for (topic, mask) in topics.predicted.iter().zip(look(camera.eyes, &frame)?) {
+        sink.put(topic, tick, &messages::image(tick, png::tags(size, &mask.ids)?))?;
+    }
+    Ok(())
+}

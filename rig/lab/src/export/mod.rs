@@ -1,0 +1,215 @@
+//! Recordings and cases for viewers of robot logs (Foxglove, Lichtblick, Rerun): an MCAP file of
+//! Foxglove's protobuf messages, and a layout that shows them.
+//!
+//! Message times are simulated time, so that the same export gives the same bytes. An export that is there
+//! already is kept: its file says what it was made from.
+
+mod criticality;
+mod entities;
+mod film;
+mod happenings;
+mod layout;
+mod messages;
+mod sink;
+mod telemetry;
+mod topics;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use base::failure::Usage;
+use base::library;
+use base::output::{self, PendingFile};
+use base::progress::{self, Interrupt};
+use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::Eye;
+use kernel::time::{TICK_HZ, Tick};
+use measures::footage::decisive_tick;
+use replay::{Exported, Log, Recording, exported};
+use serde::Serialize;
+
+use super::looks::{Studio, open_eyes};
+
+pub use film::Counts;
+use film::{Camera, Window};
+use sink::Sink;
+
+/// What was written.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    /// A layout for viewers.
+    pub layout: PathBuf,
+    /// The files.
+    pub exports: Vec<Export>,
+}
+
+/// A file that was written.
+#[derive(Debug, Serialize)]
+pub struct Export {
+    /// What was exported.
+    pub file: PathBuf,
+    /// To where.
+    pub out: PathBuf,
+    /// The first tick.
+    pub from: Tick,
+    /// The last tick.
+    pub to: Tick,
+    /// It was there already, made from the same.
+    pub kept: bool,
+    /// How much is in it.
+    #[serde(flatten)]
+    pub counts: Counts,
+}
+
+/// What is exported.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Recordings or cases, or folders with cases anywhere below.
+    pub files: Vec<PathBuf>,
+    /// Checkpoints whose masks come along with the ground truth.
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
+    /// window everything is exported.
+    pub last: Option<Tick>,
+    /// Only from this time of the run on, as in `10s`.
+    pub from: Option<Tick>,
+    /// Only up to this time of the run, as in `20s`.
+    pub to: Option<Tick>,
+    /// Pictures a second; must divide 60. What is measured is exported at every tick.
+    pub fps: u32,
+    /// Size of the pictures.
+    pub size: (u32, u32),
+    /// File of the export, with its layout for viewers beside it; or a folder, for several files.
+    pub out: PathBuf,
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for Export { out, from, to, kept, counts, .. } in &self.exports {
+            let Counts { frames, poses, events } = counts;
+            let kept = if *kept { ", kept" } else { "" };
+            let out = out.display();
+            writeln!(f, "{out}: ticks {from} to {to}, {frames} frames, {poses} poses, {events} events{kept}")?;
+        }
+        write!(f, "{}: a layout for the viewer", self.layout.display())
+    }
+}
+
+/// Exports what is asked for; what is whole already is kept.
+pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
+    let Places { layout, files } = places(args)?;
+    let mut eyes = open_eyes(&args.checkpoint, args.size)?;
+    let mut studio = Studio::new(args.size);
+    let mut camera = Camera { studio: &mut studio, eyes: &mut eyes };
+    let mut exports = Vec::new();
+    for (file, out) in files {
+        let recording = Recording::open(&file)?;
+        let export = export_one(args, (&file, &recording), out, &mut camera, interrupt);
+        exports.push(export.with_context(|| file.display().to_string())?);
+    }
+    let panels = layout::layout(eyes.iter().map(Eye::name));
+    output::write_file(&layout, &serde_json::to_vec_pretty(&panels)?)?;
+    Ok(Summary { layout, exports })
+}
+
+/// Where everything goes.
+struct Places {
+    layout: PathBuf,
+    /// What is exported, and to where.
+    files: Vec<(PathBuf, PathBuf)>,
+}
+
+/// One file goes to `OUT.mcap`, or into a folder as several do.
+fn places(args: &Options) -> anyhow::Result<Places> {
+    let given = library::cases(&args.files)?;
+    let is_file = args.out.extension().is_some_and(|ending| ending == "mcap") && !args.out.is_dir();
+    if is_file && given.len() > 1 {
+        let sentence = format!("{}: is one file; expected a folder for several", args.out.display());
+        return Err(Usage(sentence).into());
+    }
+    if is_file {
+        output::check_file(&args.out)?;
+        let layout = args.out.with_extension("layout.json");
+        return Ok(Places { layout, files: given.into_iter().map(|file| (file, args.out.clone())).collect() });
+    }
+    let mut names = BTreeSet::new();
+    let mut files = Vec::new();
+    for file in given {
+        let name = file.file_name().unwrap_or_default().to_owned();
+        let to = args.out.join(&name);
+        files.push((file, to));
+        if !names.insert(name.clone()) {
+            let name = name.to_string_lossy();
+            return Err(Usage(format!("two files are named {name}; expected names that differ")).into());
+        }
+    }
+    Ok(Places { layout: args.out.join("layout.json"), files })
+}
+
+fn export_one(
+    args: &Options,
+    (file, recording): (&Path, &Recording),
+    out: PathBuf,
+    camera: &mut Camera<'_>,
+    interrupt: &Interrupt,
+) -> anyhow::Result<Export> {
+    let there = exported(&out);
+    if there.is_none() && out.exists() {
+        bail!("{}: exists already and is no export; expected another place", out.display());
+    }
+    let (log, network) = (recording.log(), recording.network()?);
+    let window = window(log, args)?;
+    output::create_folder(out.parent().unwrap_or(Path::new(".")))?;
+    let (about, counts) = (about(recording, &window, args, camera.eyes), Counts::of(log, &window));
+    let (from, to) = window.ticks.clone().into_inner();
+    let kept = there == Some(Exported { about: about.clone(), is_whole: true });
+    let export = Export { file: file.to_owned(), out, from, to, kept, counts };
+    if kept {
+        return Ok(export);
+    }
+    let bar = progress::bar("frames", counts.frames as u64);
+    let mut sink = Sink::new(PendingFile::new(&export.out)?, about)?;
+    film::shoot((log, &network), &window, camera, &mut sink, || {
+        bar.inc(1);
+        if interrupt.is_raised() {
+            bail!("interrupted; nothing of its export is kept");
+        }
+        Ok(())
+    })?;
+    sink.finish()?.finish()?;
+    bar.finish_and_clear();
+    Ok(export)
+}
+
+/// The ticks that are asked for.
+fn window(log: &Log, args: &Options) -> anyhow::Result<Window> {
+    let (first, last) = (log.first_tick(), log.last_tick());
+    let anchor = decisive_tick(log);
+    let (from, to) = match args.last {
+        Some(length) => ((anchor + 1).saturating_sub(length), anchor),
+        None => (args.from.unwrap_or(first), args.to.unwrap_or(last)),
+    };
+    let ticks = from.max(first)..=to.min(last);
+    if ticks.is_empty() {
+        let seconds = |tick: Tick| tick as f64 / f64::from(TICK_HZ);
+        bail!("holds {:.2} s to {:.2} s of its run, and nothing of that window", seconds(first), seconds(last));
+    }
+    Ok(Window { ticks, stride: Tick::from(TICK_HZ / args.fps), anchor })
+}
+
+/// What the export was made from.
+fn about(recording: &Recording, window: &Window, args: &Options, eyes: &[Eye]) -> BTreeMap<String, String> {
+    let eyes: Vec<String> = eyes.iter().map(|eye| format!("{} {}", eye.name(), eye.digest())).collect();
+    let entries = [
+        ("source", blake3::Hash::from_bytes(recording.digest()).to_hex().to_string()),
+        ("ticks", format!("{} to {}", window.ticks.start(), window.ticks.end())),
+        ("fps", args.fps.to_string()),
+        ("size", format!("{}x{}", args.size.0, args.size.1)),
+        ("checkpoints", eyes.join(", ")),
+        ("adapter", drivers::vision::adapter()),
+        ("program", env!("CARGO_PKG_VERSION").to_owned()),
+    ];
+    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}

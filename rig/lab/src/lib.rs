@@ -1,0 +1,19 @@
+//! The offline lab: simulated campaigns, and pictures, datasets, checkpoints, comparisons and reports made
+//! from recordings. Options come as plain structs, results say themselves as JSON and as text.
+
+pub mod campaign;
+pub mod cityscapes;
+pub mod compare;
+pub mod dataset;
+pub mod eval;
+pub mod experiment;
+pub mod export;
+pub mod figures;
+pub mod looks;
+pub mod pipeline;
+pub mod plot;
+pub mod redrive;
+pub mod report;
+pub mod rerender;
+pub mod store;
+pub mod train;

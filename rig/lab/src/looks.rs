@@ -1,0 +1,56 @@
+//! Scenes drawn and looked at through several checkpoints.
+
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+
+use base::failure::Usage;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::Eye;
+use kernel::{RoadNetwork, SceneSnapshot};
+use perception::Mask;
+use render::{Camera, Frame, RenderOptions, Renderer};
+
+/// The eyes that a command line asks for, ready for pictures of one size.
+pub fn open_eyes(choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<Vec<Eye>> {
+    let eyes = choices.iter().map(|choice| Eye::open_at(choice, size)).collect::<anyhow::Result<Vec<_>>>()?;
+    let names: BTreeSet<&str> = eyes.iter().map(Eye::name).collect();
+    if names.len() < eyes.len() {
+        return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
+    }
+    Ok(eyes)
+}
+
+/// A renderer for each map, all with the driver's camera.
+pub struct Studio {
+    camera: Camera,
+    options: RenderOptions,
+    /// By digest of the map.
+    renderers: BTreeMap<u128, Renderer>,
+}
+
+impl Studio {
+    /// For pictures of one size.
+    pub fn new((width, height): (u32, u32)) -> Self {
+        let options = RenderOptions::default();
+        Self { camera: Camera::driver(width, height), options, renderers: BTreeMap::new() }
+    }
+
+    /// The driver's camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The driver's view of a scene; fails where nothing can draw.
+    pub fn draw(&mut self, network: &RoadNetwork, scene: &SceneSnapshot) -> anyhow::Result<Frame> {
+        let renderer = match self.renderers.entry(network.digest) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => entry.insert(Renderer::new(network, &self.options)?),
+        };
+        Ok(renderer.draw(scene, &self.camera)?)
+    }
+}
+
+/// What each eye makes of a frame, as tag ids.
+pub fn look(eyes: &mut [Eye], frame: &Frame) -> anyhow::Result<Vec<Mask>> {
+    eyes.iter_mut().map(|eye| eye.see(frame.clone())).collect()
+}

@@ -1,0 +1,244 @@
+//! Films of many files: some threads replay and draw while the others look at what was drawn. What is
+//! found out does not depend on the number of threads.
+
+mod alone;
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+use base::clock::seconds_of;
+use base::progress::Interrupt;
+use drivers::vision::Eye;
+use measures::footage::Footage;
+use render::Frame;
+
+use super::looks::Studio;
+
+pub use alone::Alone;
+
+/// Looking threads that one drawing thread keeps busy. A frame is drawn several times faster than a
+/// network looks at it.
+const LOOKING_A_DRAWING: usize = 8;
+/// Frames that wait for each looking thread, at most.
+const WAITING: usize = 2;
+
+/// What is done with files.
+pub trait Work: Sync {
+    /// What is remembered of a file while its frames are on their way.
+    type Notes: Send + Sync;
+    /// What is found out about a frame.
+    type Seen: Send;
+
+    /// Replays a file.
+    fn read(&self, index: usize) -> anyhow::Result<(Footage, Self::Notes)>;
+
+    /// Looks at a frame.
+    fn see(&self, film: &Film<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Self::Seen>;
+
+    /// Called when all frames of a file have been seen; what was found out comes in their order.
+    fn finish(&self, film: &Film<Self>, seen: Vec<Self::Seen>) -> anyhow::Result<()>;
+}
+
+/// A file under work.
+pub struct Film<W: Work + ?Sized> {
+    /// Number of the file.
+    pub index: usize,
+    /// Its scenes.
+    pub footage: Footage,
+    /// What is remembered of it.
+    pub notes: W::Notes,
+    seen: Mutex<Vec<Option<W::Seen>>>,
+}
+
+/// A frame on its way from the thread that drew it to one that looks.
+struct Shot<W: Work> {
+    film: Arc<Film<W>>,
+    number: usize,
+    frame: Frame,
+}
+
+/// How much was done in which time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pace {
+    /// Frames that were drawn and looked at.
+    pub frames: usize,
+    /// Time from the first file to the last frame, seconds.
+    pub seconds: f64,
+}
+
+impl Pace {
+    /// Frames a second.
+    pub fn rate(&self) -> f64 {
+        self.frames as f64 / self.seconds
+    }
+}
+
+/// The crew and its work.
+pub struct Crew<'a, W> {
+    /// What is done.
+    pub work: &'a W,
+    /// Numbers of the files that it is done with.
+    pub files: &'a [usize],
+    /// Width and height of the pictures, pixels.
+    pub size: (u32, u32),
+    /// Who looks; each looking thread has copies.
+    pub eyes: &'a [Eye],
+    /// Looking threads.
+    pub jobs: usize,
+    /// Ends the work early; files that are not finished by then are dropped.
+    pub interrupt: &'a Interrupt,
+    /// Renderers, one set a drawing thread; those that are missing are made.
+    pub studios: Studios,
+}
+
+/// Renderers that outlast the threads that draw with them.
+#[derive(Default)]
+pub struct Studios(Mutex<Vec<Studio>>);
+
+impl Studios {
+    /// Calls `draw` with a set for pictures of one size.
+    pub fn with<T>(&self, size: (u32, u32), draw: impl FnOnce(&mut Studio) -> T) -> T {
+        let free = lock(&self.0).pop();
+        let mut studio = free.unwrap_or_else(|| Studio::new(size));
+        let value = draw(&mut studio);
+        lock(&self.0).push(studio);
+        value
+    }
+}
+
+/// What the threads share.
+struct Board<'a, W> {
+    crew: &'a Crew<'a, W>,
+    next: AtomicUsize,
+    frames: AtomicUsize,
+    has_failed: AtomicBool,
+    failure: Mutex<Option<anyhow::Error>>,
+}
+
+impl<W: Work> Film<W> {
+    fn read(work: &W, index: usize) -> anyhow::Result<Self> {
+        let (footage, notes) = work.read(index)?;
+        let seen = Mutex::new(footage.scenes.iter().map(|_| None).collect());
+        Ok(Self { index, footage, notes, seen })
+    }
+}
+
+impl<W: Work> Crew<'_, W> {
+    /// Number of drawing threads.
+    fn drawing(&self) -> usize {
+        self.jobs.div_ceil(LOOKING_A_DRAWING).max(1)
+    }
+
+    /// Does the work. After the first error nothing new is begun, and that error is returned.
+    pub fn run(&self) -> anyhow::Result<Pace> {
+        let board = Board {
+            crew: self,
+            next: AtomicUsize::new(0),
+            frames: AtomicUsize::new(0),
+            has_failed: AtomicBool::new(false),
+            failure: Mutex::new(None),
+        };
+        let ((), seconds) = seconds_of(|| board.run());
+        match lock(&board.failure).take() {
+            Some(error) => Err(error),
+            None => Ok(Pace { frames: board.frames.load(Ordering::Relaxed), seconds }),
+        }
+    }
+}
+
+impl<W: Work> Board<'_, W> {
+    fn run(&self) {
+        let jobs = self.crew.jobs.max(1);
+        let (shots, waiting) = sync_channel(WAITING * jobs);
+        let waiting = Arc::new(Mutex::new(waiting));
+        thread::scope(|scope| {
+            for _ in 0..self.crew.drawing() {
+                let shots = shots.clone();
+                scope.spawn(move || self.draw_all(&shots));
+            }
+            drop(shots);
+            for _ in 0..jobs {
+                let waiting = waiting.clone();
+                scope.spawn(move || self.look_at_all(&waiting));
+            }
+            // The looking threads alone hold it: when all of them have panicked, nobody waits for room.
+            drop(waiting);
+        });
+    }
+
+    fn draw_all(&self, shots: &SyncSender<Shot<W>>) {
+        let _alarm = Alarm(&self.has_failed);
+        self.crew.studios.with(self.crew.size, |studio| {
+            while !self.is_over() {
+                let next = self.next.fetch_add(1, Ordering::Relaxed);
+                let Some(index) = self.crew.files.get(next) else { return };
+                self.note(self.draw(*index, studio, shots));
+            }
+        });
+    }
+
+    fn draw(&self, index: usize, studio: &mut Studio, shots: &SyncSender<Shot<W>>) -> anyhow::Result<()> {
+        let film = Arc::new(Film::read(self.crew.work, index)?);
+        for (number, scene) in film.footage.scenes.iter().enumerate() {
+            if self.is_over() {
+                break;
+            }
+            let frame = studio.draw(&film.footage.network, scene)?;
+            if shots.send(Shot { film: film.clone(), number, frame }).is_err() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn look_at_all(&self, waiting: &Mutex<Receiver<Shot<W>>>) {
+        let _alarm = Alarm(&self.has_failed);
+        let mut eyes = self.crew.eyes.to_vec();
+        loop {
+            let Ok(shot) = lock(waiting).recv() else { return };
+            if !self.is_over() {
+                self.note(self.look(&shot, &mut eyes));
+            }
+        }
+    }
+
+    fn look(&self, shot: &Shot<W>, eyes: &mut [Eye]) -> anyhow::Result<()> {
+        let seen = self.crew.work.see(&shot.film, &shot.frame, eyes)?;
+        self.frames.fetch_add(1, Ordering::Relaxed);
+        let mut all = lock(&shot.film.seen);
+        all[shot.number] = Some(seen);
+        if !all.iter().all(Option::is_some) {
+            return Ok(());
+        }
+        let all = std::mem::take(&mut *all).into_iter().flatten().collect();
+        self.crew.work.finish(&shot.film, all)
+    }
+
+    fn note(&self, result: anyhow::Result<()>) {
+        if let Err(error) = result {
+            lock(&self.failure).get_or_insert(error);
+            self.has_failed.store(true, Ordering::Relaxed);
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.has_failed.load(Ordering::Relaxed) || self.crew.interrupt.is_raised()
+    }
+}
+
+/// Tells the other threads that this one panicked.
+struct Alarm<'a>(&'a AtomicBool);
+
+impl Drop for Alarm<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

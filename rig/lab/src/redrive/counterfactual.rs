@@ -1,0 +1,110 @@
+//! The verdict on an intervention, kept beside its recording.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::Context;
+use base::output;
+use drivers::vision::Vision;
+use kernel::RoadNetwork;
+use kernel::time::{Tick, seconds};
+use measures::criticality::Extremes;
+use render::RENDERER_VERSION;
+use replay::{KERNEL_VERSION, Recording};
+use serde::{Deserialize, Serialize};
+
+use super::fork::{Fork, Harm, Otherwise};
+use super::verdict::Verdict;
+
+/// Raised when verdicts are given otherwise.
+const VERDICTS: u32 = 2;
+/// How long after the intervention a fork goes on.
+const AFTER_TICKS: Tick = seconds(10);
+
+/// What would have happened without an intervention.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Counterfactual {
+    /// Whether the intervention was necessary, early, needless, or in vain.
+    pub verdict: Verdict,
+    /// The first thing that goes wrong without it.
+    pub harm: Option<Harm>,
+    /// From the intervention to the harm, seconds.
+    pub harm_after_s: Option<f64>,
+    /// The first collision, which may come after other harm.
+    pub collision: Option<Harm>,
+    /// From the intervention to the collision, seconds.
+    pub collision_after_s: Option<f64>,
+    /// The first thing that went wrong all the same with it.
+    pub recorded_harm: Option<Harm>,
+    /// How close it came to harm without it, whatever the verdict.
+    pub closest: Extremes,
+    /// What it follows from.
+    key: Key,
+}
+
+/// Everything that decides a counterfactual.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Key {
+    /// Digest of the recording, which names the checkpoint.
+    recording: String,
+    kernel: String,
+    renderer: String,
+    after_ticks: Tick,
+    verdicts: u32,
+}
+
+impl Key {
+    fn of(recording: &Recording) -> Self {
+        let digest = blake3::Hash::from_bytes(recording.digest()).to_hex();
+        Self {
+            recording: digest.to_string(),
+            kernel: KERNEL_VERSION.to_owned(),
+            renderer: RENDERER_VERSION.to_owned(),
+            after_ticks: AFTER_TICKS,
+            verdicts: VERDICTS,
+        }
+    }
+}
+
+impl Counterfactual {
+    /// Drives a recording's fork without the intervention. Vision is that of the recorded run.
+    pub fn of(recording: &Recording, network: &Arc<RoadNetwork>, vision: Vision) -> anyhow::Result<(Self, Vision)> {
+        let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
+        let at = recording.log().intervention.context("holds no intervention")?.tick;
+        let fork = Fork { otherwise, weather: None, after_ticks: AFTER_TICKS };
+        let (course, vision) = fork.drive(recording.log(), network, vision)?;
+        let found = Self {
+            verdict: Verdict::of(&course, otherwise, at),
+            harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
+            harm: course.harm,
+            collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
+            collision: course.collision,
+            recorded_harm: course.recorded_harm,
+            closest: course.closest,
+            key: Key::of(recording),
+        };
+        Ok((found, vision))
+    }
+
+    /// What was found before; `None` if nothing was, or of another recording.
+    pub fn read(path: &Path, recording: &Recording) -> anyhow::Result<Option<Self>> {
+        let bytes = match fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(e) => return Err(e).with_context(|| path.display().to_string()),
+        };
+        Ok(Self::decode(&bytes, recording))
+    }
+
+    /// As it is in a file, unless that is of another recording.
+    pub fn decode(bytes: &[u8], recording: &Recording) -> Option<Self> {
+        let known = serde_json::from_slice::<Self>(bytes).ok();
+        known.filter(|known| known.key == Key::of(recording))
+    }
+
+    /// As a file.
+    pub fn encode(&self) -> anyhow::Result<Vec<u8>> {
+        Ok(output::json_file(self)?.into_bytes())
+    }
+}

@@ -1,0 +1,108 @@
+//! What a fork says about the intervention.
+
+use kernel::time::{Tick, seconds};
+use serde::{Deserialize, Serialize};
+
+use super::fork::{Course, Otherwise};
+
+/// An intervention is early when harm would have come later than this after it.
+const EARLY_TICKS: Tick = seconds(3);
+
+/// Verdict on an intervention.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Harm of the same kind comes without it and came with it.
+    #[serde(rename = "in vain")]
+    InVain,
+    /// Without it, harm comes within 3 s: a collision, a red light, the wrong way, or off the road.
+    Necessary,
+    /// Without it, harm comes later.
+    Early,
+    /// Without it, no harm comes as long as the fork goes on.
+    Needless,
+    /// Through the other checkpoint there is an intervention, or a collision that nobody prevents.
+    Again,
+    /// Through the other checkpoint there is none.
+    Avoided,
+}
+
+impl Verdict {
+    /// Of a fork of a run with an intervention at a tick.
+    pub fn of(course: &Course, otherwise: Otherwise, at: Tick) -> Self {
+        match otherwise {
+            Otherwise::NoIntervention { .. } => match &course.harm {
+                Some(harm) if course.recorded_harm.as_ref().is_some_and(|came| came.what == harm.what) => Self::InVain,
+                Some(harm) if harm.tick <= at + EARLY_TICKS => Self::Necessary,
+                Some(_) => Self::Early,
+                None => Self::Needless,
+            },
+            Otherwise::OtherEye { .. } => {
+                if course.collision.is_some() || course.intervention.is_some() {
+                    Self::Again
+                } else {
+                    Self::Avoided
+                }
+            }
+        }
+    }
+
+    /// As it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::InVain => "in vain",
+            Self::Necessary => "necessary",
+            Self::Early => "early",
+            Self::Needless => "needless",
+            Self::Again => "again",
+            Self::Avoided => "avoided",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::redrive::fork::{Harm, HarmKind};
+    use measures::criticality::Extremes;
+
+    fn course(harm: Option<(Tick, HarmKind)>, intervention: Option<Tick>) -> Course {
+        let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
+        let collision = harm.clone().filter(|harm| harm.what == HarmKind::Collision);
+        let closest = Extremes { min_ttc_s: None, min_pret_s: None, max_required_deceleration_mps2: None, pet_s: None };
+        Course { recording: Vec::new(), fork_tick: 1, harm, collision, recorded_harm: None, intervention, closest }
+    }
+
+    #[test]
+    fn harm_soon_after_makes_an_intervention_necessary() {
+        let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
+        let verdict = |harm| Verdict::of(&course(harm, None), otherwise, 1000);
+        assert_eq!(verdict(Some((1000, HarmKind::Collision))), Verdict::Necessary);
+        assert_eq!(verdict(Some((1180, HarmKind::RedLight))), Verdict::Necessary);
+        assert_eq!(verdict(Some((1181, HarmKind::Collision))), Verdict::Early);
+        assert_eq!(verdict(None), Verdict::Needless);
+    }
+
+    #[test]
+    fn harm_that_came_all_the_same_makes_an_intervention_vain() {
+        let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
+        let verdict = |harm, came| {
+            let recorded_harm = course(came, None).harm;
+            Verdict::of(&Course { recorded_harm, ..course(harm, None) }, otherwise, 1000)
+        };
+        let collision = |tick| Some((tick, HarmKind::Collision));
+        assert_eq!(verdict(collision(1010), collision(1012)), Verdict::InVain);
+        assert_eq!(verdict(collision(1010), Some((1012, HarmKind::OffRoad))), Verdict::Necessary);
+        assert_eq!(verdict(None, collision(1012)), Verdict::Needless);
+    }
+
+    #[test]
+    fn another_eye_avoids_it_only_without_takeover_and_collision() {
+        let verdict =
+            |harm, taken_over| Verdict::of(&course(harm, taken_over), Otherwise::OtherEye { person: 0 }, 1000);
+        assert_eq!(verdict(None, None), Verdict::Avoided);
+        assert_eq!(verdict(Some((900, HarmKind::OffRoad)), None), Verdict::Avoided);
+        assert_eq!(verdict(Some((900, HarmKind::Collision)), None), Verdict::Again);
+        assert_eq!(verdict(None, Some(990)), Verdict::Again);
+    }
+}

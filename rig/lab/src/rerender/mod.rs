@@ -1,0 +1,164 @@
+//! Renders the window of recordings or cases through checkpoints.
+//!
+//! `OUT/NAME/rgb/TICK.png`, `OUT/NAME/labels/TICK.png`, `OUT/NAME/predictions/CHECKPOINT/TICK.png`
+//! (ids are tags of CARLA 0.9.10), and `OUT/metrics.jsonl`: a line for each frame and checkpoint, for
+//! each file and checkpoint, and for each checkpoint over all. What is whole is found again through
+//! `OUT/.rerender`.
+
+mod pictures;
+
+use std::path::PathBuf;
+use std::{fmt, fs};
+
+use anyhow::{Context, bail};
+use base::library;
+use base::output::{self, json_line};
+use base::progress::{self, Interrupt};
+use base::spread::jobs;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::Eye;
+use kernel::time::Tick;
+use perception::ConfusionMatrix;
+use render::AdapterChoice;
+use serde::Serialize;
+
+use self::pictures::Pictures;
+use super::figures::{Figures, table};
+use super::looks::open_eyes;
+use super::pipeline::{Crew, Studios};
+use super::store::{Settings, Store};
+
+/// A line of `metrics.jsonl`.
+#[derive(Serialize)]
+struct Line<'a> {
+    /// What it sums over: `frame`, `file` or `overall`.
+    over: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tick: Option<Tick>,
+    checkpoint: &'a str,
+    #[serde(flatten)]
+    figures: Figures,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Folder of the results.
+    pub out: String,
+    /// Recordings and cases.
+    pub files: usize,
+    /// Frames of all of them.
+    pub frames: usize,
+    /// What each checkpoint made of them.
+    pub checkpoints: Vec<Seen>,
+}
+
+/// A checkpoint over all frames.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Seen {
+    /// Its name.
+    pub name: String,
+    /// Its digest in hexadecimal digits.
+    pub digest: String,
+    /// How good it was.
+    #[serde(flatten)]
+    pub figures: Figures,
+}
+
+/// What is drawn and looked at again.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Recordings or cases, or folders with cases anywhere below.
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Length of the window that ends at the intervention (or at the end), as in `3s`.
+    pub last: Tick,
+    /// Frames a second; must divide 60.
+    pub fps: u32,
+    /// Size of the pictures.
+    pub size: (u32, u32),
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
+    /// Folder of the results. One that this command began is completed: what is whole and follows from
+    /// the same files, checkpoints and options is kept.
+    pub out: PathBuf,
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { out, files, frames, checkpoints } = self;
+        let columns: Vec<_> = checkpoints.iter().map(|c| (c.name.clone(), c.figures.clone())).collect();
+        write!(f, "{}\n{frames} frames of {files} files in {out}", table(&columns))
+    }
+}
+
+/// Draws the windows and looks at them; what an earlier call left whole is kept.
+pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
+    AdapterChoice::default().find()?;
+    let store = Store::open(&args.out, "rerender")?;
+    let files = library::find(&args.files)?;
+    let eyes = open_eyes(&args.checkpoint, args.size)?;
+    let metrics = args.out.join("metrics.jsonl");
+    // That of an earlier call would not be about these files.
+    if metrics.exists() {
+        fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;
+    }
+    let bar = progress::bar("frames", 0);
+    let settings = Settings::new(args.last, args.fps, args.size);
+    let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings };
+    let left = work.left();
+    bar.set_length(work.expected() * left.len() as u64);
+    let (size, jobs, studios) = (args.size, jobs(args.jobs), Studios::default());
+    Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
+    bar.finish_and_clear();
+    let Some(found) = work.found() else {
+        bail!("{}: interrupted; the same command goes on from there", args.out.display());
+    };
+    let (lines, overall) = lines(&work, &found)?;
+    output::write_file(&metrics, lines.as_bytes())?;
+    let frames = found.iter().filter_map(|file| file.first()).map(Vec::len).sum();
+    let seen = |(eye, matrix): (&Eye, &ConfusionMatrix)| Seen {
+        name: eye.name().to_owned(),
+        digest: eye.digest(),
+        figures: matrix.into(),
+    };
+    let checkpoints = eyes.iter().zip(&overall).map(seen).collect();
+    Ok(Summary { out: args.out.display().to_string(), files: files.len(), frames, checkpoints })
+}
+
+/// A checkpoint's matrix of each frame.
+type Matrices = Vec<(Tick, ConfusionMatrix)>;
+
+/// The text of `metrics.jsonl`, and each checkpoint's matrix over all; `found` is by file and checkpoint.
+fn lines(work: &Pictures<'_>, found: &[Vec<Matrices>]) -> anyhow::Result<(String, Vec<ConfusionMatrix>)> {
+    let mut text = String::new();
+    let mut line = |over, file, tick, eye: &Eye, matrix: &ConfusionMatrix| -> anyhow::Result<()> {
+        let line = Line { over, file, tick, checkpoint: eye.name(), figures: matrix.into() };
+        text.push_str(&json_line(&line)?);
+        text.push('\n');
+        Ok(())
+    };
+    let mut overall = vec![ConfusionMatrix::default(); work.eyes.len()];
+    for (file, found) in work.files.iter().zip(found) {
+        let name = Some(file.name.as_str());
+        for frame in 0..found.first().map_or(0, Vec::len) {
+            for (eye, matrices) in work.eyes.iter().zip(found) {
+                let (tick, matrix) = &matrices[frame];
+                line("frame", name, Some(*tick), eye, matrix)?;
+            }
+        }
+        for ((eye, matrices), overall) in work.eyes.iter().zip(found).zip(&mut overall) {
+            let mut sum = ConfusionMatrix::default();
+            matrices.iter().for_each(|(_, matrix)| sum.merge(matrix));
+            overall.merge(&sum);
+            line("file", name, None, eye, &sum)?;
+        }
+    }
+    for (eye, matrix) in work.eyes.iter().zip(&overall) {
+        line("overall", None, None, eye, matrix)?;
+    }
+    Ok((text, overall))
+}

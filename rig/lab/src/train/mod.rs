@@ -1,0 +1,186 @@
+//! Trains a checkpoint from a dataset folder. `C.onnx` is written last, after its card `C.md` and its
+//! learning curves `C.jsonl` and `C.svg`, so that it stands for all of them.
+
+mod card;
+mod curves;
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use indicatif::ProgressBar;
+use perception::Checkpoint;
+use perception::training::{self, Origin, Progress, TrainOptions, Trained};
+use serde::Serialize;
+
+pub use curves::Epoch;
+
+use crate::dataset::check_whole;
+use base::output;
+use base::progress::{self, Interrupt};
+
+/// A checkpoint that is trained.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Summary {
+    /// Its file.
+    pub checkpoint: PathBuf,
+    /// Its digest, as recordings and evaluations name it, in hexadecimal digits.
+    pub digest: String,
+    /// Whether it was there already, from the same options and the same dataset.
+    pub was_there: bool,
+}
+
+/// Endings of what is written beside a checkpoint: its card, its learning curves, and their picture.
+const BESIDE: [&str; 3] = ["md", "jsonl", "svg"];
+
+/// What is learned from, and how.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Dataset folder.
+    pub dataset: PathBuf,
+    /// Where the checkpoint goes.
+    pub out: PathBuf,
+    /// Passes over the training split.
+    pub epochs: u32,
+    /// Seed of weights, order and augmentation.
+    pub seed: u64,
+    /// Size at which the network is trained.
+    pub size: (u32, u32),
+    /// Epochs after which the learning rate would be 0 (default: `--epochs`). A larger one makes a
+    /// training that is stopped early, and that can go on later.
+    pub horizon: Option<u32>,
+    /// Stop after so many epochs without a better validation mIoU, and keep the best epoch's network
+    /// instead of the last one's.
+    pub patience: Option<u32>,
+    /// Frames a step.
+    pub batch: u32,
+    /// Threads that share a batch; the result depends on their number, not on the machine's.
+    pub replicas: u32,
+    /// First learning rate.
+    pub rate: f32,
+}
+
+/// Trains a checkpoint unless it is there, and shows every epoch as it ends. What is interrupted goes
+/// on from its last finished epoch, to the same bytes.
+pub fn train(
+    args: &Options,
+    interrupt: &Interrupt,
+    show: &mut dyn FnMut(&Epoch) -> anyhow::Result<()>,
+) -> anyhow::Result<Summary> {
+    output::check_file(&args.out)?;
+    check_whole(&args.dataset)?;
+    let options = options(args);
+    let unfinished = beside(&args.out, "onnx.part");
+    if args.out.exists() {
+        let known = Checkpoint::load(&args.out).ok();
+        let origin = |known| training::origin(known, &args.dataset, &options, args.epochs);
+        match (known.as_ref().map(origin).transpose()?, known) {
+            (Some(Origin::This), Some(known)) => return Ok(summary(args, &known, true)),
+            // What is unfinished goes on from there.
+            (Some(Origin::OtherEpochs), _) if unfinished.exists() => {}
+            _ => {
+                let out = args.out.display();
+                bail!(
+                    "{out}: exists already and is not what these options make of this dataset; expected another place"
+                );
+            }
+        }
+    }
+    check_beside(args, &unfinished)?;
+    let mut screen = Screen { bar: ProgressBar::hidden(), options: &options, epochs: args.epochs, show, failed: None };
+    let watch = &mut |progress: Progress<'_>| {
+        screen.watch(progress);
+        if interrupt.is_raised() || screen.failed.is_some() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    };
+    let trained = training::train(&args.dataset, &unfinished, &options, args.epochs, watch)?;
+    screen.bar.finish_and_clear();
+    if let Some(error) = screen.failed {
+        return Err(error);
+    }
+    let Some(trained) = trained else {
+        bail!("interrupted; the same command goes on from {}", unfinished.display());
+    };
+    write(args, &options, &trained)?;
+    if trained.is_final {
+        fs::remove_file(&unfinished).with_context(|| unfinished.display().to_string())?;
+    }
+    Ok(summary(args, &Checkpoint::load(&args.out)?, false))
+}
+
+/// What stands beside a checkpoint may be overwritten with it only.
+fn check_beside(args: &Options, unfinished: &Path) -> anyhow::Result<()> {
+    let is_own = args.out.exists() || unfinished.exists();
+    let there = BESIDE.iter().map(|ending| beside(&args.out, ending)).find(|path| path.exists());
+    match there.filter(|_| !is_own) {
+        Some(path) => bail!("{}: exists already; expected another place", path.display()),
+        None => Ok(()),
+    }
+}
+
+fn write(args: &Options, options: &TrainOptions, trained: &Trained) -> anyhow::Result<()> {
+    let epochs: Vec<Epoch> = trained.history.iter().map(|report| Epoch::new(report, options)).collect();
+    let texts = [card::card(args, options, trained), curves::lines(&epochs)?, curves::picture(&epochs)];
+    for (ending, text) in BESIDE.iter().zip(texts) {
+        output::write_file(&beside(&args.out, ending), text.as_bytes())?;
+    }
+    output::write_file(&args.out, &trained.onnx)
+}
+
+fn summary(args: &Options, checkpoint: &Checkpoint, was_there: bool) -> Summary {
+    Summary { checkpoint: args.out.clone(), digest: checkpoint.digest().to_hex().to_string(), was_there }
+}
+
+fn options(args: &Options) -> TrainOptions {
+    TrainOptions {
+        horizon: args.horizon.unwrap_or(args.epochs),
+        seed: args.seed,
+        width: args.size.0 as usize,
+        height: args.size.1 as usize,
+        batch: args.batch as usize,
+        replicas: args.replicas as usize,
+        rate: args.rate,
+        patience: args.patience,
+    }
+}
+
+/// `C.ENDING` for the checkpoint `C.onnx`, or `C` with any other name.
+fn beside(out: &Path, ending: &str) -> PathBuf {
+    let mut name = if out.extension().is_some_and(|e| e == "onnx") { out.with_extension("") } else { out.into() };
+    name.as_mut_os_string().push(format!(".{ending}"));
+    name
+}
+
+/// What is seen of a training: a bar an epoch on stderr, and what the caller makes of it.
+struct Screen<'a> {
+    bar: ProgressBar,
+    options: &'a TrainOptions,
+    epochs: u32,
+    show: &'a mut dyn FnMut(&Epoch) -> anyhow::Result<()>,
+    /// Why an epoch could not be shown.
+    failed: Option<anyhow::Error>,
+}
+
+impl Screen<'_> {
+    fn watch(&mut self, progress: Progress<'_>) {
+        match progress {
+            Progress::Loaded { train, val, epochs, steps } => {
+                eprintln!("{train} frames to learn from, {val} to measure on; {epochs} epochs are done");
+                let left = u64::from(self.epochs.saturating_sub(epochs)) * steps as u64;
+                self.bar = progress::bar("train", left);
+            }
+            Progress::Step { loss, .. } => {
+                self.bar.inc(1);
+                self.bar.set_message(format!("loss {loss:.3}"));
+            }
+            Progress::Epoch(report) => {
+                let epoch = Epoch::new(report, self.options);
+                self.failed = self.bar.suspend(|| (self.show)(&epoch)).err();
+            }
+        }
+    }
+}

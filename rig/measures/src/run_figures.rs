@@ -1,0 +1,66 @@
+//! What a run came to.
+
+use kernel::arbiter::Outcome;
+use replay::{Label, Recording};
+use serde::Serialize;
+
+/// What a drive came to, or what a recording holds of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunFigures {
+    /// Name of the map.
+    pub map: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Kilometres driven.
+    pub km: f64,
+    /// Simulated minutes.
+    pub minutes: f64,
+    /// `intervened`, `missed`, `censored`, or `stopped` when it was ended from outside.
+    pub outcome: &'static str,
+    /// Whether it was a drive to get used to the rig, which does not count.
+    pub familiarisation: bool,
+    /// What kind of corner case, if it is one.
+    pub label: Option<&'static str>,
+    /// What is to be seen in the corner case.
+    pub comment: Option<String>,
+    /// Whether true masks avoid the intervention; unknown without one.
+    pub perception_caused: Option<bool>,
+}
+
+impl RunFigures {
+    /// Those of a recording.
+    pub fn of(recording: &Recording) -> Self {
+        let log = recording.log();
+        let outcome = log.summary.as_ref().and_then(|s| s.outcome);
+        let annotation = log.annotation.as_ref();
+        Self {
+            map: log.manifest.scenario.map.clone(),
+            seed: log.manifest.scenario.seed,
+            km: log.odometer_mm() as f64 / 1e6,
+            minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
+            outcome: outcome_name(outcome),
+            familiarisation: study::is_familiarisation(&log.manifest.provenance),
+            label: annotation.map(|a| Label::name(a.label)),
+            comment: annotation.map(|a| a.comment.clone()),
+            perception_caused: annotation.and_then(|a| a.perception_caused),
+        }
+    }
+}
+
+impl std::fmt::Display for RunFigures {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let label = self.label.map(|l| format!(" ({l})")).unwrap_or_default();
+        let practice = if self.familiarisation { ", familiarisation: does not count" } else { "" };
+        let Self { km, minutes, outcome, .. } = self;
+        write!(f, "{km:.3} km in {minutes:.1} min, {outcome}{label}{practice}")
+    }
+}
+
+fn outcome_name(outcome: Option<Outcome>) -> &'static str {
+    match outcome {
+        Some(Outcome::Intervened) => "intervened",
+        Some(Outcome::Missed) => "missed",
+        Some(Outcome::Censored) => "censored",
+        None => "stopped",
+    }
+}

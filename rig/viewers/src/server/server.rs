@@ -1,0 +1,94 @@
+//! Takes clients.
+
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
+
+use anyhow::Context;
+use base::clock::SessionClock;
+
+use super::client::{self, Source};
+use super::images::Encoder;
+use crate::feed::Feed;
+
+/// More are turned away.
+const MAX_CLIENTS: usize = 8;
+/// Longest wait for a connection to ourselves.
+const WAKE_UP: Duration = Duration::from_millis(200);
+
+/// A server that runs until it is dropped.
+pub struct Server {
+    address: SocketAddr,
+    is_over: Arc<AtomicBool>,
+}
+
+/// Counts a client for as long as its thread lives.
+struct Place(Arc<AtomicUsize>);
+
+impl Place {
+    fn take(taken: &Arc<AtomicUsize>) -> Option<Self> {
+        let free = |n: usize| (n < MAX_CLIENTS).then_some(n + 1);
+        taken.fetch_update(Ordering::Relaxed, Ordering::Relaxed, free).ok().map(|_| Self(taken.clone()))
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+impl Server {
+    /// Serves what is in a feed at an address, and says where; port 0 takes one that is free.
+    pub fn bind(at: SocketAddr, feed: Arc<Feed>, clock: SessionClock) -> anyhow::Result<Self> {
+        let named = || format!("--foxglove {at}: expected an address of this machine and a port that is free");
+        let listener = TcpListener::bind(at).with_context(named)?;
+        let address = listener.local_addr().with_context(named)?;
+        let is_over = Arc::new(AtomicBool::new(false));
+        let source = Arc::new(Source { feed, clock, images: Default::default(), is_over: is_over.clone() });
+        std::thread::spawn(move || accept(&listener, &source));
+        eprintln!("Foxglove: ws://{address}");
+        Ok(Self { address, is_over })
+    }
+
+    /// Where it is.
+    #[cfg(test)]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+        // Wakes the thread that accepts; if it cannot be reached it ends with the program.
+        let _ = TcpStream::connect_timeout(&self.address, WAKE_UP);
+    }
+}
+
+fn accept(listener: &TcpListener, source: &Arc<Source>) {
+    let taken = Arc::new(AtomicUsize::new(0));
+    for stream in listener.incoming() {
+        if source.is_over() {
+            return;
+        }
+        // A client that has gone away again is no matter.
+        let Ok(stream) = stream else { continue };
+        match Place::take(&taken) {
+            Some(place) => {
+                let source = source.clone();
+                std::thread::spawn(move || {
+                    let _place = place;
+                    client::serve(stream, &source);
+                });
+            }
+            None => {
+                let _ = stream.shutdown(Shutdown::Both);
+            }
+        }
+    }
+}
+
+/// One encoder for each of the cameras.
+pub type Images = [Encoder; 2];
