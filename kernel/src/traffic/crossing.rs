@@ -2,15 +2,15 @@
 
 use glam::Vec2;
 
-use crate::map::{LaneId, RoadNetwork};
+use crate::light::LightPhase;
+use crate::map_data::{LaneId, MapData, Place};
 use crate::rng::{Stream, unit};
-use crate::signals::LightPhase;
 use crate::time::{TICK_HZ, Tick};
 
 use super::hazard::Hazard;
 use super::lists::Lists;
 use super::walker::Walker;
-use super::ways::{Place, Ways};
+use super::ways::Ways;
 
 /// Vehicles stop for people who reach their lane within this time, s.
 const APPROACH_S: f32 = 4.0;
@@ -52,7 +52,7 @@ fn crosses(claim: &Claim, place: &Place) -> bool {
 /// What people look at before they cross.
 #[derive(Clone, Copy)]
 pub(super) struct Gaps<'a> {
-    pub network: &'a RoadNetwork,
+    pub map: &'a MapData,
     pub ways: &'a Ways,
     pub seed: u64,
     pub lists: &'a Lists,
@@ -79,10 +79,10 @@ impl Gaps<'_> {
 
     /// Whether nothing arrives before the crosswalk is crossed.
     fn is_clear(&self, crosswalk: u32, from: Vec2, time_s: f32) -> bool {
-        let crossing = &self.network.crosswalks[crosswalk as usize];
+        let crossing = &self.map.crosswalks[crosswalk as usize];
         let held = !self.ways.crosswalk_lights[crosswalk as usize].is_empty();
         // Vehicles on lanes with a red light stay behind it.
-        let watched = |lane: LaneId| !(held && self.network.lanes[lane as usize].stop.is_some());
+        let watched = |lane: LaneId| !(held && self.map.lanes[lane as usize].stop.is_some());
         let lanes_clear = crossing
             .lanes
             .iter()
@@ -102,9 +102,9 @@ impl Gaps<'_> {
             let comes = entry.speed_mps > CREEP_MPS && time_s > 0.0 && gap_m < entry.speed_mps * (time_s + SPARE_S);
             !gone && (on_it || (comes && gap_m < WATCH_M))
         });
-        let before = &self.network.lanes[lane as usize].predecessors;
+        let before = &self.map.lanes[lane as usize].predecessors;
         let further = |p: &LaneId| {
-            let s_m = s_m + self.network.lanes[*p as usize].length_m;
+            let s_m = s_m + self.map.lanes[*p as usize].length_m;
             self.arrives(*p, s_m, half_width_m, time_s, depth + 1)
         };
         early || (depth < 2 && s_m < WATCH_M && before.iter().any(further))

@@ -7,8 +7,8 @@
 
 use glam::Vec3;
 
-use crate::map::{LaneId, RoadNetwork, StopKind};
-use crate::signals::LightPhase;
+use crate::light::LightPhase;
+use crate::map_data::{LaneId, MapData, StopKind};
 use crate::time::Tick;
 
 use super::lists::Lists;
@@ -147,13 +147,8 @@ pub(super) enum Signal {
 }
 
 /// What the light or sign at the line of a plan says to a vehicle.
-pub(super) fn signal(
-    network: &RoadNetwork,
-    lights: &[(LightPhase, Tick)],
-    vehicle: &Vehicle,
-    approach: LaneId,
-) -> Signal {
-    match network.lanes[approach as usize].stop.map(|stop| stop.kind) {
+pub(super) fn signal(map: &MapData, lights: &[(LightPhase, Tick)], vehicle: &Vehicle, approach: LaneId) -> Signal {
+    match map.lanes[approach as usize].stop.map(|stop| stop.kind) {
         Some(StopKind::Light(group)) => match lights[group as usize].0 {
             LightPhase::Green => Signal::Open,
             LightPhase::Yellow => Signal::Closing,
@@ -183,7 +178,7 @@ pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line) -> bool 
 
 /// Whether the way out of the junction has room for the vehicle behind everyone who is before it.
 pub(super) fn has_room(
-    network: &RoadNetwork,
+    map: &MapData,
     lists: &Lists,
     plan: &Plan,
     line: &Line,
@@ -192,7 +187,7 @@ pub(super) fn has_room(
     driver: &Driver,
 ) -> bool {
     let last = steps[line.inside.1 - 1];
-    let end_m = last.start_m + network.lanes[last.lane as usize].length_m;
+    let end_m = last.start_m + map.lanes[last.lane as usize].length_m;
     let mut needed_m = driver.size_m.x + driver.gap_m;
     for step in &steps[line.approach..] {
         for entry in lists.on(step.lane) {

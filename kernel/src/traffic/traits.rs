@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
+use crate::actor::ActorKind;
 use crate::rng::{Stream, bits, unit};
-use crate::scene::ActorKind;
 
 /// How somebody drives. Parameters of the intelligent driver model (Treiber, Hennecke and Helbing
 /// 2000) around the values of its section on city traffic.

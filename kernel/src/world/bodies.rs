@@ -2,9 +2,11 @@
 
 use glam::{Vec3, Vec3Swizzles};
 
+use crate::actor::ActorKind;
 use crate::ego::{self, Ego};
-use crate::physics::{Hold, Motion, Physics, heading};
-use crate::scene::ActorKind;
+use crate::geometry::rotation;
+use crate::motion::Motion;
+use crate::physics::{Hold, Physics};
 use crate::time::{TICK_S, seconds};
 use crate::traffic::{Body, Obstacle};
 use crate::{ops, state};
@@ -198,7 +200,7 @@ fn will_touch(car: &Ego, other: &Motion, size_m: Vec3) -> bool {
         return false;
     }
     let forward = other.rotation * Vec3::X;
-    let turned = heading(car.heading_rad()).conjugate();
+    let turned = rotation(car.heading_rad()).conjugate();
     let gap = other.position + other.velocity_mps * TICK_S - (car.middle() + (car.motion.velocity_mps * TICK_S));
     let (gap, axis) = (turned * gap, turned * forward);
     if gap.z.abs() > ego::SIZE_M.z + size_m.z {

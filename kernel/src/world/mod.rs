@@ -1,6 +1,7 @@
 //! The world: everything that happens in a tick.
 
 mod bodies;
+mod error;
 mod keyframe;
 mod snapshot;
 mod start;
@@ -14,52 +15,25 @@ use crate::arbiter::{Applied, Arbiter, Intervention};
 use crate::controls::{Controls, TickInput};
 use crate::ego;
 use crate::events::{Event, EventKind, Hud};
+use crate::light::LightPhase;
 use crate::map::RoadNetwork;
 use crate::physics::{Physics, Touched};
 use crate::scenario::Scenario;
 use crate::scene::{ActorScene, EgoScene, SceneSnapshot, quantise};
-use crate::signals::{self, LightPhase};
-use crate::state::{DecodeError, StateHash};
+use crate::signals;
+use crate::state::StateHash;
 use crate::time::{KEYFRAME_TICKS, Tick, seconds};
 use crate::traffic::{Obstacle, Surroundings, Traffic};
 use crate::watch::{self, Log, Watch};
 
 use snapshot::Parts;
 
+pub use error::WorldError;
 pub use keyframe::{FieldDifference, Keyframe};
 pub use snapshot::PARTS;
 
 /// How long a keyframe that is due waits while the ego car touches an actor.
 pub const KEYFRAME_GRACE_TICKS: Tick = seconds(2);
-
-/// Why a world cannot start or resume.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum WorldError {
-    /// The scenario does not fit the map.
-    #[error("scenario does not fit map {map}: {reason}")]
-    Scenario {
-        /// The map's name.
-        map: String,
-        /// What does not fit.
-        reason: String,
-    },
-    /// The keyframe's bytes are no state.
-    #[error("keyframe of tick {tick}: {source}")]
-    Keyframe {
-        /// Tick of the keyframe.
-        tick: Tick,
-        /// What is wrong with its bytes.
-        source: DecodeError,
-    },
-    /// The keyframe's state is not one of this map and scenario.
-    #[error("keyframe of tick {tick}: {reason}")]
-    State {
-        /// Tick of the keyframe.
-        tick: Tick,
-        /// What does not fit.
-        reason: String,
-    },
-}
 
 /// What a tick gave.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,12 +88,13 @@ impl World {
         let (parts, traffic) = keyframe.read()?;
         let wrong = |reason| WorldError::State { tick: keyframe.tick, reason };
         keyframe::check(&parts, network).map_err(wrong)?;
-        let traffic = Traffic::resume(scenario, network, traffic).map_err(wrong)?;
+        let counts = &scenario.traffic;
+        let traffic = Traffic::resume(counts, scenario.seed, network.ways(), traffic).map_err(wrong)?;
         Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
     }
 
     fn assemble(scenario: Arc<Scenario>, network: &Arc<RoadNetwork>, parts: Parts, traffic: Traffic) -> Self {
-        let mut physics = Physics::new(network, &parts.ego.car.motion);
+        let mut physics = Physics::new(network.statics(), &parts.ego.car.motion);
         parts.bodies.insert_all(traffic.bodies(), &mut physics);
         let (network, ends) = (network.clone(), Default::default());
         let mut world =

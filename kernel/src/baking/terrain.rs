@@ -2,8 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
-use super::bake::snap;
-use super::{RoadNetwork, Surface, SurfaceKind};
+use super::rounding::snap;
+use crate::map_data::{Lane, Surface, SurfaceKind};
+use crate::places::Grid;
 
 /// Side of a cell where the land is flat, metres.
 const FLAT_CELL_M: f32 = 40.0;
@@ -20,17 +21,18 @@ const FLAT_M: f32 = 0.05;
 /// The land follows the nearest road up to this distance, then levels out.
 const FOLLOW_M: f32 = 40.0;
 
-pub(super) fn bake(map: &mut RoadNetwork) {
-    let heights = map.lanes.iter().flat_map(|l| &l.points).map(|p| p.position.z);
+/// The land of a map with some bounds.
+pub(super) fn bake(lanes: &[Lane], bounds: [Vec3; 2]) -> Surface {
+    let heights = lanes.iter().flat_map(|l| &l.points).map(|p| p.position.z);
     let (low, high) = heights.fold((f32::MAX, f32::MIN), |(a, b), z| (a.min(z), b.max(z)));
     let is_flat = high - low < FLAT_M;
-    let from = map.bounds[0].truncate();
-    let extent = map.bounds[1].truncate() - from;
+    let from = bounds[0].truncate();
+    let extent = bounds[1].truncate() - from;
     let wanted = if is_flat { FLAT_CELL_M } else { HILLY_CELL_M };
     let cells = |length: f32| (length / wanted).clamp(1.0, MAX_CELLS) as usize;
     let (columns, rows) = (cells(extent.x), cells(extent.y));
     let pitch = Vec2::new(snap(extent.x / columns as f32), snap(extent.y / rows as f32));
-    let roads = Roads::new(map);
+    let roads = Heights::new(lanes);
     let mut surface = Surface { kind: SurfaceKind::Terrain, positions: Vec::new(), triangles: Vec::new() };
     for j in 0..=rows {
         for i in 0..=columns {
@@ -44,22 +46,22 @@ pub(super) fn bake(map: &mut RoadNetwork) {
         surface.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
         surface.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
     }
-    map.surfaces.push(surface);
+    surface
 }
 
 /// Heights of the roads by place.
-struct Roads {
+struct Heights {
     samples: Vec<Vec3>,
-    grid: super::grid::Grid,
+    grid: Grid,
     mean: f32,
 }
 
-impl Roads {
-    fn new(map: &RoadNetwork) -> Self {
-        let samples: Vec<Vec3> = map.lanes.iter().flat_map(|l| &l.points).map(|p| p.position).collect();
+impl Heights {
+    fn new(lanes: &[Lane]) -> Self {
+        let samples: Vec<Vec3> = lanes.iter().flat_map(|l| &l.points).map(|p| p.position).collect();
         let boxes: Vec<_> = samples.iter().map(|p| (p.truncate(), p.truncate())).collect();
         let mean = samples.iter().map(|p| p.z).sum::<f32>() / samples.len() as f32;
-        Self { grid: super::grid::Grid::new(&boxes, HILLY_CELL_M), samples, mean }
+        Self { grid: Grid::new(&boxes, HILLY_CELL_M), samples, mean }
     }
 
     /// The height of the land at `p`: below every road near it, level far from all.

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::bake::{Source, snap, snap3};
-use super::{LaneId, LaneKind, RoadNetwork, WalkEdge, WalkEdgeId, WalkNode, surfaces};
+use super::rounding::{snap, snap3};
+use super::source::Source;
+use crate::map_data::{Crosswalk, LaneId, LaneKind, WalkEdge, WalkEdgeId, WalkNode};
 use crate::ops;
+use crate::places::Roads;
 
 /// Ends of sidewalks nearer than this are one place, metres.
 const MERGE_M: f32 = 0.8;
@@ -17,19 +19,20 @@ const CORNER_M: f32 = 15.0;
 /// Walkers keep this far from the edge of a sidewalk, where poles stand, metres.
 const KEEP_M: f32 = 0.5;
 
-pub(super) fn bake(source: &Source, map: &mut RoadNetwork) {
+/// The ways of pedestrians and where they meet.
+pub(super) fn bake(source: &Source, roads: &Roads<'_>, crosswalks: &[Crosswalk]) -> (Vec<WalkNode>, Vec<WalkEdge>) {
     let mut graph = Graph::default();
-    for id in 0..map.lanes.len() as LaneId {
-        let lane = &map.lanes[id as usize];
+    for id in 0..roads.lanes.len() as LaneId {
+        let lane = &roads.lanes[id as usize];
         if lane.kind != LaneKind::Sidewalk || lane.length_m < 0.3 {
             continue;
         }
-        let rise = Vec3::Z * surfaces::rise(source, id);
+        let rise = Vec3::Z * source.rise(id);
         let points: Vec<Vec3> = lane.points.iter().map(|p| snap3(p.position + rise)).collect();
         let width = lane.points.iter().map(|p| p.half_width_m).fold(f32::MAX, f32::min);
-        graph.add(points, (width - KEEP_M).max(0.4), None, beside(map, id));
+        graph.add(points, (width - KEEP_M).max(0.4), None, beside(roads, id));
     }
-    for (k, crosswalk) in map.crosswalks.iter().enumerate() {
+    for (k, crosswalk) in crosswalks.iter().enumerate() {
         let ends = crosswalk.ends.map(|end| graph.reach(end));
         if let [Some(a), Some(b)] = ends
             && a != b
@@ -38,16 +41,16 @@ pub(super) fn bake(source: &Source, map: &mut RoadNetwork) {
             graph.add(points, crosswalk.half_width_m - KEEP_M, Some(k as u32), None);
         }
     }
-    graph.join_corners(map);
-    graph.finish(map);
+    graph.join_corners(roads);
+    graph.finish()
 }
 
 /// The driving lane beside a sidewalk.
-fn beside(map: &RoadNetwork, sidewalk: LaneId) -> Option<LaneId> {
-    let lane = &map.lanes[sidewalk as usize];
+fn beside(roads: &Roads<'_>, sidewalk: LaneId) -> Option<LaneId> {
+    let lane = &roads.lanes[sidewalk as usize];
     let middle = lane.at(lane.length_m / 2.0).position;
-    let near = map.lanes_around(middle, LaneKind::Driving, 8.0);
-    near.into_iter().min_by(|a, b| map.beyond_edge(a).total_cmp(&map.beyond_edge(b))).map(|p| p.lane)
+    let near = roads.around(middle, LaneKind::Driving, 8.0);
+    near.into_iter().min_by(|a, b| roads.beyond_edge(a).total_cmp(&roads.beyond_edge(b))).map(|p| p.lane)
 }
 
 #[derive(Default)]
@@ -124,13 +127,13 @@ impl Graph {
     }
 
     /// Joins loose ends where a file leaves the corner between two sidewalks out.
-    fn join_corners(&mut self, map: &RoadNetwork) {
+    fn join_corners(&mut self, roads: &Roads<'_>) {
         let mut degree = vec![0; self.nodes.len()];
         self.edges.iter().flat_map(|e| e.nodes).for_each(|n| degree[n as usize] += 1);
         let mut loose: Vec<u32> = (0..self.nodes.len() as u32).filter(|&n| degree[n as usize] == 1).collect();
         while let Some(a) = loose.pop() {
             let from = self.nodes[a as usize];
-            let free = |b: &&u32| is_dry(map, from, self.nodes[**b as usize]);
+            let free = |b: &&u32| is_dry(roads, from, self.nodes[**b as usize]);
             let distance = |b: &u32| self.nodes[*b as usize].distance(from);
             let near = loose.iter().filter(|b| distance(b) < CORNER_M).filter(free);
             if let Some(&b) = near.min_by(|x, y| distance(x).total_cmp(&distance(y))) {
@@ -140,14 +143,15 @@ impl Graph {
         }
     }
 
-    fn finish(self, map: &mut RoadNetwork) {
-        map.walk_nodes = self.nodes.into_iter().map(|position| WalkNode { position, edges: Vec::new() }).collect();
+    fn finish(self) -> (Vec<WalkNode>, Vec<WalkEdge>) {
+        let mut nodes: Vec<WalkNode> =
+            self.nodes.into_iter().map(|position| WalkNode { position, edges: Vec::new() }).collect();
         for (id, edge) in self.edges.iter().enumerate() {
             for n in edge.nodes {
-                map.walk_nodes[n as usize].edges.push(id as WalkEdgeId);
+                nodes[n as usize].edges.push(id as WalkEdgeId);
             }
         }
-        map.walk_edges = self.edges;
+        (nodes, self.edges)
     }
 }
 
@@ -156,7 +160,7 @@ fn length(points: &[Vec3]) -> f32 {
 }
 
 /// Whether one can walk straight from `a` to `b` without stepping on a driving lane.
-fn is_dry(map: &RoadNetwork, a: Vec3, b: Vec3) -> bool {
+fn is_dry(roads: &Roads<'_>, a: Vec3, b: Vec3) -> bool {
     let steps = a.distance(b) as u32 + 1;
-    (0..=steps).all(|k| !map.on_road(a + (b - a) * (k as f32 / steps as f32)))
+    (0..=steps).all(|k| !roads.on_road(a + (b - a) * (k as f32 / steps as f32)))
 }

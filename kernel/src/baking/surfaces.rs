@@ -2,11 +2,14 @@
 
 use glam::{Vec2, Vec3};
 
-use super::bake::{Source, direction, point, snap, snap3};
-use super::{LaneId, LaneKind, LanePoint, RoadNetwork, StopKind, Surface, SurfaceKind, crosswalks};
+use super::mesh::Meshes;
+use super::rounding::{snap, snap3};
+use super::shapes::point;
+use super::source::Source;
+use crate::geometry::direction;
+use crate::map_data::{Crosswalk, Junction, Lane, LaneKind, LanePoint, StopKind, Surface, SurfaceKind};
+use crate::ops;
 
-/// Height of a pavement above the road where the file gives none, metres.
-const KERB_M: f32 = 0.125;
 /// How far a kerb reaches below the pavement, metres.
 const KERB_FACE_M: f32 = 0.4;
 /// Height of paint above the surface: enough for a depth buffer at 100 m, too little to see.
@@ -22,74 +25,16 @@ const STRAIGHT_M: f32 = 0.003;
 /// Depth of a stop line along the road, metres.
 const STOP_LINE_M: f32 = 0.4;
 
-/// Triangles of each material, collected.
-pub(super) struct Meshes(Vec<Surface>);
-
-impl Meshes {
-    fn new() -> Self {
-        use SurfaceKind as K;
-        let kinds = [K::Road, K::RoadLine, K::Sidewalk, K::Terrain, K::Ground];
-        Self(kinds.map(|kind| Surface { kind, positions: Vec::new(), triangles: Vec::new() }).to_vec())
-    }
-
-    fn of(&mut self, kind: SurfaceKind) -> &mut Surface {
-        &mut self.0[kind as usize]
-    }
-
-    fn finish(self) -> impl Iterator<Item = Surface> {
-        self.0.into_iter().filter(|s| !s.triangles.is_empty())
-    }
-}
-
-impl Surface {
-    /// Adds corners in counter-clockwise order as a fan; slivers are left out.
-    pub(super) fn fan(&mut self, corners: &[Vec3]) {
-        let first = self.positions.len() as u32;
-        self.positions.extend(corners.iter().map(|&c| snap3(c)));
-        for k in 1..corners.len().saturating_sub(1) as u32 {
-            self.triangle([first, first + k, first + k + 1]);
-        }
-    }
-
-    /// Adds a strip of (left, right) ribs; where it folds in a tight bend, without the fold.
-    fn strip(&mut self, ribs: &[[Vec3; 2]]) {
-        for pair in ribs.windows(2) {
-            let quad = [pair[0][1], pair[1][1], pair[1][0], pair[0][0]];
-            let faces_up = |a: usize, b: usize, c: usize| (quad[b] - quad[a]).cross(quad[c] - quad[a]).z > 0.0;
-            match (faces_up(0, 1, 2), faces_up(0, 2, 3)) {
-                (true, true) => self.fan(&quad),
-                (true, false) => self.fan(&quad[..3]),
-                (false, true) => self.fan(&[quad[0], quad[2], quad[3]]),
-                (false, false) => {}
-            }
-        }
-    }
-
-    fn triangle(&mut self, t: [u32; 3]) {
-        let [a, b, c] = t.map(|v| self.positions[v as usize]);
-        if (b - a).cross(c - a).length_squared() > 1e-8 {
-            self.triangles.push(t);
-        }
-    }
-}
-
-pub(super) fn bake(source: &Source, map: &mut RoadNetwork) {
+/// All surfaces but the land.
+pub(super) fn bake(source: &Source, lanes: &[Lane], junctions: &[Junction], crosswalks: &[Crosswalk]) -> Vec<Surface> {
     let mut meshes = Meshes::new();
-    pave(source, map, &mut meshes);
-    for junction in 0..map.junctions.len() {
-        let corners = floor(map, junction);
+    pave(source, lanes, &mut meshes);
+    for junction in junctions {
+        let corners = floor(lanes, junction);
         meshes.of(SurfaceKind::Road).fan(&corners);
     }
-    paint(source, map, &mut meshes);
-    map.surfaces.extend(meshes.finish());
-}
-
-/// How far a lane stands above the road: pavements do, unless the file raises them itself.
-pub(super) fn rise(source: &Source, lane: LaneId) -> f32 {
-    let origin = source.origins[lane as usize];
-    let told = source.provenance.lanes.iter().find(|p| p.lane == origin.lane);
-    let is_raised = told.is_some_and(|p| p.heights.iter().any(|h| h.inner > 0.02 || h.outer > 0.02));
-    if is_raised { 0.0 } else { KERB_M }
+    paint(source, lanes, crosswalks, meshes.of(SurfaceKind::RoadLine));
+    meshes.finish().collect()
 }
 
 fn material(kind: xodr::LaneType) -> SurfaceKind {
@@ -102,16 +47,16 @@ fn material(kind: xodr::LaneType) -> SurfaceKind {
     }
 }
 
-fn pave(source: &Source, map: &RoadNetwork, meshes: &mut Meshes) {
+fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes) {
     let mesh = source.net.surface_mesh();
     for span in &mesh.lanes {
         let (Some(lane), Some(&id)) = (source.net.lane(span.lane), source.ids.get(&span.lane.0)) else { continue };
         let kind = material(lane.kind);
         // Unnamed strips of connecting roads lie across each other's lanes.
-        if kind == SurfaceKind::Terrain && map.lanes[id as usize].junction.is_some() {
+        if kind == SurfaceKind::Terrain && lanes[id as usize].junction.is_some() {
             continue;
         }
-        let lift = if kind == SurfaceKind::Sidewalk { Vec3::Z * rise(source, id) } else { Vec3::ZERO };
+        let lift = if kind == SurfaceKind::Sidewalk { Vec3::Z * source.rise(id) } else { Vec3::ZERO };
         let ribs: Vec<[Vec3; 2]> = mesh.vertices[span.vertices.start as usize..span.vertices.end as usize]
             .chunks_exact(2)
             .map(|rib| [snap3(point(rib[0]) + lift), snap3(point(rib[1]) + lift)])
@@ -169,12 +114,11 @@ fn kerbs(surface: &mut Surface, ribs: &[[Vec3; 2]]) {
 }
 
 /// The paved floor of a junction: the hull of the mouths of its roads, just below its lanes.
-fn floor(map: &RoadNetwork, junction: usize) -> Vec<Vec3> {
-    let lanes = &map.junctions[junction].lanes;
-    let ends = lanes.iter().flat_map(|&l| [*map.lanes[l as usize].start(), *map.lanes[l as usize].end()]);
+fn floor(lanes: &[Lane], junction: &Junction) -> Vec<Vec3> {
+    let ends = junction.lanes.iter().flat_map(|&l| [*lanes[l as usize].start(), *lanes[l as usize].end()]);
     let mut corners: Vec<Vec3> = ends.flat_map(|p| edges(&p)).map(|p| p - Vec3::Z * FLOOR_M).collect();
     let far = |a: &Vec3| corners.iter().any(|b| a.distance(*b) > FLOOR_REACH_M);
-    if lanes.len() < 3 || corners.iter().any(far) {
+    if junction.lanes.len() < 3 || corners.iter().any(far) {
         return Vec::new();
     }
     hull(&mut corners)
@@ -209,18 +153,17 @@ fn hull(points: &mut [Vec3]) -> Vec<Vec3> {
     lower
 }
 
-fn paint(source: &Source, map: &RoadNetwork, meshes: &mut Meshes) {
-    let surface = meshes.of(SurfaceKind::RoadLine);
+fn paint(source: &Source, lanes: &[Lane], crosswalks: &[Crosswalk], surface: &mut Surface) {
     let up = Vec3::Z * PAINT_M;
     for line in source.net.road_marks().iter().flat_map(|m| &m.lines) {
         for dash in dashes(&line.pieces, up) {
             surface.strip(&thinned(&dash));
         }
     }
-    for stripe in map.crosswalks.iter().flat_map(crosswalks::stripes) {
+    for stripe in crosswalks.iter().flat_map(stripes) {
         surface.fan(&stripe.map(|p| p + up));
     }
-    for lane in map.lanes.iter().filter(|l| l.kind == LaneKind::Driving) {
+    for lane in lanes.iter().filter(|l| l.kind == LaneKind::Driving) {
         if let Some(stop) = lane.stop {
             let (from, to) = (lane.at(stop.s_m), lane.at(stop.s_m + STOP_LINE_M));
             stop_line(surface, &from, &to, stop.kind, up);
@@ -262,4 +205,20 @@ fn stop_line(surface: &mut Surface, from: &LanePoint, to: &LanePoint, kind: Stop
             side(from, right_edge + block),
         ]);
     }
+}
+
+/// The corners of each stripe of a crosswalk.
+fn stripes(crosswalk: &Crosswalk) -> Vec<[Vec3; 4]> {
+    let [a, b] = crosswalk.ends;
+    let length = (b - a).truncate().length();
+    let along = (b - a) / length.max(1e-3);
+    let aside = along.truncate().perp().extend(0.0) * crosswalk.half_width_m;
+    let count = (ops::floor(length) as u32).max(1);
+    let pitch = length / count as f32;
+    (0..count)
+        .map(|k| {
+            let (from, to) = (a + along * (pitch * (k as f32 + 0.25)), a + along * (pitch * (k as f32 + 0.75)));
+            [from - aside, to - aside, to + aside, from + aside].map(snap3)
+        })
+        .collect()
 }

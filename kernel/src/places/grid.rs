@@ -4,9 +4,12 @@ use glam::Vec2;
 
 use crate::ops;
 
+/// Least and greatest corner of something seen from above.
+pub(super) type Bounds = (Vec2, Vec2);
+
 /// Items by the cells that their boxes touch.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Grid {
+pub(crate) struct Grid {
     origin: Vec2,
     cell_m: f32,
     columns: usize,
@@ -20,8 +23,8 @@ pub(super) struct Grid {
 const MAX_CELLS: f32 = 1e6;
 
 impl Grid {
-    /// Sorts boxes (least and greatest corner) into cells of about `cell_m`.
-    pub fn new(boxes: &[(Vec2, Vec2)], cell_m: f32) -> Self {
+    /// Sorts boxes into cells of about `cell_m`.
+    pub fn new(boxes: &[Bounds], cell_m: f32) -> Self {
         let low = boxes.iter().fold(Vec2::splat(f32::MAX), |m, b| m.min(b.0));
         let high = boxes.iter().fold(Vec2::splat(f32::MIN), |m, b| m.max(b.1));
         if boxes.is_empty() {
@@ -29,14 +32,15 @@ impl Grid {
         }
         let extent = high - low;
         let cell_m = cell_m.max(ops::sqrt(extent.x * extent.y / MAX_CELLS)).max(extent.max_element() / MAX_CELLS);
-        let columns = (extent.x / cell_m) as usize + 1;
-        let rows = (extent.y / cell_m) as usize + 1;
+        // An extent that is not finite is no count of cells.
+        let count = |extent_m: f32| ((extent_m / cell_m) as usize).min(MAX_CELLS as usize) + 1;
+        let (columns, rows) = (count(extent.x), count(extent.y));
         let mut grid = Self { origin: low, cell_m, columns, rows, starts: vec![0; columns * rows + 1], items: vec![] };
         grid.fill(boxes);
         grid
     }
 
-    fn fill(&mut self, boxes: &[(Vec2, Vec2)]) {
+    fn fill(&mut self, boxes: &[Bounds]) {
         for b in boxes {
             self.cells(b.0, b.1).for_each(|c| self.starts[c + 1] += 1);
         }

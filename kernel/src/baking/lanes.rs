@@ -1,9 +1,9 @@
 //! Lanes in their direction of travel, and how they follow and border each other.
 
-use glam::Vec3;
-
-use super::bake::{BakeError, Origin, Source, point, snap};
-use super::{Lane, LaneId, LaneKind, LanePoint, RoadNetwork, Turn};
+use super::rounding::{snap, snap3};
+use super::shapes::point;
+use super::source::{BakeError, Origin, Source};
+use crate::map_data::{Lane, LaneId, LaneKind, LanePoint, URBAN_MPS};
 use crate::ops;
 
 /// Vertices of a centre line are at most this far apart.
@@ -14,15 +14,15 @@ const MIN_STEP_M: f32 = 0.05;
 const MIN_WIDTH_M: f32 = 0.1;
 /// A lane that starts farther from the end of another does not follow it, whatever the file says.
 const MAX_GAP_M: f32 = 1.5;
-/// Limit where the file gives none, on roads of no or an urban type: 50 km/h.
-const URBAN_MPS: f32 = 50.0 / 3.6;
-/// The same outside towns: 100 km/h.
+/// Limit where the file gives none, outside towns: 100 km/h.
 const RURAL_MPS: f32 = 100.0 / 3.6;
 /// The same on motorways, and where the file says that there is none: 130 km/h.
 const MOTORWAY_MPS: f32 = 130.0 / 3.6;
 
-pub(super) fn bake(source: &mut Source, map: &mut RoadNetwork) -> Result<(), BakeError> {
-    let Source { net, origins, ids, .. } = source;
+/// The lanes of the file, each with its origin, which the source remembers.
+pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError> {
+    let mut lanes: Vec<Lane> = Vec::new();
+    let Source { net, origins, ids, .. } = &mut source;
     for lane in net.lanes().iter().filter(|l| l.layer == xodr::Layer::Permanent) {
         let Some(at) = net.road_lane(lane.id) else { continue };
         let forward = lane.direction != xodr::Direction::Backward;
@@ -31,9 +31,9 @@ pub(super) fn bake(source: &mut Source, map: &mut RoadNetwork) -> Result<(), Bak
             continue;
         }
         let road = net.road(at.road).map_or("", |r| r.od_id());
-        ids.insert(lane.id.0, map.lanes.len() as LaneId);
+        ids.insert(lane.id.0, lanes.len() as LaneId);
         origins.push(Origin { lane: lane.id, road: at.road.0, section: at.section, od_id: at.od_id, forward });
-        map.lanes.push(Lane {
+        lanes.push(Lane {
             kind: kind(lane.kind),
             name: format!("{road}/{}", at.od_id),
             length_m: points.last().map_or(0.0, |p| p.s_m),
@@ -42,14 +42,14 @@ pub(super) fn bake(source: &mut Source, map: &mut RoadNetwork) -> Result<(), Bak
             ..Lane::default()
         });
     }
-    if !map.lanes.iter().any(|l| l.kind == LaneKind::Driving) {
+    if !lanes.iter().any(|l| l.kind == LaneKind::Driving) {
         return Err(BakeError {
             place: "the whole file".to_owned(),
             reason: "expected at least one lane of type driving with a width".to_owned(),
         });
     }
-    link(source, map);
-    Ok(())
+    link(&source, &mut lanes);
+    Ok((source, lanes))
 }
 
 fn kind(kind: xodr::LaneType) -> LaneKind {
@@ -94,8 +94,8 @@ fn append(line: &mut Vec<LanePoint>, next: LanePoint, is_end: bool) {
         }
         let parts = ops::floor(gap / MAX_STEP_M - 1e-3) as u32 + 1;
         for k in 1..parts.min(100_000) {
-            let mut between = blend(&last, &next, k as f32 / parts as f32);
-            between.position = super::bake::snap3(between.position);
+            let mut between = last.towards(&next, k as f32 / parts as f32);
+            between.position = snap3(between.position);
             line.push(between);
         }
     }
@@ -115,18 +115,6 @@ fn snap_angle(angle_rad: f32) -> f32 {
     ops::wrap_angle(ops::floor(angle_rad * 16384.0 + 0.5) / 16384.0)
 }
 
-/// The point at `share` of the way from `a` to `b`.
-pub(super) fn blend(a: &LanePoint, b: &LanePoint, share: f32) -> LanePoint {
-    let lerp = |x: f32, y: f32| x + (y - x) * share;
-    let turn = ops::wrap_angle(b.heading_rad - a.heading_rad);
-    LanePoint {
-        position: a.position + (b.position - a.position) * share,
-        heading_rad: ops::wrap_angle(a.heading_rad + turn * share),
-        half_width_m: lerp(a.half_width_m, b.half_width_m),
-        s_m: lerp(a.s_m, b.s_m),
-    }
-}
-
 fn speed_limit(net: &xodr::RoadNetwork, lane: &xodr::Lane) -> f32 {
     use xodr::RoadType as R;
     let middle = lane.center.length() / 2.0;
@@ -141,19 +129,20 @@ fn speed_limit(net: &xodr::RoadNetwork, lane: &xodr::Lane) -> f32 {
     }
 }
 
-fn link(source: &Source, map: &mut RoadNetwork) {
-    for id in 0..map.lanes.len() {
+/// Tells each lane what follows, precedes and borders it.
+fn link(source: &Source, lanes: &mut [Lane]) {
+    for id in 0..lanes.len() {
         let Some(from) = source.net.lane(source.origins[id].lane) else { continue };
         let mut next: Vec<LaneId> = from.successors.iter().filter_map(|l| source.ids.get(&l.0).copied()).collect();
-        next.retain(|&to| follows(&map.lanes[id], &map.lanes[to as usize]));
+        next.retain(|&to| follows(&lanes[id], &lanes[to as usize]));
         next.sort_unstable();
         next.dedup();
         for &to in &next {
-            map.lanes[to as usize].predecessors.push(id as LaneId);
+            lanes[to as usize].predecessors.push(id as LaneId);
         }
-        map.lanes[id].successors = next;
-        map.lanes[id].left = beside(source, from, &source.origins[id], true);
-        map.lanes[id].right = beside(source, from, &source.origins[id], false);
+        lanes[id].successors = next;
+        lanes[id].left = beside(source, from, &source.origins[id], true);
+        lanes[id].right = beside(source, from, &source.origins[id], false);
     }
 }
 
@@ -175,61 +164,4 @@ fn beside(source: &Source, lane: &xodr::Lane, origin: &Origin, left: bool) -> Op
     let here = xodr::LanePosition { lane: lane.id, s, offset: 0.0 };
     let may = if left { source.net.may_change_left(here) } else { source.net.may_change_right(here) };
     (may != Some(false)).then(|| source.ids.get(&neighbour.0).copied()).flatten()
-}
-
-impl Default for Lane {
-    /// A lane of nothing, to be filled in.
-    fn default() -> Self {
-        Self {
-            kind: LaneKind::Other,
-            name: String::new(),
-            points: Vec::new(),
-            length_m: 0.0,
-            successors: Vec::new(),
-            predecessors: Vec::new(),
-            left: None,
-            right: None,
-            speed_limit_mps: URBAN_MPS,
-            junction: None,
-            turn: Turn::Straight,
-            stop: None,
-            conflicts: Vec::new(),
-        }
-    }
-}
-
-impl Lane {
-    /// Its last vertex.
-    pub fn end(&self) -> &LanePoint {
-        &self.points[self.points.len() - 1]
-    }
-
-    /// Its first vertex.
-    pub fn start(&self) -> &LanePoint {
-        &self.points[0]
-    }
-
-    /// The point `s_m` from its start, interpolated; `s_m` is clamped to the lane.
-    pub fn at(&self, s_m: f32) -> LanePoint {
-        let k = self.points.partition_point(|p| p.s_m <= s_m).clamp(1, self.points.len() - 1);
-        let (a, b) = (&self.points[k - 1], &self.points[k]);
-        blend(a, b, ((s_m - a.s_m) / (b.s_m - a.s_m).max(1e-6)).clamp(0.0, 1.0))
-    }
-
-    /// The nearest place of its centre line seen from above: (s, offset to the left, distance).
-    pub fn project(&self, position: Vec3) -> (f32, f32, f32) {
-        let p = position.truncate();
-        let mut best = (0.0, 0.0, f32::MAX);
-        for pair in self.points.windows(2) {
-            let (a, along) = (pair[0].position.truncate(), (pair[1].position - pair[0].position).truncate());
-            let share = ((p - a).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
-            let off = p - (a + along * share);
-            let squared = off.length_squared();
-            if squared < best.2 {
-                let s = pair[0].s_m + (pair[1].s_m - pair[0].s_m) * share;
-                best = (s, along.perp_dot(off) / along.length().max(1e-6), squared);
-            }
-        }
-        (best.0, best.1, ops::sqrt(best.2))
-    }
 }

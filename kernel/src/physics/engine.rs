@@ -1,139 +1,21 @@
-//! Rigid bodies: the only file that names rapier.
-//!
-//! Nothing in here is saved. A [`Physics`] is made anew from the world's compact state at every
-//! keyframe, live and in replay alike, so that its caches never have to survive.
+//! The physics world: the ego car and the actors near it.
 
-use std::fmt;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use glam::{Quat, Vec3};
-use rapier3d::control::{DynamicRayCastVehicleController, WheelTuning};
+use rapier3d::control::DynamicRayCastVehicleController;
 use rapier3d::prelude::*;
 
+use super::build::{ACTORS, EGO, GROUND, PROPS, car, free, groups, mass, parameters};
+use super::statics::Statics;
+use crate::actor::ActorKind;
 use crate::ego::{self, WheelForces};
-use crate::map::{Prop, PropKind, RoadNetwork, SurfaceKind};
-use crate::scene::ActorKind;
-use crate::state;
+use crate::motion::Motion;
 use crate::time::TICK_S;
 
-state! {
-    /// Pose and velocities of a free body.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct Motion {
-        /// Origin of the body, metres.
-        pub position: Vec3,
-        /// Rotation from the body's axes (x forward, y left, z up) to the world's.
-        pub rotation: Quat,
-        /// Velocity of the centre of mass, m/s.
-        pub velocity_mps: Vec3,
-        /// Angular velocity, rad/s.
-        pub spin_radps: Vec3,
-    }
-}
-
 const GRAVITY: Vec3 = Vec3::new(0.0, 0.0, -9.81);
-/// How far below the lowest point of a map a car that left it is caught, metres.
-const CATCH_DEPTH_M: f32 = 5.0;
 /// Impulse within a tick from which contact counts as a collision, N s.
 const COLLISION_IMPULSE_NS: f32 = 1.0;
-
-const GROUND: Group = Group::GROUP_1;
-const PROPS: Group = Group::GROUP_2;
-const ACTORS: Group = Group::GROUP_3;
-const EGO: Group = Group::GROUP_4;
-
-fn groups(of: Group, with: Group) -> InteractionGroups {
-    InteractionGroups::new(of, with, InteractionTestMode::And)
-}
-
-/// The static colliders of a map, built on first use and shared by all its worlds.
-#[derive(Clone, Default)]
-pub struct Statics(OnceLock<Arc<Template>>);
-
-impl fmt::Debug for Statics {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.0.get().is_some() { "Statics(built)" } else { "Statics(not built)" })
-    }
-}
-
-/// An engine that holds the static colliders only, its search tree filled.
-struct Template {
-    colliders: ColliderSet,
-    broad_phase: BroadPhaseBvh,
-    paved: Option<ColliderHandle>,
-    scenery: Option<ColliderHandle>,
-}
-
-impl Template {
-    fn of(network: &RoadNetwork) -> Arc<Self> {
-        network.statics.0.get_or_init(|| Arc::new(Self::build(network))).clone()
-    }
-
-    fn build(network: &RoadNetwork) -> Self {
-        let mut colliders = ColliderSet::new();
-        let ground = groups(GROUND, ACTORS | EGO);
-        let mut insert = |shape: SharedShape, groups| {
-            colliders.insert(ColliderBuilder::new(shape).collision_groups(groups).friction(0.6))
-        };
-        let is_paved = |kind| matches!(kind, SurfaceKind::Road | SurfaceKind::Ground);
-        let is_soft = |kind| matches!(kind, SurfaceKind::Sidewalk | SurfaceKind::Terrain);
-        let paved = mesh(network, is_paved).map(|shape| insert(shape, ground));
-        mesh(network, is_soft).map(|shape| insert(shape, ground));
-        let floor = insert(SharedShape::halfspace(Vec3::Z), ground);
-        let boxes: Vec<_> = network.props.iter().map(solid).collect();
-        let scenery = (!boxes.is_empty()).then(|| insert(SharedShape::compound(boxes), groups(PROPS, ACTORS | EGO)));
-        let depth = network.bounds[0].z - CATCH_DEPTH_M;
-        colliders[floor].set_translation(Vec3::new(0.0, 0.0, depth));
-        Self { broad_phase: filled(&mut colliders), colliders, paved, scenery }
-    }
-}
-
-/// One collision step without time fills the search tree.
-fn filled(colliders: &mut ColliderSet) -> BroadPhaseBvh {
-    let mut broad_phase = BroadPhaseBvh::new();
-    CollisionPipeline::new().step(
-        parameters().prediction_distance(),
-        &mut IslandManager::new(),
-        &mut broad_phase,
-        &mut NarrowPhase::new(),
-        &mut RigidBodySet::new(),
-        colliders,
-        &(),
-        &(),
-    );
-    broad_phase
-}
-
-/// All surfaces of some kinds as one mesh; none where the map has no such surface.
-fn mesh(network: &RoadNetwork, wanted: impl Fn(SurfaceKind) -> bool) -> Option<SharedShape> {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for surface in network.surfaces.iter().filter(|s| wanted(s.kind)) {
-        let first = vertices.len() as u32;
-        vertices.extend_from_slice(&surface.positions);
-        triangles.extend(surface.triangles.iter().map(|t| t.map(|v| v + first)));
-    }
-    SharedShape::trimesh(vertices, triangles).ok()
-}
-
-/// The solid box of a prop: of a tree its trunk, of a lamp or a sign its post.
-fn solid(prop: &Prop) -> (Pose, SharedShape) {
-    let post = |width: f32| Vec3::new(width, width, prop.size.z);
-    let size = match prop.kind {
-        PropKind::Tree => post(0.4),
-        PropKind::Lamp | PropKind::SignalPole => post(0.2),
-        PropKind::Sign => post(0.1),
-        _ => prop.size,
-    };
-    let half = (size * 0.5).max(Vec3::splat(0.05));
-    let rotation = heading(prop.heading_rad);
-    (Pose::from_parts(prop.position + Vec3::Z * half.z, rotation), SharedShape::cuboid(half.x, half.y, half.z))
-}
-
-/// The rotation about the vertical that turns east to a heading.
-pub fn heading(heading_rad: f32) -> Quat {
-    let half = 0.5 * heading_rad;
-    Quat::from_xyzw(0.0, 0.0, crate::ops::sin(half), crate::ops::cos(half))
-}
 
 /// How an actor is in the physics world.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,7 +51,7 @@ pub struct Touched {
 
 /// The physics world: the ego car and the actors near it on the static map.
 pub struct Physics {
-    template: Arc<Template>,
+    statics: Arc<Statics>,
     colliders: ColliderSet,
     broad_phase: BroadPhaseBvh,
     bodies: RigidBodySet,
@@ -190,7 +72,7 @@ pub struct Physics {
 impl Clone for Physics {
     fn clone(&self) -> Self {
         Self {
-            template: self.template.clone(),
+            statics: self.statics.clone(),
             colliders: self.colliders.clone(),
             broad_phase: self.broad_phase.clone(),
             bodies: self.bodies.clone(),
@@ -211,16 +93,10 @@ impl Clone for Physics {
     }
 }
 
-fn parameters() -> IntegrationParameters {
-    // Recycled contacts may be stale by centimetres, which would blur collision events.
-    IntegrationParameters { dt: TICK_S, contact_recycling: false, ..Default::default() }
-}
-
 impl Physics {
     /// The ego car alone on a map.
-    pub fn new(network: &RoadNetwork, ego: &Motion) -> Self {
-        let template = Template::of(network);
-        let (mut colliders, mut bodies) = (template.colliders.clone(), RigidBodySet::new());
+    pub fn new(statics: &Arc<Statics>, ego: &Motion) -> Self {
+        let (mut colliders, mut bodies) = (statics.colliders.clone(), RigidBodySet::new());
         let body = bodies.insert(free(ego).additional_mass_properties(MassProperties::new(
             ego::CENTRE_OF_MASS_M,
             ego::MASS_KG,
@@ -237,8 +113,8 @@ impl Physics {
         // The wheels push before the first step would do this: without a mass they give NaN.
         bodies[body].recompute_mass_properties_from_colliders(&colliders);
         Self {
-            broad_phase: template.broad_phase.clone(),
-            template,
+            statics: statics.clone(),
+            broad_phase: statics.broad_phase.clone(),
             colliders,
             bodies,
             islands: IslandManager::new(),
@@ -353,7 +229,7 @@ impl Physics {
     /// Whether a wheel of the ego car stands on something that is not paved.
     pub fn off_road(&self) -> bool {
         let on = |wheel: &rapier3d::control::Wheel| wheel.raycast_info().ground_object;
-        self.car.wheels().iter().filter_map(on).any(|ground| Some(ground) != self.template.paved)
+        self.car.wheels().iter().filter_map(on).any(|ground| Some(ground) != self.statics.paved)
     }
 
     /// What the ego car touched in the last step; reuses `touched`.
@@ -368,21 +244,12 @@ impl Physics {
             let other = if pair.collider1 == self.ego_collider { pair.collider2 } else { pair.collider1 };
             if let Some(actor) = self.actors.iter().find(|actor| actor.collider == other) {
                 touched.actors.push((actor.id, pushed));
-            } else if Some(other) == self.template.scenery {
+            } else if Some(other) == self.statics.scenery {
                 touched.scenery = Some(pushed);
             }
         }
         touched.actors.sort_unstable();
     }
-}
-
-fn free(motion: &Motion) -> RigidBodyBuilder {
-    // Rest is a rule of the world's state, so the engine never puts a body to sleep.
-    RigidBodyBuilder::dynamic()
-        .pose(Pose::from_parts(motion.position, motion.rotation))
-        .linvel(motion.velocity_mps)
-        .angvel(motion.spin_radps)
-        .can_sleep(false)
 }
 
 fn motion(body: &RigidBody) -> Motion {
@@ -393,41 +260,4 @@ fn motion(body: &RigidBody) -> Motion {
         velocity_mps: body.linvel(),
         spin_radps: body.angvel(),
     }
-}
-
-/// A solid box of the kind's size and mass.
-fn mass(kind: ActorKind) -> MassProperties {
-    let kg = match kind {
-        ActorKind::Car => 1400.0,
-        ActorKind::Truck => 7000.0,
-        ActorKind::Bus => 12000.0,
-        ActorKind::Motorcycle => 280.0,
-        ActorKind::Bicycle => 90.0,
-        ActorKind::Pedestrian => 75.0,
-    };
-    let size = kind.size_m();
-    let square = size * size;
-    let inertia = Vec3::new(square.y + square.z, square.x + square.z, square.x + square.y) * (kg / 12.0);
-    MassProperties::new(Vec3::Z * 0.45 * size.z, kg, inertia)
-}
-
-/// Four wheels, front left, front right, rear left, rear right. The axle points to the right: with
-/// the axle to the left, the controller drives backwards.
-fn car(chassis: RigidBodyHandle) -> DynamicRayCastVehicleController {
-    let tuning = WheelTuning {
-        suspension_stiffness: ego::SPRING_PER_S2,
-        suspension_compression: ego::BUMP_PER_S,
-        suspension_damping: ego::REBOUND_PER_S,
-        max_suspension_travel: ego::TRAVEL_M,
-        side_friction_stiffness: 1.0,
-        friction_slip: ego::GRIP,
-        max_suspension_force: ego::MAX_SUSPENSION_N,
-    };
-    let mut car = DynamicRayCastVehicleController::new(chassis);
-    car.index_up_axis = 2;
-    car.index_forward_axis = 0;
-    for mount in ego::wheel_mounts() {
-        car.add_wheel(mount, Vec3::NEG_Z, Vec3::NEG_Y, ego::SPRING_REST_M, ego::WHEEL_RADIUS_M, &tuning);
-    }
-    car
 }

@@ -1,33 +1,34 @@
 //! Static objects that a file names: signals, signs, and everything in its `<objects>`.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
-use super::bake::{Source, direction, point, snap, snap3};
-use super::lights::beside_lanes;
-use super::{LaneKind, Prop, PropKind, RoadNetwork, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
+use super::rounding::{snap, snap3};
+use super::shapes::{beside_lanes, footprint, least_rectangle, point};
+use super::source::Source;
+use crate::map_data::{LaneKind, LightHead, Prop, PropKind, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
 use crate::ops;
+use crate::places::Roads;
 
 /// What claims to be larger is no object beside a road, metres.
 const LARGEST_M: f32 = 500.0;
 
-pub(super) fn bake(source: &Source, map: &mut RoadNetwork) {
-    let poles: Vec<Prop> = map.light_heads.iter().map(|h| pole(h.position, h.facing_rad, h.height_m)).collect();
-    map.props.extend(poles);
+/// What the file names, and the poles of the lights.
+pub(super) fn bake(source: &Source, roads: &Roads<'_>, light_heads: &[LightHead]) -> Vec<Prop> {
+    let mut props: Vec<Prop> = light_heads.iter().map(|h| pole(h.position, h.facing_rad, h.height_m)).collect();
     for signal in source.net.signals() {
         if let Some(variant) = sign(signal) {
-            let position = beside_lanes(map, ground_of(source, signal));
+            let position = beside_lanes(roads, ground_of(source, signal));
             let size = Vec3::new(0.08, 0.7, 2.6);
-            map.props.push(Prop { kind: PropKind::Sign, position, heading_rad: snap(signal.heading), size, variant });
+            props.push(Prop { kind: PropKind::Sign, position, heading_rad: snap(signal.heading), size, variant });
         }
     }
     for object in source.net.objects() {
         let variant = object.id.0 as u32;
         if let Some(kind) = kind(object) {
-            let stands: Vec<Prop> =
-                boxes(&object.shape, kind, variant).into_iter().filter(|p| !is_on_lane(map, p)).collect();
-            map.props.extend(stands);
+            props.extend(boxes(&object.shape, kind, variant).into_iter().filter(|p| !is_on_lane(roads, p)));
         }
     }
+    props
 }
 
 fn pole(position: Vec3, heading_rad: f32, lamps_m: f32) -> Prop {
@@ -120,7 +121,7 @@ fn outline(corners: &[xodr::Corner], closed: bool, prop: &dyn Fn(Vec3, f32, Vec3
     if !closed {
         return base.windows(2).map(|w| rail(w[0], w[1], height, prop)).collect();
     }
-    let Some((center, along, half)) = super::crosswalks::least_rectangle(&base) else { return Vec::new() };
+    let Some((center, along, half)) = least_rectangle(&base) else { return Vec::new() };
     vec![prop(center, ops::atan2(along.y, along.x), (half * 2.0).extend(height))]
 }
 
@@ -130,29 +131,7 @@ fn rail(a: Vec3, b: Vec3, height: f32, prop: &dyn Fn(Vec3, f32, Vec3) -> Prop) -
     prop((a + b) / 2.0, ops::atan2(along.y, along.x), Vec3::new(along.length(), 0.2, height))
 }
 
-/// Corners of a prop's footprint, counter-clockwise.
-pub(super) fn corners(prop: &Prop) -> [Vec2; 4] {
-    let along = direction(prop.heading_rad) * (prop.size.x / 2.0);
-    let across = direction(prop.heading_rad).perp() * (prop.size.y / 2.0);
-    let p = prop.position.truncate();
-    [p - along - across, p + along - across, p + along + across, p - along + across]
-}
-
-/// Points that cover a prop's footprint, at most `step_m` apart.
-pub(super) fn footprint(prop: &Prop, step_m: f32) -> Vec<Vec3> {
-    let (nx, ny) = ((prop.size.x / step_m) as u32 + 1, (prop.size.y / step_m) as u32 + 1);
-    let along = direction(prop.heading_rad) * prop.size.x;
-    let across = direction(prop.heading_rad).perp() * prop.size.y;
-    (0..=nx.min(200))
-        .flat_map(|i| (0..=ny.min(200)).map(move |j| (i, j)))
-        .map(|(i, j)| {
-            let offset = along * (i as f32 / nx.min(200) as f32 - 0.5) + across * (j as f32 / ny.min(200) as f32 - 0.5);
-            prop.position + offset.extend(0.0)
-        })
-        .collect()
-}
-
 /// Whether any of a prop's footprint lies on a driving lane.
-fn is_on_lane(map: &RoadNetwork, prop: &Prop) -> bool {
-    footprint(prop, 1.0).iter().any(|&p| map.lanes_at(p, LaneKind::Driving).iter().any(|l| map.beyond_edge(l) < -0.1))
+fn is_on_lane(roads: &Roads<'_>, prop: &Prop) -> bool {
+    footprint(prop, 1.0).iter().any(|&p| roads.at(p, LaneKind::Driving).iter().any(|l| roads.beyond_edge(l) < -0.1))
 }
