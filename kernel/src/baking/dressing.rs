@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::rounding::{snap, snap3};
 use super::shapes::{corners, footprint};
 use super::source::Source;
-use crate::geometry::direction;
+use crate::geometry::{corners_overlap, direction};
 use crate::map_data::{Lane, LaneId, LaneKind, Prop, PropKind};
 use crate::ops;
 use crate::places::Roads;
@@ -254,17 +254,6 @@ impl<'a> Site<'a> {
 
     fn is_free(&self, prop: &Prop) -> bool {
         let near = Self::squares(prop).filter_map(|s| self.taken.get(&s)).flatten();
-        near.into_iter().all(|&id| !overlap(&corners(prop), &corners(&self.props[id as usize])))
+        near.into_iter().all(|&id| !corners_overlap(&corners(prop), &corners(&self.props[id as usize])))
     }
-}
-
-/// Whether two rectangles overlap (separating axes).
-fn overlap(a: &[Vec2; 4], b: &[Vec2; 4]) -> bool {
-    let axes = [a[1] - a[0], a[3] - a[0], b[1] - b[0], b[3] - b[0]];
-    axes.iter().all(|axis| {
-        let range =
-            |r: &[Vec2; 4]| r.iter().map(|c| c.dot(*axis)).fold((f32::MAX, f32::MIN), |(l, h), v| (l.min(v), h.max(v)));
-        let ((al, ah), (bl, bh)) = (range(a), range(b));
-        al < bh && bl < ah
-    })
 }
