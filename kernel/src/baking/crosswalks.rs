@@ -12,13 +12,13 @@ use crate::geometry::direction;
 use crate::map_data::{Crosswalk, Junction, Lane, LaneId, LaneKind};
 use crate::places::Roads;
 
-/// Half extent along the road of a crossing that is made up, metres.
+/// Half extent along the road of a crosswalk that is made up, metres.
 const HALF_WIDTH_M: f32 = 1.75;
-/// From the mouth of a junction to the middle of a crossing that is made up, metres.
+/// From the mouth of a junction to the middle of a crosswalk that is made up, metres.
 const SETBACK_M: f32 = 3.0;
-/// A crossing belongs to a junction that its lanes reach within this distance, metres.
+/// A crosswalk belongs to a junction that its lanes reach within this distance, metres.
 const REACH_M: f32 = 20.0;
-/// What claims to be larger is no crossing, metres.
+/// What claims to be larger is no crosswalk, metres.
 const LONGEST_M: f32 = 60.0;
 /// A rectangle this much longer than wide is crossed along its length, whatever lies below.
 const SLENDER: f32 = 1.8;
@@ -88,13 +88,14 @@ fn crosswalk(roads: &Roads<'_>, ends: [Vec3; 2], half_width_m: f32) -> Option<Cr
         return None;
     }
     let near = roads.around(center, LaneKind::Driving, radius);
-    let crossed = near.iter().filter_map(|p| crossing(&roads.lanes[p.lane as usize], ends).map(|s| (p.lane, snap(s))));
+    let crossed =
+        near.iter().filter_map(|p| crossed_at(&roads.lanes[p.lane as usize], ends).map(|s| (p.lane, snap(s))));
     let lanes: Vec<(LaneId, f32)> = crossed.collect();
     (!lanes.is_empty()).then_some(Crosswalk { ends, half_width_m, lanes, junction: None })
 }
 
 /// Where the centre line of `lane` crosses the segment between `ends`.
-fn crossing(lane: &Lane, ends: [Vec3; 2]) -> Option<f32> {
+fn crossed_at(lane: &Lane, ends: [Vec3; 2]) -> Option<f32> {
     let (a, along) = (ends[0].truncate(), (ends[1] - ends[0]).truncate());
     lane.points.windows(2).find_map(|pair| {
         let (p, step) = (pair[0].position.truncate(), (pair[1].position - pair[0].position).truncate());

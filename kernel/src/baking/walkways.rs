@@ -1,4 +1,4 @@
-//! The ways of pedestrians: sidewalks, zebra crossings, and what joins them.
+//! The ways of pedestrians: sidewalks, crosswalks, and what joins them.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::places::Roads;
 
 /// Ends of sidewalks nearer than this are one place, metres.
 const MERGE_M: f32 = 0.8;
-/// A crossing is joined to a sidewalk this near to its end, metres.
+/// A crosswalk is joined to a sidewalk this near to its end, metres.
 const JOIN_M: f32 = 6.0;
 /// Loose ends of sidewalks this near to each other are joined across a corner, metres.
 const CORNER_M: f32 = 15.0;

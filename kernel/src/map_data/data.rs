@@ -25,7 +25,7 @@ pub struct MapData {
     pub light_groups: Vec<LightGroup>,
     /// Signal heads.
     pub light_heads: Vec<LightHead>,
-    /// Zebra crossings.
+    /// Crosswalks.
     pub crosswalks: Vec<Crosswalk>,
     /// Where the ways of pedestrians meet.
     pub walk_nodes: Vec<WalkNode>,

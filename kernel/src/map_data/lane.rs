@@ -232,11 +232,17 @@ impl Lane {
     /// The place `s_m` from its start, facing along its centre line; beyond its ends the lane goes
     /// straight on.
     pub fn straight_on(&self, s_m: f32) -> Place {
+        let along = |i: usize, _| (self.points[i + 1].position - self.points[i].position).normalize_or(Vec3::X);
+        self.straight_on_facing(s_m, along)
+    }
+
+    /// The same place, facing as `forward` says of a segment and the share of the way along it.
+    pub fn straight_on_facing(&self, s_m: f32, forward: impl FnOnce(usize, f32) -> Vec3) -> Place {
         let (i, share) = self.segment(s_m);
         let (a, b) = (&self.points[i], &self.points[i + 1]);
         Place {
             position: a.position + (b.position - a.position) * share,
-            forward: (b.position - a.position).normalize_or(Vec3::X),
+            forward: forward(i, share),
             half_width_m: a.half_width_m + (b.half_width_m - a.half_width_m) * share.clamp(0.0, 1.0),
         }
     }

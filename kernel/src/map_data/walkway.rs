@@ -6,14 +6,14 @@ use super::digest::digested;
 use super::ids::{LaneId, WalkEdgeId};
 
 digested! {
-    /// A zebra crossing.
+    /// A crosswalk.
     #[derive(Clone, Debug)]
     pub struct Crosswalk {
         /// The ends of its axis at the two kerbs.
         pub ends: [Vec3; 2],
         /// Half of its extent along the road, metres.
         pub half_width_m: f32,
-        /// The lanes it crosses, each with the place of the crossing, metres from the lane's start.
+        /// The lanes it crosses, each with the place of the crosswalk, metres from the lane's start.
         pub lanes: Vec<(LaneId, f32)>,
         /// Its junction, when that has lights: walkers go while every crossed lane has red.
         pub junction: Option<u32>,

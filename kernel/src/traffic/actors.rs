@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::body::Body;
 use super::counts::TrafficCounts;
 use super::state::TrafficState;
-use super::traits::{Driver, Person, driver, person};
+use super::traits::{Driver, WalkerTraits, driver, walker_traits};
 use super::ways::Ways;
 use crate::map_data::MapData;
 
@@ -17,7 +17,7 @@ pub(super) struct Actors {
     pub jaywalks_per_min: f32,
     pub state: TrafficState,
     pub drivers: Vec<Driver>,
-    pub persons: Vec<Person>,
+    pub walker_traits: Vec<WalkerTraits>,
     /// At the places of the state.
     pub bodies: Vec<Body>,
 }
@@ -30,7 +30,7 @@ impl Actors {
             seed,
             jaywalks_per_min: counts.jaywalks_per_min,
             drivers: state.vehicles.iter().map(|v| driver(seed, v.id, v.kind)).collect(),
-            persons: state.walkers.iter().map(|w| person(seed, w.id)).collect(),
+            walker_traits: state.walkers.iter().map(|w| walker_traits(seed, w.id)).collect(),
             state,
             bodies: Vec::new(),
         }

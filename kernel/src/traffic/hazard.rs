@@ -13,8 +13,8 @@ use super::plan::Step;
 const REACH_M: f32 = 6.5;
 /// Sideways distance kept, metres.
 const CLEARANCE_M: f32 = 0.35;
-/// How far ahead the crossing of a person is expected to go on, seconds.
-const PERSON_FORESIGHT_S: f32 = 2.5;
+/// How far ahead the crossing of a walker is expected to go on, seconds.
+const WALKER_FORESIGHT_S: f32 = 2.5;
 /// The same for a vehicle.
 const VEHICLE_FORESIGHT_S: f32 = 0.8;
 /// Levels farther apart than this are different roads, metres.
@@ -28,18 +28,18 @@ pub(super) struct Hazard {
     pub forward: Vec2,
     /// Half of its length and width, metres.
     pub half: Vec2,
-    pub person: bool,
+    pub walker: bool,
 }
 
 impl Hazard {
     /// A box that physics moves.
-    pub fn of(obstacle: &Obstacle, person: bool) -> Self {
+    pub fn of(obstacle: &Obstacle, walker: bool) -> Self {
         Self {
             position: obstacle.position,
             velocity: obstacle.velocity_mps.truncate(),
             forward: direction(obstacle.heading_rad),
             half: obstacle.size_m.truncate() * 0.5,
-            person,
+            walker,
         }
     }
 
@@ -51,7 +51,7 @@ impl Hazard {
             velocity: body.velocity_mps.truncate(),
             forward,
             half: body.kind.size_m().truncate() * 0.5,
-            person: body.kind == ActorKind::Pedestrian,
+            walker: body.kind == ActorKind::Pedestrian,
         }
     }
 
@@ -89,7 +89,7 @@ pub(super) fn in_way(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Ha
         return None;
     }
     let time_s = gap_m.max(0.0) / seeker.speed_mps.max(1.0);
-    let foresight_s = time_s.min(if hazard.person { PERSON_FORESIGHT_S } else { VEHICLE_FORESIGHT_S });
+    let foresight_s = time_s.min(if hazard.walker { WALKER_FORESIGHT_S } else { VEHICLE_FORESIGHT_S });
     let now_m = offset.dot(left) - seeker.offset_m;
     let then_m = now_m + hazard.velocity.dot(left) * foresight_s;
     let half_m = hazard.half_along(left) + seeker.half.y + CLEARANCE_M;

@@ -8,7 +8,7 @@ use crate::rng::{Stream, bits, unit};
 use crate::time::{TICK_HZ, Tick};
 
 use super::body::Obstacle;
-use super::traits::Person;
+use super::traits::WalkerTraits;
 use super::walker::{Walker, WalkerMode};
 use super::ways::Ways;
 
@@ -20,8 +20,8 @@ const RUNNERS: f32 = 0.25;
 const RUN_MPS: f32 = 2.8;
 /// Candidates whose way is looked at in one tick.
 const TRIES: usize = 8;
-/// Radius of a person, metres.
-const PERSON_M: f32 = 0.35;
+/// Radius of a walker, metres.
+const WALKER_M: f32 = 0.35;
 /// Roads narrower or wider than this between the middles of the sidewalks are not crossed, metres.
 const ROAD_M: std::ops::Range<f32> = 4.0..32.0;
 
@@ -130,9 +130,9 @@ fn meet(origin: Vec2, along: Vec2, a: Vec2, b: Vec2) -> Option<(f32, f32)> {
 }
 
 /// Speed of somebody who crosses the road.
-pub(super) fn pace(seed: u64, walker: &Walker, person: &Person) -> f32 {
+pub(super) fn pace(seed: u64, walker: &Walker, traits: &WalkerTraits) -> f32 {
     let runs = unit(seed, Stream::Jaywalk, u64::from(walker.id), !u64::from(walker.hops)) < RUNNERS;
-    if runs { RUN_MPS } else { person.speed_mps + 0.3 }
+    if runs { RUN_MPS } else { traits.speed_mps + 0.3 }
 }
 
 /// Puts a walker who has reached the other side on the way there.
@@ -149,12 +149,12 @@ pub(super) fn arrive(ways: &Ways, seed: u64, goal: &Goal, walker: &mut Walker) {
     walker.wait_ticks = 0;
 }
 
-/// Whether a person who goes from one point to another touches a prop.
+/// Whether a walker who goes from one point to another touches a prop.
 fn touches(prop: &Prop, from: Vec2, to: Vec2) -> bool {
     let half = match prop.kind {
         PropKind::Tree | PropKind::Lamp | PropKind::Sign | PropKind::SignalPole => Vec2::splat(0.2),
         _ => prop.size.truncate() * 0.5,
-    } + PERSON_M;
+    } + WALKER_M;
     let centre = prop.position.truncate();
     let reach = half.length() + 1.0;
     if (from.distance(centre) + to.distance(centre)) > from.distance(to) + 2.0 * reach {

@@ -15,7 +15,7 @@ use super::lists::Lists;
 use super::plan::{Line, Plan, Step, braking_needed};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
-use super::ways::{Encounter, Meeting, Ways};
+use super::ways::{ConflictKind, LaneConflict, Ways};
 
 /// After this long at a line a vehicle goes before those that have the right of way.
 pub(super) const PATIENCE_TICKS: u16 = 240;
@@ -93,14 +93,14 @@ impl Members {
     /// Whether the one who asks may enter.
     pub fn grants(&self, ways: &Ways, asking: &Member, steps: &[Step]) -> bool {
         let others = self.of(asking.junction).iter().filter(|m| m.vehicle != asking.vehicle);
-        let meets = |other: &Member| {
+        let keeps_out = |other: &Member| {
             steps.iter().any(|step| {
-                let encounters = &ways.lanes[step.lane as usize].encounters;
+                let conflicts = &ways.lanes[step.lane as usize].conflicts;
                 let theirs = self.lanes_of(other);
-                encounters.iter().any(|e| theirs.iter().any(|t| t.lane == e.lane && prevents(asking, other, e, t)))
+                conflicts.iter().any(|c| theirs.iter().any(|t| t.lane == c.lane && prevents(asking, other, c, t)))
             })
         };
-        !others.into_iter().any(meets)
+        !others.into_iter().any(keeps_out)
     }
 
     /// The member that asks for vehicle `index`, if it asks.
@@ -109,18 +109,18 @@ impl Members {
     }
 }
 
-/// Whether `other` on lane `there` keeps the one who asks out, where their lanes meet.
-fn prevents(asking: &Member, other: &Member, encounter: &Encounter, there: &Step) -> bool {
-    if encounter.meeting == Meeting::Diverge {
+/// Whether `other` on lane `there` keeps the one who asks out, where their lanes conflict.
+fn prevents(asking: &Member, other: &Member, conflict: &LaneConflict, there: &Step) -> bool {
+    if conflict.kind == ConflictKind::Diverge {
         return false;
     }
     if other.holds {
         // A long vehicle sweeps more than its lane: nobody passes close behind it, nor does it.
         let long = other.half_m > LONG_HALF_M || asking.half_m > LONG_HALF_M;
         let rear_m = -there.start_m - other.half_m;
-        return long || rear_m < encounter.there[1];
+        return long || rear_m < conflict.there[1];
     }
-    !goes_before(asking, other, encounter.precedence)
+    !goes_before(asking, other, conflict.precedence)
 }
 
 /// The order of two who ask, the same seen from both: the impatient first, then the right of way,

@@ -6,7 +6,7 @@ use crate::time::Tick;
 
 use super::actors::Actors;
 use super::body::Surroundings;
-use super::crossing::{Claim, Gaps};
+use super::crosswalk::{Claim, Gaps};
 use super::drive::View;
 use super::hazard::Hazard;
 use super::jaywalk;
@@ -85,7 +85,7 @@ impl Sight {
             ways: &actors.ways,
             seed: actors.seed,
             walkers: &actors.state.walkers,
-            persons: &actors.persons,
+            walker_traits: &actors.walker_traits,
             bodies: &actors.bodies[actors.state.vehicles.len()..],
             lists: &self.edges,
             gaps: Gaps {
@@ -116,13 +116,13 @@ impl Sight {
     fn gather_hazards(&mut self, actors: &Actors, around: &Surroundings<'_>) {
         let (vehicles, walkers) = (&actors.state.vehicles, &actors.state.walkers);
         let first_walker = walkers.first().map_or(u32::MAX, |w| u32::from(w.id));
-        let person = |id: u32| id >= first_walker;
+        let is_walker = |id: u32| id >= first_walker;
         self.hazards.clear();
         self.hazards.push(Hazard::of(&around.ego, false));
-        self.hazards.extend(around.loose.iter().map(|o| Hazard::of(o, person(o.id))));
+        self.hazards.extend(around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id))));
         self.free = self.hazards.len();
         self.blocks.clear();
-        self.blocks.extend(self.hazards.iter().filter(|h| !h.person));
+        self.blocks.extend(self.hazards.iter().filter(|h| !h.walker));
         let (driven, walked) = actors.bodies.split_at(vehicles.len());
         let present = vehicles.iter().zip(driven).filter(|(v, _)| !around.holds(v.id));
         self.blocks.extend(present.map(|(_, body)| Hazard::of_body(body)));
@@ -130,7 +130,7 @@ impl Sight {
         for (walker, body) in walkers.iter().zip(walked).filter(|(w, _)| !around.holds(w.id)) {
             let crosswalk = actors.map().walk_edges[walker.edge as usize].crosswalk;
             let waits = walker.mode == WalkerMode::Wait;
-            let claimed = if waits { self.wanted_zebra(actors, walker) } else { crosswalk };
+            let claimed = if waits { self.wanted_unlit_crosswalk(actors, walker) } else { crosswalk };
             let astray = walker.offset_m.abs() > actors.map().walk_edges[walker.edge as usize].half_width_m + 0.3;
             if crosswalk.is_some() || astray {
                 self.hazards.push(Hazard::of_body(body));
@@ -142,8 +142,8 @@ impl Sight {
         self.claims.sort_unstable_by_key(|c| c.crosswalk);
     }
 
-    /// The zebra without lights at which a walker waits.
-    fn wanted_zebra(&self, actors: &Actors, walker: &Walker) -> Option<u32> {
+    /// The crosswalk without lights at which a walker waits.
+    fn wanted_unlit_crosswalk(&self, actors: &Actors, walker: &Walker) -> Option<u32> {
         let wanted = wanted_crosswalk(actors.map(), actors.seed, walker);
         wanted.filter(|c| actors.ways.crosswalk_lights[*c as usize].is_empty())
     }
@@ -153,7 +153,7 @@ impl Sight {
         members.clear();
         for (i, vehicle) in actors.state.vehicles.iter().enumerate() {
             if !around.holds(vehicle.id) {
-                self.add_crossing(actors, i, &mut members);
+                self.add_inside(actors, i, &mut members);
                 self.add_before_junction(actors, i, &mut members);
             }
         }
@@ -166,7 +166,7 @@ impl Sight {
         &self.steps[plan.steps.0 as usize..plan.steps.1 as usize]
     }
 
-    fn add_crossing(&self, actors: &Actors, i: usize, members: &mut Members) {
+    fn add_inside(&self, actors: &Actors, i: usize, members: &mut Members) {
         let (vehicle, half_m) = (&actors.state.vehicles[i], swept_half_m(actors.drivers[i].size_m));
         if vehicle.flags & Vehicle::CROSSING == 0 {
             return;

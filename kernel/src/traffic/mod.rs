@@ -8,7 +8,7 @@
 mod actors;
 mod body;
 mod counts;
-mod crossing;
+mod crosswalk;
 mod drive;
 mod hazard;
 mod jaywalk;

@@ -9,7 +9,7 @@ use crate::rng::{Stream, below};
 use super::actors::Actors;
 use super::body::{Body, Surroundings};
 use super::spawn::EGO_CLEARANCE_M;
-use super::traits::{Driver, Person};
+use super::traits::{Driver, WalkerTraits};
 use super::vehicle::Vehicle;
 use super::walker::{Walker, WalkerMode};
 
@@ -33,8 +33,8 @@ impl Actors {
         bodies.clear();
         let vehicles = self.state.vehicles.iter().zip(&self.drivers);
         bodies.extend(vehicles.map(|(vehicle, driver)| self.vehicle_body(vehicle, driver)));
-        let walkers = self.state.walkers.iter().zip(&self.persons);
-        bodies.extend(walkers.map(|(walker, person)| self.walker_body(walker, person)));
+        let walkers = self.state.walkers.iter().zip(&self.walker_traits);
+        bodies.extend(walkers.map(|(walker, traits)| self.walker_body(walker, traits)));
         self.bodies = bodies;
     }
 
@@ -53,7 +53,7 @@ impl Actors {
         }
     }
 
-    fn walker_body(&self, walker: &Walker, person: &Person) -> Body {
+    fn walker_body(&self, walker: &Walker, traits: &WalkerTraits) -> Body {
         let place = self.ways.walker_place(walker);
         let half_rad = f32::from(walker.heading) * (TURN_RAD * 0.5);
         let (sin, cos) = (ops::sin(half_rad), ops::cos(half_rad));
@@ -63,7 +63,7 @@ impl Actors {
         Body {
             id: u32::from(walker.id),
             kind: ActorKind::Pedestrian,
-            variant: person.variant,
+            variant: traits.variant,
             position: place.beside(walker.offset_m),
             rotation: Quat::from_xyzw(0.0, 0.0, sin, cos),
             velocity_mps: ahead * (sign * walker.speed_mps),

@@ -10,7 +10,7 @@ use crate::rng::{Stream, bits, unit};
 use super::counts::TrafficCounts;
 use super::plan::stopping_speed;
 use super::state::TrafficState;
-use super::traits::{driver, person};
+use super::traits::{driver, walker_traits};
 use super::vehicle::Vehicle;
 use super::walker::{Walker, WalkerMode, turns};
 use super::ways::Ways;
@@ -19,8 +19,8 @@ use super::ways::Ways;
 pub(super) const EGO_CLEARANCE_M: f32 = 20.0;
 /// Free space around a vehicle at its start, metres.
 const VEHICLE_SPACE_M: f32 = 6.0;
-/// Free space around a person, metres.
-const PERSON_SPACE_M: f32 = 0.9;
+/// Free space around a walker, metres.
+const WALKER_SPACE_M: f32 = 0.9;
 /// Places that are tried for each actor.
 const TRIES: u64 = 40;
 /// Highest speed at the start, m/s.
@@ -126,11 +126,11 @@ impl Spawner<'_> {
         let half_m = driver.size_m.x * 0.5;
         let way = &self.map.lanes[lane as usize];
         let end_m = way.stop.map_or(way.length_m, |stop| stop.s_m.min(way.length_m));
-        let on_zebra = self.ways.lanes[lane as usize]
-            .zebras
+        let on_crosswalk = self.ways.lanes[lane as usize]
+            .crosswalks
             .iter()
-            .any(|z| s_m + half_m > z.near_m - 1.0 && s_m - half_m < z.far_m + 1.0);
-        if s_m < half_m + 2.0 || s_m > end_m - half_m - 3.0 || on_zebra {
+            .any(|c| s_m + half_m > c.near_m - 1.0 && s_m - half_m < c.far_m + 1.0);
+        if s_m < half_m + 2.0 || s_m > end_m - half_m - 3.0 || on_crosswalk {
             return false;
         }
         let place = way.straight_on(s_m);
@@ -174,11 +174,11 @@ impl Spawner<'_> {
 
     fn walker(&mut self, number: u64, (edge, s_m): (u32, f32)) -> bool {
         let id = self.next_id();
-        let person = person(self.seed, id);
+        let traits = walker_traits(self.seed, id);
         let way = &self.map.walk_edges[edge as usize];
         let place = self.ways.edge_place(edge, s_m);
-        let offset_m = person.place * (way.half_width_m - 0.4).max(0.0);
-        if !self.take(place.beside(offset_m).truncate(), PERSON_SPACE_M * 0.5) {
+        let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
+        if !self.take(place.beside(offset_m).truncate(), WALKER_SPACE_M * 0.5) {
             return false;
         }
         let random = bits(self.seed, Stream::Spawn, number, TRIES + 1);
@@ -191,7 +191,7 @@ impl Spawner<'_> {
             edge,
             s_m,
             offset_m,
-            speed_mps: person.speed_mps,
+            speed_mps: traits.speed_mps,
             hops: 0,
             wait_ticks: 0,
             phase: (random >> 16) as u16,

@@ -1,4 +1,4 @@
-//! What a person on foot does in a tick.
+//! What a walker does in a tick.
 
 use glam::Vec2;
 
@@ -8,14 +8,14 @@ use crate::rng::{self, Stream};
 use crate::time::{TICK_S, seconds};
 
 use super::body::Body;
-use super::crossing::Gaps;
+use super::crosswalk::Gaps;
 use super::hazard::Hazard;
 use super::jaywalk;
-use super::traits::Person;
+use super::traits::WalkerTraits;
 use super::walker::{Walker, WalkerMode, turns};
 use super::ways::Ways;
 
-/// Acceleration of a person, m/s².
+/// Acceleration of a walker, m/s².
 const ACCEL_MPS2: f32 = 1.5;
 /// People look this far ahead for each other, metres.
 const SIGHT_M: f32 = 3.0;
@@ -91,7 +91,7 @@ pub(super) struct Streets<'a> {
     pub ways: &'a Ways,
     pub seed: u64,
     pub walkers: &'a [Walker],
-    pub persons: &'a [Person],
+    pub walker_traits: &'a [WalkerTraits],
     /// Bodies of the walkers.
     pub bodies: &'a [Body],
     pub lists: &'a EdgeLists,
@@ -127,7 +127,7 @@ impl Streets<'_> {
         let edge = &self.map.walk_edges[next.edge as usize];
         let direction = if next.forward { 1.0 } else { -1.0 };
         let (aim_m, limit_mps) = self.avoid(index, edge, direction);
-        let mut aim_mps = self.persons[index].speed_mps.min(limit_mps);
+        let mut aim_mps = self.walker_traits[index].speed_mps.min(limit_mps);
         if edge.crosswalk.is_some() {
             // Across the road people hurry a little, and do not walk into vehicles.
             aim_mps = (aim_mps * 1.15).max(1.0);
@@ -155,7 +155,7 @@ impl Streets<'_> {
         let me = &self.walkers[index];
         let room_m = (edge.half_width_m - EDGE_MARGIN_M).max(0.0);
         // A third of the way to the right, as people mostly keep.
-        let mut aim_m = (self.persons[index].place - direction * 0.33).clamp(-1.0, 1.0) * room_m;
+        let mut aim_m = (self.walker_traits[index].place - direction * 0.33).clamp(-1.0, 1.0) * room_m;
         let mut limit_mps = f32::MAX;
         let (up, down) = self.lists.around(index);
         let near = |i: &usize| {
@@ -199,7 +199,7 @@ impl Streets<'_> {
 
     fn may_cross(&self, index: usize, crosswalk: u32, walker: &Walker) -> bool {
         let ends = self.map.crosswalks[crosswalk as usize].ends;
-        let time_s = ends[0].distance(ends[1]) / self.persons[index].speed_mps.max(1.0);
+        let time_s = ends[0].distance(ends[1]) / self.walker_traits[index].speed_mps.max(1.0);
         let body = &self.bodies[index];
         self.gaps.may_cross(crosswalk, walker, body.position.truncate(), time_s)
     }
@@ -243,7 +243,7 @@ impl Streets<'_> {
             return;
         };
         let blocked = self.blocked(index, place.left() * sign);
-        let aim_mps = if blocked { 0.0 } else { jaywalk::pace(self.seed, next, &self.persons[index]) };
+        let aim_mps = if blocked { 0.0 } else { jaywalk::pace(self.seed, next, &self.walker_traits[index]) };
         if blocked {
             halt(next);
         }

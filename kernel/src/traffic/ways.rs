@@ -1,4 +1,4 @@
-//! Lookups of a map, made once: curve speeds, directions, who meets whom in a junction.
+//! Lookups of a map, made once: curve speeds, directions, where lanes conflict in a junction.
 
 use std::sync::Arc;
 
@@ -20,9 +20,9 @@ const CURVE_FLOOR_MPS: f32 = 2.5;
 /// Sidewalks farther apart than this do not face each other across a road, metres.
 const FACING_M: f32 = 32.0;
 
-/// How two lanes of a junction meet.
+/// How two lanes of a junction conflict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Meeting {
+pub(super) enum ConflictKind {
     /// They leave the same lane.
     Diverge,
     /// They enter the same lane.
@@ -33,9 +33,9 @@ pub(super) enum Meeting {
 
 /// A conflict seen from one lane, with the other lane's side of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Encounter {
+pub(super) struct LaneConflict {
     pub lane: LaneId,
-    pub meeting: Meeting,
+    pub kind: ConflictKind,
     /// Stretch of this lane, metres.
     pub here: [f32; 2],
     /// Stretch of the other lane, metres.
@@ -46,7 +46,7 @@ pub(super) struct Encounter {
 
 /// A crosswalk on a lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Zebra {
+pub(super) struct CrosswalkSpan {
     pub crosswalk: u32,
     /// Its near edge, metres from the lane's start.
     pub near_m: f32,
@@ -64,9 +64,9 @@ pub(super) struct LaneWay {
     pub onward: Vec<LaneId>,
     /// Those that long vehicles take: no right turns, where there is another way.
     pub onward_wide: Vec<LaneId>,
-    pub encounters: Vec<Encounter>,
+    pub conflicts: Vec<LaneConflict>,
     /// Crosswalks on it, in the direction of travel.
-    pub zebras: Vec<Zebra>,
+    pub crosswalks: Vec<CrosswalkSpan>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -86,7 +86,7 @@ pub(crate) struct Ways {
     pub(super) places: Arc<Places>,
     pub(super) lanes: Vec<LaneWay>,
     pub(super) edges: Vec<EdgeWay>,
-    /// Light groups that must be red for each crosswalk; empty for a zebra.
+    /// Light groups that must be red for each crosswalk; empty for one without.
     pub(super) crosswalk_lights: Vec<Vec<LightGroupId>>,
     /// Lanes without predecessors, where vehicles that leave the map come back.
     pub(super) entries: Vec<LaneId>,
@@ -103,7 +103,7 @@ impl Ways {
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(map),
         };
-        ways.add_zebras(map);
+        ways.add_crosswalks(map);
         ways
     }
 
@@ -122,16 +122,16 @@ impl Ways {
         self.edge_place(walker.edge, walker.s_m)
     }
 
-    fn add_zebras(&mut self, map: &MapData) {
+    fn add_crosswalks(&mut self, map: &MapData) {
         for (i, crosswalk) in map.crosswalks.iter().enumerate() {
             for &(lane, s_m) in &crosswalk.lanes {
                 let half = crosswalk.half_width_m;
-                let zebra = Zebra { crosswalk: i as u32, near_m: s_m - half, far_m: s_m + half };
-                self.lanes[lane as usize].zebras.push(zebra);
+                let span = CrosswalkSpan { crosswalk: i as u32, near_m: s_m - half, far_m: s_m + half };
+                self.lanes[lane as usize].crosswalks.push(span);
             }
         }
         for lane in &mut self.lanes {
-            lane.zebras.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
+            lane.crosswalks.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
         }
     }
 }
@@ -139,16 +139,16 @@ impl Ways {
 impl LaneWay {
     /// Like [`Lane::straight_on`], the direction turning smoothly between the points.
     pub fn pose(&self, lane: &Lane, s_m: f32) -> Place {
-        let (i, t) = lane.segment(s_m);
-        let here = self.forward[i];
-        let forward = if t < 0.5 && i > 0 {
-            self.forward[i - 1].lerp(here, (t + 0.5).max(0.0)).normalize_or(here)
-        } else if t > 0.5 && i + 1 < self.forward.len() {
-            here.lerp(self.forward[i + 1], (t - 0.5).min(0.5)).normalize_or(here)
-        } else {
-            here
-        };
-        Place { forward, ..lane.straight_on(s_m) }
+        lane.straight_on_facing(s_m, |i, share| {
+            let here = self.forward[i];
+            if share < 0.5 && i > 0 {
+                self.forward[i - 1].lerp(here, (share + 0.5).max(0.0)).normalize_or(here)
+            } else if share > 0.5 && i + 1 < self.forward.len() {
+                here.lerp(self.forward[i + 1], (share - 0.5).min(0.5)).normalize_or(here)
+            } else {
+                here
+            }
+        })
     }
 
     /// The highest speed at `s_m`, interpolated between the points. m/s.
@@ -172,9 +172,9 @@ fn lane_way(map: &MapData, id: LaneId) -> LaneWay {
     let wide = |next: &LaneId| map.lanes[*next as usize].turn != Turn::Right;
     let onward_wide: Vec<_> = onward.iter().copied().filter(wide).collect();
     let onward_wide = if onward_wide.is_empty() { onward.clone() } else { onward_wide };
-    let encounters = lane.conflicts.iter().filter_map(|c| encounter(map, id, c)).collect();
+    let conflicts = lane.conflicts.iter().filter_map(|c| lane_conflict(map, id, c)).collect();
     let forward = directions(lane.points.iter().map(|p| p.position));
-    LaneWay { speed_mps, forward, onward, onward_wide, encounters, zebras: Vec::new() }
+    LaneWay { speed_mps, forward, onward, onward_wide, conflicts, crosswalks: Vec::new() }
 }
 
 /// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken
@@ -193,24 +193,24 @@ fn curve_speeds(lane: &Lane) -> Vec<f32> {
     lane.points.iter().map(|p| at(p.s_m)).collect()
 }
 
-fn encounter(map: &MapData, id: LaneId, conflict: &Conflict) -> Option<Encounter> {
+fn lane_conflict(map: &MapData, id: LaneId, conflict: &Conflict) -> Option<LaneConflict> {
     let lane = &map.lanes[id as usize];
     let other = &map.lanes[conflict.lane as usize];
     let mirrored = other.conflicts.iter().find(|c| c.lane == id);
     let shares = |a: &[LaneId], b: &[LaneId]| a.iter().any(|x| b.contains(x));
-    let meeting = if shares(&lane.successors, &other.successors) {
-        Meeting::Merge
+    let kind = if shares(&lane.successors, &other.successors) {
+        ConflictKind::Merge
     } else if shares(&lane.predecessors, &other.predecessors) {
-        Meeting::Diverge
+        ConflictKind::Diverge
     } else {
-        Meeting::Cross
+        ConflictKind::Cross
     };
     let there = mirrored.map_or([0.0, other.length_m], |c| [c.from_m, c.to_m]);
     let gives_way = mirrored.is_some_and(|c| c.other_first);
     let precedence = i8::from(gives_way) - i8::from(conflict.other_first);
-    (other.kind == LaneKind::Driving).then_some(Encounter {
+    (other.kind == LaneKind::Driving).then_some(LaneConflict {
         lane: conflict.lane,
-        meeting,
+        kind,
         here: [conflict.from_m, conflict.to_m],
         there,
         precedence,

@@ -221,7 +221,7 @@ fn lone_car(network: &Arc<RoadNetwork>) -> Traffic {
     let vehicle = Vehicle { lane: 0, s_m: 80.0, speed_mps: 8.0, ..first };
     traffic.actors.state = TrafficState { vehicles: vec![vehicle], walkers: Vec::new() };
     traffic.actors.drivers.truncate(1);
-    traffic.actors.persons.clear();
+    traffic.actors.walker_traits.clear();
     traffic.actors.place_bodies();
     traffic
 }

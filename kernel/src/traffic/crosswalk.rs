@@ -14,7 +14,7 @@ use super::ways::Ways;
 
 /// Vehicles stop for people who reach their lane within this time, s.
 const APPROACH_S: f32 = 4.0;
-/// Share of those who step onto a zebra without looking.
+/// Share of those who step onto a crosswalk without lights and without looking.
 const CARELESS: f32 = 0.06;
 /// Vehicles slower than this let people go, m/s.
 const CREEP_MPS: f32 = 1.2;
@@ -23,7 +23,7 @@ const SPARE_S: f32 = 0.5;
 /// Vehicles farther away than this are not waited for, metres.
 const WATCH_M: f32 = 45.0;
 
-/// Somebody on a crosswalk, or at the kerb of a zebra.
+/// Somebody on a crosswalk, or at the kerb of one without lights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Claim {
     pub crosswalk: u32,
@@ -79,16 +79,16 @@ impl Gaps<'_> {
 
     /// Whether nothing arrives before the crosswalk is crossed.
     fn is_clear(&self, crosswalk: u32, from: Vec2, time_s: f32) -> bool {
-        let crossing = &self.map.crosswalks[crosswalk as usize];
+        let crossed = &self.map.crosswalks[crosswalk as usize];
         let held = !self.ways.crosswalk_lights[crosswalk as usize].is_empty();
         // Vehicles on lanes with a red light stay behind it.
         let watched = |lane: LaneId| !(held && self.map.lanes[lane as usize].stop.is_some());
-        let lanes_clear = crossing
+        let lanes_clear = crossed
             .lanes
             .iter()
             .filter(|(lane, _)| watched(*lane))
-            .all(|&(lane, s_m)| !self.arrives(lane, s_m, crossing.half_width_m, time_s, 0));
-        let middle = (crossing.ends[0] + crossing.ends[1]).truncate() * 0.5;
+            .all(|&(lane, s_m)| !self.arrives(lane, s_m, crossed.half_width_m, time_s, 0));
+        let middle = (crossed.ends[0] + crossed.ends[1]).truncate() * 0.5;
         let reach_m = middle.distance(from) + 1.0;
         lanes_clear && !self.free.iter().any(|h| heads_for(h, middle, reach_m, time_s))
     }
