@@ -8,6 +8,7 @@ use super::actors::Actors;
 use super::body::Surroundings;
 use super::crosswalk::{Claim, Gaps};
 use super::drive::View;
+use super::edge_lists::EdgeLists;
 use super::hazard::Hazard;
 use super::jaywalk;
 use super::junction::{self, EGO, Member, Members, Signal, swept_half_m};
@@ -15,7 +16,7 @@ use super::lists::Lists;
 use super::plan::{self, Line, Plan, Step, next_lane};
 use super::state::TrafficState;
 use super::vehicle::Vehicle;
-use super::walk::{EdgeLists, Streets, wanted_crosswalk};
+use super::walk::{Streets, wanted_crosswalk};
 use super::walker::{Walker, WalkerMode};
 
 /// The ego car is expected at a junction that it reaches within this time, s.

@@ -10,6 +10,7 @@ mod body;
 mod counts;
 mod crosswalk;
 mod drive;
+mod edge_lists;
 mod hazard;
 mod jaywalk;
 mod junction;

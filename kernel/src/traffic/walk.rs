@@ -9,6 +9,7 @@ use crate::time::{TICK_S, seconds};
 
 use super::body::Body;
 use super::crosswalk::Gaps;
+use super::edge_lists::EdgeLists;
 use super::hazard::Hazard;
 use super::jaywalk;
 use super::traits::WalkerTraits;
@@ -53,36 +54,6 @@ fn end_node(map: &MapData, walker: &Walker) -> u32 {
 pub(super) fn wanted_crosswalk(map: &MapData, seed: u64, walker: &Walker) -> Option<u32> {
     let next = next_edge(map, seed, walker);
     map.walk_edges[next as usize].crosswalk.filter(|_| next != walker.edge)
-}
-
-/// Walkers by edge and place.
-#[derive(Clone, Debug, Default)]
-pub(super) struct EdgeLists {
-    order: Vec<u32>,
-    rank: Vec<u32>,
-}
-
-impl EdgeLists {
-    pub fn rebuild(&mut self, walkers: &[Walker]) {
-        self.order.clear();
-        self.order.extend(0..walkers.len() as u32);
-        self.order.sort_unstable_by(|&a, &b| {
-            let (a, b) = (&walkers[a as usize], &walkers[b as usize]);
-            a.edge.cmp(&b.edge).then(a.s_m.total_cmp(&b.s_m)).then(a.id.cmp(&b.id))
-        });
-        self.rank.resize(walkers.len(), 0);
-        for (rank, &index) in self.order.iter().enumerate() {
-            self.rank[index as usize] = rank as u32;
-        }
-    }
-
-    /// Indices of the walkers on the same edge before and behind, the nearest first.
-    fn around(&self, index: usize) -> (impl Iterator<Item = usize> + '_, impl Iterator<Item = usize> + '_) {
-        let rank = self.rank[index] as usize;
-        let up = self.order[rank + 1..].iter().map(|i| *i as usize);
-        let down = self.order[..rank].iter().rev().map(|i| *i as usize);
-        (up, down)
-    }
 }
 
 /// What every walker sees of the previous tick.
