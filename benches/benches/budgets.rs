@@ -12,6 +12,7 @@ use benches::scenes::{BusyDrive, STEP_S, recorded};
 use benches::{Against, Budget, check, mean_seconds};
 use criterion::{BatchSize, Criterion};
 use kernel::RoadNetwork;
+use kernel::map::MapData;
 use kernel::time::CLIP_FPS;
 use perception::{Checkpoint, RgbView, Segmenter};
 use render::{Camera, RenderOptions, Renderer};
@@ -138,8 +139,8 @@ impl Sight {
 
 /// What the budgets of picture and prediction are held against.
 fn references(criterion: &mut Criterion, drive: &BusyDrive) -> Result<(), String> {
-    let nothing = RoadNetwork { surfaces: Vec::new(), props: Vec::new(), ..(*drive.scene.network).clone() };
-    let mut bare = Renderer::new(&nothing, &RenderOptions::default()).map_err(|e| e.to_string())?;
+    let nothing = MapData { surfaces: Vec::new(), props: Vec::new(), ..MapData::clone(&drive.scene.network) };
+    let mut bare = Renderer::new(&nothing.into(), &RenderOptions::default()).map_err(|e| e.to_string())?;
     let mut empty = drive.snapshot.clone();
     empty.actors.clear();
     let camera = Camera::driver(SIZE.0, SIZE.1);

@@ -1,7 +1,7 @@
 //! What happened in a tick, and what the HUD shows.
 
-use crate::map::Turn;
-use crate::signals::LightPhase;
+use crate::light::LightPhase;
+use crate::map_data::Turn;
 use crate::{state, state_enum};
 
 state_enum! {

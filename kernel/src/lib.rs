@@ -7,13 +7,20 @@
 //! Coordinates follow ISO 8855 and OpenDRIVE: metres, x east, y north, z up, radians
 //! counter-clockwise. Steering is positive to the right, as devices and CARLA have it.
 
+mod actor;
 pub mod arbiter;
+mod baking;
 pub mod controls;
 pub mod ego;
 pub mod events;
+pub mod geometry;
+mod light;
 pub mod map;
+mod map_data;
+pub mod motion;
 pub mod ops;
 pub mod physics;
+mod places;
 pub mod rng;
 pub mod route;
 pub mod scenario;
@@ -23,6 +30,7 @@ pub mod state;
 pub mod time;
 pub mod traffic;
 pub mod watch;
+mod weather;
 pub mod world;
 
 pub use controls::{Controls, Seat, TickInput};
@@ -31,6 +39,3 @@ pub use scenario::Scenario;
 pub use scene::SceneSnapshot;
 pub use state::StateHash;
 pub use world::{Keyframe, TickOutput, World, WorldError};
-
-#[cfg(test)]
-mod testing;

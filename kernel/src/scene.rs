@@ -5,42 +5,12 @@
 
 use glam::{Quat, Vec3};
 
-use crate::signals::LightPhase;
+use crate::light::LightPhase;
 use crate::time::Tick;
-use crate::{ops, state, state_enum};
+use crate::{ops, state};
 
-state_enum! {
-    /// What an actor is.
-    pub enum ActorKind {
-        /// Passenger car.
-        Car = 0,
-        /// Lorry or van.
-        Truck = 1,
-        /// Bus.
-        Bus = 2,
-        /// Motorcycle with its rider.
-        Motorcycle = 3,
-        /// Bicycle with its rider.
-        Bicycle = 4,
-        /// Person on foot.
-        Pedestrian = 5,
-    }
-}
-
-state! {
-    /// Weather of a run. Rain, wetness, puddles and fog are 0, as in the paper.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct Weather {
-        /// Share of the sky under clouds in percent, 0 to 100 (paper: 0 to 30).
-        pub cloudiness_pct: f32,
-        /// Wind in percent of a storm, 0 to 100 (paper: 0 to 50); moves branches and clouds.
-        pub wind_pct: f32,
-        /// Height of the sun above the horizon in degrees, -90 to 90 (paper: 20 to 90).
-        pub sun_altitude_deg: f32,
-        /// Direction to the sun in degrees counter-clockwise from east, 0 to 360.
-        pub sun_azimuth_deg: f32,
-    }
-}
+pub use crate::actor::ActorKind;
+pub use crate::weather::Weather;
 
 state! {
     /// The ego car.
@@ -94,20 +64,6 @@ state! {
         pub lights: Vec<LightPhase>,
         /// Weather.
         pub weather: Weather,
-    }
-}
-
-impl ActorKind {
-    /// Length, width and height of the box around an actor, metres.
-    pub fn size_m(self) -> Vec3 {
-        match self {
-            Self::Car => Vec3::new(4.5, 1.85, 1.5),
-            Self::Truck => Vec3::new(7.0, 2.4, 3.0),
-            Self::Bus => Vec3::new(11.0, 2.5, 3.1),
-            Self::Motorcycle => Vec3::new(2.1, 0.8, 1.6),
-            Self::Bicycle => Vec3::new(1.8, 0.6, 1.75),
-            Self::Pedestrian => Vec3::new(0.5, 0.6, 1.75),
-        }
     }
 }
 

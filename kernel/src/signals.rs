@@ -3,10 +3,11 @@
 //! Programme of CARLA: one approach of a junction at a time, green 10 s, yellow 3 s, then 2 s in
 //! which all are red.
 
-use crate::map::{LightGroupId, RoadNetwork};
+use crate::map_data::{LightGroupId, MapData};
 use crate::rng::{self, Stream};
-use crate::state_enum;
 use crate::time::{Tick, seconds};
+
+pub use crate::light::LightPhase;
 
 /// Length of green.
 pub const GREEN_TICKS: Tick = seconds(10);
@@ -17,22 +18,10 @@ pub const ALL_RED_TICKS: Tick = seconds(2);
 
 const SLOT_TICKS: Tick = GREEN_TICKS + YELLOW_TICKS + ALL_RED_TICKS;
 
-state_enum! {
-    /// Phase of a traffic light.
-    pub enum LightPhase {
-        /// Stop.
-        Red = 0,
-        /// Stop if it can be done safely.
-        Yellow = 1,
-        /// Go.
-        Green = 2,
-    }
-}
-
 /// The phase of a light group at a tick, and the ticks until it changes.
-pub fn phase(network: &RoadNetwork, seed: u64, group: LightGroupId, tick: Tick) -> (LightPhase, Tick) {
-    let light = &network.light_groups[group as usize];
-    let groups = network.junctions[light.junction as usize].light_groups.len().max(1) as Tick;
+pub fn phase(map: &MapData, seed: u64, group: LightGroupId, tick: Tick) -> (LightPhase, Tick) {
+    let light = &map.light_groups[group as usize];
+    let groups = map.junctions[light.junction as usize].light_groups.len().max(1) as Tick;
     let cycle = groups * SLOT_TICKS;
     let offset = Tick::from(rng::below(seed, Stream::Signal, u64::from(light.junction), 0, cycle as u32));
     let at = (tick + offset) % cycle;

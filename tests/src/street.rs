@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec2, Vec3};
 use kernel::map::{
-    Junction, LightGroup, LightHead, Prop, PropKind, RoadNetwork, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD, Surface,
+    Junction, LightGroup, LightHead, MapData, Prop, PropKind, RoadNetwork, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD, Surface,
     SurfaceKind,
 };
 use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, Weather, quantise};
@@ -15,7 +15,7 @@ const KERB_M: f32 = 4.0;
 
 /// The street along the x axis: two lanes, sidewalks, houses, trees, signals and a crossing.
 pub fn network() -> RoadNetwork {
-    RoadNetwork {
+    let map = MapData {
         name: "street".into(),
         digest: 1,
         junctions: vec![Junction { light_groups: vec![0], ..Default::default() }],
@@ -25,7 +25,8 @@ pub fn network() -> RoadNetwork {
         props: props(),
         bounds: [Vec3::new(-HALF_M, -60.0, 0.0), Vec3::new(HALF_M, 60.0, 12.0)],
         ..Default::default()
-    }
+    };
+    map.into()
 }
 
 fn head(position: Vec3) -> LightHead {

@@ -2,9 +2,10 @@
 
 use crate::map::{self, LaneKind};
 use crate::rng::{self, Stream};
-use crate::scene::Weather;
+use crate::traffic::TrafficCounts;
+use crate::weather::Weather;
 
-use super::{EgoStart, Rules, Scenario, TrafficCounts};
+use super::fields::{EgoStart, Rules, Scenario};
 
 /// Fewest and most actors on a map (paper, section 3).
 const ACTORS: [f32; 2] = [50.0, 150.0];

@@ -5,7 +5,7 @@ use std::ops::{Bound, RangeBounds};
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{MOST_OF_A_KIND, Scenario, ScenarioError};
+use super::fields::{MOST_OF_A_KIND, Scenario, ScenarioError};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,6 +60,20 @@ struct Rules {
     steer_threshold: Given<f32>,
 }
 
+impl Scenario {
+    /// Parses TOML; unknown keys and values out of range are refused by name and line. What the
+    /// text leaves out is as in [`Scenario::default_for`] its map and seed. Whether the map exists
+    /// is for the caller to check, who knows where maps come from.
+    pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
+        parse(text)
+    }
+
+    /// The text that [`Scenario::from_toml`] reads back as this scenario.
+    pub fn to_toml(&self) -> String {
+        print(self)
+    }
+}
+
 /// Takes over given values, checked.
 struct Reader<'a> {
     text: &'a str,
@@ -98,7 +112,7 @@ fn words<T: std::fmt::Display>(range: &impl RangeBounds<T>) -> String {
     }
 }
 
-pub(super) fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     let reader = Reader { text };
     let given: Text = toml::from_str(text).map_err(|error| {
         let line = reader.line(error.span().map_or(0, |span| span.start));
@@ -143,7 +157,7 @@ fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(
 }
 
 /// Every key, so that the text still says the same when a default changes.
-pub(super) fn print(scenario: &Scenario) -> String {
+fn print(scenario: &Scenario) -> String {
     let Scenario { map, seed, traffic, weather, ego, rules } = scenario;
     let map = toml::Value::from(map.as_str());
     let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));

@@ -1,18 +1,18 @@
 //! What a vehicle does in a tick.
 
-use crate::map::{LaneId, RoadNetwork, StopKind};
-use crate::signals::LightPhase;
+use crate::light::LightPhase;
+use crate::map_data::{LaneId, MapData, StopKind};
 use crate::time::{TICK_S, Tick, seconds};
 
-use super::Body;
-use super::crossing::{self, Claim};
+use super::body::Body;
+use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, Seeker, in_way};
 use super::junction::{self, Members, Signal, swept_half_m};
 use super::lists::{Entry, Lists};
 use super::plan::{self, Line, Plan, Step, next_lane, stopping_speed};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
-use super::ways::{Encounter, Meeting, Ways, curve_speed, half_width_m, lane_place};
+use super::ways::{ConflictKind, LaneConflict, Ways};
 
 /// Hardest braking, m/s².
 const EMERGENCY_MPS2: f32 = 8.0;
@@ -23,7 +23,7 @@ const STOP_S: f32 = 0.25;
 /// Distance kept from a line, metres.
 const LINE_MARGIN_M: f32 = 1.0;
 /// Vehicles look this far ahead for others in a junction, metres.
-const ENCOUNTER_M: f32 = 30.0;
+const CONFLICT_M: f32 = 30.0;
 /// How long a vehicle stands at a stop sign.
 const HALT_TICKS: u16 = seconds(1) as u16;
 /// Braking at most for people at a crosswalk who are not in the way yet, m/s².
@@ -33,7 +33,7 @@ const PEDAL_M: f32 = 5.0;
 
 /// What every vehicle sees of the previous tick.
 pub(super) struct View<'a> {
-    pub network: &'a RoadNetwork,
+    pub map: &'a MapData,
     pub ways: &'a Ways,
     pub seed: u64,
     pub lights: &'a [(LightPhase, Tick)],
@@ -71,7 +71,7 @@ impl View<'_> {
             return;
         };
         let steps = self.steps_of(plan);
-        let signal = junction::signal(self.network, self.lights, next, steps[line.approach].lane);
+        let signal = junction::signal(self.map, self.lights, next, steps[line.approach].lane);
         if next.flags & Vehicle::GRANTED != 0 {
             if junction::must_stop(signal, next, line) || !junction::near_enough(next, line, 6.0) {
                 next.flags &= !Vehicle::GRANTED;
@@ -85,7 +85,7 @@ impl View<'_> {
     }
 
     fn wait(&self, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
-        let stop = self.network.lanes[steps[line.approach].lane as usize].stop;
+        let stop = self.map.lanes[steps[line.approach].lane as usize].stop;
         let sign = stop.is_some_and(|stop| stop.kind == StopKind::Stop);
         let at_line = line.ahead_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
         if at_line && (sign || signal == Signal::Open) {
@@ -109,11 +109,11 @@ impl View<'_> {
         }
         let seeker = self.seeker(index, driver);
         for hazard in self.hazards {
-            if let Some((gap_m, speed_mps)) = in_way(self.network, steps, &seeker, hazard) {
+            if let Some((gap_m, speed_mps)) = in_way(self.map, steps, &seeker, hazard) {
                 follow(gap_m, speed_mps);
             }
         }
-        self.encounters(index, plan, steps, next, &mut follow);
+        self.conflicts(index, plan, steps, next, &mut follow);
         let wall_m = self.wall(plan, steps, next, driver);
         let stop = (stopping_speed(wall_m, driver.brake_mps2) - v) / STOP_S;
         accel.min(stop).max(-EMERGENCY_MPS2)
@@ -132,12 +132,12 @@ impl View<'_> {
 
     /// Acceleration on an empty road: the model's, and what curves and limits ahead ask for.
     fn free_acceleration(&self, next: &Vehicle, driver: &Driver, steps: &[Step]) -> f32 {
-        let lane = &self.network.lanes[next.lane as usize];
+        let lane = &self.map.lanes[next.lane as usize];
         let desired = |limit_mps: f32| (limit_mps * driver.limit_share).min(driver.top_mps);
-        let curve = curve_speed(lane, &self.ways.lanes[next.lane as usize], next.s_m);
+        let curve = self.ways.lanes[next.lane as usize].curve_speed(lane, next.s_m);
         let mut aim = desired(lane.speed_limit_mps).min(curve);
         for step in &steps[1..] {
-            let limit = desired(self.network.lanes[step.lane as usize].speed_limit_mps);
+            let limit = desired(self.map.lanes[step.lane as usize].speed_limit_mps);
             let entry = self.ways.lanes[step.lane as usize].speed_mps[0].min(limit);
             let reachable = entry * entry + 2.0 * driver.brake_mps2 * step.start_m;
             aim = aim.min(crate::ops::sqrt(reachable));
@@ -158,14 +158,14 @@ impl View<'_> {
             wall_m = wall_m.min(line.ahead_m - LINE_MARGIN_M);
         }
         for step in steps {
-            for zebra in &self.ways.lanes[step.lane as usize].zebras {
-                let ahead_m = step.start_m + zebra.near_m - front_m - LINE_MARGIN_M;
+            for span in &self.ways.lanes[step.lane as usize].crosswalks {
+                let ahead_m = step.start_m + span.near_m - front_m - LINE_MARGIN_M;
                 if ahead_m > wall_m || ahead_m < -1.0 {
                     continue;
                 }
-                let place = || lane_place(&self.network.lanes[step.lane as usize], zebra.near_m);
+                let place = || self.map.lanes[step.lane as usize].straight_on(span.near_m);
                 let stoppable = plan::braking_needed(next.speed_mps, ahead_m + 0.3) < CROSSWALK_BRAKE_MPS2;
-                if stoppable && crossing::is_claimed(self.claims, zebra.crosswalk, place) {
+                if stoppable && crosswalk::is_claimed(self.claims, span.crosswalk, place) {
                     wall_m = ahead_m;
                 }
             }
@@ -173,20 +173,20 @@ impl View<'_> {
         wall_m
     }
 
-    /// Follows or lets pass those inside the junction whose lanes meet this vehicle's.
-    fn encounters(&self, index: usize, plan: &Plan, steps: &[Step], next: &Vehicle, follow: &mut impl FnMut(f32, f32)) {
+    /// Follows or lets pass those inside the junction whose lanes conflict with this vehicle's.
+    fn conflicts(&self, index: usize, plan: &Plan, steps: &[Step], next: &Vehicle, follow: &mut impl FnMut(f32, f32)) {
         let granted = next.flags & Vehicle::GRANTED != 0;
         let end = plan.line.filter(|_| !granted).map_or(steps.len(), |line| line.inside.0);
         let half_m = self.drivers[index].size_m.x * 0.5;
         for (k, step) in steps[..end].iter().enumerate() {
-            for encounter in &self.ways.lanes[step.lane as usize].encounters {
-                let (from_m, to_m) = (step.start_m + encounter.here[0], step.start_m + encounter.here[1]);
-                if to_m < -half_m || (k > 0 && from_m - half_m > ENCOUNTER_M) {
+            for conflict in &self.ways.lanes[step.lane as usize].conflicts {
+                let (from_m, to_m) = (step.start_m + conflict.here[0], step.start_m + conflict.here[1]);
+                if to_m < -half_m || (k > 0 && from_m - half_m > CONFLICT_M) {
                     continue;
                 }
-                let others = self.lists.on(encounter.lane).iter().filter(|e| e.vehicle as usize != index);
+                let others = self.lists.on(conflict.lane).iter().filter(|e| e.vehicle as usize != index);
                 for entry in others {
-                    if let Some((gap_m, speed_mps)) = self.meet(step, encounter, entry, half_m) {
+                    if let Some((gap_m, speed_mps)) = self.conflict_gap(step, conflict, entry, half_m) {
                         follow(gap_m, speed_mps);
                     }
                 }
@@ -194,19 +194,19 @@ impl View<'_> {
         }
     }
 
-    /// Gap to a vehicle on a lane that meets the lane of `step`, and its speed, if it is in the way.
-    fn meet(&self, step: &Step, encounter: &Encounter, entry: &Entry, half_m: f32) -> Option<(f32, f32)> {
+    /// Gap to a vehicle on a lane that conflicts with that of `step`, and its speed, if it is in the way.
+    fn conflict_gap(&self, step: &Step, conflict: &LaneConflict, entry: &Entry, half_m: f32) -> Option<(f32, f32)> {
         let swept_m = swept_half_m(self.drivers[entry.vehicle as usize].size_m);
-        let [from_m, to_m] = encounter.there;
+        let [from_m, to_m] = conflict.there;
         if entry.s_m + entry.half_m < from_m || entry.s_m - swept_m > to_m {
             return None;
         }
-        let length = |lane: LaneId| self.network.lanes[lane as usize].length_m;
-        let between_m = match encounter.meeting {
-            Meeting::Diverge => step.start_m + entry.s_m,
-            Meeting::Merge => step.start_m + length(step.lane) - (length(encounter.lane) - entry.s_m),
-            Meeting::Cross => {
-                let ahead_m = step.start_m + encounter.here[0] - half_m;
+        let length = |lane: LaneId| self.map.lanes[lane as usize].length_m;
+        let between_m = match conflict.kind {
+            ConflictKind::Diverge => step.start_m + entry.s_m,
+            ConflictKind::Merge => step.start_m + length(step.lane) - (length(conflict.lane) - entry.s_m),
+            ConflictKind::Cross => {
+                let ahead_m = step.start_m + conflict.here[0] - half_m;
                 return (ahead_m > 0.0).then_some((ahead_m, 0.0));
             }
         };
@@ -234,7 +234,7 @@ impl View<'_> {
     /// Takes the lanes that follow, and clears what belonged to the junction left behind.
     fn change_lane(&self, driver: &Driver, next: &mut Vehicle) {
         loop {
-            let length_m = self.network.lanes[next.lane as usize].length_m;
+            let length_m = self.map.lanes[next.lane as usize].length_m;
             if next.s_m < length_m {
                 break;
             }
@@ -246,21 +246,22 @@ impl View<'_> {
             next.s_m -= length_m;
             next.lane = lane;
             next.hops = next.hops.wrapping_add(1);
-            if self.network.lanes[lane as usize].junction.is_some() {
+            if self.map.lanes[lane as usize].junction.is_some() {
                 next.flags &= !(Vehicle::GRANTED | Vehicle::HALTED);
                 next.flags |= Vehicle::CROSSING;
                 next.wait_ticks = 0;
             }
         }
-        let outside = self.network.lanes[next.lane as usize].junction.is_none();
+        let outside = self.map.lanes[next.lane as usize].junction.is_none();
         if outside && next.s_m > swept_half_m(driver.size_m) {
             next.flags &= !Vehicle::CROSSING;
         }
     }
 
     fn keep_side(&self, driver: &Driver, moved_m: f32, next: &mut Vehicle) {
-        let half_width = || half_width_m(&self.network.lanes[next.lane as usize], next.s_m);
-        let aim = driver.from_right_m.map_or(0.0, |m| (m - half_width()).min(0.0));
+        let lane = &self.map.lanes[next.lane as usize];
+        let half_width_m = || lane.points[lane.segment(next.s_m).0].half_width_m;
+        let aim = driver.from_right_m.map_or(0.0, |m| (m - half_width_m()).min(0.0));
         let step = 0.08 * moved_m;
         next.offset_m += (aim - next.offset_m).clamp(-step, step);
     }

@@ -2,19 +2,19 @@
 
 use glam::Vec2;
 
-use crate::map::RoadNetwork;
+use crate::actor::ActorKind;
+use crate::geometry::direction;
+use crate::map_data::{MapData, Place};
 
-use super::Obstacle;
+use super::body::{Body, Obstacle};
 use super::plan::Step;
-use super::ways::Place;
-use super::ways::lane_place;
 
 /// Nothing farther than this from the middle of the way matters, metres.
 const REACH_M: f32 = 6.5;
 /// Sideways distance kept, metres.
 const CLEARANCE_M: f32 = 0.35;
-/// How far ahead the crossing of a person is expected to go on, seconds.
-const PERSON_FORESIGHT_S: f32 = 2.5;
+/// How far ahead the crossing of a walker is expected to go on, seconds.
+const WALKER_FORESIGHT_S: f32 = 2.5;
 /// The same for a vehicle.
 const VEHICLE_FORESIGHT_S: f32 = 0.8;
 /// Levels farther apart than this are different roads, metres.
@@ -28,18 +28,30 @@ pub(super) struct Hazard {
     pub forward: Vec2,
     /// Half of its length and width, metres.
     pub half: Vec2,
-    pub person: bool,
+    pub walker: bool,
 }
 
 impl Hazard {
     /// A box that physics moves.
-    pub fn of(obstacle: &Obstacle, person: bool) -> Self {
+    pub fn of(obstacle: &Obstacle, walker: bool) -> Self {
         Self {
             position: obstacle.position,
             velocity: obstacle.velocity_mps.truncate(),
-            forward: Vec2::new(crate::ops::cos(obstacle.heading_rad), crate::ops::sin(obstacle.heading_rad)),
+            forward: direction(obstacle.heading_rad),
             half: obstacle.size_m.truncate() * 0.5,
-            person,
+            walker,
+        }
+    }
+
+    /// An actor at its place on the map.
+    pub fn of_body(body: &Body) -> Self {
+        let forward = (body.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
+        Self {
+            position: body.position,
+            velocity: body.velocity_mps.truncate(),
+            forward,
+            half: body.kind.size_m().truncate() * 0.5,
+            walker: body.kind == ActorKind::Pedestrian,
         }
     }
 
@@ -62,13 +74,13 @@ pub(super) struct Seeker {
 
 /// Gap to a hazard in the way (bumper to its near side, metres) and its speed along the way (m/s);
 /// `None` when it is not in the way and does not step into it.
-pub(super) fn in_way(network: &RoadNetwork, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -> Option<(f32, f32)> {
+pub(super) fn in_way(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -> Option<(f32, f32)> {
     let reach = seeker.horizon_m + REACH_M;
     let apart = hazard.position - seeker.position;
     if apart.truncate().length_squared() > reach * reach || apart.z.abs() > LEVEL_M + 0.15 * reach {
         return None;
     }
-    let (along_m, place) = nearest_on_way(network, steps, seeker.horizon_m, hazard)?;
+    let (along_m, place) = nearest_on_way(map, steps, seeker.horizon_m, hazard)?;
     let (forward, left) = (place.forward.truncate().normalize_or(Vec2::X), place.left());
     let offset = (hazard.position - place.position).truncate();
     let at_m = along_m + offset.dot(forward);
@@ -77,7 +89,7 @@ pub(super) fn in_way(network: &RoadNetwork, steps: &[Step], seeker: &Seeker, haz
         return None;
     }
     let time_s = gap_m.max(0.0) / seeker.speed_mps.max(1.0);
-    let foresight_s = time_s.min(if hazard.person { PERSON_FORESIGHT_S } else { VEHICLE_FORESIGHT_S });
+    let foresight_s = time_s.min(if hazard.walker { WALKER_FORESIGHT_S } else { VEHICLE_FORESIGHT_S });
     let now_m = offset.dot(left) - seeker.offset_m;
     let then_m = now_m + hazard.velocity.dot(left) * foresight_s;
     let half_m = hazard.half_along(left) + seeker.half.y + CLEARANCE_M;
@@ -87,7 +99,7 @@ pub(super) fn in_way(network: &RoadNetwork, steps: &[Step], seeker: &Seeker, haz
 
 /// The first place on the way at which the distance to the hazard is least, if that is within
 /// [`REACH_M`]. Strides over stretches that are farther away than they are long.
-fn nearest_on_way(network: &RoadNetwork, steps: &[Step], horizon_m: f32, hazard: &Hazard) -> Option<(f32, Place)> {
+fn nearest_on_way(map: &MapData, steps: &[Step], horizon_m: f32, hazard: &Hazard) -> Option<(f32, Place)> {
     let target = hazard.position.truncate();
     let mut best: Option<(f32, f32, Place)> = None;
     let (mut at_m, mut k) = (0.0, 0);
@@ -95,11 +107,11 @@ fn nearest_on_way(network: &RoadNetwork, steps: &[Step], horizon_m: f32, hazard:
         while k + 1 < steps.len() && steps[k + 1].start_m <= at_m {
             k += 1;
         }
-        let lane = &network.lanes[steps[k].lane as usize];
+        let lane = &map.lanes[steps[k].lane as usize];
         if at_m - steps[k].start_m > lane.length_m + 2.0 {
             break;
         }
-        let place = lane_place(lane, at_m - steps[k].start_m);
+        let place = lane.straight_on(at_m - steps[k].start_m);
         let distance = place.position.truncate().distance(target);
         match best {
             Some((least, ..)) if distance > least + 1.0 => break,

@@ -2,13 +2,13 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::map::{Prop, PropKind, RoadNetwork};
+use crate::geometry::direction;
+use crate::map_data::{MapData, Prop, PropKind};
 use crate::rng::{Stream, bits, unit};
 use crate::time::{TICK_HZ, Tick};
 
-use super::Obstacle;
-use super::traits::Person;
-use super::walk::{edge_place, walker_place};
+use super::body::Obstacle;
+use super::traits::WalkerTraits;
 use super::walker::{Walker, WalkerMode};
 use super::ways::Ways;
 
@@ -20,8 +20,8 @@ const RUNNERS: f32 = 0.25;
 const RUN_MPS: f32 = 2.8;
 /// Candidates whose way is looked at in one tick.
 const TRIES: usize = 8;
-/// Radius of a person, metres.
-const PERSON_M: f32 = 0.35;
+/// Radius of a walker, metres.
+const WALKER_M: f32 = 0.35;
 /// Roads narrower or wider than this between the middles of the sidewalks are not crossed, metres.
 const ROAD_M: std::ops::Range<f32> = 4.0..32.0;
 
@@ -36,7 +36,7 @@ pub(super) struct Goal {
 
 /// The walker who steps onto the road in this tick, if anybody does.
 pub(super) fn starter(
-    network: &RoadNetwork,
+    map: &MapData,
     ways: &Ways,
     seed: u64,
     rate_per_min: f32,
@@ -50,17 +50,17 @@ pub(super) fn starter(
     let seek_ego = unit(seed, Stream::Jaywalk, u64::MAX, tick) < BEFORE_EGO;
     let rank = |i: &usize| {
         let walker = &walkers[*i];
-        let place = walker_place(network, ways, walker).beside(walker.offset_m);
+        let place = ways.walker_place(walker).beside(walker.offset_m);
         let far = !(seek_ego && is_before(ego, place));
         (far, bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
     };
-    let mut candidates: Vec<usize> = (0..walkers.len()).filter(|i| beside_road(network, &walkers[*i])).collect();
+    let mut candidates: Vec<usize> = (0..walkers.len()).filter(|i| beside_road(map, &walkers[*i])).collect();
     candidates.sort_by_cached_key(rank);
-    candidates.into_iter().take(TRIES).find(|i| can_cross(network, ways, &walkers[*i]))
+    candidates.into_iter().take(TRIES).find(|i| can_cross(map, ways, &walkers[*i]))
 }
 
-fn beside_road(network: &RoadNetwork, walker: &Walker) -> bool {
-    let edge = &network.walk_edges[walker.edge as usize];
+fn beside_road(map: &MapData, walker: &Walker) -> bool {
+    let edge = &map.walk_edges[walker.edge as usize];
     let inside = walker.s_m > 1.0 && walker.s_m < edge.length_m - 1.0;
     walker.mode == WalkerMode::Walk && edge.crosswalk.is_none() && edge.beside.is_some() && inside
 }
@@ -81,32 +81,32 @@ fn is_before(ego: &Obstacle, place: Vec3) -> bool {
     ahead_m > 0.0 && aside_m < 14.0 && arrives_s > steps_s - 0.5 && arrives_s < steps_s + 1.5
 }
 
-fn can_cross(network: &RoadNetwork, ways: &Ways, walker: &Walker) -> bool {
-    let start = Walker { forward: road_is_left(network, ways, walker), ..*walker };
-    goal(network, ways, &start).is_some_and(|goal| {
-        let place = walker_place(network, ways, &start);
+fn can_cross(map: &MapData, ways: &Ways, walker: &Walker) -> bool {
+    let start = Walker { forward: road_is_left(map, ways, walker), ..*walker };
+    goal(map, ways, &start).is_some_and(|goal| {
+        let place = ways.walker_place(&start);
         let sign = if start.forward { 1.0 } else { -1.0 };
         let (from, to) = (place.beside(start.offset_m), place.beside(sign * goal.distance_m));
-        !network.props.iter().any(|prop| touches(prop, from.truncate(), to.truncate()))
+        !map.props.iter().any(|prop| touches(prop, from.truncate(), to.truncate()))
     })
 }
 
 /// Whether the road beside a walker's edge lies to the left of it.
-pub(super) fn road_is_left(network: &RoadNetwork, ways: &Ways, walker: &Walker) -> bool {
-    let place = walker_place(network, ways, walker);
-    let Some(lane) = network.walk_edges[walker.edge as usize].beside else { return true };
-    let offsets = network.lanes[lane as usize].points.iter().map(|p| (p.position - place.position).truncate());
+pub(super) fn road_is_left(map: &MapData, ways: &Ways, walker: &Walker) -> bool {
+    let place = ways.walker_place(walker);
+    let Some(lane) = map.walk_edges[walker.edge as usize].beside else { return true };
+    let offsets = map.lanes[lane as usize].points.iter().map(|p| (p.position - place.position).truncate());
     let nearest = offsets.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
     nearest.is_some_and(|offset| offset.dot(place.left()) > 0.0)
 }
 
 /// The nearest sidewalk straight across the road, seen from a walker on its way there.
-pub(super) fn goal(network: &RoadNetwork, ways: &Ways, walker: &Walker) -> Option<Goal> {
-    let place = walker_place(network, ways, walker);
+pub(super) fn goal(map: &MapData, ways: &Ways, walker: &Walker) -> Option<Goal> {
+    let place = ways.walker_place(walker);
     let (origin, across) = (place.position.truncate(), place.left() * if walker.forward { 1.0 } else { -1.0 });
     let mut best: Option<Goal> = None;
     for &edge in &ways.edges[walker.edge as usize].facing {
-        let (points, way) = (&network.walk_edges[edge as usize].points, &ways.edges[edge as usize]);
+        let (points, way) = (&map.walk_edges[edge as usize].points, &ways.edges[edge as usize]);
         for (i, pair) in points.windows(2).enumerate() {
             let Some((distance_m, t)) = meet(origin, across, pair[0].truncate(), pair[1].truncate()) else { continue };
             if ROAD_M.contains(&distance_m) && best.is_none_or(|b| distance_m < b.distance_m) {
@@ -130,16 +130,15 @@ fn meet(origin: Vec2, along: Vec2, a: Vec2, b: Vec2) -> Option<(f32, f32)> {
 }
 
 /// Speed of somebody who crosses the road.
-pub(super) fn pace(seed: u64, walker: &Walker, person: &Person) -> f32 {
+pub(super) fn pace(seed: u64, walker: &Walker, traits: &WalkerTraits) -> f32 {
     let runs = unit(seed, Stream::Jaywalk, u64::from(walker.id), !u64::from(walker.hops)) < RUNNERS;
-    if runs { RUN_MPS } else { person.speed_mps + 0.3 }
+    if runs { RUN_MPS } else { traits.speed_mps + 0.3 }
 }
 
 /// Puts a walker who has reached the other side on the way there.
-pub(super) fn arrive(network: &RoadNetwork, ways: &Ways, seed: u64, goal: &Goal, walker: &mut Walker) {
-    let from = walker_place(network, ways, walker).beside(walker.offset_m).truncate();
-    let edge = goal.edge as usize;
-    let place = edge_place(&network.walk_edges[edge], &ways.edges[edge], goal.s_m);
+pub(super) fn arrive(ways: &Ways, seed: u64, goal: &Goal, walker: &mut Walker) {
+    let from = ways.walker_place(walker).beside(walker.offset_m).truncate();
+    let place = ways.edge_place(goal.edge, goal.s_m);
     let offset = from - place.position.truncate();
     walker.edge = goal.edge;
     walker.s_m = goal.s_m + offset.dot(place.forward.truncate().normalize_or(Vec2::X));
@@ -150,18 +149,18 @@ pub(super) fn arrive(network: &RoadNetwork, ways: &Ways, seed: u64, goal: &Goal,
     walker.wait_ticks = 0;
 }
 
-/// Whether a person who goes from one point to another touches a prop.
+/// Whether a walker who goes from one point to another touches a prop.
 fn touches(prop: &Prop, from: Vec2, to: Vec2) -> bool {
     let half = match prop.kind {
         PropKind::Tree | PropKind::Lamp | PropKind::Sign | PropKind::SignalPole => Vec2::splat(0.2),
         _ => prop.size.truncate() * 0.5,
-    } + PERSON_M;
+    } + WALKER_M;
     let centre = prop.position.truncate();
     let reach = half.length() + 1.0;
     if (from.distance(centre) + to.distance(centre)) > from.distance(to) + 2.0 * reach {
         return false;
     }
-    let axis = Vec2::new(crate::ops::cos(prop.heading_rad), crate::ops::sin(prop.heading_rad));
+    let axis = direction(prop.heading_rad);
     let local = |p: Vec2| Vec2::new((p - centre).dot(axis), axis.perp_dot(p - centre));
     segment_meets_box(local(from), local(to), half)
 }

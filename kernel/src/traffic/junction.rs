@@ -7,15 +7,15 @@
 
 use glam::Vec3;
 
-use crate::map::{LaneId, RoadNetwork, StopKind};
-use crate::signals::LightPhase;
+use crate::light::LightPhase;
+use crate::map_data::{LaneId, MapData, StopKind};
 use crate::time::Tick;
 
 use super::lists::Lists;
 use super::plan::{Line, Plan, Step, braking_needed};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
-use super::ways::{Encounter, Meeting, Ways};
+use super::ways::{ConflictKind, LaneConflict, Ways};
 
 /// After this long at a line a vehicle goes before those that have the right of way.
 pub(super) const PATIENCE_TICKS: u16 = 240;
@@ -93,14 +93,14 @@ impl Members {
     /// Whether the one who asks may enter.
     pub fn grants(&self, ways: &Ways, asking: &Member, steps: &[Step]) -> bool {
         let others = self.of(asking.junction).iter().filter(|m| m.vehicle != asking.vehicle);
-        let meets = |other: &Member| {
+        let keeps_out = |other: &Member| {
             steps.iter().any(|step| {
-                let encounters = &ways.lanes[step.lane as usize].encounters;
+                let conflicts = &ways.lanes[step.lane as usize].conflicts;
                 let theirs = self.lanes_of(other);
-                encounters.iter().any(|e| theirs.iter().any(|t| t.lane == e.lane && prevents(asking, other, e, t)))
+                conflicts.iter().any(|c| theirs.iter().any(|t| t.lane == c.lane && prevents(asking, other, c, t)))
             })
         };
-        !others.into_iter().any(meets)
+        !others.into_iter().any(keeps_out)
     }
 
     /// The member that asks for vehicle `index`, if it asks.
@@ -109,18 +109,18 @@ impl Members {
     }
 }
 
-/// Whether `other` on lane `there` keeps the one who asks out, where their lanes meet.
-fn prevents(asking: &Member, other: &Member, encounter: &Encounter, there: &Step) -> bool {
-    if encounter.meeting == Meeting::Diverge {
+/// Whether `other` on lane `there` keeps the one who asks out, where their lanes conflict.
+fn prevents(asking: &Member, other: &Member, conflict: &LaneConflict, there: &Step) -> bool {
+    if conflict.kind == ConflictKind::Diverge {
         return false;
     }
     if other.holds {
         // A long vehicle sweeps more than its lane: nobody passes close behind it, nor does it.
         let long = other.half_m > LONG_HALF_M || asking.half_m > LONG_HALF_M;
         let rear_m = -there.start_m - other.half_m;
-        return long || rear_m < encounter.there[1];
+        return long || rear_m < conflict.there[1];
     }
-    !goes_before(asking, other, encounter.precedence)
+    !goes_before(asking, other, conflict.precedence)
 }
 
 /// The order of two who ask, the same seen from both: the impatient first, then the right of way,
@@ -147,13 +147,8 @@ pub(super) enum Signal {
 }
 
 /// What the light or sign at the line of a plan says to a vehicle.
-pub(super) fn signal(
-    network: &RoadNetwork,
-    lights: &[(LightPhase, Tick)],
-    vehicle: &Vehicle,
-    approach: LaneId,
-) -> Signal {
-    match network.lanes[approach as usize].stop.map(|stop| stop.kind) {
+pub(super) fn signal(map: &MapData, lights: &[(LightPhase, Tick)], vehicle: &Vehicle, approach: LaneId) -> Signal {
+    match map.lanes[approach as usize].stop.map(|stop| stop.kind) {
         Some(StopKind::Light(group)) => match lights[group as usize].0 {
             LightPhase::Green => Signal::Open,
             LightPhase::Yellow => Signal::Closing,
@@ -183,7 +178,7 @@ pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line) -> bool 
 
 /// Whether the way out of the junction has room for the vehicle behind everyone who is before it.
 pub(super) fn has_room(
-    network: &RoadNetwork,
+    map: &MapData,
     lists: &Lists,
     plan: &Plan,
     line: &Line,
@@ -192,7 +187,7 @@ pub(super) fn has_room(
     driver: &Driver,
 ) -> bool {
     let last = steps[line.inside.1 - 1];
-    let end_m = last.start_m + network.lanes[last.lane as usize].length_m;
+    let end_m = last.start_m + map.lanes[last.lane as usize].length_m;
     let mut needed_m = driver.size_m.x + driver.gap_m;
     for step in &steps[line.approach..] {
         for entry in lists.on(step.lane) {

@@ -1,6 +1,6 @@
 //! Which vehicles are on which lane, rebuilt each tick in memory that is kept.
 
-use crate::map::{LaneId, RoadNetwork};
+use crate::map_data::{LaneId, MapData};
 
 use super::traits::Driver;
 use super::vehicle::Vehicle;
@@ -35,7 +35,7 @@ impl Lists {
     /// Takes the vehicles whose ids are `present`; `next_lane` tells where one goes on.
     pub fn rebuild(
         &mut self,
-        network: &RoadNetwork,
+        map: &MapData,
         vehicles: &[Vehicle],
         drivers: &[Driver],
         next_lane: impl Fn(&Vehicle) -> Option<LaneId>,
@@ -44,10 +44,10 @@ impl Lists {
         for entry in self.entries.drain(..) {
             self.spans[entry.lane as usize] = (0, 0);
         }
-        self.spans.resize(network.lanes.len(), (0, 0));
+        self.spans.resize(map.lanes.len(), (0, 0));
         for (i, vehicle) in vehicles.iter().enumerate() {
             if present(vehicle.id) {
-                self.add(network, i, vehicle, drivers[i].size_m.x * 0.5, &next_lane);
+                self.add(map, i, vehicle, drivers[i].size_m.x * 0.5, &next_lane);
             }
         }
         let key = |e: &Entry| (e.lane, e.s_m, e.id);
@@ -63,13 +63,13 @@ impl Lists {
 
     fn add(
         &mut self,
-        network: &RoadNetwork,
+        map: &MapData,
         index: usize,
         vehicle: &Vehicle,
         half_m: f32,
         next_lane: &impl Fn(&Vehicle) -> Option<LaneId>,
     ) {
-        let lane = &network.lanes[vehicle.lane as usize];
+        let lane = &map.lanes[vehicle.lane as usize];
         let entry = Entry {
             lane: vehicle.lane,
             s_m: vehicle.s_m,
@@ -81,7 +81,7 @@ impl Lists {
         self.entries.push(entry);
         if vehicle.s_m < half_m {
             for &before in &lane.predecessors {
-                let s_m = vehicle.s_m + network.lanes[before as usize].length_m;
+                let s_m = vehicle.s_m + map.lanes[before as usize].length_m;
                 self.entries.push(Entry { lane: before, s_m, ..entry });
             }
         }

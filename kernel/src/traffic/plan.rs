@@ -1,9 +1,9 @@
 //! The way a vehicle will take, as far as it has to look ahead.
 
-use crate::map::{LaneId, RoadNetwork};
+use crate::actor::ActorKind;
+use crate::map_data::{Lane, LaneId, MapData};
 use crate::ops;
 use crate::rng::{self, Stream};
-use crate::scene::ActorKind;
 
 use super::lists::Lists;
 use super::traits::Driver;
@@ -82,7 +82,7 @@ pub(super) fn horizon_m(speed_mps: f32, driver: &Driver) -> f32 {
 
 /// Appends a vehicle's steps and says what lies on them, apart from its leader.
 pub(super) fn plan(
-    network: &RoadNetwork,
+    map: &MapData,
     ways: &Ways,
     seed: u64,
     vehicle: &Vehicle,
@@ -96,13 +96,13 @@ pub(super) fn plan(
     let mut beyond_m = f32::NEG_INFINITY;
     for k in 0..MAX_STEPS {
         out.push(step);
-        let lane = &network.lanes[step.lane as usize];
+        let lane = &map.lanes[step.lane as usize];
         let end_m = step.start_m + lane.length_m;
         let Some(next) = next_lane(ways, seed, vehicle, vehicle.hops.wrapping_add(k as u16), step.lane) else {
             plan.dead_end_m = Some(end_m);
             break;
         };
-        let junction = network.lanes[next as usize].junction;
+        let junction = map.lanes[next as usize].junction;
         match &mut plan.line {
             None if junction != lane.junction && junction.is_some() => {
                 plan.line = Some(line(lane, junction.unwrap_or(0), end_m, driver, k));
@@ -123,7 +123,7 @@ pub(super) fn plan(
     plan
 }
 
-fn line(lane: &crate::map::Lane, junction: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
+fn line(lane: &Lane, junction: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
     let front_m = driver.size_m.x * 0.5;
     let marked = lane.stop.map(|stop| end_m - lane.length_m + stop.s_m - front_m);
     let passed = marked.is_some_and(|m| m < -1.0);

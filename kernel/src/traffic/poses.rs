@@ -2,15 +2,16 @@
 
 use glam::{Mat3, Quat, Vec3};
 
+use crate::actor::ActorKind;
 use crate::ops;
 use crate::rng::{Stream, below};
-use crate::scene::ActorKind;
 
+use super::actors::Actors;
+use super::body::{Body, Surroundings};
 use super::spawn::EGO_CLEARANCE_M;
-use super::traits::{Driver, Person};
-use super::walk::walker_place;
-use super::ways::{lane_place, lane_pose};
-use super::{Body, Surroundings, Traffic, Vehicle, Walker, WalkerMode};
+use super::traits::{Driver, WalkerTraits};
+use super::vehicle::Vehicle;
+use super::walker::{Walker, WalkerMode};
 
 /// Radians in 2^-16 turns.
 const TURN_RAD: f32 = core::f32::consts::TAU / 65536.0;
@@ -25,21 +26,21 @@ fn level_rotation(forward: Vec3) -> Quat {
     Quat::from_mat3(&Mat3::from_cols(forward, left, forward.cross(left)))
 }
 
-impl Traffic {
+impl Actors {
     /// Brings the bodies to the places of the state.
     pub(super) fn place_bodies(&mut self) {
         let mut bodies = std::mem::take(&mut self.bodies);
         bodies.clear();
         let vehicles = self.state.vehicles.iter().zip(&self.drivers);
         bodies.extend(vehicles.map(|(vehicle, driver)| self.vehicle_body(vehicle, driver)));
-        let walkers = self.state.walkers.iter().zip(&self.persons);
-        bodies.extend(walkers.map(|(walker, person)| self.walker_body(walker, person)));
+        let walkers = self.state.walkers.iter().zip(&self.walker_traits);
+        bodies.extend(walkers.map(|(walker, traits)| self.walker_body(walker, traits)));
         self.bodies = bodies;
     }
 
     fn vehicle_body(&self, vehicle: &Vehicle, driver: &Driver) -> Body {
         let lane = vehicle.lane as usize;
-        let place = lane_pose(&self.network.lanes[lane], &self.ways.lanes[lane], vehicle.s_m);
+        let place = self.ways.lanes[lane].pose(&self.map().lanes[lane], vehicle.s_m);
         Body {
             id: u32::from(vehicle.id),
             kind: vehicle.kind,
@@ -52,8 +53,8 @@ impl Traffic {
         }
     }
 
-    fn walker_body(&self, walker: &Walker, person: &Person) -> Body {
-        let place = walker_place(&self.network, &self.ways, walker);
+    fn walker_body(&self, walker: &Walker, traits: &WalkerTraits) -> Body {
+        let place = self.ways.walker_place(walker);
         let half_rad = f32::from(walker.heading) * (TURN_RAD * 0.5);
         let (sin, cos) = (ops::sin(half_rad), ops::cos(half_rad));
         let across = walker.mode == WalkerMode::Jaywalk;
@@ -62,7 +63,7 @@ impl Traffic {
         Body {
             id: u32::from(walker.id),
             kind: ActorKind::Pedestrian,
-            variant: person.variant,
+            variant: traits.variant,
             position: place.beside(walker.offset_m),
             rotation: Quat::from_xyzw(0.0, 0.0, sin, cos),
             velocity_mps: ahead * (sign * walker.speed_mps),
@@ -79,7 +80,7 @@ impl Traffic {
         }
         for i in 0..self.state.vehicles.len() {
             let vehicle = self.state.vehicles[i];
-            let lane = &self.network.lanes[vehicle.lane as usize];
+            let lane = &self.map().lanes[vehicle.lane as usize];
             let ends = self.ways.lanes[vehicle.lane as usize].onward.is_empty();
             let near_end = vehicle.s_m > lane.length_m - self.drivers[i].size_m.x * 0.5 - 4.0;
             if ends && near_end && vehicle.speed_mps < 0.5 && !surroundings.holds(vehicle.id) {
@@ -94,8 +95,8 @@ impl Traffic {
         let pick = below(self.seed, Stream::Spawn, u64::from(vehicle.id), surroundings.tick, count);
         let lane = self.ways.entries[pick as usize];
         let s_m = self.drivers[index].size_m.x * 0.5 + 0.5;
-        let place = |v: &Vehicle| lane_place(&self.network.lanes[v.lane as usize], v.s_m).position;
-        let entry = lane_place(&self.network.lanes[lane as usize], s_m).position;
+        let place = |v: &Vehicle| self.map().lanes[v.lane as usize].straight_on(v.s_m).position;
+        let entry = self.map().lanes[lane as usize].straight_on(s_m).position;
         let unseen = |p: Vec3| p.distance(surroundings.ego.position) > UNSEEN_M;
         let free = self.state.vehicles.iter().all(|other| other.lane != lane || other.s_m > ENTRY_SPACE_M);
         if unseen(entry) && unseen(place(&vehicle)) && free {

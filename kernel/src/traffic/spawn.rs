@@ -2,26 +2,25 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::map::{LaneKind, RoadNetwork};
+use crate::actor::ActorKind;
+use crate::map_data::{LaneKind, MapData};
 use crate::ops;
 use crate::rng::{Stream, bits, unit};
-use crate::scenario::Scenario;
-use crate::scene::ActorKind;
 
-use super::TrafficState;
+use super::counts::TrafficCounts;
 use super::plan::stopping_speed;
-use super::traits::{driver, person};
+use super::state::TrafficState;
+use super::traits::{driver, walker_traits};
 use super::vehicle::Vehicle;
-use super::walk::{edge_place, turns};
-use super::walker::{Walker, WalkerMode};
-use super::ways::{Ways, lane_place};
+use super::walker::{Walker, WalkerMode, turns};
+use super::ways::Ways;
 
 /// Nobody starts nearer to the ego car than this, metres.
 pub(super) const EGO_CLEARANCE_M: f32 = 20.0;
 /// Free space around a vehicle at its start, metres.
 const VEHICLE_SPACE_M: f32 = 6.0;
-/// Free space around a person, metres.
-const PERSON_SPACE_M: f32 = 0.9;
+/// Free space around a walker, metres.
+const WALKER_SPACE_M: f32 = 0.9;
 /// Places that are tried for each actor.
 const TRIES: u64 = 40;
 /// Highest speed at the start, m/s.
@@ -54,18 +53,19 @@ fn pick(stretches: &[Stretch], t: f32) -> (u32, f32) {
     (stretch.index, (at_m - (stretch.end_m - stretch.length_m)).clamp(0.0, stretch.length_m))
 }
 
-/// Everybody of a scenario, as far as the map has room.
-pub(super) fn spawn(scenario: &Scenario, network: &RoadNetwork, ways: &Ways, ego: Vec3) -> TrafficState {
-    let mut spawner =
-        Spawner { scenario, network, ways, ego: ego.truncate(), taken: Vec::new(), state: TrafficState::default() };
+/// Everybody who is asked for, as far as the map has room.
+pub(super) fn spawn(counts: &TrafficCounts, seed: u64, ways: &Ways, ego: Vec3) -> TrafficState {
+    let (map, ego) = (&*ways.places.map, ego.truncate());
+    let mut spawner = Spawner { counts, seed, map, ways, ego, taken: Vec::new(), state: TrafficState::default() };
     spawner.vehicles();
     spawner.walkers();
     spawner.state
 }
 
 struct Spawner<'a> {
-    scenario: &'a Scenario,
-    network: &'a RoadNetwork,
+    counts: &'a TrafficCounts,
+    seed: u64,
+    map: &'a MapData,
     ways: &'a Ways,
     ego: Vec2,
     /// Places taken, with the free radius around each.
@@ -88,13 +88,13 @@ impl Spawner<'_> {
     }
 
     fn vehicles(&mut self) {
-        let lanes = self.network.lanes.iter().enumerate();
+        let lanes = self.map.lanes.iter().enumerate();
         let usable = lanes.filter(|(_, l)| l.kind == LaneKind::Driving && l.junction.is_none() && l.length_m > 20.0);
         let stretches = stretches(usable.map(|(i, l)| (i as u32, l.length_m)));
         if stretches.is_empty() {
             return;
         }
-        let counts = &self.scenario.traffic;
+        let counts = self.counts;
         let kinds = [
             (counts.cars, ActorKind::Car),
             (counts.motorcycles, ActorKind::Motorcycle),
@@ -104,7 +104,7 @@ impl Spawner<'_> {
         for (number, kind) in wanted.enumerate() {
             let kind = if kind == ActorKind::Car { self.car(number as u64) } else { kind };
             for attempt in 0..TRIES {
-                let t = unit(self.scenario.seed, Stream::Spawn, number as u64, attempt);
+                let t = unit(self.seed, Stream::Spawn, number as u64, attempt);
                 if self.vehicle(kind, pick(&stretches, t)) {
                     break;
                 }
@@ -113,7 +113,7 @@ impl Spawner<'_> {
     }
 
     fn car(&self, number: u64) -> ActorKind {
-        match bits(self.scenario.seed, Stream::Spawn, number, TRIES) % 100 {
+        match bits(self.seed, Stream::Spawn, number, TRIES) % 100 {
             n if n < u64::from(TRUCKS_PCT) => ActorKind::Truck,
             n if n < u64::from(TRUCKS_PCT + BUSES_PCT) => ActorKind::Bus,
             _ => ActorKind::Car,
@@ -122,18 +122,18 @@ impl Spawner<'_> {
 
     fn vehicle(&mut self, kind: ActorKind, (lane, s_m): (u32, f32)) -> bool {
         let id = self.next_id();
-        let driver = driver(self.scenario.seed, id, kind);
+        let driver = driver(self.seed, id, kind);
         let half_m = driver.size_m.x * 0.5;
-        let way = &self.network.lanes[lane as usize];
+        let way = &self.map.lanes[lane as usize];
         let end_m = way.stop.map_or(way.length_m, |stop| stop.s_m.min(way.length_m));
-        let on_zebra = self.ways.lanes[lane as usize]
-            .zebras
+        let on_crosswalk = self.ways.lanes[lane as usize]
+            .crosswalks
             .iter()
-            .any(|z| s_m + half_m > z.near_m - 1.0 && s_m - half_m < z.far_m + 1.0);
-        if s_m < half_m + 2.0 || s_m > end_m - half_m - 3.0 || on_zebra {
+            .any(|c| s_m + half_m > c.near_m - 1.0 && s_m - half_m < c.far_m + 1.0);
+        if s_m < half_m + 2.0 || s_m > end_m - half_m - 3.0 || on_crosswalk {
             return false;
         }
-        let place = lane_place(way, s_m);
+        let place = way.straight_on(s_m);
         let offset_m = driver.from_right_m.map_or(0.0, |m| (m - place.half_width_m).min(0.0));
         if !self.take(place.position.truncate(), half_m + VEHICLE_SPACE_M * 0.5) {
             return false;
@@ -150,21 +150,21 @@ impl Spawner<'_> {
             speed_mps,
             hops: 0,
             wait_ticks: 0,
-            phase: bits(self.scenario.seed, Stream::Spawn, u64::from(id), TRIES + 1) as u16,
+            phase: bits(self.seed, Stream::Spawn, u64::from(id), TRIES + 1) as u16,
         });
         true
     }
 
     fn walkers(&mut self) {
-        let edges = self.network.walk_edges.iter().enumerate();
+        let edges = self.map.walk_edges.iter().enumerate();
         let stretches = stretches(edges.filter(|(_, e)| e.crosswalk.is_none()).map(|(i, e)| (i as u32, e.length_m)));
         if stretches.is_empty() {
             return;
         }
         let first = 1 << 20;
-        for number in first..first + u64::from(self.scenario.traffic.pedestrians) {
+        for number in first..first + u64::from(self.counts.pedestrians) {
             for attempt in 0..TRIES {
-                let t = unit(self.scenario.seed, Stream::Spawn, number, attempt);
+                let t = unit(self.seed, Stream::Spawn, number, attempt);
                 if self.walker(number, pick(&stretches, t)) {
                     break;
                 }
@@ -174,14 +174,14 @@ impl Spawner<'_> {
 
     fn walker(&mut self, number: u64, (edge, s_m): (u32, f32)) -> bool {
         let id = self.next_id();
-        let person = person(self.scenario.seed, id);
-        let way = &self.network.walk_edges[edge as usize];
-        let place = edge_place(way, &self.ways.edges[edge as usize], s_m);
-        let offset_m = person.place * (way.half_width_m - 0.4).max(0.0);
-        if !self.take(place.beside(offset_m).truncate(), PERSON_SPACE_M * 0.5) {
+        let traits = walker_traits(self.seed, id);
+        let way = &self.map.walk_edges[edge as usize];
+        let place = self.ways.edge_place(edge, s_m);
+        let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
+        if !self.take(place.beside(offset_m).truncate(), WALKER_SPACE_M * 0.5) {
             return false;
         }
-        let random = bits(self.scenario.seed, Stream::Spawn, number, TRIES + 1);
+        let random = bits(self.seed, Stream::Spawn, number, TRIES + 1);
         let forward = random & 1 == 0;
         let ahead = if forward { place.forward } else { -place.forward };
         self.state.walkers.push(Walker {
@@ -191,7 +191,7 @@ impl Spawner<'_> {
             edge,
             s_m,
             offset_m,
-            speed_mps: person.speed_mps,
+            speed_mps: traits.speed_mps,
             hops: 0,
             wait_ticks: 0,
             phase: (random >> 16) as u16,

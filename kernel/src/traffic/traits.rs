@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
+use crate::actor::ActorKind;
 use crate::rng::{Stream, bits, unit};
-use crate::scene::ActorKind;
 
 /// How somebody drives. Parameters of the intelligent driver model (Treiber, Hennecke and Helbing
 /// 2000) around the values of its section on city traffic.
@@ -31,7 +31,7 @@ pub(super) struct Driver {
 
 /// How somebody walks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Person {
+pub(super) struct WalkerTraits {
     /// Speed aimed at, m/s: 0.8 to 1.8, half of all between 1.1 and 1.5.
     pub speed_mps: f32,
     /// Preferred place across the way, -1 (right edge as the edge runs) to 1.
@@ -70,10 +70,10 @@ pub(super) fn driver(seed: u64, id: u16, kind: ActorKind) -> Driver {
     }
 }
 
-/// The person `id`.
-pub(super) fn person(seed: u64, id: u16) -> Person {
+/// The walker `id`.
+pub(super) fn walker_traits(seed: u64, id: u16) -> WalkerTraits {
     let t = |which| trait_unit(seed, id, which);
-    Person {
+    WalkerTraits {
         speed_mps: between(0.8, 1.8, 0.5 * (t(0) + t(1))),
         place: between(-1.0, 1.0, t(2)),
         variant: variant(seed, id),

@@ -1,7 +1,7 @@
 //! What is remembered of a vehicle.
 
-use crate::map::LaneId;
-use crate::scene::ActorKind;
+use crate::actor::ActorKind;
+use crate::map_data::LaneId;
 use crate::state;
 
 state! {

@@ -1,21 +1,22 @@
-//! What a person on foot does in a tick.
+//! What a walker does in a tick.
 
 use glam::Vec2;
 
-use crate::map::{RoadNetwork, WalkEdge, WalkEdgeId};
+use crate::map_data::{MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
 use crate::rng::{self, Stream};
 use crate::time::{TICK_S, seconds};
 
-use super::Body;
-use super::crossing::Gaps;
+use super::body::Body;
+use super::crosswalk::Gaps;
+use super::edge_lists::EdgeLists;
 use super::hazard::Hazard;
 use super::jaywalk;
-use super::traits::Person;
-use super::walker::{Walker, WalkerMode};
-use super::ways::{EdgeWay, Place, Ways};
+use super::traits::WalkerTraits;
+use super::walker::{Walker, WalkerMode, turns};
+use super::ways::Ways;
 
-/// Acceleration of a person, m/s².
+/// Acceleration of a walker, m/s².
 const ACCEL_MPS2: f32 = 1.5;
 /// People look this far ahead for each other, metres.
 const SIGHT_M: f32 = 3.0;
@@ -36,77 +37,32 @@ const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
 const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 
-/// The place on an edge at `s_m`; beyond its ends the edge goes straight on.
-pub(super) fn edge_place(edge: &WalkEdge, way: &EdgeWay, s_m: f32) -> Place {
-    let last = edge.points.len() - 2;
-    let i = way.s_m[1..=last].partition_point(|s| *s <= s_m);
-    let along = (s_m - way.s_m[i]) / (way.s_m[i + 1] - way.s_m[i]).max(1e-3);
-    let position = edge.points[i] + (edge.points[i + 1] - edge.points[i]) * along;
-    Place { position, forward: way.forward[i], half_width_m: edge.half_width_m }
-}
-
-/// Where a walker stands.
-pub(super) fn walker_place(network: &RoadNetwork, ways: &Ways, walker: &Walker) -> Place {
-    let edge = walker.edge as usize;
-    edge_place(&network.walk_edges[edge], &ways.edges[edge], walker.s_m)
-}
-
 /// The edge a walker takes at the end of its own.
-pub(super) fn next_edge(network: &RoadNetwork, seed: u64, walker: &Walker) -> WalkEdgeId {
-    let node = end_node(network, walker);
-    let others = || network.walk_nodes[node as usize].edges.iter().copied().filter(|e| *e != walker.edge);
+pub(super) fn next_edge(map: &MapData, seed: u64, walker: &Walker) -> WalkEdgeId {
+    let node = end_node(map, walker);
+    let others = || map.walk_nodes[node as usize].edges.iter().copied().filter(|e| *e != walker.edge);
     let count = others().count() as u32;
     let pick = rng::below(seed, Stream::Walk, u64::from(walker.id), u64::from(walker.hops), count);
     others().nth(pick as usize).unwrap_or(walker.edge)
 }
 
-fn end_node(network: &RoadNetwork, walker: &Walker) -> u32 {
-    network.walk_edges[walker.edge as usize].nodes[usize::from(walker.forward)]
+fn end_node(map: &MapData, walker: &Walker) -> u32 {
+    map.walk_edges[walker.edge as usize].nodes[usize::from(walker.forward)]
 }
 
 /// The crosswalk that a waiting walker wants to take.
-pub(super) fn wanted_crosswalk(network: &RoadNetwork, seed: u64, walker: &Walker) -> Option<u32> {
-    let next = next_edge(network, seed, walker);
-    network.walk_edges[next as usize].crosswalk.filter(|_| next != walker.edge)
-}
-
-/// Walkers by edge and place.
-#[derive(Clone, Debug, Default)]
-pub(super) struct EdgeLists {
-    order: Vec<u32>,
-    rank: Vec<u32>,
-}
-
-impl EdgeLists {
-    pub fn rebuild(&mut self, walkers: &[Walker]) {
-        self.order.clear();
-        self.order.extend(0..walkers.len() as u32);
-        self.order.sort_unstable_by(|&a, &b| {
-            let (a, b) = (&walkers[a as usize], &walkers[b as usize]);
-            a.edge.cmp(&b.edge).then(a.s_m.total_cmp(&b.s_m)).then(a.id.cmp(&b.id))
-        });
-        self.rank.resize(walkers.len(), 0);
-        for (rank, &index) in self.order.iter().enumerate() {
-            self.rank[index as usize] = rank as u32;
-        }
-    }
-
-    /// Indices of the walkers on the same edge before and behind, the nearest first.
-    fn around(&self, index: usize) -> (impl Iterator<Item = usize> + '_, impl Iterator<Item = usize> + '_) {
-        let rank = self.rank[index] as usize;
-        let up = self.order[rank + 1..].iter().map(|i| *i as usize);
-        let down = self.order[..rank].iter().rev().map(|i| *i as usize);
-        (up, down)
-    }
+pub(super) fn wanted_crosswalk(map: &MapData, seed: u64, walker: &Walker) -> Option<u32> {
+    let next = next_edge(map, seed, walker);
+    map.walk_edges[next as usize].crosswalk.filter(|_| next != walker.edge)
 }
 
 /// What every walker sees of the previous tick.
 pub(super) struct Streets<'a> {
-    pub network: &'a RoadNetwork,
+    pub map: &'a MapData,
     pub ways: &'a Ways,
     pub seed: u64,
     pub walkers: &'a [Walker],
-    pub persons: &'a [Person],
+    pub walker_traits: &'a [WalkerTraits],
     /// Bodies of the walkers.
     pub bodies: &'a [Body],
     pub lists: &'a EdgeLists,
@@ -123,7 +79,7 @@ impl Streets<'_> {
         let mut next = self.walkers[index];
         if self.jaywalker == Some(index) {
             next.mode = WalkerMode::Jaywalk;
-            next.forward = jaywalk::road_is_left(self.network, self.ways, &next);
+            next.forward = jaywalk::road_is_left(self.map, self.ways, &next);
         }
         let before = self.bodies[index].position.truncate();
         match next.mode {
@@ -131,7 +87,7 @@ impl Streets<'_> {
             WalkerMode::Wait => self.wait(index, &mut next),
             WalkerMode::Jaywalk => self.jaywalk(index, &mut next),
         }
-        let place = walker_place(self.network, self.ways, &next);
+        let place = self.ways.walker_place(&next);
         let moved = place.beside(next.offset_m).truncate() - before;
         next.phase = next.phase.wrapping_add((moved.length() / STRIDE_M * 65536.0) as u16);
         self.face(moved, &place, &mut next);
@@ -139,14 +95,14 @@ impl Streets<'_> {
     }
 
     fn stroll(&self, index: usize, next: &mut Walker) {
-        let edge = &self.network.walk_edges[next.edge as usize];
+        let edge = &self.map.walk_edges[next.edge as usize];
         let direction = if next.forward { 1.0 } else { -1.0 };
         let (aim_m, limit_mps) = self.avoid(index, edge, direction);
-        let mut aim_mps = self.persons[index].speed_mps.min(limit_mps);
+        let mut aim_mps = self.walker_traits[index].speed_mps.min(limit_mps);
         if edge.crosswalk.is_some() {
             // Across the road people hurry a little, and do not walk into vehicles.
             aim_mps = (aim_mps * 1.15).max(1.0);
-            let place = walker_place(self.network, self.ways, next);
+            let place = self.ways.walker_place(next);
             if self.blocked(index, place.forward.truncate() * direction) {
                 aim_mps = 0.0;
                 halt(next);
@@ -170,7 +126,7 @@ impl Streets<'_> {
         let me = &self.walkers[index];
         let room_m = (edge.half_width_m - EDGE_MARGIN_M).max(0.0);
         // A third of the way to the right, as people mostly keep.
-        let mut aim_m = (self.persons[index].place - direction * 0.33).clamp(-1.0, 1.0) * room_m;
+        let mut aim_m = (self.walker_traits[index].place - direction * 0.33).clamp(-1.0, 1.0) * room_m;
         let mut limit_mps = f32::MAX;
         let (up, down) = self.lists.around(index);
         let near = |i: &usize| {
@@ -202,8 +158,8 @@ impl Streets<'_> {
 
     /// At the end of an edge: takes the next one, or waits at the kerb.
     fn turn_or_wait(&self, index: usize, next: &mut Walker) {
-        let edge = next_edge(self.network, self.seed, next);
-        let crosswalk = self.network.walk_edges[edge as usize].crosswalk.filter(|_| edge != next.edge);
+        let edge = next_edge(self.map, self.seed, next);
+        let crosswalk = self.map.walk_edges[edge as usize].crosswalk.filter(|_| edge != next.edge);
         if crosswalk.is_some_and(|c| !self.may_cross(index, c, next)) {
             next.mode = WalkerMode::Wait;
             next.speed_mps = 0.0;
@@ -213,8 +169,8 @@ impl Streets<'_> {
     }
 
     fn may_cross(&self, index: usize, crosswalk: u32, walker: &Walker) -> bool {
-        let ends = self.network.crosswalks[crosswalk as usize].ends;
-        let time_s = ends[0].distance(ends[1]) / self.persons[index].speed_mps.max(1.0);
+        let ends = self.map.crosswalks[crosswalk as usize].ends;
+        let time_s = ends[0].distance(ends[1]) / self.walker_traits[index].speed_mps.max(1.0);
         let body = &self.bodies[index];
         self.gaps.may_cross(crosswalk, walker, body.position.truncate(), time_s)
     }
@@ -225,8 +181,8 @@ impl Streets<'_> {
             next.hops = next.hops.wrapping_add(1);
             next.wait_ticks = 0;
         }
-        let edge = next_edge(self.network, self.seed, next);
-        match self.network.walk_edges[edge as usize].crosswalk {
+        let edge = next_edge(self.map, self.seed, next);
+        match self.map.walk_edges[edge as usize].crosswalk {
             Some(crosswalk) if edge != next.edge && !self.may_cross(index, crosswalk, next) => {}
             _ => self.enter(edge, next),
         }
@@ -234,14 +190,13 @@ impl Streets<'_> {
 
     /// Goes over to another edge at the same place in the world.
     fn enter(&self, edge: WalkEdgeId, next: &mut Walker) {
-        let node = end_node(self.network, next);
-        let from = walker_place(self.network, self.ways, next).beside(next.offset_m).truncate();
-        let to = &self.network.walk_edges[edge as usize];
+        let node = end_node(self.map, next);
+        let from = self.ways.walker_place(next).beside(next.offset_m).truncate();
+        let to = &self.map.walk_edges[edge as usize];
         // At a dead end one turns round.
         next.forward = if edge == next.edge { !next.forward } else { to.nodes[0] == node };
-        let way = &self.ways.edges[edge as usize];
         let end_m = if next.forward { 0.0 } else { to.length_m };
-        let place = edge_place(to, way, end_m);
+        let place = self.ways.edge_place(edge, end_m);
         let offset = from - place.position.truncate();
         next.edge = edge;
         next.s_m = end_m + offset.dot(place.forward.truncate().normalize_or(Vec2::X));
@@ -252,21 +207,21 @@ impl Streets<'_> {
     }
 
     fn jaywalk(&self, index: usize, next: &mut Walker) {
-        let place = walker_place(self.network, self.ways, next);
+        let place = self.ways.walker_place(next);
         let sign = if next.forward { 1.0 } else { -1.0 };
-        let Some(goal) = jaywalk::goal(self.network, self.ways, next) else {
+        let Some(goal) = jaywalk::goal(self.map, self.ways, next) else {
             next.mode = WalkerMode::Walk;
             return;
         };
         let blocked = self.blocked(index, place.left() * sign);
-        let aim_mps = if blocked { 0.0 } else { jaywalk::pace(self.seed, next, &self.persons[index]) };
+        let aim_mps = if blocked { 0.0 } else { jaywalk::pace(self.seed, next, &self.walker_traits[index]) };
         if blocked {
             halt(next);
         }
         approach_speed(next, aim_mps);
         next.offset_m += sign * next.speed_mps * TICK_S;
         if next.offset_m * sign >= goal.distance_m {
-            jaywalk::arrive(self.network, self.ways, self.seed, &goal, next);
+            jaywalk::arrive(self.ways, self.seed, &goal, next);
         }
     }
 
@@ -296,17 +251,12 @@ impl Streets<'_> {
     }
 
     fn waiting_direction(&self, walker: &Walker) -> Vec2 {
-        let edge = next_edge(self.network, self.seed, walker) as usize;
-        let (to, way) = (&self.network.walk_edges[edge], &self.ways.edges[edge]);
-        let forward = to.nodes[0] == end_node(self.network, walker);
-        let direction = edge_place(to, way, if forward { 0.0 } else { to.length_m }).forward.truncate();
+        let edge = next_edge(self.map, self.seed, walker);
+        let to = &self.map.walk_edges[edge as usize];
+        let forward = to.nodes[0] == end_node(self.map, walker);
+        let direction = self.ways.edge_place(edge, if forward { 0.0 } else { to.length_m }).forward.truncate();
         if forward { direction } else { -direction }
     }
-}
-
-/// Radians as 2^-16 turns.
-pub(super) fn turns(angle_rad: f32) -> u16 {
-    (ops::round(angle_rad * (65536.0 / core::f32::consts::TAU)) as i32) as u16
 }
 
 /// Stands before a vehicle, and turns back when it stays.

@@ -1,7 +1,7 @@
 //! What is remembered of a person on foot.
 
-use crate::map::WalkEdgeId;
-use crate::{state, state_enum};
+use crate::map_data::WalkEdgeId;
+use crate::{ops, state, state_enum};
 
 state_enum! {
     /// What a person on foot is doing.
@@ -42,4 +42,9 @@ state! {
         /// Where it faces, 2^-16 turns counter-clockwise from east.
         pub heading: u16,
     }
+}
+
+/// Radians as 2^-16 turns.
+pub(super) fn turns(angle_rad: f32) -> u16 {
+    (ops::round(angle_rad * (65536.0 / core::f32::consts::TAU)) as i32) as u16
 }

@@ -1,11 +1,15 @@
-//! Lookups of a map, made once: curve speeds, directions, who meets whom in a junction.
+//! Lookups of a map, made once: curve speeds, directions, where lanes conflict in a junction.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use crate::map::{Conflict, Lane, LaneId, LaneKind, RoadNetwork, StopKind, Turn};
-use crate::{map::LightGroupId, ops};
+use super::walker::Walker;
+use crate::map_data::{
+    Conflict, Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, StopKind, Turn, WalkEdgeId,
+};
+use crate::ops;
+use crate::places::Places;
 
 /// Sideways acceleration that drivers accept in curves, m/s² (comfort limit of road design).
 const CURVE_ACCEL_MPS2: f32 = 2.0;
@@ -16,29 +20,9 @@ const CURVE_FLOOR_MPS: f32 = 2.5;
 /// Sidewalks farther apart than this do not face each other across a road, metres.
 const FACING_M: f32 = 32.0;
 
-/// A place on a lane or way: where, and the direction of travel as a unit vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
-    pub position: Vec3,
-    pub forward: Vec3,
-    pub half_width_m: f32,
-}
-
-impl Place {
-    /// Horizontal unit vector to the left.
-    pub fn left(&self) -> Vec2 {
-        Vec2::new(-self.forward.y, self.forward.x).normalize_or_zero()
-    }
-
-    /// The place `offset_m` to the left.
-    pub fn beside(&self, offset_m: f32) -> Vec3 {
-        self.position + (self.left() * offset_m).extend(0.0)
-    }
-}
-
-/// How two lanes of a junction meet.
+/// How two lanes of a junction conflict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Meeting {
+pub(super) enum ConflictKind {
     /// They leave the same lane.
     Diverge,
     /// They enter the same lane.
@@ -49,9 +33,9 @@ pub(super) enum Meeting {
 
 /// A conflict seen from one lane, with the other lane's side of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Encounter {
+pub(super) struct LaneConflict {
     pub lane: LaneId,
-    pub meeting: Meeting,
+    pub kind: ConflictKind,
     /// Stretch of this lane, metres.
     pub here: [f32; 2],
     /// Stretch of the other lane, metres.
@@ -62,7 +46,7 @@ pub(super) struct Encounter {
 
 /// A crosswalk on a lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Zebra {
+pub(super) struct CrosswalkSpan {
     pub crosswalk: u32,
     /// Its near edge, metres from the lane's start.
     pub near_m: f32,
@@ -80,9 +64,9 @@ pub(super) struct LaneWay {
     pub onward: Vec<LaneId>,
     /// Those that long vehicles take: no right turns, where there is another way.
     pub onward_wide: Vec<LaneId>,
-    pub encounters: Vec<Encounter>,
+    pub conflicts: Vec<LaneConflict>,
     /// Crosswalks on it, in the direction of travel.
-    pub zebras: Vec<Zebra>,
+    pub crosswalks: Vec<CrosswalkSpan>,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -95,131 +79,109 @@ pub(super) struct EdgeWay {
     pub facing: Vec<u32>,
 }
 
-/// Lookups of a map.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Ways {
-    pub lanes: Vec<LaneWay>,
-    pub edges: Vec<EdgeWay>,
-    /// Light groups that must be red for each crosswalk; empty for a zebra.
-    pub crosswalk_lights: Vec<Vec<LightGroupId>>,
+/// What traffic looks up in a map.
+#[derive(Debug)]
+pub(crate) struct Ways {
+    /// The map with its places.
+    pub(super) places: Arc<Places>,
+    pub(super) lanes: Vec<LaneWay>,
+    pub(super) edges: Vec<EdgeWay>,
+    /// Light groups that must be red for each crosswalk; empty for one without.
+    pub(super) crosswalk_lights: Vec<Vec<LightGroupId>>,
     /// Lanes without predecessors, where vehicles that leave the map come back.
-    pub entries: Vec<LaneId>,
+    pub(super) entries: Vec<LaneId>,
 }
-
-/// The lookups that traffic makes of a map, built on first use and shared by all its worlds.
-#[derive(Clone, Debug, Default)]
-pub struct Lookups(OnceLock<Arc<Ways>>);
 
 impl Ways {
     /// The lookups of a map.
-    pub fn of(network: &RoadNetwork) -> Arc<Self> {
-        network.lookups.0.get_or_init(|| Arc::new(Self::new(network))).clone()
-    }
-
-    fn new(network: &RoadNetwork) -> Self {
+    pub fn new(places: &Arc<Places>) -> Self {
+        let map = &*places.map;
         let mut ways = Self {
-            lanes: (0..network.lanes.len()).map(|id| lane_way(network, id as LaneId)).collect(),
-            edges: (0..network.walk_edges.len()).map(|e| edge_way(network, e)).collect(),
-            crosswalk_lights: network.crosswalks.iter().map(|c| crosswalk_lights(network, c)).collect(),
-            entries: entries(network),
+            places: places.clone(),
+            lanes: (0..map.lanes.len()).map(|id| lane_way(map, id as LaneId)).collect(),
+            edges: (0..map.walk_edges.len()).map(|e| edge_way(map, e)).collect(),
+            crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
+            entries: entries(map),
         };
-        ways.add_zebras(network);
+        ways.add_crosswalks(map);
         ways
     }
 
-    fn add_zebras(&mut self, network: &RoadNetwork) {
-        for (i, crosswalk) in network.crosswalks.iter().enumerate() {
+    /// The place on an edge at `s_m`; beyond its ends the edge goes straight on.
+    pub(super) fn edge_place(&self, edge: WalkEdgeId, s_m: f32) -> Place {
+        let (way, edge) = (&self.edges[edge as usize], &self.places.map.walk_edges[edge as usize]);
+        let last = edge.points.len() - 2;
+        let i = way.s_m[1..=last].partition_point(|s| *s <= s_m);
+        let along = (s_m - way.s_m[i]) / (way.s_m[i + 1] - way.s_m[i]).max(1e-3);
+        let position = edge.points[i] + (edge.points[i + 1] - edge.points[i]) * along;
+        Place { position, forward: way.forward[i], half_width_m: edge.half_width_m }
+    }
+
+    /// Where a walker stands.
+    pub(super) fn walker_place(&self, walker: &Walker) -> Place {
+        self.edge_place(walker.edge, walker.s_m)
+    }
+
+    fn add_crosswalks(&mut self, map: &MapData) {
+        for (i, crosswalk) in map.crosswalks.iter().enumerate() {
             for &(lane, s_m) in &crosswalk.lanes {
                 let half = crosswalk.half_width_m;
-                let zebra = Zebra { crosswalk: i as u32, near_m: s_m - half, far_m: s_m + half };
-                self.lanes[lane as usize].zebras.push(zebra);
+                let span = CrosswalkSpan { crosswalk: i as u32, near_m: s_m - half, far_m: s_m + half };
+                self.lanes[lane as usize].crosswalks.push(span);
             }
         }
         for lane in &mut self.lanes {
-            lane.zebras.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
+            lane.crosswalks.sort_by(|a, b| a.near_m.total_cmp(&b.near_m));
         }
     }
 }
 
-/// Index of the segment of `lane` that holds `s_m`, and the fraction along it (beyond [0, 1]
-/// outside the lane).
-fn segment(lane: &Lane, s_m: f32) -> (usize, f32) {
-    let points = &lane.points;
-    let last = points.len() - 2;
-    let guess = (s_m / lane.length_m * (last + 1) as f32) as usize;
-    let mut i = guess.min(last);
-    while i > 0 && points[i].s_m > s_m {
-        i -= 1;
+impl LaneWay {
+    /// Like [`Lane::straight_on`], the direction turning smoothly between the points.
+    pub fn pose(&self, lane: &Lane, s_m: f32) -> Place {
+        lane.straight_on_facing(s_m, |i, share| {
+            let here = self.forward[i];
+            if share < 0.5 && i > 0 {
+                self.forward[i - 1].lerp(here, (share + 0.5).max(0.0)).normalize_or(here)
+            } else if share > 0.5 && i + 1 < self.forward.len() {
+                here.lerp(self.forward[i + 1], (share - 0.5).min(0.5)).normalize_or(here)
+            } else {
+                here
+            }
+        })
     }
-    while i < last && points[i + 1].s_m <= s_m {
-        i += 1;
-    }
-    let span = (points[i + 1].s_m - points[i].s_m).max(1e-3);
-    (i, (s_m - points[i].s_m) / span)
-}
 
-/// The place on a lane's centre line; beyond its ends the lane goes straight on.
-pub(super) fn lane_place(lane: &Lane, s_m: f32) -> Place {
-    let (i, t) = segment(lane, s_m);
-    let (a, b) = (&lane.points[i], &lane.points[i + 1]);
-    let clamped = t.clamp(0.0, 1.0);
-    Place {
-        position: a.position + (b.position - a.position) * t,
-        forward: (b.position - a.position).normalize_or(Vec3::X),
-        half_width_m: a.half_width_m + (b.half_width_m - a.half_width_m) * clamped,
+    /// The highest speed at `s_m`, interpolated between the points. m/s.
+    pub fn curve_speed(&self, lane: &Lane, s_m: f32) -> f32 {
+        let (i, t) = lane.segment(s_m);
+        let (a, b) = (self.speed_mps[i], self.speed_mps[i + 1]);
+        a + (b - a) * t.clamp(0.0, 1.0)
     }
 }
 
-/// Like [`lane_place`], the direction turning smoothly between the points.
-pub(super) fn lane_pose(lane: &Lane, way: &LaneWay, s_m: f32) -> Place {
-    let (i, t) = segment(lane, s_m);
-    let (a, here) = (&lane.points[i], way.forward[i]);
-    let forward = if t < 0.5 && i > 0 {
-        way.forward[i - 1].lerp(here, (t + 0.5).max(0.0)).normalize_or(here)
-    } else if t > 0.5 && i + 1 < way.forward.len() {
-        here.lerp(way.forward[i + 1], (t - 0.5).min(0.5)).normalize_or(here)
-    } else {
-        here
-    };
-    let position = a.position + (lane.points[i + 1].position - a.position) * t;
-    Place { position, forward, half_width_m: a.half_width_m }
-}
-
-/// Half of the lane's width at `s_m`, metres.
-pub(super) fn half_width_m(lane: &Lane, s_m: f32) -> f32 {
-    lane.points[segment(lane, s_m).0].half_width_m
-}
-
-/// The highest speed at `s_m`, interpolated between the points. m/s.
-pub(super) fn curve_speed(lane: &Lane, way: &LaneWay, s_m: f32) -> f32 {
-    let (i, t) = segment(lane, s_m);
-    let (a, b) = (way.speed_mps[i], way.speed_mps[i + 1]);
-    a + (b - a) * t.clamp(0.0, 1.0)
-}
-
-fn lane_way(network: &RoadNetwork, id: LaneId) -> LaneWay {
-    let lane = &network.lanes[id as usize];
+fn lane_way(map: &MapData, id: LaneId) -> LaneWay {
+    let lane = &map.lanes[id as usize];
     let mut speed_mps = curve_speeds(lane);
     for i in (0..speed_mps.len().saturating_sub(1)).rev() {
         let ds = lane.points[i + 1].s_m - lane.points[i].s_m;
         let reachable = ops::sqrt(speed_mps[i + 1] * speed_mps[i + 1] + 2.0 * CURVE_BRAKE_MPS2 * ds.max(0.0));
         speed_mps[i] = speed_mps[i].min(reachable);
     }
-    let drivable = |next: &LaneId| network.lanes[*next as usize].kind == LaneKind::Driving;
+    let drivable = |next: &LaneId| map.lanes[*next as usize].kind == LaneKind::Driving;
     let onward: Vec<_> = lane.successors.iter().copied().filter(drivable).collect();
-    let wide = |next: &LaneId| network.lanes[*next as usize].turn != Turn::Right;
+    let wide = |next: &LaneId| map.lanes[*next as usize].turn != Turn::Right;
     let onward_wide: Vec<_> = onward.iter().copied().filter(wide).collect();
     let onward_wide = if onward_wide.is_empty() { onward.clone() } else { onward_wide };
-    let encounters = lane.conflicts.iter().filter_map(|c| encounter(network, id, c)).collect();
+    let conflicts = lane.conflicts.iter().filter_map(|c| lane_conflict(map, id, c)).collect();
     let forward = directions(lane.points.iter().map(|p| p.position));
-    LaneWay { speed_mps, forward, onward, onward_wide, encounters, zebras: Vec::new() }
+    LaneWay { speed_mps, forward, onward, onward_wide, conflicts, crosswalks: Vec::new() }
 }
 
 /// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken
 /// over 3 m each way, so that single bends of the baked line do not count.
 fn curve_speeds(lane: &Lane) -> Vec<f32> {
     let heading = |s: f32| {
-        let forward = lane_place(lane, s.clamp(0.0, lane.length_m)).forward;
+        let forward = lane.straight_on(s.clamp(0.0, lane.length_m)).forward;
         ops::atan2(forward.y, forward.x)
     };
     let at = |s: f32| {
@@ -231,35 +193,35 @@ fn curve_speeds(lane: &Lane) -> Vec<f32> {
     lane.points.iter().map(|p| at(p.s_m)).collect()
 }
 
-fn encounter(network: &RoadNetwork, id: LaneId, conflict: &Conflict) -> Option<Encounter> {
-    let lane = &network.lanes[id as usize];
-    let other = &network.lanes[conflict.lane as usize];
+fn lane_conflict(map: &MapData, id: LaneId, conflict: &Conflict) -> Option<LaneConflict> {
+    let lane = &map.lanes[id as usize];
+    let other = &map.lanes[conflict.lane as usize];
     let mirrored = other.conflicts.iter().find(|c| c.lane == id);
     let shares = |a: &[LaneId], b: &[LaneId]| a.iter().any(|x| b.contains(x));
-    let meeting = if shares(&lane.successors, &other.successors) {
-        Meeting::Merge
+    let kind = if shares(&lane.successors, &other.successors) {
+        ConflictKind::Merge
     } else if shares(&lane.predecessors, &other.predecessors) {
-        Meeting::Diverge
+        ConflictKind::Diverge
     } else {
-        Meeting::Cross
+        ConflictKind::Cross
     };
     let there = mirrored.map_or([0.0, other.length_m], |c| [c.from_m, c.to_m]);
     let gives_way = mirrored.is_some_and(|c| c.other_first);
     let precedence = i8::from(gives_way) - i8::from(conflict.other_first);
-    (other.kind == LaneKind::Driving).then_some(Encounter {
+    (other.kind == LaneKind::Driving).then_some(LaneConflict {
         lane: conflict.lane,
-        meeting,
+        kind,
         here: [conflict.from_m, conflict.to_m],
         there,
         precedence,
     })
 }
 
-fn crosswalk_lights(network: &RoadNetwork, crosswalk: &crate::map::Crosswalk) -> Vec<LightGroupId> {
+fn crosswalk_lights(map: &MapData, crosswalk: &Crosswalk) -> Vec<LightGroupId> {
     let mut groups = Vec::new();
     if crosswalk.junction.is_some() {
         for &(lane, _) in &crosswalk.lanes {
-            if let Some(StopKind::Light(group)) = network.lanes[lane as usize].stop.map(|stop| stop.kind) {
+            if let Some(StopKind::Light(group)) = map.lanes[lane as usize].stop.map(|stop| stop.kind) {
                 groups.push(group);
             }
         }
@@ -269,22 +231,22 @@ fn crosswalk_lights(network: &RoadNetwork, crosswalk: &crate::map::Crosswalk) ->
     groups
 }
 
-fn entries(network: &RoadNetwork) -> Vec<LaneId> {
+fn entries(map: &MapData) -> Vec<LaneId> {
     let drivable = |lane: &Lane| lane.kind == LaneKind::Driving && lane.length_m > 15.0;
     let open = |lane: &Lane| drivable(lane) && lane.junction.is_none();
-    let lanes = || network.lanes.iter().enumerate();
+    let lanes = || map.lanes.iter().enumerate();
     let starts: Vec<_> =
         lanes().filter(|(_, l)| open(l) && l.predecessors.is_empty()).map(|(i, _)| i as LaneId).collect();
     if starts.is_empty() { lanes().filter(|(_, l)| open(l)).map(|(i, _)| i as LaneId).collect() } else { starts }
 }
 
-fn edge_way(network: &RoadNetwork, index: usize) -> EdgeWay {
-    let edge = &network.walk_edges[index];
+fn edge_way(map: &MapData, index: usize) -> EdgeWay {
+    let edge = &map.walk_edges[index];
     let mut s_m = vec![0.0];
     for pair in edge.points.windows(2) {
         s_m.push(s_m[s_m.len() - 1] + pair[0].truncate().distance(pair[1].truncate()));
     }
-    let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(network, index) } else { Vec::new() };
+    let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(map, index) } else { Vec::new() };
     EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing }
 }
 
@@ -292,13 +254,13 @@ fn directions(points: impl Iterator<Item = Vec3> + Clone) -> Vec<Vec3> {
     points.clone().zip(points.skip(1)).map(|(a, b)| (b - a).normalize_or(Vec3::X)).collect()
 }
 
-fn facing(network: &RoadNetwork, index: usize) -> Vec<u32> {
-    let (low, high) = extent(&network.walk_edges[index].points);
+fn facing(map: &MapData, index: usize) -> Vec<u32> {
+    let (low, high) = extent(&map.walk_edges[index].points);
     let near = |points: &[Vec3]| {
         let (l, h) = extent(points);
         l.cmple(high + FACING_M).all() && h.cmpge(low - FACING_M).all()
     };
-    let others = network.walk_edges.iter().enumerate();
+    let others = map.walk_edges.iter().enumerate();
     others
         .filter(|(i, e)| *i != index && e.crosswalk.is_none() && e.beside.is_some() && near(&e.points))
         .map(|(i, _)| i as u32)

@@ -2,9 +2,11 @@
 
 use glam::{Vec3, Vec3Swizzles};
 
+use crate::actor::ActorKind;
 use crate::ego::{self, Ego};
-use crate::physics::{Hold, Motion, Physics, heading};
-use crate::scene::ActorKind;
+use crate::geometry::{rectangles_overlap, rotation};
+use crate::motion::Motion;
+use crate::physics::{Hold, Physics};
 use crate::time::{TICK_S, seconds};
 use crate::traffic::{Body, Obstacle};
 use crate::{ops, state};
@@ -192,24 +194,18 @@ fn before(body: &Body) -> Motion {
 }
 
 /// Whether the boxes of the car and of a body overlap after a tick of straight motion, seen from
-/// above and in height (separating axes).
+/// above and in height.
 fn will_touch(car: &Ego, other: &Motion, size_m: Vec3) -> bool {
     if (car.motion.velocity_mps - other.velocity_mps).length() < LEAST_HIT_MPS {
         return false;
     }
     let forward = other.rotation * Vec3::X;
-    let turned = heading(car.heading_rad()).conjugate();
+    let turned = rotation(car.heading_rad()).conjugate();
     let gap = other.position + other.velocity_mps * TICK_S - (car.middle() + (car.motion.velocity_mps * TICK_S));
     let (gap, axis) = (turned * gap, turned * forward);
     if gap.z.abs() > ego::SIZE_M.z + size_m.z {
         return false;
     }
     let (half_car, half) = (ego::SIZE_M.xy() * 0.5 + GAP_M, size_m.xy() * 0.5 + GAP_M);
-    let (cos, sin) = (axis.x, axis.y);
-    let reach = |along: f32, across: f32| half.x * along.abs() + half.y * across.abs();
-    let back = |along: f32, across: f32| half_car.x * along.abs() + half_car.y * across.abs();
-    gap.x.abs() < half_car.x + reach(cos, sin)
-        && gap.y.abs() < half_car.y + reach(sin, cos)
-        && (gap.x * cos + gap.y * sin).abs() < half.x + back(cos, sin)
-        && (gap.y * cos - gap.x * sin).abs() < half.y + back(sin, cos)
+    rectangles_overlap(half_car, gap.xy(), axis.xy(), half)
 }

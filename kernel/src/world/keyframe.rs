@@ -3,12 +3,12 @@
 use std::fmt;
 
 use crate::map::RoadNetwork;
-use crate::physics::Motion;
+use crate::motion::Motion;
 use crate::state::{State, first_difference};
 use crate::time::Tick;
 use crate::traffic::TrafficState;
 
-use super::WorldError;
+use super::error::WorldError;
 use super::snapshot::{PARTS, Parts};
 
 /// The compact state of the world at a keyframe tick.

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use crate::arbiter::Arbiter;
 use crate::controls::TickInput;
 use crate::ego::{self, Ego};
+use crate::geometry::rotation;
 use crate::map::{LaneId, LaneKind, RoadNetwork};
-use crate::physics::{Motion, heading};
+use crate::motion::Motion;
 use crate::rng::{self, Stream};
 use crate::route::Route;
 use crate::scenario::Scenario;
@@ -14,8 +15,8 @@ use crate::traffic::Traffic;
 use crate::watch::Watch;
 use glam::Vec3;
 
-use super::WorldError;
 use super::bodies::Bodies;
+use super::error::WorldError;
 use super::snapshot::{EgoPart, InputPart, OutputPart, Parts, RunPart};
 
 /// Shortest lane on which a car starts when the scenario names none, metres.
@@ -35,7 +36,7 @@ pub(super) fn begin(scenario: &Scenario, network: &Arc<RoadNetwork>) -> Result<(
     let (lane, s_m) =
         place(scenario, network).map_err(|reason| WorldError::Scenario { map: network.name.clone(), reason })?;
     let car = standing(network, lane, s_m);
-    let traffic = Traffic::spawn(scenario, network, car.middle());
+    let traffic = Traffic::spawn(&scenario.traffic, scenario.seed, network.ways(), car.middle());
     let route = Route::from(network, scenario.seed, lane, s_m);
     let parts = Parts {
         input: InputPart { tick: 0, controls: TickInput::default() },
@@ -85,7 +86,7 @@ fn drawn(seed: u64, network: &RoadNetwork) -> Option<(LaneId, f32)> {
 /// A car at rest whose middle is at a place of a lane.
 fn standing(network: &RoadNetwork, lane: LaneId, s_m: f32) -> Ego {
     let point = network.lane_point(lane, s_m);
-    let rotation = heading(point.heading_rad);
+    let rotation = rotation(point.heading_rad);
     let position = point.position - rotation * Vec3::new(ego::CENTRE_M.x, 0.0, 0.0);
     let motion = Motion { position, rotation, velocity_mps: Vec3::ZERO, spin_radps: Vec3::ZERO };
     Ego { motion, wheel_angle_rad: 0.0, odometer_um: 0 }

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use kernel::map::{
-    Junction, Lane, LaneId, LaneKind, LanePoint, LightGroup, Prop, PropKind, RoadNetwork, StopKind, StopLine, Surface,
-    SurfaceKind, Turn, WalkEdge, WalkNode,
+    Junction, Lane, LaneId, LaneKind, LanePoint, LightGroup, MapData, Prop, PropKind, RoadNetwork, StopKind, StopLine,
+    Surface, SurfaceKind, Turn, WalkEdge, WalkNode,
 };
 use kernel::ops;
 use kernel::scenario::Scenario;
@@ -25,7 +25,7 @@ const LIT_ARC: u32 = 4;
 /// A ring road: [`ARCS`] lanes counter-clockwise outside, as many clockwise inside, a light before
 /// the lane [`LIT_ARC`], a footpath around it, grass, and trees beyond the path.
 pub fn ring() -> Arc<RoadNetwork> {
-    let mut network = RoadNetwork { name: String::from("ring"), ..RoadNetwork::default() };
+    let mut network = MapData { name: String::from("ring"), ..MapData::default() };
     for inside in [false, true] {
         network.lanes.extend((0..ARCS).map(|arc| lane(arc, inside)));
     }
@@ -47,7 +47,7 @@ pub fn ring() -> Arc<RoadNetwork> {
     };
     network.props = (0..40).map(tree).collect();
     footpath(&mut network);
-    Arc::new(network)
+    Arc::new(network.into())
 }
 
 /// A scenario with traffic on the ring.
@@ -113,7 +113,7 @@ fn band(kind: SurfaceKind, inner_m: f32, outer_m: f32, height_m: f32) -> Surface
     Surface { kind, positions: (0..2 * parts).map(corner).collect(), triangles: (0..parts).flat_map(quad).collect() }
 }
 
-fn footpath(network: &mut RoadNetwork) {
+fn footpath(network: &mut MapData) {
     let radius = RING_M + 1.5 * LANE_M;
     for edge in 0..ARCS {
         let angle = |along: u32| TAU * (edge as f32 + along as f32 / 20.0) / ARCS as f32;

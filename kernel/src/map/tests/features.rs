@@ -54,7 +54,7 @@ fn each_approach_has_its_light() {
     assert_eq!(map.junctions[0].light_groups.len(), 4);
     assert_eq!(map.light_heads.len(), 4);
     for head in &map.light_heads {
-        let facing = super::super::bake::direction(head.facing_rad);
+        let facing = direction(head.facing_rad);
         assert!(facing.dot(head.position.truncate()) > 0.0, "shines away from the junction");
         assert!(!map.on_road(head.position) && head.height_m > 2.0);
     }

@@ -8,6 +8,7 @@ mod places;
 use glam::Vec3;
 
 use super::*;
+use crate::geometry::direction;
 
 /// What holds for every baked map.
 fn check_sound(map: &RoadNetwork) {
@@ -17,7 +18,8 @@ fn check_sound(map: &RoadNetwork) {
     for prop in map.props.iter().filter(|p| p.kind != PropKind::SignalPole) {
         assert!(prop.size.is_finite() && prop.size.min_element() > 0.0, "{prop:?} has a size");
         check_rounded(prop.position);
-        let on_sidewalk = map.lanes_at(prop.position, LaneKind::Sidewalk).iter().any(|p| map.beyond_edge(p) < -0.05);
+        let on_sidewalk =
+            map.lanes_at(prop.position, LaneKind::Sidewalk).iter().any(|p| map.places().roads().beyond_edge(p) < -0.05);
         assert!(!map.on_road(prop.position) && !on_sidewalk, "{prop:?} stands in the way");
     }
     for crosswalk in &map.crosswalks {
@@ -35,7 +37,7 @@ fn check_lane(map: &RoadNetwork, id: LaneId, lane: &Lane) {
         assert!(step <= 2.02 && pair[1].s_m > pair[0].s_m, "lane {name}: {pair:?}");
         check_rounded(pair[0].position);
         let along = (pair[1].position - pair[0].position).truncate();
-        let ahead = super::bake::direction(pair[0].heading_rad);
+        let ahead = direction(pair[0].heading_rad);
         assert!(step < 0.2 || along.dot(ahead) > 0.9 * along.length(), "lane {name} is driven forwards: {pair:?}");
     }
     for &next in &lane.successors {

@@ -11,7 +11,7 @@ fn a_lane_point_projects_onto_itself() {
             let p = map.lane_point(id as LaneId, s);
             let back = map.project(id as LaneId, p.position);
             assert!((back.s_m - s).abs() < 0.02 && back.distance_m < 0.01, "{}: {back:?}", lane.name);
-            let left = p.position + super::super::bake::direction(p.heading_rad).perp().extend(0.0);
+            let left = p.position + direction(p.heading_rad).perp().extend(0.0);
             assert!((map.project(id as LaneId, left).lateral_m - 1.0).abs() < 0.05);
         }
     }
@@ -33,11 +33,15 @@ fn the_grid_finds_what_a_search_of_all_lanes_finds() {
         let mut p = Vec3::new(low.x + (high.x - low.x) * draw(0), low.y + (high.y - low.y) * draw(1), 0.0);
         let ids = (0..map.lanes.len() as LaneId).filter(|&id| map.lanes[id as usize].kind == LaneKind::Driving);
         let all = ids.map(|id| map.project(id, p));
-        let nearest = all.min_by(|a, b| map.beyond_edge(a).total_cmp(&map.beyond_edge(b))).unwrap();
+        let nearest = all
+            .min_by(|a, b| map.places().roads().beyond_edge(a).total_cmp(&map.places().roads().beyond_edge(b)))
+            .unwrap();
         p.z = map.lane_point(nearest.lane, nearest.s_m).position.z;
         match map.nearest_lane(p, LaneKind::Driving, None, 80.0) {
-            Some(found) => assert!(map.beyond_edge(&found) <= map.beyond_edge(&nearest) + 0.5),
-            None => assert!(map.beyond_edge(&nearest) > 80.0, "{p}: {nearest:?}"),
+            Some(found) => {
+                assert!(map.places().roads().beyond_edge(&found) <= map.places().roads().beyond_edge(&nearest) + 0.5)
+            }
+            None => assert!(map.places().roads().beyond_edge(&nearest) > 80.0, "{p}: {nearest:?}"),
         }
     }
 }
@@ -59,7 +63,7 @@ fn the_edge_of_the_road_is_its_edge() {
     let map = bundled("rural").unwrap();
     let lane = map.lanes.iter().find(|l| l.kind == LaneKind::Driving && l.junction.is_none()).unwrap();
     let p = lane.at(50.0);
-    let right = -super::super::bake::direction(p.heading_rad).perp().extend(0.0);
+    let right = -direction(p.heading_rad).perp().extend(0.0);
     assert!(map.on_road(p.position + right * (p.half_width_m - 0.05)));
     assert!(!map.on_road(p.position + right * (p.half_width_m + 0.05)));
     assert_eq!(map.ground(p.position + right * 12.0).unwrap().kind, SurfaceKind::Terrain);

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 
 use crate::map::{
-    Conflict, Crosswalk, Junction, Lane, LaneId, LaneKind, LanePoint, LightGroup, RoadNetwork, StopKind, StopLine,
-    Turn, WalkEdge, WalkNode,
+    Conflict, Crosswalk, Junction, Lane, LaneId, LaneKind, LanePoint, LightGroup, MapData, RoadNetwork, StopKind,
+    StopLine, Turn, WalkEdge, WalkNode,
 };
-use crate::{map, ops, physics, traffic};
+use crate::{map, ops};
 
 /// Length of an arm, metres.
 pub const ARM_M: f32 = 180.0;
@@ -114,7 +114,7 @@ pub fn crossroads(signs: Signs) -> Arc<RoadNetwork> {
     let junction = Junction { name: "1".into(), lanes: junction_lanes, light_groups: lights, center: Vec3::ZERO };
     let light_groups = junction.light_groups.iter().map(|g| LightGroup { junction: 0, place: *g }).collect();
     let (crosswalks, walk_nodes, walk_edges) = walks(signs);
-    Arc::new(RoadNetwork {
+    let map = MapData {
         name: "crossroads".into(),
         digest: 0,
         lanes,
@@ -127,10 +127,8 @@ pub fn crossroads(signs: Signs) -> Arc<RoadNetwork> {
         surfaces: Vec::new(),
         props: Vec::new(),
         bounds: [Vec3::splat(-250.0), Vec3::splat(250.0)],
-        statics: physics::Statics::default(),
-        lookups: traffic::Lookups::default(),
-        index: Default::default(),
-    })
+    };
+    Arc::new(map.into())
 }
 
 fn add_turns(lanes: &mut Vec<Lane>) {

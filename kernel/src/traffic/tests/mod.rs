@@ -6,10 +6,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Body, Obstacle, Surroundings, Traffic, TrafficState, Vehicle, WalkerMode};
+use super::{Body, Obstacle, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, WalkerMode};
 use crate::map::{RoadNetwork, StopKind, bundled};
-use crate::scenario::{EgoStart, Rules, Scenario, TrafficCounts};
-use crate::scene::Weather;
 use crate::signals::{LightPhase, phase};
 use crate::state::State;
 use crate::time::Tick;
@@ -18,18 +16,11 @@ use crossroads::{Signs, crossroads};
 /// Ticks in a minute.
 const MINUTE: Tick = 3600;
 
-fn scenario(actors: u16, seed: u64) -> Scenario {
+fn counts(actors: u16) -> TrafficCounts {
     let share = |pct: u16| actors * pct / 100;
     let (motorcycles, bicycles, pedestrians) = (share(5), share(10), share(40));
     let cars = actors - motorcycles - bicycles - pedestrians;
-    Scenario {
-        map: "crossroads".into(),
-        seed,
-        traffic: TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min: 2.0 },
-        weather: Weather { cloudiness_pct: 0.0, wind_pct: 0.0, sun_altitude_deg: 45.0, sun_azimuth_deg: 0.0 },
-        ego: EgoStart { lane: None, s_m: 0.0 },
-        rules: Rules { max_speed_kmh: 50.0, max_seconds: 600, brake_threshold: 0.1, steer_threshold: 0.1 },
-    }
+    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min: 2.0 }
 }
 
 fn car_at(position: Vec3, heading_rad: f32) -> Obstacle {
@@ -42,7 +33,7 @@ fn nowhere() -> Obstacle {
 }
 
 fn start(network: &Arc<RoadNetwork>, actors: u16, seed: u64) -> Traffic {
-    Traffic::spawn(&scenario(actors, seed), network, nowhere().position)
+    Traffic::spawn(&counts(actors), seed, network.ways(), nowhere().position)
 }
 
 fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut(&Traffic, Tick)) {
@@ -54,7 +45,7 @@ fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut
 
 /// Pairs of vehicles whose boxes overlap by more than 5 cm.
 fn overlaps(traffic: &Traffic) -> Vec<(u32, u32)> {
-    let bodies = &traffic.bodies[..traffic.state.vehicles.len()];
+    let bodies = &traffic.actors.bodies[..traffic.actors.state.vehicles.len()];
     let mut found = Vec::new();
     for (i, a) in bodies.iter().enumerate() {
         let near = |b: &&Body| a.position.distance_squared(b.position) < 169.0 && boxes_meet(a, b);
@@ -74,13 +65,13 @@ fn boxes_meet(a: &Body, b: &Body) -> bool {
 }
 
 fn mean_speed(traffic: &Traffic) -> f32 {
-    let vehicles = &traffic.state.vehicles;
+    let vehicles = &traffic.actors.state.vehicles;
     vehicles.iter().map(|v| v.speed_mps).sum::<f32>() / vehicles.len() as f32
 }
 
 fn on_crosswalks(traffic: &Traffic) -> usize {
-    let on = |edge: u32| traffic.network.walk_edges[edge as usize].crosswalk.is_some();
-    traffic.state.walkers.iter().filter(|w| on(w.edge)).count()
+    let on = |edge: u32| traffic.actors.map().walk_edges[edge as usize].crosswalk.is_some();
+    traffic.actors.state.walkers.iter().filter(|w| on(w.edge)).count()
 }
 
 /// Nobody drives into anybody, nobody is stuck, and people get across.
@@ -92,7 +83,7 @@ fn flows(network: &Arc<RoadNetwork>, actors: u16, minutes: Tick, least_mps: f32)
         run(&mut traffic, minute * MINUTE + 1..(minute + 1) * MINUTE + 1, |t, tick| {
             mean += mean_speed(t) / MINUTE as f32;
             crossing += on_crosswalks(t);
-            jaywalking += t.state.walkers.iter().filter(|w| w.mode == WalkerMode::Jaywalk).count();
+            jaywalking += t.actors.state.walkers.iter().filter(|w| w.mode == WalkerMode::Jaywalk).count();
             if tick % 20 == 0 {
                 assert_eq!(overlaps(t), [], "tick {tick}");
             }
@@ -149,18 +140,18 @@ fn nobody_passes_a_line_at_red() {
     let network = crossroads(Signs::Lights);
     let mut traffic = start(&network, 50, 1);
     let mut passed = 0;
-    let mut before = traffic.state.clone();
+    let mut before = traffic.actors.state.clone();
     run(&mut traffic, 1..10 * MINUTE, |t, tick| {
-        for (was, is) in before.vehicles.iter().zip(&t.state.vehicles) {
+        for (was, is) in before.vehicles.iter().zip(&t.actors.state.vehicles) {
             let Some(stop) = network.lanes[was.lane as usize].stop else { continue };
             let StopKind::Light(group) = stop.kind else { continue };
             let half_m = was.kind.size_m().x * 0.5;
             let over = is.lane == was.lane && is.s_m + half_m > stop.s_m && was.s_m + half_m <= stop.s_m;
             passed += u32::from(over);
-            let red = phase(&network, t.seed, group, tick).0 == LightPhase::Red;
+            let red = phase(&network, t.actors.seed, group, tick).0 == LightPhase::Red;
             assert!(!(over && red), "vehicle {} at tick {tick}", is.id);
         }
-        before.clone_from(&t.state);
+        before.clone_from(&t.actors.state);
     });
     assert!(passed > 50, "only {passed} vehicles passed a line");
 }
@@ -169,16 +160,15 @@ fn nobody_passes_a_line_at_red() {
 fn the_order_of_actors_does_not_matter() {
     let network = crossroads(Signs::Yield);
     let mut traffic = start(&network, 60, 2);
-    let mut state = traffic.state.clone();
+    let mut state = traffic.actors.state.clone();
     state.vehicles.reverse();
     state.walkers.rotate_left(7);
-    let scenario = scenario(60, 2);
-    let mut shuffled = Traffic::with(&scenario, &network, traffic.ways.clone(), state);
+    let mut shuffled = Traffic::with(&counts(60), 2, network.ways(), state);
     run(&mut traffic, 1..3 * MINUTE, |_, _| {});
     run(&mut shuffled, 1..3 * MINUTE, |_, _| {});
-    shuffled.state.vehicles.sort_by_key(|v| v.id);
-    shuffled.state.walkers.sort_by_key(|w| w.id);
-    assert_eq!(traffic.state, shuffled.state);
+    shuffled.actors.state.vehicles.sort_by_key(|v| v.id);
+    shuffled.actors.state.walkers.sort_by_key(|w| w.id);
+    assert_eq!(traffic.actors.state, shuffled.actors.state);
 }
 
 #[test]
@@ -186,24 +176,24 @@ fn state_is_small_and_resumes() {
     let network = crossroads(Signs::StopOnTwo);
     let mut traffic = start(&network, 60, 4);
     run(&mut traffic, 1..MINUTE, |_, _| {});
-    let bytes = traffic.state.to_bytes();
-    assert!(bytes.len() <= 28 * traffic.bodies.len() + 8, "{} bytes", bytes.len());
+    let bytes = traffic.actors.state.to_bytes();
+    assert!(bytes.len() <= 28 * traffic.actors.bodies.len() + 8, "{} bytes", bytes.len());
     let state = TrafficState::from_bytes(&bytes).expect("own bytes are read back");
-    let mut resumed = Traffic::resume(&scenario(60, 4), &network, state).expect("own state fits the map");
-    assert_eq!(traffic.bodies, resumed.bodies);
+    let mut resumed = Traffic::resume(&counts(60), 4, network.ways(), state).expect("own state fits the map");
+    assert_eq!(traffic.actors.bodies, resumed.actors.bodies);
     run(&mut traffic, MINUTE..2 * MINUTE, |_, _| {});
     run(&mut resumed, MINUTE..2 * MINUTE, |_, _| {});
-    assert_eq!(traffic.state, resumed.state);
+    assert_eq!(traffic.actors.state, resumed.actors.state);
 }
 
 #[test]
 fn states_of_other_maps_are_refused() {
     let network = crossroads(Signs::Yield);
-    let good = start(&network, 20, 4).state;
+    let good = start(&network, 20, 4).actors.state;
     let refused = |change: &dyn Fn(&mut TrafficState)| {
         let mut state = good.clone();
         change(&mut state);
-        Traffic::resume(&scenario(20, 4), &network, state).is_err()
+        Traffic::resume(&counts(20), 4, network.ways(), state).is_err()
     };
     assert!(!refused(&|_| {}));
     assert!(refused(&|s| s.vehicles[3].lane = 9999));
@@ -217,22 +207,22 @@ fn everybody_starts_with_room() {
     let network = bundled("city").expect("city is bundled");
     let ego = network.lanes[0].points[0].position;
     for seed in 0..20 {
-        let traffic = Traffic::spawn(&scenario(150, seed), &network, ego);
+        let traffic = Traffic::spawn(&counts(150), seed, network.ways(), ego);
         assert_eq!(overlaps(&traffic), []);
-        assert!(traffic.bodies.iter().all(|b| b.position.distance(ego) >= 20.0));
-        assert!(traffic.bodies.len() > 140, "seed {seed}: {} actors", traffic.bodies.len());
+        assert!(traffic.actors.bodies.iter().all(|b| b.position.distance(ego) >= 20.0));
+        assert!(traffic.actors.bodies.len() > 140, "seed {seed}: {} actors", traffic.actors.bodies.len());
     }
 }
 
 /// A car on an arm of the crossroads, 100 m before the junction, at 8 m/s.
 fn lone_car(network: &Arc<RoadNetwork>) -> Traffic {
     let mut traffic = start(network, 4, 1);
-    let first = traffic.state.vehicles[0];
+    let first = traffic.actors.state.vehicles[0];
     let vehicle = Vehicle { lane: 0, s_m: 80.0, speed_mps: 8.0, ..first };
-    traffic.state = TrafficState { vehicles: vec![vehicle], walkers: Vec::new() };
-    traffic.drivers.truncate(1);
-    traffic.persons.clear();
-    traffic.place_bodies();
+    traffic.actors.state = TrafficState { vehicles: vec![vehicle], walkers: Vec::new() };
+    traffic.actors.drivers.truncate(1);
+    traffic.actors.walker_traits.clear();
+    traffic.actors.place_bodies();
     traffic
 }
 
@@ -248,7 +238,7 @@ fn vehicles_stop_behind_whatever_stands_in_their_lane() {
             let (ego, loose) = if ego { (there, &loose[..0]) } else { (nowhere(), &loose[..]) };
             traffic.step(&Surroundings { tick, ego, loose });
         }
-        let vehicle = traffic.state.vehicles[0];
+        let vehicle = traffic.actors.state.vehicles[0];
         let gap_m = 120.0 - vehicle.s_m - 2.25;
         assert!(vehicle.speed_mps == 0.0 && (3.0..7.0).contains(&gap_m), "{name}: {gap_m} m, {vehicle:?}");
     }
@@ -262,18 +252,18 @@ fn vehicles_pass_what_stands_beside_their_lane() {
     for tick in 1..1200 {
         traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[] });
     }
-    assert!(traffic.state.vehicles[0].lane != 0, "{:?}", traffic.state.vehicles[0]);
+    assert!(traffic.actors.state.vehicles[0].lane != 0, "{:?}", traffic.actors.state.vehicles[0]);
 }
 
 #[test]
 fn loose_actors_keep_their_state() {
     let network = crossroads(Signs::Yield);
     let mut traffic = start(&network, 40, 6);
-    let (vehicle, walker) = (traffic.state.vehicles[2], traffic.state.walkers[2]);
+    let (vehicle, walker) = (traffic.actors.state.vehicles[2], traffic.actors.state.walkers[2]);
     let lie = |id: u16| Obstacle { id: u32::from(id), ..car_at(Vec3::new(0.0, 300.0, 0.0), 0.0) };
     let loose = [lie(vehicle.id), lie(walker.id)];
     for tick in 1..600 {
         traffic.step(&Surroundings { tick, ego: nowhere(), loose: &loose });
     }
-    assert_eq!((traffic.state.vehicles[2], traffic.state.walkers[2]), (vehicle, walker));
+    assert_eq!((traffic.actors.state.vehicles[2], traffic.actors.state.walkers[2]), (vehicle, walker));
 }

@@ -1,0 +1,22 @@
+//! OpenDRIVE text to [`MapData`](crate::map_data::MapData): `steps` says in which order.
+
+mod crosswalks;
+mod dressing;
+mod junctions;
+mod lanes;
+mod lights;
+mod mesh;
+mod priority;
+mod props;
+mod rounding;
+mod shapes;
+mod signs;
+mod source;
+mod steps;
+mod stops;
+mod surfaces;
+mod terrain;
+mod walkways;
+
+pub use source::BakeError;
+pub use steps::bake;

@@ -1,0 +1,74 @@
+//! Who goes first where lanes overlap.
+
+use super::source::Source;
+use super::stops::stop_place;
+use crate::geometry::direction;
+use crate::map_data::{Crosswalk, Lane, LaneId, LaneKind, StopKind, StopLine, Turn};
+
+/// Decides who goes first at every overlap, and adds the stop lines of those who wait without a sign.
+pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crosswalks: &[Crosswalk]) -> Vec<Lane> {
+    for a in 0..lanes.len() as LaneId {
+        for k in 0..lanes[a as usize].conflicts.len() {
+            let b = lanes[a as usize].conflicts[k].lane;
+            lanes[a as usize].conflicts[k].other_first = gives_way(source, &lanes, a, b);
+        }
+    }
+    for before in 0..lanes.len() {
+        let lane = &lanes[before];
+        let waits = |next: &LaneId| lanes[*next as usize].conflicts.iter().any(|c| c.other_first);
+        if lane.kind == LaneKind::Driving
+            && lane.stop.is_none()
+            && lane.junction.is_none()
+            && lane.successors.iter().any(waits)
+        {
+            let s_m = stop_place(&lanes, crosswalks, before as LaneId);
+            lanes[before].stop = Some(StopLine { s_m, kind: StopKind::Yield });
+        }
+    }
+    lanes
+}
+
+/// Whether traffic on junction lane `a` waits for traffic on `b`; never true both ways.
+fn gives_way(source: &Source, lanes: &[Lane], a: LaneId, b: LaneId) -> bool {
+    let (one, other) = (&lanes[a as usize], &lanes[b as usize]);
+    if let Some(told) = priority(source, lanes, a, b) {
+        return told;
+    }
+    match (sign(lanes, one), sign(lanes, other)) {
+        (x, y) if x != y => return x > y,
+        _ => {}
+    }
+    let (from, towards) = (direction(one.start().heading_rad), direction(other.start().heading_rad));
+    let opposite = from.dot(towards) < -0.5;
+    let oncoming_left = (one.turn == Turn::Left, other.turn == Turn::Left);
+    match (opposite, oncoming_left) {
+        (true, (true, false)) => true,
+        (true, (false, true)) => false,
+        // Right before left: who comes from the right moves to our left.
+        (false, _) if from.perp_dot(towards).abs() > 0.3 => from.perp_dot(towards) > 0.0,
+        _ => a > b,
+    }
+}
+
+/// 1 where a sign says to wait, 0 with a light or without a sign.
+fn sign(lanes: &[Lane], lane: &Lane) -> u32 {
+    let stops = lane.predecessors.iter().filter_map(|&p| lanes[p as usize].stop);
+    u32::from(stops.into_iter().any(|s| matches!(s.kind, StopKind::Stop | StopKind::Yield)))
+}
+
+/// What `<priority>` records say about two junction lanes, by their own or their incoming roads.
+fn priority(source: &Source, lanes: &[Lane], a: LaneId, b: LaneId) -> Option<bool> {
+    let roads = |id: LaneId| {
+        let before = lanes[id as usize].predecessors.iter().map(|&p| source.origins[p as usize].road);
+        std::iter::once(source.origins[id as usize].road).chain(before).collect::<Vec<_>>()
+    };
+    let (ours, theirs) = (roads(a), roads(b));
+    let yields = |low: &[usize], high: &[usize]| {
+        low.iter().any(|&l| source.net.yields_to(xodr::RoadId(l)).any(|h| high.contains(&h.0)))
+    };
+    match (yields(&ours, &theirs), yields(&theirs, &ours)) {
+        (true, false) => Some(true),
+        (false, true) => Some(false),
+        _ => None,
+    }
+}

@@ -1,0 +1,137 @@
+//! Static objects that a file names: signals, signs, and everything in its `<objects>`.
+
+use glam::Vec3;
+
+use super::rounding::{snap, snap3};
+use super::shapes::{beside_lanes, footprint, least_rectangle, point};
+use super::source::Source;
+use crate::map_data::{LaneKind, LightHead, Prop, PropKind, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
+use crate::ops;
+use crate::places::Roads;
+
+/// What claims to be larger is no object beside a road, metres.
+const LARGEST_M: f32 = 500.0;
+
+/// What the file names, and the poles of the lights.
+pub(super) fn bake(source: &Source, roads: &Roads<'_>, light_heads: &[LightHead]) -> Vec<Prop> {
+    let mut props: Vec<Prop> = light_heads.iter().map(|h| pole(h.position, h.facing_rad, h.height_m)).collect();
+    for signal in source.net.signals() {
+        if let Some(variant) = sign(signal) {
+            let position = beside_lanes(roads, ground_of(source, signal));
+            let size = Vec3::new(0.08, 0.7, 2.6);
+            props.push(Prop { kind: PropKind::Sign, position, heading_rad: snap(signal.heading), size, variant });
+        }
+    }
+    for object in source.net.objects() {
+        let variant = object.id.0 as u32;
+        if let Some(kind) = kind(object) {
+            props.extend(boxes(&object.shape, kind, variant).into_iter().filter(|p| !is_on_lane(roads, p)));
+        }
+    }
+    props
+}
+
+fn pole(position: Vec3, heading_rad: f32, lamps_m: f32) -> Prop {
+    Prop { kind: PropKind::SignalPole, position, heading_rad, size: Vec3::new(0.15, 0.15, lamps_m), variant: 0 }
+}
+
+fn sign(signal: &xodr::Signal) -> Option<u32> {
+    let value = signal.value.unwrap_or(0.0);
+    match signal.kind.as_str() {
+        "206" => Some(SIGN_STOP),
+        "205" => Some(SIGN_YIELD),
+        "274" if (5.0..=130.0).contains(&value) => Some(SIGN_LIMIT + value as u32),
+        _ => None,
+    }
+}
+
+/// The foot of a sign's post, on the road's surface.
+fn ground_of(source: &Source, signal: &xodr::Signal) -> Vec3 {
+    let board = point(signal.position);
+    let road = source.net.road_position(signal.applies_at.first().copied().unwrap_or(signal.position));
+    let height = road.and_then(|at| source.net.road_point(at)).map_or(board.z, |p| snap(p.z));
+    Vec3::new(board.x, board.y, height)
+}
+
+/// What an object is to us, by its type, else by its name; `None` for what does not stand up.
+fn kind(object: &xodr::Object) -> Option<PropKind> {
+    use xodr::ObjectType as T;
+    Some(match object.kind {
+        T::Tree => PropKind::Tree,
+        T::Vegetation => PropKind::Hedge,
+        T::Building => PropKind::Building,
+        T::Barrier | T::Railing => PropKind::GuardRail,
+        T::SoundBarrier => PropKind::Wall,
+        T::StreetLamp => PropKind::Lamp,
+        T::Pole | T::Obstacle => PropKind::Furniture,
+        T::None | T::Unknown => by_name(&object.name.to_ascii_lowercase())?,
+        _ => return None,
+    })
+}
+
+fn by_name(name: &str) -> Option<PropKind> {
+    const NAMES: [(&str, PropKind); 11] = [
+        ("parkedcar", PropKind::ParkedCar),
+        ("tree", PropKind::Tree),
+        ("hedge", PropKind::Hedge),
+        ("bush", PropKind::Hedge),
+        ("building", PropKind::Building),
+        ("house", PropKind::Building),
+        ("fence", PropKind::Fence),
+        ("wall", PropKind::Wall),
+        ("rail", PropKind::GuardRail),
+        ("lamp", PropKind::Lamp),
+        ("bench", PropKind::Furniture),
+    ];
+    NAMES.iter().find(|(part, _)| name.contains(part)).map(|&(_, kind)| kind)
+}
+
+/// Boxes that fill a shape; none for one without a footprint or height.
+fn boxes(shape: &xodr::Shape, kind: PropKind, variant: u32) -> Vec<Prop> {
+    let prop = |position: Vec3, heading_rad: f32, size: Vec3| Prop {
+        kind,
+        position: snap3(position),
+        heading_rad: snap(heading_rad),
+        size: snap3(size),
+        variant,
+    };
+    let found = match shape {
+        xodr::Shape::Solid { position, heading, extent: Some(extent), .. } => {
+            let size = match *extent {
+                xodr::Extent::Box { length, width, height } => Vec3::new(length, width, height),
+                xodr::Extent::Cylinder { radius, height } => Vec3::new(2.0 * radius, 2.0 * radius, height),
+                _ => Vec3::ZERO,
+            };
+            vec![prop(point(*position), *heading, size)]
+        }
+        xodr::Shape::Outline { corners, closed, .. } => outline(corners, *closed, &prop),
+        xodr::Shape::Sweep { sections, .. } => {
+            let middle = |s: &xodr::Section| (point(s.left.base) + point(s.right.base)) / 2.0;
+            let height = |s: &xodr::Section| s.left.top.z - s.left.base.z;
+            sections.windows(2).map(|w| rail(middle(&w[0]), middle(&w[1]), height(&w[0]), &prop)).collect()
+        }
+        _ => Vec::new(),
+    };
+    found.into_iter().filter(|p| p.size.x > 0.05 && p.size.z > 0.1 && p.size.max_element() < LARGEST_M).collect()
+}
+
+fn outline(corners: &[xodr::Corner], closed: bool, prop: &dyn Fn(Vec3, f32, Vec3) -> Prop) -> Vec<Prop> {
+    let base: Vec<Vec3> = corners.iter().map(|c| point(c.base)).collect();
+    let height = corners.iter().map(|c| c.top.z - c.base.z).fold(0.0, f32::max);
+    if !closed {
+        return base.windows(2).map(|w| rail(w[0], w[1], height, prop)).collect();
+    }
+    let Some((center, along, half)) = least_rectangle(&base) else { return Vec::new() };
+    vec![prop(center, ops::atan2(along.y, along.x), (half * 2.0).extend(height))]
+}
+
+/// A thin upright piece from `a` to `b`.
+fn rail(a: Vec3, b: Vec3, height: f32, prop: &dyn Fn(Vec3, f32, Vec3) -> Prop) -> Prop {
+    let along = (b - a).truncate();
+    prop((a + b) / 2.0, ops::atan2(along.y, along.x), Vec3::new(along.length(), 0.2, height))
+}
+
+/// Whether any of a prop's footprint lies on a driving lane.
+fn is_on_lane(roads: &Roads<'_>, prop: &Prop) -> bool {
+    footprint(prop, 1.0).iter().any(|&p| roads.at(p, LaneKind::Driving).iter().any(|l| roads.beyond_edge(l) < -0.1))
+}

@@ -1,0 +1,75 @@
+//! The file that a map is baked from, and where each lane came from.
+
+use std::collections::BTreeMap;
+
+use crate::map_data::LaneId;
+
+/// Why a text is not a usable map.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: {reason}")]
+pub struct BakeError {
+    /// Where in the file: a line, a road, or the whole document.
+    pub place: String,
+    /// What is wrong, and what was expected.
+    pub reason: String,
+}
+
+/// A parsed file, and where each baked lane came from.
+pub(super) struct Source {
+    pub net: xodr::RoadNetwork,
+    pub provenance: xodr::Provenance,
+    /// By [`LaneId`].
+    pub origins: Vec<Origin>,
+    /// The way back from xodr's ids.
+    pub ids: BTreeMap<usize, LaneId>,
+}
+
+/// Where a lane came from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Origin {
+    pub lane: xodr::LaneId,
+    pub road: usize,
+    pub section: usize,
+    pub od_id: i32,
+    /// Whether it is driven along its road's reference line.
+    pub forward: bool,
+}
+
+impl Origin {
+    /// The road and direction that lanes of one approach to a junction share.
+    pub fn approach(&self) -> Approach {
+        (self.road, self.forward)
+    }
+}
+
+/// One road driven in one direction.
+pub(super) type Approach = (usize, bool);
+
+/// Height of a pavement above the road where the file gives none, metres.
+const KERB_M: f32 = 0.125;
+
+impl Source {
+    /// The file, before any lane is baked.
+    pub fn read(text: &str) -> Result<Self, BakeError> {
+        let (net, provenance) = xodr::load_str_with_provenance(text).map_err(explain)?;
+        Ok(Self { net, provenance, origins: Vec::new(), ids: BTreeMap::new() })
+    }
+
+    /// How far a lane stands above the road: pavements do, unless the file raises them itself.
+    pub fn rise(&self, lane: LaneId) -> f32 {
+        let origin = self.origins[lane as usize];
+        let told = self.provenance.lanes.iter().find(|p| p.lane == origin.lane);
+        let is_raised = told.is_some_and(|p| p.heights.iter().any(|h| h.inner > 0.02 || h.outer > 0.02));
+        if is_raised { 0.0 } else { KERB_M }
+    }
+}
+
+fn explain(error: xodr::ImportError) -> BakeError {
+    match error {
+        xodr::ImportError::Xml(e) => BakeError {
+            place: format!("line {}", e.pos().row),
+            reason: format!("expected well-formed OpenDRIVE XML, but {e}"),
+        },
+        other => BakeError { place: "the whole file".to_owned(), reason: format!("expected OpenDRIVE: {other}") },
+    }
+}

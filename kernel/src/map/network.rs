@@ -1,0 +1,90 @@
+//! A map with all that is derived from it.
+
+use std::fmt;
+use std::ops::Deref;
+use std::sync::{Arc, OnceLock};
+
+use glam::Vec3;
+
+use crate::map_data::{LaneKind, MapData, Projection};
+use crate::physics::Statics;
+use crate::places::{Ground, Places};
+use crate::traffic::Ways;
+
+/// A map, and what is derived from it: made on first use, once, and shared by every world on the map
+/// and by all that look things up in it.
+///
+/// Deriving takes about 40 ms on a bundled map, as long as 500 ticks, so that a short replay or the
+/// way back to a keyframe must not do it again. It cannot go stale: the data never changes in here,
+/// and another map is made [`from`](From) other data.
+#[derive(Clone)]
+pub struct RoadNetwork {
+    map: Arc<MapData>,
+    places: OnceLock<Arc<Places>>,
+    statics: OnceLock<Arc<Statics>>,
+    ways: OnceLock<Arc<Ways>>,
+}
+
+impl From<MapData> for RoadNetwork {
+    fn from(map: MapData) -> Self {
+        Self { map: Arc::new(map), places: OnceLock::new(), statics: OnceLock::new(), ways: OnceLock::new() }
+    }
+}
+
+impl Deref for RoadNetwork {
+    type Target = MapData;
+
+    fn deref(&self) -> &MapData {
+        &self.map
+    }
+}
+
+impl fmt::Debug for RoadNetwork {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "RoadNetwork({}, {:032x})", self.name, self.digest)
+    }
+}
+
+impl RoadNetwork {
+    /// Where its lanes and its ground are.
+    pub(crate) fn places(&self) -> &Arc<Places> {
+        self.places.get_or_init(|| Arc::new(Places::new(&self.map)))
+    }
+
+    /// What physics starts from.
+    pub(crate) fn statics(&self) -> &Arc<Statics> {
+        self.statics.get_or_init(|| Arc::new(Statics::new(&self.map)))
+    }
+
+    /// What traffic looks up.
+    pub(crate) fn ways(&self) -> &Arc<Ways> {
+        self.ways.get_or_init(|| Arc::new(Ways::new(self.places())))
+    }
+
+    /// The lane of `kind` nearest to `position` among those within `radius_m`; lanes that overlap
+    /// in a junction tie at distance, then the one whose direction is nearer to `heading_rad` wins.
+    pub fn nearest_lane(
+        &self,
+        position: Vec3,
+        kind: LaneKind,
+        heading_rad: Option<f32>,
+        radius_m: f32,
+    ) -> Option<Projection> {
+        self.places().roads().nearest(position, kind, heading_rad, radius_m)
+    }
+
+    /// The lanes of `kind` whose area holds `position`, in ascending order of their ids.
+    pub fn lanes_at(&self, position: Vec3, kind: LaneKind) -> Vec<Projection> {
+        self.places().roads().at(position, kind)
+    }
+
+    /// Whether `position` lies on a driving lane (by its area seen from above).
+    pub fn on_road(&self, position: Vec3) -> bool {
+        self.places().roads().on_road(position)
+    }
+
+    /// The highest ground at most 1 m above `position` and below it; `None` beyond the map.
+    pub fn ground(&self, position: Vec3) -> Option<Ground> {
+        self.places().ground(position)
+    }
+}

@@ -1,0 +1,75 @@
+//! A whole map.
+
+use glam::Vec3;
+use xxhash_rust::xxh3::xxh3_128;
+
+use super::digest::Digested;
+use super::ids::LaneId;
+use super::junction::{Junction, LightGroup, LightHead};
+use super::lane::{Lane, LanePoint, Projection};
+use super::scenery::{Prop, Surface};
+use super::walkway::{Crosswalk, WalkEdge, WalkNode};
+
+/// Everything about a map, as plain data.
+#[derive(Clone, Debug, Default)]
+pub struct MapData {
+    /// Name of a bundled map, or the file's stem.
+    pub name: String,
+    /// xxh3 over everything below.
+    pub digest: u128,
+    /// All lanes.
+    pub lanes: Vec<Lane>,
+    /// All junctions.
+    pub junctions: Vec<Junction>,
+    /// Signal groups.
+    pub light_groups: Vec<LightGroup>,
+    /// Signal heads.
+    pub light_heads: Vec<LightHead>,
+    /// Crosswalks.
+    pub crosswalks: Vec<Crosswalk>,
+    /// Where the ways of pedestrians meet.
+    pub walk_nodes: Vec<WalkNode>,
+    /// The ways of pedestrians.
+    pub walk_edges: Vec<WalkEdge>,
+    /// Static surfaces.
+    pub surfaces: Vec<Surface>,
+    /// Static objects.
+    pub props: Vec<Prop>,
+    /// Least and greatest corner of everything.
+    pub bounds: [Vec3; 2],
+}
+
+impl MapData {
+    /// What [`MapData::digest`] must be: xxh3-128 over everything but the name.
+    pub fn content_digest(&self) -> u128 {
+        let Self {
+            name: _,
+            digest: _,
+            lanes,
+            junctions,
+            light_groups,
+            light_heads,
+            crosswalks,
+            walk_nodes,
+            walk_edges,
+            surfaces,
+            props,
+            bounds,
+        } = self;
+        let mut bytes = Vec::new();
+        let parts: [&dyn Digested; 10] =
+            [lanes, junctions, light_groups, light_heads, crosswalks, walk_nodes, walk_edges, surfaces, props, bounds];
+        parts.iter().for_each(|part| part.digest(&mut bytes));
+        xxh3_128(&bytes)
+    }
+
+    /// The point of `lane` at `s_m` from its start, interpolated; `s_m` is clamped to the lane.
+    pub fn lane_point(&self, lane: LaneId, s_m: f32) -> LanePoint {
+        self.lanes[lane as usize].at(s_m)
+    }
+
+    /// Where `position` is relative to `lane`.
+    pub fn project(&self, lane: LaneId, position: Vec3) -> Projection {
+        Projection::onto(lane, &self.lanes[lane as usize], position)
+    }
+}

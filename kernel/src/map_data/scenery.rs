@@ -1,0 +1,89 @@
+//! What stands and lies around: surfaces and props.
+
+use glam::Vec3;
+
+use super::digest::{digested, digested_codes};
+use crate::state_enum;
+
+state_enum! {
+    /// What a static surface is made of.
+    pub enum SurfaceKind {
+        /// Asphalt.
+        Road = 0,
+        /// Paint on the asphalt.
+        RoadLine = 1,
+        /// Pavement of a sidewalk with its kerb.
+        Sidewalk = 2,
+        /// Grass and soil.
+        Terrain = 3,
+        /// Paved ground that is none of the above.
+        Ground = 4,
+    }
+}
+
+digested! {
+    /// A triangle mesh of one material.
+    #[derive(Clone, Debug)]
+    pub struct Surface {
+        /// Material.
+        pub kind: SurfaceKind,
+        /// Vertices.
+        pub positions: Vec<Vec3>,
+        /// Counter-clockwise seen from above.
+        pub triangles: Vec<[u32; 3]>,
+    }
+}
+
+state_enum! {
+    /// What a static object is.
+    pub enum PropKind {
+        /// A house; `size` is its box.
+        Building = 0,
+        /// A tree; `size.x` is the diameter of its crown, `size.z` its height.
+        Tree = 1,
+        /// A hedge or bush.
+        Hedge = 2,
+        /// A street lamp.
+        Lamp = 3,
+        /// A traffic sign on its post; `variant` is a `SIGN_*` constant.
+        Sign = 4,
+        /// The pole of a signal head.
+        SignalPole = 5,
+        /// A parked car; part of the static world.
+        ParkedCar = 6,
+        /// A fence; `size.x` is its length.
+        Fence = 7,
+        /// A wall; `size.x` is its length.
+        Wall = 8,
+        /// A guard rail; `size.x` is its length.
+        GuardRail = 9,
+        /// Street furniture: bins, benches, boxes.
+        Furniture = 10,
+    }
+}
+
+digested_codes!(SurfaceKind PropKind);
+
+digested! {
+    /// A static object standing on the ground.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Prop {
+        /// What it is.
+        pub kind: PropKind,
+        /// Centre of its footprint on the ground.
+        pub position: Vec3,
+        /// Direction of its x axis, radians.
+        pub heading_rad: f32,
+        /// Extent along its own x, y and z in metres.
+        pub size: Vec3,
+        /// Selects colour, shape or sign.
+        pub variant: u32,
+    }
+}
+
+/// [`Prop::variant`] of a stop sign.
+pub const SIGN_STOP: u32 = 0;
+/// [`Prop::variant`] of a yield sign.
+pub const SIGN_YIELD: u32 = 1;
+/// [`Prop::variant`] of a speed limit: this plus the limit in km/h.
+pub const SIGN_LIMIT: u32 = 1000;

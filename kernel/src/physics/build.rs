@@ -1,0 +1,73 @@
+//! What bodies are made of: groups, masses, and the car's wheels.
+
+use glam::Vec3;
+use rapier3d::control::{DynamicRayCastVehicleController, WheelTuning};
+use rapier3d::prelude::*;
+
+use crate::actor::ActorKind;
+use crate::ego;
+use crate::motion::Motion;
+use crate::time::TICK_S;
+
+pub(super) const GROUND: Group = Group::GROUP_1;
+pub(super) const PROPS: Group = Group::GROUP_2;
+pub(super) const ACTORS: Group = Group::GROUP_3;
+pub(super) const EGO: Group = Group::GROUP_4;
+
+/// Collides with some groups as a member of one.
+pub(super) fn groups(of: Group, with: Group) -> InteractionGroups {
+    InteractionGroups::new(of, with, InteractionTestMode::And)
+}
+
+/// How the engine computes.
+pub(super) fn parameters() -> IntegrationParameters {
+    // Recycled contacts may be stale by centimetres, which would blur collision events.
+    IntegrationParameters { dt: TICK_S, contact_recycling: false, ..Default::default() }
+}
+
+/// A body that forces move.
+pub(super) fn free(motion: &Motion) -> RigidBodyBuilder {
+    // Rest is a rule of the world's state, so the engine never puts a body to sleep.
+    RigidBodyBuilder::dynamic()
+        .pose(Pose::from_parts(motion.position, motion.rotation))
+        .linvel(motion.velocity_mps)
+        .angvel(motion.spin_radps)
+        .can_sleep(false)
+}
+
+/// A solid box of the kind's size and mass.
+pub(super) fn mass(kind: ActorKind) -> MassProperties {
+    let kg = match kind {
+        ActorKind::Car => 1400.0,
+        ActorKind::Truck => 7000.0,
+        ActorKind::Bus => 12000.0,
+        ActorKind::Motorcycle => 280.0,
+        ActorKind::Bicycle => 90.0,
+        ActorKind::Pedestrian => 75.0,
+    };
+    let size = kind.size_m();
+    let square = size * size;
+    let inertia = Vec3::new(square.y + square.z, square.x + square.z, square.x + square.y) * (kg / 12.0);
+    MassProperties::new(Vec3::Z * 0.45 * size.z, kg, inertia)
+}
+
+/// Four wheels, front left, front right, rear left, rear right. The axle points to the right: with
+/// the axle to the left, the controller drives backwards.
+pub(super) fn car(chassis: RigidBodyHandle) -> DynamicRayCastVehicleController {
+    let tuning = WheelTuning {
+        suspension_stiffness: ego::SPRING_PER_S2,
+        suspension_compression: ego::BUMP_PER_S,
+        suspension_damping: ego::REBOUND_PER_S,
+        max_suspension_travel: ego::TRAVEL_M,
+        side_friction_stiffness: 1.0,
+        friction_slip: ego::GRIP,
+        max_suspension_force: ego::MAX_SUSPENSION_N,
+    };
+    let mut car = DynamicRayCastVehicleController::new(chassis);
+    car.index_up_axis = 2;
+    car.index_forward_axis = 0;
+    for mount in ego::wheel_mounts() {
+        car.add_wheel(mount, Vec3::NEG_Z, Vec3::NEG_Y, ego::SPRING_REST_M, ego::WHEEL_RADIUS_M, &tuning);
+    }
+    car
+}

@@ -1,0 +1,11 @@
+//! Questions about places on a map: the nearest lane, the ground below.
+
+mod grid;
+mod ground;
+mod index;
+mod roads;
+
+pub(crate) use grid::Grid;
+pub use ground::Ground;
+pub(crate) use index::Places;
+pub(crate) use roads::{LaneGrid, Roads};

@@ -1,0 +1,122 @@
+//! The lanes around a place.
+
+use glam::{Vec2, Vec3};
+
+use super::grid::{Bounds, Grid};
+use crate::map_data::{Lane, LaneId, LaneKind, LanePoint, Projection};
+use crate::ops;
+
+/// Vertices of a lane that share a box in the grid.
+const STRETCH: usize = 8;
+/// Side of a cell, metres.
+const CELL_M: f32 = 10.0;
+/// Distances that differ by less tie, and direction decides, metres.
+const TIE_M: f32 = 0.5;
+
+/// A grid over the lines of lanes.
+#[derive(Debug)]
+pub(crate) struct LaneGrid {
+    grid: Grid,
+    /// Lane of each item of the grid.
+    stretches: Vec<LaneId>,
+}
+
+impl LaneGrid {
+    pub fn new(lanes: &[Lane]) -> Self {
+        let (boxes, stretches) = boxes(lanes);
+        Self { grid: Grid::new(&boxes, CELL_M), stretches }
+    }
+
+    /// With the lanes it was made of; all but their lines may have changed.
+    pub fn over<'a>(&'a self, lanes: &'a [Lane]) -> Roads<'a> {
+        Roads { lanes, grid: self }
+    }
+}
+
+/// Lanes with a grid over them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Roads<'a> {
+    pub lanes: &'a [Lane],
+    grid: &'a LaneGrid,
+}
+
+impl Roads<'_> {
+    fn point(&self, p: &Projection) -> LanePoint {
+        self.lanes[p.lane as usize].at(p.s_m)
+    }
+
+    /// The lane of `kind` nearest to `position` among those within `radius_m`; lanes that overlap
+    /// in a junction tie at distance, then the one whose direction is nearer to `heading_rad` wins.
+    pub fn nearest(
+        &self,
+        position: Vec3,
+        kind: LaneKind,
+        heading_rad: Option<f32>,
+        radius_m: f32,
+    ) -> Option<Projection> {
+        let found = self.around(position, kind, radius_m);
+        let nearest = found.iter().map(|p| self.beyond_edge(p)).fold(f32::MAX, f32::min);
+        let misfit = |p: &Projection| match heading_rad {
+            Some(h) => ops::wrap_angle(self.point(p).heading_rad - h).abs(),
+            None => p.distance_m,
+        };
+        found
+            .into_iter()
+            .filter(|p| self.beyond_edge(p) <= nearest + TIE_M)
+            .min_by(|a, b| misfit(a).total_cmp(&misfit(b)).then(a.distance_m.total_cmp(&b.distance_m)))
+    }
+
+    /// The lanes of `kind` whose area holds `position`, in ascending order of their ids.
+    pub fn at(&self, position: Vec3, kind: LaneKind) -> Vec<Projection> {
+        let mut found = self.around(position, kind, 0.0);
+        found.retain(|p| self.beyond_edge(p) <= 0.0);
+        found
+    }
+
+    /// Whether `position` lies on a driving lane (by its area seen from above).
+    pub fn on_road(&self, position: Vec3) -> bool {
+        !self.at(position, LaneKind::Driving).is_empty()
+    }
+
+    /// Lanes of `kind` whose area comes within `radius_m` of `position`, by id.
+    pub fn around(&self, position: Vec3, kind: LaneKind, radius_m: f32) -> Vec<Projection> {
+        let near = self.grid.grid.around(position.truncate(), radius_m);
+        let mut ids: Vec<LaneId> = near.map(|i| self.grid.stretches[i as usize]).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids.retain(|&id| self.lanes[id as usize].kind == kind);
+        let mut found: Vec<_> =
+            ids.into_iter().map(|id| Projection::onto(id, &self.lanes[id as usize], position)).collect();
+        found.retain(|p| self.beyond_edge(p) <= radius_m && self.on_level(p, position));
+        found
+    }
+
+    /// Distance from the lane's edge, negative inside its area.
+    pub fn beyond_edge(&self, p: &Projection) -> f32 {
+        p.distance_m - self.point(p).half_width_m
+    }
+
+    /// Whether a lane passes at about the height of `position`, not on a bridge above or below it.
+    fn on_level(&self, p: &Projection, position: Vec3) -> bool {
+        (self.point(p).position.z - position.z).abs() < 4.0
+    }
+}
+
+/// The box of each stretch of a lane and its lane.
+fn boxes(lanes: &[Lane]) -> (Vec<Bounds>, Vec<LaneId>) {
+    let mut boxes = Vec::new();
+    let mut owners = Vec::new();
+    for (id, lane) in lanes.iter().enumerate() {
+        let mut first = 0;
+        while first + 1 < lane.points.len() {
+            let end = (first + STRETCH).min(lane.points.len() - 1);
+            let part = &lane.points[first..=end];
+            let low = part.iter().fold(Vec2::splat(f32::MAX), |m, p| m.min(p.position.truncate() - p.half_width_m));
+            let high = part.iter().fold(Vec2::splat(f32::MIN), |m, p| m.max(p.position.truncate() + p.half_width_m));
+            boxes.push((low, high));
+            owners.push(id as LaneId);
+            first = end;
+        }
+    }
+    (boxes, owners)
+}

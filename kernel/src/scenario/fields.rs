@@ -1,0 +1,56 @@
+//! What a scenario holds.
+
+use crate::state;
+use crate::traffic::TrafficCounts;
+use crate::weather::Weather;
+
+/// Most actors of one kind.
+pub const MOST_OF_A_KIND: u16 = 500;
+
+state! {
+    /// Rules of a run.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Rules {
+        /// Highest speed asked of the semantic driver, km/h.
+        pub max_speed_kmh: f32,
+        /// Length after which a run ends as censored, seconds.
+        pub max_seconds: u32,
+        /// Brake fraction of the safety driver above which it takes over, (0, 1).
+        pub brake_threshold: f32,
+        /// Steering fraction of the safety driver above which it takes over, (0, 1).
+        pub steer_threshold: f32,
+    }
+}
+
+state! {
+    /// Where the ego car starts.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct EgoStart {
+        /// Lane index; chosen from the seed when absent.
+        pub lane: Option<u32>,
+        /// Distance along the lane, metres.
+        pub s_m: f32,
+    }
+}
+
+/// A validated scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Name of a bundled map, or of the foreign map that goes with it.
+    pub map: String,
+    /// Seed of every random number of the run.
+    pub seed: u64,
+    /// Other road users.
+    pub traffic: TrafficCounts,
+    /// Weather.
+    pub weather: Weather,
+    /// Start of the ego car.
+    pub ego: EgoStart,
+    /// Rules.
+    pub rules: Rules,
+}
+
+/// Why a text is not a valid scenario; says line and key.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct ScenarioError(pub String);

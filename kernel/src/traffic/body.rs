@@ -1,0 +1,61 @@
+//! Road users as boxes: how traffic sees the rest of the world, and how the world sees traffic.
+
+use glam::{Quat, Vec3};
+
+use crate::actor::ActorKind;
+use crate::time::Tick;
+
+/// A box that moves freely: the ego car, or an actor that physics has taken over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Id of the actor; 0 for the ego car.
+    pub id: u32,
+    /// Centre of its footprint on the ground, metres.
+    pub position: Vec3,
+    /// Direction of its x axis, radians counter-clockwise from east.
+    pub heading_rad: f32,
+    /// Velocity, m/s.
+    pub velocity_mps: Vec3,
+    /// Length, width and height, metres.
+    pub size_m: Vec3,
+}
+
+/// What traffic sees of the rest of the world, as it was at the end of the previous tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    /// The tick that is being computed.
+    pub tick: Tick,
+    /// The ego car.
+    pub ego: Obstacle,
+    /// Actors that physics has made loose, by ascending id: they decide nothing, their state stays
+    /// as it was, and others see them at these poses.
+    pub loose: &'a [Obstacle],
+}
+
+/// An actor as physics and pictures need it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Id of the actor, 1 or more.
+    pub id: u32,
+    /// What it is; gives its box by [`ActorKind::size_m`].
+    pub kind: ActorKind,
+    /// Selects colour and shape.
+    pub variant: u32,
+    /// Centre of its footprint on the ground, metres.
+    pub position: Vec3,
+    /// Rotation from its axes (x forward, y left, z up) to the world's.
+    pub rotation: Quat,
+    /// Velocity, m/s.
+    pub velocity_mps: Vec3,
+    /// Phase of gait or pedalling, radians in [0, 2 pi).
+    pub phase_rad: f32,
+    /// Brake lights on.
+    pub braking: bool,
+}
+
+impl Surroundings<'_> {
+    /// Whether physics holds the actor.
+    pub(super) fn holds(&self, id: u16) -> bool {
+        self.loose.binary_search_by_key(&u32::from(id), |o| o.id).is_ok()
+    }
+}

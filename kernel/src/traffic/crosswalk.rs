@@ -1,0 +1,124 @@
+//! Who crosses at a crosswalk, and when.
+
+use glam::Vec2;
+
+use crate::light::LightPhase;
+use crate::map_data::{LaneId, MapData, Place};
+use crate::rng::{Stream, unit};
+use crate::time::{TICK_HZ, Tick};
+
+use super::hazard::Hazard;
+use super::lists::Lists;
+use super::walker::Walker;
+use super::ways::Ways;
+
+/// Vehicles stop for people who reach their lane within this time, s.
+const APPROACH_S: f32 = 4.0;
+/// Share of those who step onto a crosswalk without lights and without looking.
+const CARELESS: f32 = 0.06;
+/// Vehicles slower than this let people go, m/s.
+const CREEP_MPS: f32 = 1.2;
+/// Time that people want to have left when the vehicle arrives, s.
+const SPARE_S: f32 = 0.5;
+/// Vehicles farther away than this are not waited for, metres.
+const WATCH_M: f32 = 45.0;
+
+/// Somebody on a crosswalk, or at the kerb of one without lights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Claim {
+    pub crosswalk: u32,
+    pub position: Vec2,
+    pub velocity: Vec2,
+    pub waiting: bool,
+}
+
+/// Whether people on a crosswalk keep a vehicle from going over it; `place` is where its lane meets
+/// the crosswalk. `claims` are sorted by crosswalk.
+pub(super) fn is_claimed(claims: &[Claim], crosswalk: u32, place: impl Fn() -> Place) -> bool {
+    let first = claims.partition_point(|c| c.crosswalk < crosswalk);
+    let mut on_it = claims[first..].iter().take_while(|c| c.crosswalk == crosswalk);
+    on_it.any(|claim| claim.waiting || crosses(claim, &place()))
+}
+
+fn crosses(claim: &Claim, place: &Place) -> bool {
+    let left = place.left();
+    let at_m = (claim.position - place.position.truncate()).dot(left);
+    let speed = claim.velocity.dot(left);
+    let reach_m = place.half_width_m + 0.7;
+    let comes = at_m * speed < 0.0 && at_m.abs() < reach_m + speed.abs() * APPROACH_S;
+    at_m.abs() < reach_m || comes
+}
+
+/// What people look at before they cross.
+#[derive(Clone, Copy)]
+pub(super) struct Gaps<'a> {
+    pub map: &'a MapData,
+    pub ways: &'a Ways,
+    pub seed: u64,
+    pub lists: &'a Lists,
+    pub lights: &'a [(LightPhase, Tick)],
+    /// The ego car and loose actors.
+    pub free: &'a [Hazard],
+}
+
+impl Gaps<'_> {
+    /// Whether a walker at `position` starts over a crosswalk that takes it `time_s` to cross.
+    pub fn may_cross(&self, crosswalk: u32, walker: &Walker, position: Vec2, time_s: f32) -> bool {
+        let lights = &self.ways.crosswalk_lights[crosswalk as usize];
+        let needed = ((time_s + 1.0) * TICK_HZ as f32) as Tick;
+        let red = |group: &u32| {
+            let (phase, left) = self.lights[*group as usize];
+            phase == LightPhase::Red && left > needed
+        };
+        if !lights.iter().all(red) {
+            return false;
+        }
+        let careless = unit(self.seed, Stream::Walk, u64::from(walker.id), !u64::from(walker.hops)) < CARELESS;
+        (careless && lights.is_empty()) || self.is_clear(crosswalk, position, time_s)
+    }
+
+    /// Whether nothing arrives before the crosswalk is crossed.
+    fn is_clear(&self, crosswalk: u32, from: Vec2, time_s: f32) -> bool {
+        let crossed = &self.map.crosswalks[crosswalk as usize];
+        let held = !self.ways.crosswalk_lights[crosswalk as usize].is_empty();
+        // Vehicles on lanes with a red light stay behind it.
+        let watched = |lane: LaneId| !(held && self.map.lanes[lane as usize].stop.is_some());
+        let lanes_clear = crossed
+            .lanes
+            .iter()
+            .filter(|(lane, _)| watched(*lane))
+            .all(|&(lane, s_m)| !self.arrives(lane, s_m, crossed.half_width_m, time_s, 0));
+        let middle = (crossed.ends[0] + crossed.ends[1]).truncate() * 0.5;
+        let reach_m = middle.distance(from) + 1.0;
+        lanes_clear && !self.free.iter().any(|h| heads_for(h, middle, reach_m, time_s))
+    }
+
+    /// Whether a vehicle on `lane` or the lanes before it is at `s_m`, or arrives there within `time_s`.
+    fn arrives(&self, lane: LaneId, s_m: f32, half_width_m: f32, time_s: f32, depth: u32) -> bool {
+        let early = self.lists.on(lane).iter().any(|entry| {
+            let gap_m = s_m - half_width_m - entry.s_m - entry.half_m;
+            let gone = entry.s_m - entry.half_m > s_m + half_width_m;
+            let on_it = gap_m < 0.0 && !gone;
+            let comes = entry.speed_mps > CREEP_MPS && time_s > 0.0 && gap_m < entry.speed_mps * (time_s + SPARE_S);
+            !gone && (on_it || (comes && gap_m < WATCH_M))
+        });
+        let before = &self.map.lanes[lane as usize].predecessors;
+        let further = |p: &LaneId| {
+            let s_m = s_m + self.map.lanes[*p as usize].length_m;
+            self.arrives(*p, s_m, half_width_m, time_s, depth + 1)
+        };
+        early || (depth < 2 && s_m < WATCH_M && before.iter().any(further))
+    }
+}
+
+/// Whether something free will be within `reach_m` of `middle` in less than `time_s`.
+fn heads_for(hazard: &Hazard, middle: Vec2, reach_m: f32, time_s: f32) -> bool {
+    let (offset, speed) = (middle - hazard.position.truncate(), hazard.velocity.length());
+    if speed < CREEP_MPS {
+        return offset.length() < hazard.half.x && hazard.half.x > 1.0;
+    }
+    let direction = hazard.velocity / speed;
+    let ahead_m = offset.dot(direction);
+    let aside_m = direction.perp_dot(offset).abs();
+    ahead_m > 0.0 && aside_m < reach_m && ahead_m - reach_m < speed * (time_s + SPARE_S) && ahead_m < WATCH_M
+}

@@ -1,0 +1,41 @@
+//! What is remembered of all traffic.
+
+use super::vehicle::Vehicle;
+use super::walker::Walker;
+use crate::actor::ActorKind;
+use crate::map_data::MapData;
+use crate::state;
+
+state! {
+    /// Steering state of all traffic. Ids are unique over both lists, ascending in each, and start
+    /// at 1; vehicles come before people.
+    #[derive(Clone, Debug, Default, PartialEq)]
+    pub struct TrafficState {
+        /// Cars, lorries, buses, motorcycles and bicycles.
+        pub vehicles: Vec<Vehicle>,
+        /// People on foot.
+        pub walkers: Vec<Walker>,
+    }
+}
+
+impl TrafficState {
+    /// Refuses a state that was never that of this map.
+    pub(super) fn check(&self, map: &MapData) -> Result<(), String> {
+        let ids = || self.vehicles.iter().map(|v| v.id).chain(self.walkers.iter().map(|w| w.id));
+        if !ids().zip(ids().skip(1)).all(|(a, b)| a < b) || ids().next() == Some(0) {
+            return Err("actors: expected ascending ids from 1".into());
+        }
+        for v in &self.vehicles {
+            let lane = map.lanes.get(v.lane as usize).filter(|lane| (0.0..=lane.length_m).contains(&v.s_m));
+            let kind = v.kind != ActorKind::Pedestrian;
+            if lane.is_none() || !kind || v.speed_mps < 0.0 || v.flags & !Vehicle::ALL_FLAGS != 0 {
+                return Err(format!("vehicle {}: expected a vehicle on a lane of map {}", v.id, map.name));
+            }
+        }
+        let on_map = |w: &&Walker| (w.edge as usize) < map.walk_edges.len() && w.speed_mps >= 0.0;
+        match self.walkers.iter().find(|w| !on_map(w)) {
+            Some(w) => Err(format!("walker {}: expected a way of map {}", w.id, map.name)),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! What happens in a tick, in which order.
+
+use std::sync::Arc;
+
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::controls::{Controls, TickInput};
+use crate::ego;
+use crate::events::EventKind;
+use crate::light::LightPhase;
+use crate::map::RoadNetwork;
+use crate::physics::{Physics, Touched};
+use crate::scenario::Scenario;
+use crate::signals;
+use crate::state::StateHash;
+use crate::time::{KEYFRAME_TICKS, Tick, seconds};
+use crate::traffic::{Obstacle, Surroundings, Traffic};
+use crate::watch::{self, Log};
+
+use super::error::WorldError;
+use super::keyframe::{self, Keyframe};
+use super::output::TickOutput;
+use super::snapshot::{PARTS, Parts};
+use super::{bodies, start};
+
+/// How long a keyframe that is due waits while the ego car touches an actor.
+pub const KEYFRAME_GRACE_TICKS: Tick = seconds(2);
+
+/// The simulated world. `Clone` copies the engine's caches too; use it for rewinds and forks.
+#[derive(Clone)]
+pub struct World {
+    pub(super) scenario: Arc<Scenario>,
+    pub(super) network: Arc<RoadNetwork>,
+    pub(super) parts: Parts,
+    pub(super) traffic: Traffic,
+    physics: Physics,
+    pub(super) bytes: Vec<u8>,
+    pub(super) ends: [usize; PARTS.len()],
+    scratch: Scratch,
+}
+
+/// Working memory; its contents mean nothing between ticks.
+#[derive(Clone, Default)]
+struct Scratch {
+    obstacles: Vec<Obstacle>,
+    near: Vec<u32>,
+    touched: Touched,
+}
+
+impl World {
+    /// A world at tick 0. The scenario's map is refused when it has another name than `network`.
+    pub fn new(scenario: &Scenario, network: &Arc<RoadNetwork>) -> Result<Self, WorldError> {
+        let (parts, traffic) = start::begin(scenario, network)?;
+        Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
+    }
+
+    /// The world as it was at a keyframe, bit for bit. Refuses another map as [`World::new`] does.
+    pub fn resume(scenario: &Scenario, network: &Arc<RoadNetwork>, keyframe: &Keyframe) -> Result<Self, WorldError> {
+        start::check_map(scenario, network)?;
+        let (parts, traffic) = keyframe.read()?;
+        let wrong = |reason| WorldError::State { tick: keyframe.tick, reason };
+        keyframe::check(&parts, network).map_err(wrong)?;
+        let counts = &scenario.traffic;
+        let traffic = Traffic::resume(counts, scenario.seed, network.ways(), traffic).map_err(wrong)?;
+        Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
+    }
+
+    fn assemble(scenario: Arc<Scenario>, network: &Arc<RoadNetwork>, parts: Parts, traffic: Traffic) -> Self {
+        let mut physics = Physics::new(network.statics(), &parts.ego.car.motion);
+        parts.bodies.insert_all(traffic.bodies(), &mut physics);
+        let (network, ends) = (network.clone(), Default::default());
+        let mut world =
+            Self { scenario, network, parts, traffic, physics, bytes: Vec::new(), ends, scratch: Scratch::default() };
+        world.encode();
+        world
+    }
+
+    /// Advances by one tick.
+    pub fn step(&mut self, input: &TickInput) -> TickOutput {
+        self.parts.input.tick += 1;
+        self.parts.input.controls = *input;
+        self.parts.output.events.clear();
+        self.arbitrate(input);
+        self.move_everyone();
+        self.watch();
+        let due = self.keyframe_due();
+        if due {
+            self.parts.run.keyframe_at = self.tick();
+        }
+        self.encode();
+        TickOutput {
+            tick: self.tick(),
+            hash: self.hash(),
+            applied: self.parts.output.applied,
+            intervention: self.parts.output.intervention,
+            events: self.parts.output.events.clone(),
+            odometer_mm: self.odometer_mm(),
+            keyframe: due.then(|| self.start_over()),
+        }
+    }
+
+    fn arbitrate(&mut self, input: &TickInput) {
+        let (tick, speed_mps) = (self.tick(), self.parts.ego.car.speed_mps());
+        let decision = self.parts.run.arbiter.arbitrate(tick, input, &self.scenario.rules, speed_mps);
+        let mut log = Log { events: &mut self.parts.output.events, speed_mps };
+        if decision.armed {
+            log.note(EventKind::Armed);
+        }
+        if decision.intervention.is_some() {
+            log.note(EventKind::Intervention);
+        }
+        let pressed = input.semantic.has(Controls::SEEN) || input.safety.has(Controls::SEEN);
+        self.parts.run.watch.buttons(pressed, &mut log);
+        self.parts.output.applied = decision.applied;
+        self.parts.output.intervention = decision.intervention;
+    }
+
+    /// Traffic decides from the state of the previous tick, then physics moves what is near.
+    fn move_everyone(&mut self) {
+        let Scratch { obstacles, near, .. } = &mut self.scratch;
+        let (car, bodies) = (&mut self.parts.ego.car, &mut self.parts.bodies);
+        obstacles.clear();
+        obstacles.extend(bodies.loose.iter().map(bodies::Loose::obstacle));
+        let ego = Obstacle {
+            id: 0,
+            position: car.middle(),
+            heading_rad: car.heading_rad(),
+            velocity_mps: car.motion.velocity_mps,
+            size_m: ego::SIZE_M,
+        };
+        self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, loose: obstacles });
+        bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
+        let forces = car.actuate(&self.parts.output.applied.controls);
+        self.physics.step(&forces);
+        car.moved(self.physics.ego());
+        bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
+    }
+
+    /// Finds what began in this tick, and whether it ends the run.
+    fn watch(&mut self) {
+        let (tick, network) = (self.tick(), &*self.network);
+        let Parts { ego, run, output, .. } = &mut self.parts;
+        let (car, speed_mps) = (&ego.car, ego.car.speed_mps());
+        let light = ego.route.light_ahead(network);
+        let strayed = ego.route.follow(network, self.scenario.seed, car.middle(), car.heading_rad());
+        let mut log = Log { events: &mut output.events, speed_mps };
+
+        self.physics.touched(&mut self.scratch.touched);
+        let collided = run.watch.contacts(&self.scratch.touched, &mut log);
+        let red = |group| signals::phase(network, self.scenario.seed, group, tick).0 == LightPhase::Red;
+        if light.is_some_and(|light| !strayed && red(light.group) && ego.route.passed(network, &light)) {
+            log.note(EventKind::RedLight);
+        }
+        let limit_mps = ego.route.limit_mps(network, &self.scenario);
+        let wrong_way = watch::wrong_way(network, car, tick);
+        run.watch.rules(limit_mps, self.physics.off_road(), wrong_way, &mut log);
+        if run.arbiter.judge(tick, collided, speed_mps, &self.scenario.rules) {
+            log.note(EventKind::Ended);
+        }
+    }
+
+    /// A keyframe is due every [`KEYFRAME_TICKS`]; it waits while the ego car touches an actor, as
+    /// physics then depends most on what is not saved, but not for long.
+    fn keyframe_due(&self) -> bool {
+        let (tick, run) = (self.tick(), &self.parts.run);
+        let due_at = tick - tick % KEYFRAME_TICKS;
+        let touching = !run.watch.touching.is_empty();
+        run.keyframe_at < due_at && (!touching || tick >= due_at + KEYFRAME_GRACE_TICKS)
+    }
+
+    /// Makes the keyframe of this tick and goes on from it as any replay will.
+    fn start_over(&mut self) -> Keyframe {
+        let keyframe = Keyframe { tick: self.tick(), bytes: self.bytes.clone() };
+        // Only a state that was forged, far from what a run can reach, does not resume: it goes on.
+        if let Ok(resumed) = Self::resume(&self.scenario, &self.network, &keyframe) {
+            *self = resumed;
+        }
+        keyframe
+    }
+
+    fn encode(&mut self) {
+        self.bytes.clear();
+        self.ends = self.parts.write(self.traffic.state(), &mut self.bytes);
+    }
+
+    /// The current tick.
+    pub fn tick(&self) -> Tick {
+        self.parts.input.tick
+    }
+
+    /// Hash of the current state, of the last input and output: that of the last [`TickOutput`].
+    pub fn hash(&self) -> StateHash {
+        StateHash(xxh3_128(&self.bytes))
+    }
+
+    /// Distance driven so far, millimetres.
+    pub fn odometer_mm(&self) -> u64 {
+        self.parts.ego.car.odometer_um / 1000
+    }
+}

@@ -1,0 +1,116 @@
+//! What there is to see of a world from outside.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::arbiter::Arbiter;
+use crate::events::{Event, Hud};
+use crate::map::RoadNetwork;
+use crate::scenario::Scenario;
+use crate::scene::{ActorScene, EgoScene, SceneSnapshot, quantise};
+use crate::signals;
+use crate::watch::Watch;
+
+use super::keyframe::{self, FieldDifference, Keyframe};
+use super::snapshot::PARTS;
+use super::tick::World;
+
+impl World {
+    /// The keyframe of tick 0; only valid before the first step.
+    pub fn initial_keyframe(&self) -> Keyframe {
+        Keyframe { tick: self.tick(), bytes: self.bytes.clone() }
+    }
+
+    /// Size of the canonical bytes of the state.
+    pub fn state_bytes(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// A hash for each of [`PARTS`].
+    pub fn part_hashes(&self) -> [u64; PARTS.len()] {
+        std::array::from_fn(|part| {
+            let start = if part == 0 { 0 } else { self.ends[part - 1] };
+            xxh3_64(&self.bytes[start..self.ends[part]])
+        })
+    }
+
+    /// The first named value in which this world and another differ, with its part and actor.
+    pub fn difference(&self, other: &World) -> Option<FieldDifference> {
+        keyframe::difference((&self.parts, self.traffic.state()), (&other.parts, other.traffic.state()))
+    }
+
+    /// What there is to see, on the grid of [`crate::scene::quantise`].
+    pub fn scene(&self) -> SceneSnapshot {
+        let (tick, car) = (self.tick(), &self.parts.ego.car);
+        let phase = |group| signals::phase(&self.network, self.scenario.seed, group, tick).0;
+        let mut scene = SceneSnapshot {
+            tick,
+            ego: EgoScene {
+                position: car.motion.position,
+                rotation: car.motion.rotation,
+                speed_mps: car.speed_mps(),
+                wheel_angle_rad: car.wheel_angle_rad,
+            },
+            actors: self.actors().collect(),
+            lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
+            weather: self.scenario.weather,
+        };
+        quantise(&mut scene);
+        scene
+    }
+
+    fn actors(&self) -> impl Iterator<Item = ActorScene> + '_ {
+        self.traffic.bodies().iter().map(|body| {
+            let loose = self.parts.bodies.loose(body.id).map(|loose| loose.motion);
+            let (position, rotation) = loose.map_or((body.position, body.rotation), |m| (m.position, m.rotation));
+            let velocity = loose.map_or(body.velocity_mps, |m| m.velocity_mps);
+            ActorScene {
+                id: body.id,
+                kind: body.kind,
+                variant: body.variant,
+                position,
+                rotation,
+                speed_mps: velocity.dot(rotation * Vec3::X),
+                phase_rad: body.phase_rad,
+                braking: body.braking && loose.is_none(),
+            }
+        })
+    }
+
+    /// What the HUD shows.
+    pub fn hud(&self) -> Hud {
+        self.parts.ego.route.hud(&self.network, &self.scenario, self.tick(), &self.parts.ego.car)
+    }
+
+    /// What goes on around the ego car; its beginnings are the events.
+    pub fn watch_state(&self) -> &Watch {
+        &self.parts.run.watch
+    }
+
+    /// Where the run stands.
+    pub fn arbiter(&self) -> &Arbiter {
+        &self.parts.run.arbiter
+    }
+
+    /// The middle of the ego car's route ahead, from the car on, points about 1 m apart.
+    pub fn route_ahead(&self, distance_m: f32) -> Vec<Vec3> {
+        self.parts.ego.route.ahead(&self.network, distance_m)
+    }
+
+    /// The map.
+    pub fn network(&self) -> &Arc<RoadNetwork> {
+        &self.network
+    }
+
+    /// The scenario.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// Events of the last tick.
+    pub fn last_events(&self) -> &[Event] {
+        &self.parts.output.events
+    }
+}
