@@ -9,12 +9,11 @@ use kernel::signals::LightPhase;
 
 use crate::camera::EGO_MIDDLE_M;
 use crate::horizon::Horizon;
-use crate::mesh::model::{self, Detail, Model};
+use crate::instances::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
+use crate::mesh::actor::{actor_model, ego_model};
+use crate::mesh::model::{Detail, Model};
 use crate::mesh::{CODE_BRAKE, CODE_LIT, Finish, Mesh, Vertex, signal};
 use crate::view::View;
-
-/// Instance of the ego car.
-pub const EGO_INSTANCE: u16 = u16::MAX;
 
 /// Actors smaller than this many pixels are left out.
 const SMALLEST_PX: f32 = 1.2;
@@ -75,7 +74,7 @@ impl Cast {
         let size = ActorKind::Car.size_m();
         moving.shadows.push((frame, size));
         if view.sees(frame.translation.into(), size.length()) {
-            moving.append(model::ego(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, false);
+            moving.append(ego_model(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, false);
         }
     }
 
@@ -94,8 +93,8 @@ impl Cast {
         let model = self
             .models
             .entry((actor.kind, actor.variant, detail))
-            .or_insert_with(|| model::actor(actor.kind, actor.variant, detail));
-        let instance = actor.id.min(u32::from(crate::scenery::FIRST_PARKED_INSTANCE) - 1) as u16;
+            .or_insert_with(|| actor_model(actor.kind, actor.variant, detail));
+        let instance = actor.id.min(u32::from(FIRST_PARKED_INSTANCE) - 1) as u16;
         moving.append(model, frame, [actor.phase_rad, actor.speed_mps], instance, actor.braking);
     }
 

@@ -12,6 +12,7 @@ mod error;
 mod frame;
 mod gpu;
 mod horizon;
+mod instances;
 mod light;
 pub mod mesh;
 mod noise;
@@ -21,13 +22,12 @@ pub mod tags;
 mod view;
 pub mod wind;
 
-pub use actors::EGO_INSTANCE;
 pub use adapter::{AdapterChoice, AdapterInfo, adapters};
 pub use camera::{Camera, Mount};
 pub use error::RenderError;
 pub use frame::Frame;
+pub use instances::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 pub use renderer::{Preset, RenderOptions, Renderer};
-pub use scenery::FIRST_PARKED_INSTANCE;
 pub use tags::SemanticTag;
 
 /// Version of the renderer: raised whenever the same scene gives other pixels.

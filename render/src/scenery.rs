@@ -5,14 +5,11 @@ use std::ops::Range;
 use glam::Vec3;
 use kernel::map::{Prop, PropKind, RoadNetwork};
 
-use crate::actors::EGO_INSTANCE;
 use crate::horizon::{Horizon, Occluder};
+use crate::instances::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 use crate::mesh::model::Detail;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, surface};
 use crate::view::View;
-
-/// Instances of parked cars count from here.
-pub const FIRST_PARKED_INSTANCE: u16 = 32768;
 
 /// Pieces smaller than this many pixels are left out.
 const SMALLEST_PX: f32 = 2.0;

@@ -1,16 +1,12 @@
 //! One block of the log: the ticks up to a mark, and what happened in them.
 
-use std::io::Write;
-
 use kernel::arbiter::Intervention;
 use kernel::events::Event;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::world::PARTS;
 use kernel::{Keyframe, StateHash, TickInput, TickOutput};
 
-use crate::container::Container;
-use crate::layout::Channel;
-use crate::{Error, Mark, MaskShown, Note, wire};
+use crate::Mark;
 
 /// A block ends at the latest at every multiple of this.
 pub(crate) const BLOCK_TICKS: Tick = TICK_HZ as Tick;
@@ -56,32 +52,5 @@ impl Block {
         self.keyframes.extend(output.keyframe.clone());
         self.happenings.events.extend(output.events.iter().map(|e| (output.tick, *e)));
         self.happenings.intervention = self.happenings.intervention.or(output.intervention);
-    }
-
-    /// Writes the block, the masks shown in it and the notes of it as one chunk. `state` is the last
-    /// keyframe before it, and becomes the last one in it.
-    pub fn write<W: Write>(
-        &self,
-        masks: &[MaskShown],
-        notes: &[Note],
-        state: &mut Vec<u8>,
-        out: &mut Container<W>,
-    ) -> Result<(), Error> {
-        let last = self.mark.tick;
-        out.put(Channel::Block, last, &wire::block_bytes(self))?;
-        for keyframe in &self.keyframes {
-            out.put(Channel::Keyframe, keyframe.tick, &wire::keyframe_bytes(keyframe, state))?;
-            state.clone_from(&keyframe.bytes);
-        }
-        if self.happenings != Happenings::default() {
-            out.put(Channel::Events, last, &wire::happenings_bytes(&self.happenings))?;
-        }
-        if !masks.is_empty() {
-            out.put(Channel::Masks, last, &wire::masks_bytes(masks))?;
-        }
-        if !notes.is_empty() {
-            out.put(Channel::Notes, last, &wire::notes_bytes(notes))?;
-        }
-        out.flush()
     }
 }

@@ -8,7 +8,7 @@ use kernel::time::Tick;
 use crate::block::{BLOCK_TICKS, Block, Happenings};
 use crate::container::Container;
 use crate::layout::Channel;
-use crate::{Annotation, Error, Log, Manifest, Mark, MaskShown, Note, RunSummary, wire};
+use crate::{Annotation, Error, Log, Manifest, Mark, MaskShown, Note, RunSummary, chunk, wire};
 
 /// A log's file being written.
 pub(crate) struct LogFile<W: Write> {
@@ -27,7 +27,7 @@ impl<W: Write> LogFile<W> {
     }
 
     pub fn block(&mut self, block: &Block, masks: &[MaskShown], notes: &[Note]) -> Result<(), Error> {
-        block.write(masks, notes, &mut self.state, &mut self.file)
+        chunk::write(block, masks, notes, &mut self.state, &mut self.file)
     }
 
     pub fn finish(

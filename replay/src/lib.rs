@@ -10,6 +10,7 @@
 
 mod block;
 mod case;
+mod chunk;
 mod columns;
 mod container;
 mod divergence;
@@ -18,6 +19,7 @@ mod error;
 mod export;
 mod layout;
 mod log;
+mod mark;
 mod notes;
 mod recorder;
 mod recording;
@@ -34,9 +36,10 @@ pub use error::Error;
 pub use export::{ExportChannel, Exported, Exporter, Schema, exported};
 pub use layout::nanoseconds;
 pub use log::{
-    Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Provenance,
+    Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, MaskShown, Provenance,
     RunSummary,
 };
+pub use mark::Mark;
 pub use notes::{Note, NoteKind};
 pub use recorder::Recorder;
 pub use recording::Recording;

@@ -7,10 +7,9 @@ use std::str::FromStr;
 use kernel::arbiter::{Intervention, Outcome};
 use kernel::events::Event;
 use kernel::time::Tick;
-use kernel::world::PARTS;
-use kernel::{Keyframe, RoadNetwork, Scenario, SceneSnapshot, StateHash, TickInput};
+use kernel::{Keyframe, RoadNetwork, Scenario, SceneSnapshot, TickInput};
 
-use crate::{Error, Note};
+use crate::{Error, Mark, Note};
 
 /// Version of the file layout; other versions are refused.
 pub const FORMAT_VERSION: u16 = 1;
@@ -70,19 +69,6 @@ pub struct CaseInfo {
     /// Last tick of the window: the intervention, the collision of a missed one, or where an operator
     /// ended it.
     pub to: Tick,
-}
-
-/// The state of things after the last tick of a block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mark {
-    /// The tick.
-    pub tick: Tick,
-    /// Full hash of that tick.
-    pub hash: StateHash,
-    /// A hash for each of [`PARTS`].
-    pub parts: [u64; PARTS.len()],
-    /// Distance driven so far, millimetres.
-    pub odometer_mm: u64,
 }
 
 /// Wall-clock times of a frame in a live drive, microseconds since the session began.

@@ -12,12 +12,14 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::adam;
 use super::dataset::{Frame, Split};
 use super::kernels::loss::Target;
+use super::options::TrainOptions;
 use super::pictures::{augmented, class_weights};
+use super::progress::{EpochReport, Progress, Trained};
 use super::random::Random;
 use super::state::State;
 use super::tape::{Lesson, learn};
 use super::weights::Weights;
-use super::{EpochReport, Progress, TrainOptions, Trained, export, network};
+use super::{export, network};
 use crate::classes::{TRAIN_CLASSES, tag_of_train_id};
 use crate::{Checkpoint, ConfusionMatrix, PerceptionError, RgbView, Segmenter};
 

@@ -8,8 +8,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::adam::Adam;
+use super::options::TrainOptions;
+use super::progress::EpochReport;
 use super::weights::Weights;
-use super::{EpochReport, TrainOptions};
 use crate::PerceptionError;
 
 const FORMAT: u32 = 2;

@@ -5,6 +5,7 @@ mod device;
 mod passes;
 mod pipelines;
 mod readback;
+mod resolve;
 mod shaders;
 mod targets;
 mod textures;

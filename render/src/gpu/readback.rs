@@ -2,7 +2,7 @@
 
 use kernel::time::Tick;
 
-use super::{Gpu, Targets, shaders};
+use super::{Gpu, Targets};
 use crate::{Frame, RenderError, SemanticTag};
 
 /// Distance at which depth is 1, metres; as in `scene.wgsl`.
@@ -11,7 +11,7 @@ const NEAR_M: f32 = 0.1;
 /// Records the way from the targets to the read-back buffer.
 pub(super) fn record(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
     match &targets.resolve {
-        Some(resolve) => resolve.record(encoder, targets),
+        Some(resolve) => resolve.record(encoder, [targets.width, targets.height], &targets.readback),
         None => copy(encoder, targets),
     }
 }
@@ -26,63 +26,6 @@ fn copy(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
         };
         let buffer = wgpu::TexelCopyBufferInfo { buffer: &targets.readback, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), buffer, texture.size());
-    }
-}
-
-/// Brings several samples a pixel down to one.
-pub(super) struct Resolve {
-    pipeline: wgpu::ComputePipeline,
-    group: wgpu::BindGroup,
-    /// The three planes, as the read-back buffer has them.
-    planes: wgpu::Buffer,
-}
-
-impl Resolve {
-    /// `samples` are the colour, id and depth textures.
-    pub(super) fn new(gpu: &Gpu, samples: [&wgpu::Texture; 3], stride_bytes: u32, plane_bytes: u64) -> Self {
-        let text = shaders::source("resolve").unwrap_or_default();
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("resolve"),
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        });
-        let constants = [("STRIDE", f64::from(stride_bytes / 4))];
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("resolve"),
-            layout: None,
-            module: &module,
-            entry_point: Some("resolve"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
-            cache: None,
-        });
-        let planes = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("planes"),
-            size: 3 * plane_bytes,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
-        let views = samples.map(|t| t.create_view(&Default::default()));
-        let size = std::num::NonZeroU64::new(plane_bytes);
-        let inputs = views.iter().map(wgpu::BindingResource::TextureView);
-        let outputs = (0..3).map(|plane| {
-            let offset = plane * plane_bytes;
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &planes, offset, size })
-        });
-        let entries: Vec<_> = (0..)
-            .zip(inputs.chain(outputs))
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let layout = &pipeline.get_bind_group_layout(0);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries });
-        Self { pipeline, group, planes }
-    }
-
-    fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
-        pass.dispatch_workgroups(targets.width.div_ceil(8), targets.height.div_ceil(8), 1);
-        drop(pass);
-        encoder.copy_buffer_to_buffer(&self.planes, 0, &targets.readback, 0, 3 * targets.plane_bytes());
     }
 }
 

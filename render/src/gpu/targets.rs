@@ -1,7 +1,7 @@
 //! The textures a frame is drawn to and the buffer it is read back from, for one image size.
 
 use super::Gpu;
-use super::readback::Resolve;
+use super::resolve::Resolve;
 
 /// Formats of the colour, id and depth targets.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -3,6 +3,7 @@
 //! A mesh is plain data: positions, normals, paint and class. How meshes get into the world is told
 //! by [`model`], so that another renderer can pose them on its own.
 
+pub mod actor;
 pub mod barrier;
 pub mod building;
 pub mod car;

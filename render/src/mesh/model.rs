@@ -11,13 +11,10 @@
 //! footprint on the ground (x forward, y left, z up). Wind then moves vertices in the world by
 //! [`crate::wind::offset`].
 
-use std::sync::OnceLock;
-
 use glam::{Affine3A, Quat, Vec3};
 use kernel::ops;
-use kernel::scene::ActorKind;
 
-use super::{Mesh, car, heavy, person, two_wheeler};
+use super::Mesh;
 
 /// How a joint turns with the phase of the gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,25 +113,4 @@ impl Model {
         }
         poses
     }
-}
-
-/// The model of an actor.
-pub fn actor(kind: ActorKind, variant: u32, detail: Detail) -> Model {
-    match kind {
-        ActorKind::Car => Model::rigid(car::car(variant, detail)),
-        ActorKind::Truck => Model::rigid(heavy::truck(variant, detail)),
-        ActorKind::Bus => Model::rigid(heavy::bus(variant, detail)),
-        ActorKind::Motorcycle => two_wheeler::motorcycle(variant, detail),
-        ActorKind::Bicycle => two_wheeler::bicycle(variant, detail),
-        ActorKind::Pedestrian => person::walker(variant, detail),
-    }
-}
-
-/// [`kernel::scene::ActorScene::variant`] that the ego car is drawn with.
-pub const EGO_VARIANT: u32 = 2;
-
-/// The model of the ego car; the origin is the middle of its footprint.
-pub fn ego() -> &'static Model {
-    static EGO: OnceLock<Model> = OnceLock::new();
-    EGO.get_or_init(|| actor(ActorKind::Car, EGO_VARIANT, Detail::Fine))
 }

@@ -1,5 +1,6 @@
 //! The integration tests, one binary. Each module tests one promise to the user.
 
+mod circles;
 mod classes;
 mod datasets;
 mod lab;

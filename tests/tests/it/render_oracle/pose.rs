@@ -4,7 +4,8 @@
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 use kernel::map::{Prop, RoadNetwork};
 use kernel::scene::{SceneSnapshot, Weather};
-use render::mesh::model::{self, Detail, Model};
+use render::mesh::actor::{actor_model, ego_model};
+use render::mesh::model::{Detail, Model};
 use render::mesh::{Mesh, prop, signal, surface};
 
 use super::bvh::Triangle;
@@ -99,13 +100,13 @@ pub fn triangles(network: &RoadNetwork, scene: &SceneSnapshot) -> Vec<Triangle> 
         all.add(&signal::head(phase, Detail::Fine), upright(lamps, head.facing_rad));
     }
     for actor in &scene.actors {
-        let model = model::actor(actor.kind, actor.variant, Detail::Fine);
+        let model = actor_model(actor.kind, actor.variant, Detail::Fine);
         let frame = DAffine3::from_rotation_translation(turn(actor.rotation), wide(actor.position));
         all.add_model(&model, frame, actor.phase_rad, actor.speed_mps);
     }
     let ego = DAffine3::from_rotation_translation(turn(scene.ego.rotation), wide(scene.ego.position));
     let middle = DAffine3::from_translation(DVec3::X * f64::from(kernel::ego::CENTRE_M.x));
-    all.add_model(model::ego(), ego * middle, 0.0, scene.ego.speed_mps);
+    all.add_model(ego_model(), ego * middle, 0.0, scene.ego.speed_mps);
     all.triangles
 }
 
