@@ -3,7 +3,7 @@
 use kernel::ops;
 use kernel::time::TICK_S;
 
-use super::path::Arc;
+use super::arc::{Arc, Point};
 use super::sight::Contact;
 
 /// Distance between two remembered points of the route, metres.
@@ -20,9 +20,6 @@ const BELIEVED_AFTER: u32 = 4;
 
 /// How long others are let pass after they were last seen to come, seconds.
 const PATIENCE_S: f32 = 1.2;
-
-/// A point in the car's frame, metres: x forward from the rear axle, y left.
-pub type Point = (f32, f32);
 
 /// How the car moved in a tick: metres forward, radians to the left.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! The simulated semantic driver: a function of the mask, the HUD and the little it remembers of them.
 
-pub mod memory;
+pub mod arc;
+mod memory;
 pub mod path;
 pub mod sight;
 pub mod speed;
@@ -12,8 +13,8 @@ use kernel::time::TICK_S;
 use kernel::{Controls, ego, ops};
 
 use super::{Driver, SemanticView};
+use arc::Arc;
 use memory::{Moved, Patience, Tracks, Trail};
-use path::Arc;
 use sight::{Contact, Sight};
 use speed::{COMFORT_MPS2, Scene, Wish};
 

@@ -3,7 +3,8 @@
 use kernel::events::{Hud, RouteArrow};
 use kernel::{ego, ops};
 
-use super::memory::{Point, Trail};
+use super::arc::{Arc, Point, SHARPEST};
+use super::memory::Trail;
 use super::sight::{Ground, Sight};
 
 /// Distance along the route of the point that the arrow of the HUD shows, metres from the middle of
@@ -17,8 +18,6 @@ const LOOK_M: f32 = 7.5;
 const LOOK_S: f32 = 0.8;
 /// Bearing of the arrow from which the car is turning, degrees.
 const TURNING_DEG: i16 = 10;
-/// Sharpest arc that is tried, 1/m; about the car's turning circle.
-const SHARPEST: f32 = 0.2;
 /// From the rear axle to the middle of the car, metres.
 const MIDDLE_M: f32 = ego::CENTRE_M.x;
 /// Arcs tried on each side of the wanted one.
@@ -36,48 +35,7 @@ const LARGEST_SHIFT_M: f32 = 1.2;
 /// Rows that must agree before the lane is believed.
 const LEAST_ROWS: usize = 4;
 
-/// An arc of constant curvature from the rear axle, in the direction of travel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc {
-    /// Curvature, 1/m, positive to the left.
-    pub curvature: f32,
-}
-
 impl Arc {
-    /// The arc to a point in the car's frame; for one behind, the sharpest arc to its side.
-    pub fn to(x_m: f32, y_m: f32) -> Self {
-        let sideways = if x_m < 0.0 { SHARPEST.copysign(y_m) } else { 2.0 * y_m / (x_m * x_m + y_m * y_m) };
-        Self { curvature: sideways.clamp(-SHARPEST, SHARPEST) }
-    }
-
-    /// The point after `s_m` metres and the heading there, in the car's frame.
-    pub fn at(&self, s_m: f32) -> (f32, f32, f32) {
-        let turned = self.curvature * s_m;
-        if turned.abs() < 1e-4 {
-            return (s_m, 0.5 * turned * s_m, turned);
-        }
-        (ops::sin(turned) / self.curvature, (1.0 - ops::cos(turned)) / self.curvature, turned)
-    }
-
-    /// Metres to the left of the arc after `s_m` metres.
-    fn beside(&self, s_m: f32, left_m: f32) -> (f32, f32) {
-        let (x, y, heading) = self.at(s_m);
-        (x - left_m * ops::sin(heading), y + left_m * ops::cos(heading))
-    }
-
-    /// Metres along the arc and to its left of a point in front of the car.
-    pub fn project(&self, x_m: f32, y_m: f32) -> (f32, f32) {
-        if self.curvature.abs() < 1e-4 {
-            return (x_m, y_m);
-        }
-        let radius = 1.0 / self.curvature;
-        let (dx, dy) = (x_m, y_m - radius);
-        let turned = ops::atan2(dx * radius.signum(), -dy * radius.signum());
-        let left_m = radius - ops::hypot(dx, dy) * radius.signum();
-        let turned = if turned < 0.0 && x_m < 0.0 { 0.0 } else { ops::wrap_angle(turned) };
-        (turned.abs() * radius.abs(), left_m)
-    }
-
     /// Metres along the arc until the middle of the car would leave the asphalt.
     pub fn free_m(&self, sight: &Sight<'_>, reach_m: f32) -> f32 {
         let mut blocked_m = 0.0;

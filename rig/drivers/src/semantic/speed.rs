@@ -6,8 +6,8 @@ use kernel::map::Turn;
 use kernel::ops;
 use kernel::signals::LightPhase;
 
+use super::arc::Arc;
 use super::memory::{Track, Tracks};
-use super::path::Arc;
 use super::sight::{Contact, Sight};
 
 /// Half of the car's width, metres.

@@ -55,11 +55,11 @@ impl<'a> Driver<'a> {
         } else {
             let Some(bytes) = self.record(run)? else { return Ok(None) };
             let recording = Recording::from_bytes(&bytes)?;
-            files.push((path, bytes));
+            files.push((path.clone(), bytes));
             recording
         };
-        let has_case = self.cut(run, &recording, &mut files)?;
-        let mut line = RunLine::new(self.plan, self.eye.name(), run, &recording, has_case);
+        let case = self.cut(run, &recording, &mut files)?;
+        let mut line = RunLine::new(self.eye.name(), &path, &recording, case.as_deref());
         line.without_intervention = self.counterfactual(run, &recording, &mut files)?;
         Ok(Some(Driven { line, files }))
     }
@@ -85,16 +85,21 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// Cuts the corner case out of a recording, if there is one.
-    fn cut(&self, run: u32, recording: &Recording, files: &mut Vec<(PathBuf, Vec<u8>)>) -> anyhow::Result<bool> {
-        let Some(window) = Case::window(recording.log()) else { return Ok(false) };
+    /// Cuts the corner case out of a recording, if there is one, and says where it goes.
+    fn cut(
+        &self,
+        run: u32,
+        recording: &Recording,
+        files: &mut Vec<(PathBuf, Vec<u8>)>,
+    ) -> anyhow::Result<Option<PathBuf>> {
+        let Some(window) = Case::window(recording.log()) else { return Ok(None) };
         let path = self.plan.case_path(self.eye.name(), run);
         let is_cut = |case: &Case| case.info().source == recording.digest() && case.info().to == *window.end();
         if !Case::open(&path).is_ok_and(|case| is_cut(&case)) {
             let case = Case::cut(recording, &recording.network()?, window)?;
-            files.push((path, case.encode()?));
+            files.push((path.clone(), case.encode()?));
         }
-        Ok(true)
+        Ok(Some(path))
     }
 
     /// What would have happened without the intervention, if there was one.

@@ -1,13 +1,13 @@
 //! What a campaign came to, computed from its recordings alone.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use measures::run_figures::RunFigures;
 use measures::statistics::{Comparison, Ride, Statistics};
 use replay::{Label, Recording};
 use serde::Serialize;
 
-use super::Plan;
 use crate::redrive::Counterfactual;
 
 /// A run in `campaign.json`.
@@ -30,12 +30,12 @@ pub struct RunLine {
 }
 
 impl RunLine {
-    /// That of a recording; `has_case` says whether a corner case was cut from it.
-    pub fn new(plan: &Plan, checkpoint: &str, run: u32, recording: &Recording, has_case: bool) -> Self {
-        let name = |path: std::path::PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    /// That of a recording at a path, from which the corner case at another was cut, if there is one.
+    pub fn new(checkpoint: &str, path: &Path, recording: &Recording, case: Option<&Path>) -> Self {
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Self {
-            file: name(plan.recording_path(checkpoint, run)),
-            case: has_case.then(|| name(plan.case_path(checkpoint, run))),
+            file: name(path),
+            case: case.map(name),
             checkpoint: checkpoint.to_owned(),
             without_intervention: None,
             figures: RunFigures::of(recording),

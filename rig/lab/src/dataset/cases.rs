@@ -8,46 +8,15 @@ use base::library::{self, Entry};
 use base::output::PendingFolder;
 use base::progress::{self, Interrupt};
 use drivers::vision;
-use kernel::time::{CLIP_FPS, CLIP_TICKS, Tick};
+use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::footage::Footage;
 use replay::{Label, Recording};
-use serde::{Deserialize, Serialize};
 
-use super::manifest::{self, Manifest};
-use super::natural::city;
+use super::manifest::Manifest;
 use super::provenance::{Drive, FrameLine};
+use super::recipe::{CaseUsed, CasesRecipe, Recipe, city};
 use crate::cityscapes::{self, Place};
 use crate::looks::Studio;
-
-/// What a dataset of corner cases is made from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Recipe {
-    /// Which split they are.
-    pub split: String,
-    /// Width and height of the pictures, pixels.
-    pub size: (u32, u32),
-    /// The cases, in the order of their scenes' numbers.
-    pub cases: Vec<CaseUsed>,
-}
-
-/// A case of a dataset.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct CaseUsed {
-    /// Name of its file, for people; it is found by its digest.
-    pub name: String,
-    /// BLAKE3 of its file.
-    pub digest: String,
-    /// BLAKE3 of the recording it was cut from.
-    pub recording: String,
-    /// The window's last tick.
-    pub to: Tick,
-    /// The map, as it stands in file names.
-    pub map: String,
-    /// The drive's seed.
-    pub seed: u64,
-    /// What the takeover was labelled as.
-    pub label: Option<String>,
-}
 
 /// Which corner cases become a dataset.
 #[derive(Clone, Debug)]
@@ -76,7 +45,7 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
         bail!("none of the corner cases is labelled {}", labels.join(" or "));
     }
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    build(&Recipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, interrupt)
+    build(&CasesRecipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, interrupt)
 }
 
 /// The corner cases among files and folders, each once.
@@ -103,8 +72,13 @@ impl CaseUsed {
 }
 
 /// Makes a dataset from a recipe and the files of its cases.
-pub(super) fn build(recipe: &Recipe, files: &[PathBuf], out: &Path, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
-    let whole = manifest::Recipe::Cases(recipe.clone());
+pub(super) fn build(
+    recipe: &CasesRecipe,
+    files: &[PathBuf],
+    out: &Path,
+    interrupt: &Interrupt,
+) -> anyhow::Result<Manifest> {
+    let whole = Recipe::Cases(recipe.clone());
     if let Some(finished) = Manifest::of_finished(out, &whole)? {
         return Ok(finished);
     }

@@ -11,44 +11,12 @@ use replay::KERNEL_VERSION;
 use serde::{Deserialize, Serialize};
 
 use super::provenance::{self, FrameLine};
-use super::{cases, mix, natural};
+use super::recipe::Recipe;
 
 const MANIFEST: &str = "dataset.json";
 /// What a natural dataset holds besides until it is finished: its scenes so far.
 pub(super) const PARTS: &str = "parts";
 const FRAMES: &str = "frames.jsonl";
-
-/// What a dataset is made from; the same recipe gives the same files on the same adapter.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "kind", content = "recipe", rename_all = "kebab-case")]
-pub enum Recipe {
-    /// Frames of simulated drives.
-    Natural(natural::Recipe),
-    /// Frames of corner cases.
-    Cases(cases::Recipe),
-    /// Frames of two other datasets.
-    Mix(Box<mix::Recipe>),
-}
-
-impl Recipe {
-    /// The word that says which kind it is.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Natural(_) => "natural",
-            Self::Cases(_) => "cases",
-            Self::Mix(_) => "mix",
-        }
-    }
-
-    /// Width and height of the pictures, pixels.
-    pub fn size(&self) -> (u32, u32) {
-        match self {
-            Self::Natural(recipe) => recipe.size,
-            Self::Cases(recipe) => recipe.size,
-            Self::Mix(recipe) => recipe.natural.size(),
-        }
-    }
-}
 
 /// The content of `dataset.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

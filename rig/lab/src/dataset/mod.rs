@@ -18,6 +18,8 @@ pub mod mix;
 pub mod natural;
 mod provenance;
 pub mod rebuild;
+mod recipe;
 
-pub use manifest::{Manifest, Recipe, check_whole};
+pub use manifest::{Manifest, check_whole};
 pub use provenance::{FrameLine, Part, WeatherLine};
+pub use recipe::Recipe;

@@ -22,55 +22,10 @@ use replay::KERNEL_VERSION;
 use serde::{Deserialize, Serialize};
 
 use super::drive::ExpertDrive;
-use super::manifest::{self, Manifest, PARTS};
+use super::manifest::{Manifest, PARTS};
 use super::provenance::{self, Drive, FrameLine};
+use super::recipe::{MapUsed, NaturalRecipe, Recipe};
 use crate::cityscapes::{self, Place};
-
-/// What a natural dataset is made from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Recipe {
-    /// Seed of every scene's own.
-    pub seed: u64,
-    /// Scenes of the training split.
-    pub scenes: u32,
-    /// Scenes of the validation split.
-    pub val_scenes: u32,
-    /// Scenes of the test split.
-    #[serde(default)]
-    pub test_scenes: u32,
-    /// Frames a scene of training and validation.
-    pub frames: u32,
-    /// Frames a scene of the test split.
-    #[serde(default)]
-    pub test_frames: u32,
-    /// Width and height of the pictures, pixels.
-    pub size: (u32, u32),
-    /// People on foot, where not as many as in the map's default scenario.
-    pub pedestrians: Option<u16>,
-    /// The scenes' maps, in turn.
-    pub maps: Vec<MapUsed>,
-}
-
-/// A map of a dataset.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MapUsed {
-    /// Its name, as it stands in file names.
-    pub name: String,
-    /// Digest of the baked map.
-    pub digest: String,
-}
-
-impl MapUsed {
-    /// What a recipe says of a map.
-    pub fn new(map: &Map) -> Self {
-        Self { name: city(&map.network.name), digest: format!("{:032x}", map.network.digest) }
-    }
-}
-
-/// The name of a map as it stands in file names, whose parts `_` separates.
-pub(super) fn city(map: &str) -> String {
-    map.replace('_', "-")
-}
 
 /// What natural frames are asked for.
 #[derive(Clone, Debug)]
@@ -102,18 +57,18 @@ pub struct Options {
 /// Makes a dataset, or completes one that was interrupted; one that is complete stays as it is.
 pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     let maps = Map::find_all(&args.maps)?;
-    build(&Recipe::new(args, &maps)?, &maps, &args.out, args.jobs, interrupt)
+    build(&NaturalRecipe::new(args, &maps)?, &maps, &args.out, args.jobs, interrupt)
 }
 
 /// As [`make`], from a recipe and its maps.
 pub(super) fn build(
-    recipe: &Recipe,
+    recipe: &NaturalRecipe,
     maps: &[Map],
     out: &Path,
     threads: Option<u16>,
     interrupt: &Interrupt,
 ) -> anyhow::Result<Manifest> {
-    let whole = manifest::Recipe::Natural(recipe.clone());
+    let whole = Recipe::Natural(recipe.clone());
     if let Some(finished) = Manifest::of_finished(out, &whole)? {
         return Ok(finished);
     }
@@ -146,7 +101,7 @@ pub(super) fn build(
 /// What an unfinished dataset was begun with.
 #[derive(PartialEq, Serialize, Deserialize)]
 struct Begun {
-    recipe: Recipe,
+    recipe: NaturalRecipe,
     kernel: String,
     renderer: String,
     adapter: String,
@@ -160,7 +115,7 @@ fn only_parts(out: &Path) -> bool {
 }
 
 /// The folder of finished scenes, once it is certain that they belong to this recipe.
-fn prepare(out: &Path, recipe: &Recipe, adapter: &str) -> anyhow::Result<PathBuf> {
+fn prepare(out: &Path, recipe: &NaturalRecipe, adapter: &str) -> anyhow::Result<PathBuf> {
     let parts = out.join(PARTS);
     let file = parts.join("begun.json");
     let is_foreign = !file.exists() && fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
@@ -195,13 +150,7 @@ fn prepare(out: &Path, recipe: &Recipe, adapter: &str) -> anyhow::Result<PathBuf
 }
 
 /// Joins the scenes' lines and writes the manifest, which makes the dataset complete.
-fn finish(
-    out: &Path,
-    recipe: manifest::Recipe,
-    scenes: &[Scene],
-    parts: &Path,
-    adapter: String,
-) -> anyhow::Result<Manifest> {
+fn finish(out: &Path, recipe: Recipe, scenes: &[Scene], parts: &Path, adapter: String) -> anyhow::Result<Manifest> {
     let mut frames = Vec::new();
     for scene in scenes {
         let part = parts.join(scene.part());
@@ -230,14 +179,14 @@ impl Scene {
 
     /// Seed of a leg: the first 8 bytes of BLAKE3 over what names it, so that no two splits, scenes
     /// or datasets share a drive.
-    fn seed(&self, recipe: &Recipe, leg: u32) -> u64 {
+    fn seed(&self, recipe: &NaturalRecipe, leg: u32) -> u64 {
         let name = format!("natural {} {} {} {leg}", recipe.seed, self.split, self.number);
         let hash = blake3::hash(name.as_bytes());
         u64::from_le_bytes(*hash.as_bytes().first_chunk().unwrap_or(&[0; 8]))
     }
 }
 
-impl Recipe {
+impl NaturalRecipe {
     fn new(args: &Options, maps: &[Map]) -> anyhow::Result<Self> {
         let recipe = Self {
             seed: args.seed,
@@ -273,7 +222,7 @@ impl Recipe {
 
 /// Where the frames of a scene are made.
 struct Studio<'a> {
-    recipe: &'a Recipe,
+    recipe: &'a NaturalRecipe,
     out: &'a Path,
     adapter: &'a str,
     renderer: &'a mut Renderer,

@@ -12,10 +12,11 @@ use render::RENDERER_VERSION;
 use replay::KERNEL_VERSION;
 use serde::Serialize;
 
-use super::cases::{self, CaseUsed};
-use super::manifest::{Manifest, Recipe};
-use super::mix::{self, Dataset};
-use super::natural::{self, MapUsed};
+use super::cases;
+use super::manifest::Manifest;
+use super::mix::Dataset;
+use super::natural;
+use super::recipe::{CaseUsed, MapUsed, MixRecipe, Recipe};
 
 /// A dataset made again, and what it has in common with the first one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -117,7 +118,7 @@ impl Sources {
     }
 
     /// Makes the parts beside the mix first; they go when it is complete.
-    fn build_mix(&self, recipe: &mix::Recipe, out: &Path, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
+    fn build_mix(&self, recipe: &MixRecipe, out: &Path, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
         if let Some(finished) = Manifest::of_finished(out, &recipe.clone().into())? {
             return Ok(finished);
         }

@@ -20,8 +20,10 @@ mod page;
 mod paper;
 mod pictures;
 mod recipe;
+mod set;
 mod stages;
 mod table_1;
+mod tables;
 mod text;
 
 use std::fmt;
@@ -32,46 +34,12 @@ use render::AdapterChoice;
 use serde::Serialize;
 
 pub use recipe::{Preset, Recipe};
+pub use set::Set;
+pub use tables::Tables;
 
 use self::stages::Stages;
 use base::output;
 use base::progress::Interrupt;
-use measures::statistics::CheckpointStatistics;
-
-/// What a network learned from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Set {
-    /// Ordinary drives.
-    Natural,
-    /// With frames that show more pedestrians.
-    Pedestrian,
-    /// With the frames before takeovers.
-    CornerCase,
-}
-
-impl Set {
-    /// All of them, in the paper's order.
-    pub const ALL: [Self; 3] = [Self::Natural, Self::Pedestrian, Self::CornerCase];
-
-    /// As folders and files are called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Natural => "natural",
-            Self::Pedestrian => "pedestrian",
-            Self::CornerCase => "corner-case",
-        }
-    }
-}
-
-/// The content of `tables.json`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Tables {
-    /// How good the networks are.
-    pub table_1: Vec<table_1::Row>,
-    /// How they drive, a network of each set; the natural one is the reference.
-    pub table_2: Vec<CheckpointStatistics>,
-}
 
 /// What an experiment came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -9,9 +9,11 @@ use measures::statistics::CheckpointStatistics;
 use serde::Serialize;
 
 use super::pictures::{Shot, name_of, shots};
+use super::recipe::Recipe;
+use super::set::Set;
 use super::stages::Results;
 use super::table_1::{Row, Score};
-use super::{Recipe, Set, forest, paper, text};
+use super::{forest, paper, text};
 use crate::campaign::CampaignFigures;
 use crate::figures::decimal;
 use crate::plot::{Axis, Line, Plot, row};

@@ -1,6 +1,6 @@
 //! What the paper found (Kowol, Bracke and Gottschalk 2022), beside which our figures stand.
 
-/// A row of its Table 1, in the order of [`super::Set::ALL`]: pedestrian pixels a scene; IoU of pedestrians
+/// A row of its Table 1, in the order of [`super::set::Set::ALL`]: pedestrian pixels a scene; IoU of pedestrians
 /// and mean IoU on safety-critical frames; the same on natural ones.
 pub const TABLE_1: [[f64; 5]; 3] = [
     [3583.6, 0.4600, 0.6954, 0.4937, 0.7610],

@@ -9,8 +9,10 @@ use drivers::checkpoint::CheckpointChoice;
 use measures::statistics;
 use perception::training::TrainOptions;
 
+use super::recipe::Recipe;
+use super::set::Set;
 use super::table_1::{Row, Scenes, test_scores};
-use super::{Recipe, Set, Tables};
+use super::tables::Tables;
 use crate::campaign;
 use crate::campaign::CampaignFigures;
 use crate::campaign::Until;

@@ -6,7 +6,7 @@ use perception::ConfusionMatrix;
 use perception::classes::PEDESTRIAN;
 use serde::Serialize;
 
-use super::Set;
+use super::set::Set;
 
 /// Seed of the draws of networks and scenes.
 const BOOTSTRAP_SEED: u64 = 1;

@@ -2,8 +2,8 @@
 
 use measures::statistics::table;
 
-use super::Tables;
 use super::table_1::{Score, TestScores};
+use super::tables::Tables;
 use crate::figures::decimal;
 
 /// Tables 1 and 2.

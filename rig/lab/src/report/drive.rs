@@ -6,7 +6,7 @@ use measures::{self, Measures};
 use replay::{Log, Recording};
 use study::{self, Questionnaire};
 
-use super::story::Fact;
+use super::fact::Fact;
 
 /// The recording of a case's drive, or the case where that is not there.
 pub struct Drive {

@@ -2,16 +2,17 @@
 //! checkpoint made of it, and where it happened.
 
 mod drive;
+mod exposure;
+mod fact;
 mod map;
 mod page;
 mod story;
 mod strip;
 mod trace;
 
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use base::progress;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
@@ -19,10 +20,10 @@ use measures::Tally;
 use measures::footage::Footage;
 use perception::ConfusionMatrix;
 use render::AdapterChoice;
-use replay::Recording;
 
 use super::looks::{Studio, look, open_eyes};
 use drive::Drive;
+use exposure::exposure;
 use page::{CasePart, Page};
 pub use page::{Class, STYLE, legend};
 use story::Story;
@@ -65,40 +66,4 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
     }
     let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
     Page::new(&eyes, size, &overall, &seen, (&exposure(files)?, &tally), cases).render()
-}
-
-/// What was driven.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Exposure {
-    recordings: usize,
-    km: f64,
-    minutes: f64,
-}
-
-/// Sums over the recordings in the folders of the cases.
-fn exposure(cases: &[PathBuf]) -> anyhow::Result<Exposure> {
-    let here = Path::new(".");
-    let folder = |path: &PathBuf| path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(here).to_owned();
-    let mut sum = Exposure::default();
-    for folder in cases.iter().map(folder).collect::<BTreeSet<_>>() {
-        let entries = std::fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
-        let mut paths = entries.map(|e| e.map(|e| e.path())).collect::<Result<Vec<_>, _>>()?;
-        paths.sort();
-        for path in paths.iter().filter(|path| is_recording(path)) {
-            let recording = Recording::open(path)?;
-            let log = recording.log();
-            if study::is_familiarisation(&log.manifest.provenance) {
-                continue;
-            }
-            sum.recordings += 1;
-            sum.km += log.odometer_mm() as f64 / 1e6;
-            sum.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
-        }
-    }
-    Ok(sum)
-}
-
-fn is_recording(path: &Path) -> bool {
-    let name = path.to_string_lossy();
-    name.ends_with(".mcap") && !name.ends_with(".case.mcap")
 }

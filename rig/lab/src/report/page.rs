@@ -10,8 +10,9 @@ use perception::classes::{TRAIN_CLASSES, train_id};
 use serde::Serialize;
 
 use super::super::figures::{Figures, decimal};
-use super::Exposure;
-use super::story::{Fact, Story};
+use super::exposure::Exposure;
+use super::fact::Fact;
+use super::story::Story;
 use super::strip::{Moment, PictureRow, Seen, Strip};
 use super::trace::Trace;
 

@@ -7,19 +7,11 @@ use measures::footage::Footage;
 use replay::{KERNEL_VERSION, Log, Replayer};
 
 use super::drive::Drive;
+use super::fact::Fact;
 use super::map;
 
 /// Ticks from one point of the drawn route to the next.
 const ROUTE_TICKS: Tick = TICK_HZ as Tick / 2;
-
-/// A named fact.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Fact {
-    /// What it is about.
-    pub name: &'static str,
-    /// The fact, with its unit.
-    pub value: String,
-}
 
 /// What the page says about a case besides its pictures.
 pub struct Story {

@@ -5,9 +5,10 @@
 //! each file and checkpoint, and for each checkpoint over all. What is whole is found again through
 //! `OUT/.rerender`.
 
+mod options;
 mod pictures;
 
-use std::path::PathBuf;
+pub use self::options::Options;
 use std::{fmt, fs};
 
 use anyhow::{Context, bail};
@@ -15,14 +16,13 @@ use base::library;
 use base::output::{self, json_line};
 use base::progress::{self, Interrupt};
 use base::spread::jobs;
-use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::ConfusionMatrix;
 use render::AdapterChoice;
 use serde::Serialize;
 
-use self::pictures::Pictures;
+use self::pictures::{Matrices, Pictures};
 use super::figures::{Figures, table};
 use super::looks::open_eyes;
 use super::pipeline::{Crew, Studios};
@@ -67,26 +67,6 @@ pub struct Seen {
     pub figures: Figures,
 }
 
-/// What is drawn and looked at again.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Recordings or cases, or folders with cases anywhere below.
-    pub files: Vec<PathBuf>,
-    /// Checkpoints to look through.
-    pub checkpoint: Vec<CheckpointChoice>,
-    /// Length of the window that ends at the intervention (or at the end), as in `3s`.
-    pub last: Tick,
-    /// Frames a second; must divide 60.
-    pub fps: u32,
-    /// Size of the pictures.
-    pub size: (u32, u32),
-    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
-    pub jobs: Option<u16>,
-    /// Folder of the results. One that this command began is completed: what is whole and follows from
-    /// the same files, checkpoints and options is kept.
-    pub out: PathBuf,
-}
-
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { out, files, frames, checkpoints } = self;
@@ -128,9 +108,6 @@ pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary
     let checkpoints = eyes.iter().zip(&overall).map(seen).collect();
     Ok(Summary { out: args.out.display().to_string(), files: files.len(), frames, checkpoints })
 }
-
-/// A checkpoint's matrix of each frame.
-type Matrices = Vec<(Tick, ConfusionMatrix)>;
 
 /// The text of `metrics.jsonl`, and each checkpoint's matrix over all; `found` is by file and checkpoint.
 fn lines(work: &Pictures<'_>, found: &[Vec<Matrices>]) -> anyhow::Result<(String, Vec<ConfusionMatrix>)> {

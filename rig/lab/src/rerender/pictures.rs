@@ -16,11 +16,14 @@ use tempfile::TempDir;
 
 use super::super::pipeline::{Film, Work};
 use super::super::store::{Settings, Store, remove_folder};
-use super::Matrices;
+use super::options::Options;
+
+/// A checkpoint's matrix of each frame.
+pub type Matrices = Vec<(Tick, ConfusionMatrix)>;
 
 /// Makes the pictures.
 pub struct Pictures<'a> {
-    pub args: &'a super::Options,
+    pub args: &'a Options,
     pub files: &'a [Entry],
     pub eyes: &'a [Eye],
     pub store: &'a Store,

@@ -7,9 +7,10 @@ use perception::classes::TRAIN_CLASSES;
 use perception::training::{CLASS_WEIGHT_OFFSET, EpochReport, LOGIT_STRIDE, TrainOptions, Trained};
 
 use super::curves::number;
+use super::options::Options;
 
 /// The content of `C.md`.
-pub(super) fn card(args: &super::Options, options: &TrainOptions, trained: &Trained) -> String {
+pub(super) fn card(args: &Options, options: &TrainOptions, trained: &Trained) -> String {
     let name = args.out.file_stem().unwrap_or_default().to_string_lossy();
     let TrainOptions { seed, width, height, batch, replicas, rate, .. } = options;
     let mut card = format!(

@@ -8,6 +8,7 @@ mod clerk;
 pub mod digests;
 pub mod film;
 mod layers;
+mod picture;
 mod playback;
 mod projector;
 mod range;

@@ -12,6 +12,7 @@ use render::{Camera, Frame, RenderOptions, Renderer};
 
 use super::film::Film;
 use super::layers::{self, Layer};
+use super::picture::Picture;
 use super::reel::{Moment, Reel};
 use super::seen::{Seen, SeenTrack};
 
@@ -72,9 +73,6 @@ pub struct Request {
     /// Index of the checkpoint that predicts.
     pub checkpoint: usize,
 }
-
-/// An image, or why there is none.
-pub type Picture = Result<Arc<Image>, String>;
 
 /// What was asked for.
 #[derive(Debug)]

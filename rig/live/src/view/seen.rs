@@ -9,7 +9,7 @@ use render::{Camera, Renderer};
 use replay::MaskShown;
 
 use super::film::Film;
-use super::projector::Picture;
+use super::picture::Picture;
 use super::reel::Reel;
 
 /// The mask on the semantic driver's screen at a tick.

@@ -8,6 +8,7 @@
 
 use drivers::footprint::Footprint;
 use glam::DVec2;
+use kernel::scene::{ActorScene, EgoScene};
 
 /// Straight motion says nothing about what comes later, seconds.
 pub const HORIZON_S: f64 = 10.0;
@@ -31,6 +32,16 @@ pub struct Mover {
 }
 
 impl Mover {
+    /// The ego car.
+    pub fn of_ego(car: &EgoScene) -> Self {
+        Self { footprint: Footprint::of_ego(car), speed_mps: car.speed_mps }
+    }
+
+    /// Another road user.
+    pub fn of_actor(actor: &ActorScene) -> Self {
+        Self { footprint: Footprint::of_actor(actor), speed_mps: actor.speed_mps }
+    }
+
     /// Displacement a second.
     fn velocity(&self) -> DVec2 {
         f64::from(self.speed_mps) * self.footprint.forward.as_dvec2()

@@ -6,13 +6,13 @@
 //! the boxes around them. Parked cars and scenery are left out, except by the predicted encroachment.
 
 mod encounter;
+mod extreme;
 mod observed;
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use base::words;
-use drivers::footprint::Footprint;
 use drivers::safety::{LOOK_TICKS, Looks, predicted_encroachment};
 use kernel::scene::{ActorScene, SceneSnapshot};
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
@@ -24,6 +24,7 @@ use encounter::{Encounter, Mover};
 use observed::Tracks;
 
 pub use encounter::{HORIZON_S, MAX_DECELERATION_MPS2};
+pub use extreme::Extreme;
 
 /// An encroachment within this time is critical (Westhofen et al. 2022), seconds.
 pub const CRITICAL_S: f64 = drivers::safety::CRITICAL_S as f64;
@@ -62,17 +63,6 @@ pub struct Sample {
     /// With whom the ego car is predicted to collide within [`CRITICAL_S`] when it keeps to its route and
     /// vehicles to their lanes, as `aeye inspect` counts hazards.
     pub encroachment: Option<String>,
-}
-
-/// The worst value of a trace.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Extreme {
-    /// Seconds or m/s^2.
-    pub value: f64,
-    /// When.
-    pub tick: Tick,
-    /// The other road user.
-    pub with: String,
 }
 
 /// How critical a window was at its worst.
@@ -162,13 +152,13 @@ impl Sampler {
 
 impl Sample {
     fn of(scene: &SceneSnapshot, encroachment: Option<String>) -> Self {
-        let ego = ego_of(scene);
+        let ego = Mover::of_ego(&scene.ego);
         let near = |actor: &&ActorScene| actor.position.truncate().distance(ego.footprint.centre) < NEAR_M;
         let encounters: Vec<(String, Encounter)> = scene
             .actors
             .iter()
             .filter(near)
-            .map(|actor| (words::actor(actor), Encounter::of(&ego, &other_of(actor))))
+            .map(|actor| (words::actor(actor), Encounter::of(&ego, &Mover::of_actor(actor))))
             .collect();
         let values = |of: fn(&Encounter) -> Option<f64>| {
             let worst = move |(with, encounter): &(String, Encounter)| {
@@ -185,12 +175,4 @@ impl Sample {
             encroachment,
         }
     }
-}
-
-fn ego_of(scene: &SceneSnapshot) -> Mover {
-    Mover { footprint: Footprint::of_ego(&scene.ego), speed_mps: scene.ego.speed_mps }
-}
-
-fn other_of(actor: &ActorScene) -> Mover {
-    Mover { footprint: Footprint::of_actor(actor), speed_mps: actor.speed_mps }
 }

@@ -7,7 +7,7 @@ use kernel::scene::SceneSnapshot;
 use kernel::time::{TICK_HZ, Tick};
 
 use super::encounter::Mover;
-use super::{Extreme, ego_of, other_of};
+use super::extreme::Extreme;
 
 /// Where everyone was, tick by tick.
 #[derive(Debug, Default)]
@@ -19,9 +19,9 @@ pub struct Tracks {
 impl Tracks {
     /// Adds a tick; ticks come in order.
     pub fn add(&mut self, scene: &SceneSnapshot) {
-        self.ego.push((scene.tick, ego_of(scene)));
+        self.ego.push((scene.tick, Mover::of_ego(&scene.ego)));
         for actor in &scene.actors {
-            self.others.entry(words::actor(actor)).or_default().push((scene.tick, other_of(actor)));
+            self.others.entry(words::actor(actor)).or_default().push((scene.tick, Mover::of_actor(actor)));
         }
     }
 

@@ -6,6 +6,7 @@
 //! route at its present speed, or goes on braking; vehicles keep to their lanes, people to their
 //! direction. Times are counted from there.
 
+mod log;
 mod reactions;
 mod screen;
 mod steering;
@@ -16,9 +17,11 @@ mod truth;
 use std::sync::Arc;
 
 use kernel::time::{TICK_HZ, Tick};
-use kernel::{Controls, RoadNetwork, Seat, TickInput};
+use kernel::{RoadNetwork, Seat};
 use replay::{Error, Log};
 use serde::Serialize;
+
+use log::{end_of_driving, is_pressed, ms};
 
 pub use crate::stats::Spread;
 use base::words;
@@ -130,29 +133,6 @@ fn presses(log: &Log) -> Vec<Press> {
         seats.filter(move |seat| is_pressed(log, *seat, tick)).map(move |seat| Press { tick, seat: words::seat(seat) })
     };
     ticks.flat_map(pressed).collect()
-}
-
-/// Whether "I see it" went down with the input of a tick.
-fn is_pressed(log: &Log, seat: Seat, tick: Tick) -> bool {
-    let is_down = |tick| log.input(tick).is_some_and(|input| controls(input, seat).has(Controls::SEEN));
-    is_down(tick) && !is_down(tick - 1)
-}
-
-fn controls(input: &TickInput, seat: Seat) -> &Controls {
-    match seat {
-        Seat::Semantic => &input.semantic,
-        Seat::Safety => &input.safety,
-    }
-}
-
-/// The last tick at which the semantic driver drives.
-fn end_of_driving(log: &Log) -> Tick {
-    log.intervention.map_or(log.last_tick(), |i| i.tick.clamp(log.first_tick(), log.last_tick()))
-}
-
-/// Ticks as milliseconds, rounded.
-fn ms(ticks: Tick) -> u64 {
-    (1000 * ticks + Tick::from(TICK_HZ) / 2) / Tick::from(TICK_HZ)
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@ use kernel::{Controls, Seat};
 use replay::Log;
 use serde::Serialize;
 
-use super::{controls, is_pressed, ms, steering};
+use super::log::{controls, is_pressed, ms};
+use super::steering;
 
 /// A brake that is pressed further by more than this is a reaction, fraction of its travel.
 const BRAKE: f32 = 0.05;

@@ -10,7 +10,7 @@ use kernel::time::TICK_HZ;
 use kernel::{Controls, Seat};
 use replay::Log;
 
-use super::{controls, end_of_driving};
+use super::log::{controls, end_of_driving};
 
 /// Steering wheel at full steering, degrees to either side: that of a wheel with 900 degrees from
 /// stop to stop, whatever device was used.

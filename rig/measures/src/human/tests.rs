@@ -1,7 +1,7 @@
 //! Measures of logs that are made by hand, so that every time is known beforehand.
 
 use kernel::arbiter::Intervention;
-use kernel::{Keyframe, Scenario, StateHash};
+use kernel::{Controls, Keyframe, Scenario, StateHash, TickInput};
 use proptest::prelude::*;
 use replay::{FORMAT_VERSION, KERNEL_VERSION, LiveTimes, Manifest, MaskShown, Provenance};
 

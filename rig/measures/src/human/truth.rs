@@ -8,7 +8,7 @@ use kernel::time::Tick;
 use replay::{Error, Log, Replayer};
 use serde::Serialize;
 
-use super::end_of_driving;
+use super::log::end_of_driving;
 
 /// An encroachment that is predicted for a shorter time is nobody's to react to.
 const LASTING_TICKS: Tick = 6;

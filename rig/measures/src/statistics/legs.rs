@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Ride;
+use super::ride::Ride;
 
 /// Legs end at a corner case and go on over rides without one. The last leg, which has no end, counts
 /// in no mean: that is how the paper counts, and why its means are too small.

@@ -3,17 +3,18 @@
 mod compare;
 mod groups;
 mod legs;
+mod ride;
 mod text;
 
 use std::collections::BTreeMap;
 
-use kernel::arbiter::Outcome;
-use replay::{Label, Recording};
+use replay::Label;
 use serde::Serialize;
 
 pub use compare::Comparison;
 pub use groups::{CheckpointStatistics, of_recordings};
 pub use legs::Legs;
+pub use ride::Ride;
 pub use text::table;
 
 use crate::stats;
@@ -22,40 +23,6 @@ use crate::stats;
 const BOOTSTRAP_SEED: u64 = 1;
 /// What cases without a label count as.
 const UNLABELLED: &str = "unlabelled";
-
-/// A run that counts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ride {
-    /// Kilometres driven.
-    pub km: f64,
-    /// Minutes of the simulated world.
-    pub minutes: f64,
-    /// Whether it ended by an intervention, or by a collision that nobody prevented.
-    pub is_case: bool,
-    /// What kind of corner case.
-    pub label: Option<Label>,
-    /// Whether true masks avoid the corner case, where that is known.
-    pub perception_caused: Option<bool>,
-}
-
-impl Ride {
-    /// That of a recording; `None` for a drive to get used to the rig.
-    pub fn of(recording: &Recording) -> Option<Self> {
-        let log = recording.log();
-        if study::is_familiarisation(&log.manifest.provenance) {
-            return None;
-        }
-        let missed = log.summary.as_ref().is_some_and(|s| s.outcome == Some(Outcome::Missed));
-        let annotation = log.annotation.as_ref();
-        Some(Self {
-            km: log.odometer_mm() as f64 / 1e6,
-            minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
-            is_case: missed || log.intervention.is_some(),
-            label: annotation.map(|a| a.label),
-            perception_caused: annotation.and_then(|a| a.perception_caused),
-        })
-    }
-}
 
 /// What rides came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]

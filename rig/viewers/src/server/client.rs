@@ -14,8 +14,8 @@ use tungstenite::http::{HeaderValue, StatusCode};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket, accept_hdr_with_config};
 
+use super::images::Images;
 use super::protocol::{self, Subscriptions};
-use super::server::Images;
 use super::topics::{self, Topic};
 use crate::feed::{Feed, Look, View};
 use crate::telemetry::Telemetry;

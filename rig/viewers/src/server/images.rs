@@ -38,3 +38,6 @@ fn encode(view: &View) -> Result<Vec<u8>, png::EncodingError> {
     writer.finish()?;
     Ok(out)
 }
+
+/// One encoder for each of the cameras.
+pub type Images = [Encoder; 2];

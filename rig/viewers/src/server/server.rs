@@ -9,7 +9,6 @@ use anyhow::Context;
 use base::clock::SessionClock;
 
 use super::client::{self, Source};
-use super::images::Encoder;
 use crate::feed::Feed;
 
 /// More are turned away.
@@ -89,6 +88,3 @@ fn accept(listener: &TcpListener, source: &Arc<Source>) {
         }
     }
 }
-
-/// One encoder for each of the cameras.
-pub type Images = [Encoder; 2];

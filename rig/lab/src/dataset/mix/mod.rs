@@ -19,59 +19,12 @@ use anyhow::bail;
 use base::failure::Usage;
 use base::output::{self, PendingFolder};
 use base::progress::Interrupt;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use super::manifest::{self, Manifest};
+use super::manifest::Manifest;
 use super::provenance::{FrameLine, Part};
+use super::recipe::{MixRecipe, Recipe, Replacement};
 pub(super) use parts::Dataset;
-
-/// What an enriched training set is made from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Recipe {
-    /// Seed of what is drawn.
-    pub seed: u64,
-    /// Training frames replaced.
-    pub replace: u32,
-    /// The set whose frames are replaced.
-    pub natural: manifest::Recipe,
-    /// What takes their place.
-    #[serde(flatten)]
-    pub by: Replacement,
-}
-
-/// What takes the place of natural frames.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "set", rename_all = "kebab-case")]
-pub enum Replacement {
-    /// Frames among more people.
-    Pedestrian {
-        /// The drives they come from.
-        pool: manifest::Recipe,
-        /// Pedestrian pixels that they show together, as closely as the pool has it.
-        pixels: u64,
-    },
-    /// Frames of corner cases.
-    CornerCase {
-        /// The cases they come from.
-        cases: manifest::Recipe,
-    },
-}
-
-impl Replacement {
-    /// What its frames are made from.
-    pub fn source(&self) -> &manifest::Recipe {
-        match self {
-            Self::Pedestrian { pool: source, .. } | Self::CornerCase { cases: source } => source,
-        }
-    }
-
-    fn part(&self) -> Part {
-        match self {
-            Self::Pedestrian { .. } => Part::Pool,
-            Self::CornerCase { .. } => Part::Cases,
-        }
-    }
-}
 
 /// The three training sets, each below its name in the folder that was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -132,7 +85,7 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Sets> {
     pool.check_kind(false)?;
     cases.check_kind(true)?;
     let replace = args.replace.unwrap_or(cases.manifest.train_frames);
-    let recipe = |by| Recipe { seed: args.seed, replace, natural: natural.manifest.recipe.clone(), by };
+    let recipe = |by| MixRecipe { seed: args.seed, replace, natural: natural.manifest.recipe.clone(), by };
     let corner_case = recipe(Replacement::CornerCase { cases: cases.manifest.recipe.clone() });
     corner_case.check(&natural, &cases)?;
     let pixels = corner_case.entering(&cases).iter().map(|line| line.pedestrian_pixels()).sum();
@@ -158,8 +111,13 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Sets> {
 }
 
 /// The sets that a folder holds already.
-fn finished(out: &Path, natural: &Dataset, pedestrian: &Recipe, corner_case: &Recipe) -> anyhow::Result<Option<Sets>> {
-    let of = |name: &str, recipe: manifest::Recipe| Manifest::of_finished(&out.join(name), &recipe);
+fn finished(
+    out: &Path,
+    natural: &Dataset,
+    pedestrian: &MixRecipe,
+    corner_case: &MixRecipe,
+) -> anyhow::Result<Option<Sets>> {
+    let of = |name: &str, recipe: Recipe| Manifest::of_finished(&out.join(name), &recipe);
     let part = natural;
     let natural = of("natural", part.manifest.recipe.clone())?;
     if natural.as_ref().is_some_and(|set| set.digest != part.manifest.digest) {
@@ -171,13 +129,13 @@ fn finished(out: &Path, natural: &Dataset, pedestrian: &Recipe, corner_case: &Re
     Ok(Some(Sets { replaced, natural, pedestrian, corner_case }))
 }
 
-impl From<Recipe> for manifest::Recipe {
-    fn from(recipe: Recipe) -> Self {
+impl From<MixRecipe> for Recipe {
+    fn from(recipe: MixRecipe) -> Self {
         Self::Mix(Box::new(recipe))
     }
 }
 
-impl Recipe {
+impl MixRecipe {
     /// Refuses datasets that cannot be mixed.
     fn check(&self, natural: &Dataset, source: &Dataset) -> anyhow::Result<()> {
         if self.replace == 0 {

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use crate::dataset::manifest::{self, Manifest};
+use crate::dataset::manifest::{Manifest, read_frames};
 use crate::dataset::provenance::FrameLine;
+use crate::dataset::recipe::Recipe;
 
 /// A complete dataset on disk.
 pub struct Dataset {
@@ -22,7 +23,7 @@ impl Dataset {
     /// Reads what it says of itself; its pictures stay where they are.
     pub fn read(folder: &Path) -> anyhow::Result<Self> {
         let manifest = Manifest::read(folder)?;
-        let frames = manifest::read_frames(folder, &manifest)?;
+        let frames = read_frames(folder, &manifest)?;
         Ok(Self { folder: folder.to_owned(), manifest, frames })
     }
 
@@ -33,7 +34,7 @@ impl Dataset {
 
     /// Refuses what is no dataset of corner cases, or what is one.
     pub fn check_kind(&self, of_cases: bool) -> anyhow::Result<()> {
-        if matches!(self.manifest.recipe, manifest::Recipe::Cases(_)) == of_cases {
+        if matches!(self.manifest.recipe, Recipe::Cases(_)) == of_cases {
             return Ok(());
         }
         let expected = if of_cases { "a dataset of corner cases" } else { "natural frames, not corner cases" };

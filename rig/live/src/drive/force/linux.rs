@@ -7,7 +7,7 @@ use evdev::{
     FFWaveform,
 };
 
-use super::Actuator;
+use super::actuator::Actuator;
 use super::effects::Effects;
 
 /// A push or rumble ends by itself after so long, ms, should nobody end it.

@@ -1,6 +1,7 @@
 //! Force feedback: what the drivers' hands feel of the car. Each seat's device is spoken to by a thread
 //! of its own, to which the newest order counts; nobody waits for a device.
 
+mod actuator;
 mod effects;
 #[cfg(target_os = "linux")]
 mod linux;
@@ -14,6 +15,7 @@ use base::newest::Newest;
 use kernel::events::Event;
 
 use super::board::Message;
+use actuator::Actuator;
 use effects::{Effects, Feel};
 
 /// Longest wait for a device to fall silent at the end. The system ends the effects of a program that
@@ -41,11 +43,6 @@ struct Hand {
     orders: Arc<Newest<Order>>,
     last: Order,
     silent: Receiver<()>,
-}
-
-/// A device that moves by itself.
-trait Actuator {
-    fn apply(&mut self, effects: &Effects) -> io::Result<()>;
 }
 
 impl Force {

@@ -4,7 +4,7 @@
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 use kernel::time::{TICK_HZ, Tick};
 
-use super::face::{ATTENTION, WRONG};
+use super::colours::{ATTENTION, WRONG};
 use crate::view::film::Film;
 use crate::view::staleness::greatest_ages;
 use crate::view::timeline::{MarkKind, Timeline, seconds};

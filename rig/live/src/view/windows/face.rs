@@ -3,6 +3,7 @@
 
 use egui::{Align, Color32, Layout, Panel, Rect, RichText, Sense, Ui, Vec2};
 
+use super::colours::ATTENTION;
 use super::{bar, facts};
 use crate::desktop::{HudText, Picture, overlay};
 use crate::view::film::Film;
@@ -10,13 +11,6 @@ use crate::view::layers::Layer;
 use crate::view::projector::{Shown, Viewpoint};
 use crate::view::timeline::seconds;
 use crate::view::viewing::{Action, FRAME_TICKS, Viewing};
-
-/// What needs attention.
-pub const ATTENTION: Color32 = Color32::from_rgb(255, 190, 60);
-/// What is wrong.
-pub const WRONG: Color32 = Color32::from_rgb(255, 90, 80);
-/// What is right.
-pub const RIGHT: Color32 = Color32::from_rgb(110, 220, 120);
 
 const FACTS_HEIGHT: f32 = 236.0;
 

@@ -7,7 +7,7 @@ use kernel::{Controls, Seat};
 use replay::MaskShown;
 
 use super::bar;
-use super::face::{ATTENTION, RIGHT, WRONG};
+use super::colours::{ATTENTION, RIGHT, WRONG};
 use crate::view::digests::hex;
 use crate::view::film::Film;
 use crate::view::projector::Shown;

@@ -1,6 +1,7 @@
 //! The viewer's window: two views, what there is to know about the tick, and the timeline.
 
 mod bar;
+mod colours;
 mod face;
 mod facts;
 mod keys;

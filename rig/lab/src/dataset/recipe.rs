@@ -1,0 +1,164 @@
+//! What datasets are made from, as `dataset.json` says it; the same recipe gives the same files on the same adapter.
+
+use base::maps::Map;
+use kernel::time::Tick;
+use serde::{Deserialize, Serialize};
+
+use super::provenance::Part;
+
+/// What a dataset is made from; the same recipe gives the same files on the same adapter.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", content = "recipe", rename_all = "kebab-case")]
+pub enum Recipe {
+    /// Frames of simulated drives.
+    Natural(NaturalRecipe),
+    /// Frames of corner cases.
+    Cases(CasesRecipe),
+    /// Frames of two other datasets.
+    Mix(Box<MixRecipe>),
+}
+
+impl Recipe {
+    /// The word that says which kind it is.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Natural(_) => "natural",
+            Self::Cases(_) => "cases",
+            Self::Mix(_) => "mix",
+        }
+    }
+
+    /// Width and height of the pictures, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Natural(recipe) => recipe.size,
+            Self::Cases(recipe) => recipe.size,
+            Self::Mix(recipe) => recipe.natural.size(),
+        }
+    }
+}
+
+/// What a natural dataset is made from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NaturalRecipe {
+    /// Seed of every scene's own.
+    pub seed: u64,
+    /// Scenes of the training split.
+    pub scenes: u32,
+    /// Scenes of the validation split.
+    pub val_scenes: u32,
+    /// Scenes of the test split.
+    #[serde(default)]
+    pub test_scenes: u32,
+    /// Frames a scene of training and validation.
+    pub frames: u32,
+    /// Frames a scene of the test split.
+    #[serde(default)]
+    pub test_frames: u32,
+    /// Width and height of the pictures, pixels.
+    pub size: (u32, u32),
+    /// People on foot, where not as many as in the map's default scenario.
+    pub pedestrians: Option<u16>,
+    /// The scenes' maps, in turn.
+    pub maps: Vec<MapUsed>,
+}
+
+/// A map of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MapUsed {
+    /// Its name, as it stands in file names.
+    pub name: String,
+    /// Digest of the baked map.
+    pub digest: String,
+}
+
+impl MapUsed {
+    /// What a recipe says of a map.
+    pub fn new(map: &Map) -> Self {
+        Self { name: city(&map.network.name), digest: format!("{:032x}", map.network.digest) }
+    }
+}
+
+/// The name of a map as it stands in file names, whose parts `_` separates.
+pub fn city(map: &str) -> String {
+    map.replace('_', "-")
+}
+
+/// What a dataset of corner cases is made from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CasesRecipe {
+    /// Which split they are.
+    pub split: String,
+    /// Width and height of the pictures, pixels.
+    pub size: (u32, u32),
+    /// The cases, in the order of their scenes' numbers.
+    pub cases: Vec<CaseUsed>,
+}
+
+/// A case of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseUsed {
+    /// Name of its file, for people; it is found by its digest.
+    pub name: String,
+    /// BLAKE3 of its file.
+    pub digest: String,
+    /// BLAKE3 of the recording it was cut from.
+    pub recording: String,
+    /// The window's last tick.
+    pub to: Tick,
+    /// The map, as it stands in file names.
+    pub map: String,
+    /// The drive's seed.
+    pub seed: u64,
+    /// What the takeover was labelled as.
+    pub label: Option<String>,
+}
+
+/// What an enriched training set is made from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MixRecipe {
+    /// Seed of what is drawn.
+    pub seed: u64,
+    /// Training frames replaced.
+    pub replace: u32,
+    /// The set whose frames are replaced.
+    pub natural: Recipe,
+    /// What takes their place.
+    #[serde(flatten)]
+    pub by: Replacement,
+}
+
+/// What takes the place of natural frames.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "set", rename_all = "kebab-case")]
+pub enum Replacement {
+    /// Frames among more people.
+    Pedestrian {
+        /// The drives they come from.
+        pool: Recipe,
+        /// Pedestrian pixels that they show together, as closely as the pool has it.
+        pixels: u64,
+    },
+    /// Frames of corner cases.
+    CornerCase {
+        /// The cases they come from.
+        cases: Recipe,
+    },
+}
+
+impl Replacement {
+    /// What its frames are made from.
+    pub fn source(&self) -> &Recipe {
+        match self {
+            Self::Pedestrian { pool: source, .. } | Self::CornerCase { cases: source } => source,
+        }
+    }
+
+    /// What part of a mix they are.
+    pub(super) fn part(&self) -> Part {
+        match self {
+            Self::Pedestrian { .. } => Part::Pool,
+            Self::CornerCase { .. } => Part::Cases,
+        }
+    }
+}

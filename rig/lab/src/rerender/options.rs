@@ -1,0 +1,26 @@
+//! What may be chosen.
+
+use std::path::PathBuf;
+
+use drivers::checkpoint::CheckpointChoice;
+use kernel::time::Tick;
+
+/// What is drawn and looked at again.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Recordings or cases, or folders with cases anywhere below.
+    pub files: Vec<PathBuf>,
+    /// Checkpoints to look through.
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Length of the window that ends at the intervention (or at the end), as in `3s`.
+    pub last: Tick,
+    /// Frames a second; must divide 60.
+    pub fps: u32,
+    /// Size of the pictures.
+    pub size: (u32, u32),
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
+    /// Folder of the results. One that this command began is completed: what is whole and follows from
+    /// the same files, checkpoints and options is kept.
+    pub out: PathBuf,
+}
