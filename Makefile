@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test bench oracles setup tools build
+.PHONY: demo test bench oracles check-long setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -35,6 +35,10 @@ bench: setup
 oracles: PACKAGES += python3-venv
 oracles: build
 	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
+
+## What takes long: oracles and benchmarks. docs/check-long.txt says when all of it passed, and of which commit.
+check-long:
+	tests/check_long.sh
 
 # The whole workspace, so that demo, test and bench ask the same features of the dependencies.
 build: setup
