@@ -4,9 +4,13 @@ PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers 
 	libxkbcommon-x11-0 libxcursor1 libxi6 libxrandr2 libx11-xcb1
 TEST_PACKAGES := xvfb xdotool
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+
+# What checks the dependencies; a version that is not this one is replaced.
+TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
+
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test bench oracles setup build
+.PHONY: demo test bench oracles check-long setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -14,8 +18,11 @@ demo: build
 
 ## Everything that CI runs.
 test: PACKAGES += $(TEST_PACKAGES)
-test: setup
+test: setup tools
 	cargo fmt --all --check
+	cargo machete
+	cargo deny check -D unnecessary-skip -D unmatched-skip licenses bans sources
+	tests/advisories.sh
 	cargo clippy --release --workspace --all-targets -- -D warnings
 	cargo test --release --workspace
 	kernel/tests/portable.sh
@@ -29,6 +36,10 @@ oracles: PACKAGES += python3-venv
 oracles: build
 	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
 
+## What takes long: oracles and benchmarks. docs/check-long.txt says when all of it passed, and of which commit.
+check-long:
+	tests/check_long.sh
+
 # The whole workspace, so that demo, test and bench ask the same features of the dependencies.
 build: setup
 	cargo build --release --workspace --bins
@@ -39,3 +50,10 @@ setup:
 		echo "installing:" $$missing; \
 		$(SUDO) apt-get update -qq && $(SUDO) apt-get install -y -qq --no-install-recommends $$missing; \
 	fi
+
+# Built in a folder of their own: they share nothing with the workspace.
+tools:
+	@for tool in $(TOOLS); do \
+		cargo install --list | grep -qx "$${tool%@*} v$${tool#*@}:" || \
+		env -u CARGO_TARGET_DIR nice cargo install --locked "$$tool" || exit 1; \
+	done
