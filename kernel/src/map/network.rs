@@ -14,10 +14,9 @@ use crate::traffic::Ways;
 /// A map, and what is derived from it: made on first use, once, and shared by every world on the map
 /// and by all that look things up in it.
 ///
-/// Deriving takes about 40 ms on a bundled map, as long as 500 ticks, so that a short replay or the
+/// Deriving takes about 30 ms on a bundled map, as long as 500 ticks, so that a short replay or the
 /// way back to a keyframe must not do it again. It cannot go stale: the data never changes in here,
 /// and another map is made [`from`](From) other data.
-#[derive(Clone)]
 pub struct RoadNetwork {
     map: Arc<MapData>,
     places: OnceLock<Arc<Places>>,
