@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
-use kernel::arbiter::{Outcome, TAKEOVER_TICKS};
+use kernel::arbiter::TAKEOVER_TICKS;
 use kernel::time::{CLIP_FRAMES, CLIP_STRIDE_TICKS, CLIP_TICKS, Tick};
 use kernel::{RoadNetwork, SceneSnapshot};
 
@@ -22,8 +22,7 @@ impl Case {
     /// The window that a recording's intervention (or the collision nobody prevented) asks for: the
     /// ticks of the 30 clip frames up to it, first to last. `None` when nothing of the kind happened.
     pub fn window(log: &Log) -> Option<RangeInclusive<Tick>> {
-        let missed = log.summary.as_ref().filter(|s| s.outcome == Some(Outcome::Missed)).map(|s| s.ticks);
-        let to = log.intervention.map(|i| i.tick).or(missed)?;
+        let to = log.decided_at()?;
         let from = to.checked_sub(Tick::from(CLIP_FRAMES - 1) * CLIP_STRIDE_TICKS)?;
         Some(from..=to)
     }

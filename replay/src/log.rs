@@ -59,6 +59,20 @@ impl Manifest {
     }
 }
 
+impl Log {
+    /// The tick at which a run became a corner case: that of its intervention, or the last one where it ended in a
+    /// collision that nobody prevented.
+    pub fn decided_at(&self) -> Option<Tick> {
+        let missed = self.summary.as_ref().filter(|summary| summary.outcome == Some(Outcome::Missed));
+        self.intervention.map(|intervention| intervention.tick).or(missed.map(|summary| summary.ticks))
+    }
+
+    /// The mask in view when the controls of a tick were given.
+    pub fn mask_at(&self, tick: Tick) -> Option<&MaskShown> {
+        self.masks[..self.masks.partition_point(|mask| mask.tick_shown <= tick)].last()
+    }
+}
+
 /// What makes a log a corner case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CaseInfo {

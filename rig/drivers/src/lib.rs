@@ -8,6 +8,7 @@ pub mod safety;
 pub mod semantic;
 pub mod session;
 pub mod simulate;
+pub mod single_track;
 pub mod vision;
 
 use kernel::Controls;

@@ -8,11 +8,12 @@ pub mod speed;
 #[cfg(test)]
 mod tests;
 
+use kernel::Controls;
 use kernel::map::Turn;
 use kernel::time::TICK_S;
-use kernel::{Controls, ego, ops};
 
 use super::{Driver, SemanticView};
+use crate::single_track;
 use arc::Arc;
 use memory::{Moved, Patience, Tracks, Trail};
 use sight::{Contact, Sight};
@@ -44,7 +45,7 @@ impl Driver<SemanticView<'_>> for SemanticBot {
     fn controls(&mut self, view: &SemanticView<'_>) -> Controls {
         let sight = Sight::new(view.mask);
         let (arc, wish) = self.decide(&sight, view);
-        self.steer = follow(self.steer, steer_for(arc));
+        self.steer = follow(self.steer, single_track::steering(arc.curvature));
         let (throttle, brake) = pedals(view.hud.speed_mps, &wish);
         Controls::from_fractions(self.steer, throttle, brake)
     }
@@ -53,7 +54,7 @@ impl Driver<SemanticView<'_>> for SemanticBot {
 impl SemanticBot {
     /// Takes in the view: where to steer, and how fast to go.
     pub fn decide(&mut self, sight: &Sight<'_>, view: &SemanticView<'_>) -> (Arc, Wish) {
-        let moved = Moved::along(arc_of(self.steer), view.hud.speed_mps);
+        let moved = Moved::along(Arc { curvature: single_track::curvature(self.steer) }, view.hud.speed_mps);
         self.trail.extend(moved, path::arrow_point(&view.hud.arrow));
         self.tracks.carry(moved);
         if self.ids != view.mask.ids {
@@ -72,16 +73,6 @@ impl SemanticBot {
         let scene = Scene { contacts: &self.contacts, give_way_m, has_lights: self.has_lights };
         (arc, speed::wish(sight, arc, &view.hud, scene))
     }
-}
-
-/// The arc that a steering angle drives (kinematic single-track model).
-fn arc_of(steer: f32) -> Arc {
-    Arc { curvature: -ops::tan(steer * ego::MAX_WHEEL_ANGLE_RAD) / ego::WHEELBASE_M }
-}
-
-/// The steering angle that drives an arc.
-fn steer_for(arc: Arc) -> f32 {
-    (-ops::atan2(ego::WHEELBASE_M * arc.curvature, 1.0) / ego::MAX_WHEEL_ANGLE_RAD).clamp(-1.0, 1.0)
 }
 
 /// Turns the wheel towards the wanted angle as fast as hands do.

@@ -3,7 +3,7 @@
 //! Steering is pure pursuit (Coulter 1992) on the route, speed the intelligent driver model
 //! (Treiber et al. 2000) behind whatever stands on the route, is about to, or a light asks for.
 
-use drivers::Driver;
+use drivers::{Driver, single_track};
 use glam::{Vec2, Vec3};
 use kernel::scene::{ActorScene, EgoScene};
 use kernel::signals::LightPhase;
@@ -77,8 +77,7 @@ impl Route {
         let Some(aim) = self.points.get(at).or(self.points.last()) else { return 0.0 };
         let to = *aim - ego.position.truncate();
         let left_m = (ego.rotation * Vec3::X).truncate().perp_dot(to);
-        let curvature = 2.0 * left_m / to.length_squared().max(1.0);
-        (-ops::atan2(ego::WHEELBASE_M * curvature, 1.0) / ego::MAX_WHEEL_ANGLE_RAD).clamp(-1.0, 1.0)
+        single_track::steering(2.0 * left_m / to.length_squared().max(1.0))
     }
 
     /// Highest speed now that lets every bend ahead be taken in comfort.

@@ -3,9 +3,9 @@
 use base::words;
 use foxglove::Encode;
 use kernel::arbiter::Phase;
-use kernel::time::{TICK_HZ, Tick};
+use kernel::time::TICK_HZ;
 use kernel::{TickInput, TickOutput, World};
-use replay::{Log, MaskShown};
+use replay::Log;
 
 /// What the car does, both drivers' controls, and who is in control. Pedals are fractions, [0, 1];
 /// steering is a fraction, [-1, 1], positive to the right.
@@ -69,15 +69,11 @@ impl Telemetry {
             safety_steer: safety.steer_fraction().into(),
             safety_throttle: safety.throttle_fraction().into(),
             safety_brake: safety.brake_fraction().into(),
-            mask_age_ms: mask_at(log, output.tick)
+            mask_age_ms: log
+                .mask_at(output.tick)
                 .map_or(f64::NAN, |mask| 1e3 * mask.age_at(output.tick) as f64 / f64::from(TICK_HZ)),
         }
     }
-}
-
-/// The mask in view when the controls of a tick were given.
-fn mask_at(log: &Log, tick: Tick) -> Option<&MaskShown> {
-    log.masks[..log.masks.partition_point(|mask| mask.tick_shown <= tick)].last()
 }
 
 fn phase(phase: Phase) -> &'static str {

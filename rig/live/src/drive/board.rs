@@ -151,8 +151,10 @@ pub struct Totals {
 impl Totals {
     /// Adds a run that has ended.
     pub fn add(&mut self, world: &World) {
-        let (odometer_mm, arbiter) = (world.odometer_mm(), world.arbiter());
-        self.count(odometer_mm, world.tick(), is_case(arbiter.intervention.is_some(), arbiter.outcome));
+        let arbiter = world.arbiter();
+        // As [`Log::decided_at`] has it; the run need not have come to its end.
+        let is_case = arbiter.intervention.is_some() || arbiter.outcome == Some(Outcome::Missed);
+        self.count(world.odometer_mm(), world.tick(), is_case);
     }
 
     /// Adds a recorded run, unless it was for familiarisation.
@@ -160,8 +162,7 @@ impl Totals {
         if study::is_familiarisation(&log.manifest.provenance) {
             return;
         }
-        let outcome = log.summary.as_ref().and_then(|summary| summary.outcome);
-        self.count(log.odometer_mm(), log.last_tick(), is_case(log.intervention.is_some(), outcome));
+        self.count(log.odometer_mm(), log.last_tick(), log.decided_at().is_some());
     }
 
     fn count(&mut self, odometer_mm: u64, ticks: Tick, is_case: bool) {
@@ -170,11 +171,6 @@ impl Totals {
         self.ticks += ticks;
         self.cases += u32::from(is_case);
     }
-}
-
-/// An intervention, or a collision that nobody prevented; the run need not have come to its end.
-fn is_case(intervened: bool, outcome: Option<Outcome>) -> bool {
-    intervened || outcome == Some(Outcome::Missed)
 }
 
 /// What does not change in a session.

@@ -40,8 +40,7 @@ impl Film {
     /// first tick, which has none, when those of the next were. Only changes of the mask are in the log,
     /// so the frame may be a later one with the same mask.
     pub fn mask_at(&self, tick: Tick) -> Option<&MaskShown> {
-        let (masks, tick) = (&self.log().masks, tick.max(self.log().first_tick() + 1));
-        masks[..masks.partition_point(|mask| mask.tick_shown <= tick)].last()
+        self.log().mask_at(tick.max(self.log().first_tick() + 1))
     }
 
     /// Whether the scene of a tick can be made again from this file; a case begins after the frames of

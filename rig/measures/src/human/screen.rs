@@ -25,13 +25,10 @@ pub struct ScreenAge {
 /// measure ends. `None` where there is no such tick with a mask.
 pub fn age(log: &Log, moving: &[bool]) -> Option<ScreenAge> {
     let clock = WallClock::of(log);
-    let shown = |tick: Tick| {
-        let at = log.masks.partition_point(|mask| mask.tick_shown <= tick);
-        at.checked_sub(1).map(|at| (tick, &log.masks[at]))
-    };
+    let shown = |tick: Tick| Some((tick, log.mask_at(tick)?));
     let ticks = (log.first_tick() + 1..).zip(moving).filter_map(|(tick, moves)| moves.then_some(tick));
     let seen: Vec<(Tick, &MaskShown)> = ticks.filter_map(shown).collect();
-    let ticks = Spread::of(seen.iter().map(|(tick, mask)| tick.saturating_sub(mask.tick_of_frame) as f64).collect())?;
+    let ticks = Spread::of(seen.iter().map(|(tick, mask)| mask.age_at(*tick) as f64).collect())?;
     let ms = |tick: Tick, mask: &MaskShown| Some((clock.us(tick)? - clock.us(mask.tick_of_frame)?) / 1e3);
     let latency_ms = |mask: &MaskShown| {
         let times = mask.times.filter(|_| mask.tick_of_frame > log.first_tick())?;

@@ -1,6 +1,5 @@
 //! A run, as statistics count it.
 
-use kernel::arbiter::Outcome;
 use replay::{Label, Recording};
 
 /// A run that counts.
@@ -25,12 +24,11 @@ impl Ride {
         if study::is_familiarisation(&log.manifest.provenance) {
             return None;
         }
-        let missed = log.summary.as_ref().is_some_and(|s| s.outcome == Some(Outcome::Missed));
         let annotation = log.annotation.as_ref();
         Some(Self {
             km: log.odometer_mm() as f64 / 1e6,
             minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
-            is_case: missed || log.intervention.is_some(),
+            is_case: log.decided_at().is_some(),
             label: annotation.map(|a| a.label),
             perception_caused: annotation.and_then(|a| a.perception_caused),
         })
