@@ -6,6 +6,7 @@
 
 mod bundled;
 mod checkpoint;
+pub mod cityscapes;
 pub mod classes;
 mod compute;
 mod decode;

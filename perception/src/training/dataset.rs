@@ -9,10 +9,8 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use crate::PerceptionError;
+use crate::cityscapes::{IMAGE_ENDING, Kind, sibling};
 use crate::classes::{IGNORE, TRAIN_CLASSES};
-
-const IMAGE_ENDING: &str = "_leftImg8bit.png";
-const LABEL_ENDING: &str = "_gtFine_labelTrainIds.png";
 
 /// A picture with its ground truth.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,7 +39,7 @@ impl Split {
     pub fn read(dataset: &Path, split: &str, width: usize, height: usize) -> Result<Self, PerceptionError> {
         let paths = image_paths(&dataset.join("leftImg8bit").join(split))?;
         let read: Vec<(Frame, blake3::Hash)> =
-            paths.par_iter().map(|path| read_frame(dataset, path, width, height)).collect::<Result<_, _>>()?;
+            paths.par_iter().map(|path| read_frame(path, width, height)).collect::<Result<_, _>>()?;
         let mut digest = blake3::Hasher::new();
         for (path, (_, hash)) in paths.iter().zip(&read) {
             let name = path.strip_prefix(dataset).unwrap_or(path);
@@ -74,13 +72,8 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, PerceptionError> {
     fs::read_dir(folder).map_err(io)?.map(|entry| entry.map(|e| e.path()).map_err(io)).collect()
 }
 
-fn read_frame(
-    dataset: &Path,
-    image: &Path,
-    width: usize,
-    height: usize,
-) -> Result<(Frame, blake3::Hash), PerceptionError> {
-    let label = label_path(dataset, image);
+fn read_frame(image: &Path, width: usize, height: usize) -> Result<(Frame, blake3::Hash), PerceptionError> {
+    let label = sibling(image, Kind::TrainIds).ok_or_else(|| bad(image, "is no picture of a split"))?;
     if !label.is_file() {
         return Err(bad(&label, format!("is missing; expected the ground truth of {}", image.display())));
     }
@@ -98,14 +91,6 @@ pub fn check_train_ids(label: &Path, ids: &[u8]) -> Result<(), PerceptionError> 
         Some(id) => Err(bad(label, format!("holds train id {id}; expected 0 to {last} or {IGNORE}"))),
         None => Ok(()),
     }
-}
-
-/// The ground truth that belongs to a picture.
-fn label_path(dataset: &Path, image: &Path) -> PathBuf {
-    let inner = image.strip_prefix(dataset.join("leftImg8bit")).unwrap_or(image);
-    let name = inner.to_string_lossy();
-    let stem = name.strip_suffix(IMAGE_ENDING).unwrap_or(&name);
-    dataset.join("gtFine").join(format!("{stem}{LABEL_ENDING}"))
 }
 
 /// The samples of an 8-bit PNG, palette indices included, without expansion.

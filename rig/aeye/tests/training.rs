@@ -6,7 +6,8 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use lab::cityscapes::{self, Place};
+use lab::cityscapes;
+use perception::cityscapes::Place;
 use render::Frame;
 
 const SIZE: (u32, u32) = (64, 32);

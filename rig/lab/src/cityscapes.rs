@@ -1,82 +1,13 @@
-//! Frames in the layout of Cityscapes, which trainers read as it is.
-//!
-//! `leftImg8bit/SPLIT/CITY/CITY_SEQ_FRAME_leftImg8bit.png` and, below `gtFine/SPLIT/CITY`,
-//! `_gtFine_labelIds.png` (tags of CARLA 0.9.10), `_gtFine_labelTrainIds.png` (train ids of
-//! `perception::classes`; 255 counts nowhere), `_gtFine_instanceIds.png` (16 bits: tag * 1000 +
-//! number for road users, else the tag) and `_gtFine_color.png` (the tags' colours).
+//! Frames as files in the layout of Cityscapes ([`perception::cityscapes`]).
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Context;
 use base::png;
+use perception::cityscapes::{Kind, Place};
 use perception::classes::TRAIN_ID_OF_TAG;
 use render::Frame;
-
-/// Which frame of which scene.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place<'a> {
-    /// `train`, `val` or `test`.
-    pub split: &'a str,
-    /// The map; must not contain `_`, which separates the parts of a name.
-    pub city: &'a str,
-    /// Number of the scene within its split.
-    pub scene: u32,
-    /// Number of the frame within its scene.
-    pub frame: u32,
-}
-
-impl Place<'_> {
-    /// Path of one of the frame's files below the dataset folder.
-    pub fn path(&self, kind: Kind) -> String {
-        let Self { split, city, scene, frame } = self;
-        let (top, ending) = kind.names();
-        format!("{top}/{split}/{city}/{city}_{scene:06}_{frame:06}_{ending}.png")
-    }
-}
-
-/// The files of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// The picture.
-    Image,
-    /// Tags.
-    LabelIds,
-    /// Train ids.
-    TrainIds,
-    /// Tags with numbers.
-    InstanceIds,
-    /// Tags in their colours.
-    Color,
-}
-
-impl Kind {
-    /// Every one.
-    pub const ALL: [Self; 5] = [Self::Image, Self::LabelIds, Self::TrainIds, Self::InstanceIds, Self::Color];
-
-    /// The folder below the dataset's, and the end of the file's name.
-    fn names(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Image => ("leftImg8bit", "leftImg8bit"),
-            Self::LabelIds => ("gtFine", "gtFine_labelIds"),
-            Self::TrainIds => ("gtFine", "gtFine_labelTrainIds"),
-            Self::InstanceIds => ("gtFine", "gtFine_instanceIds"),
-            Self::Color => ("gtFine", "gtFine_color"),
-        }
-    }
-}
-
-/// Another file of the frame with this picture; `None` when the path is not that of a picture
-/// (`.../leftImg8bit/SPLIT/CITY/NAME_leftImg8bit.png`).
-pub fn sibling(image: &Path, kind: Kind) -> Option<PathBuf> {
-    let (top, ending) = kind.names();
-    let stem = image.file_name()?.to_str()?.strip_suffix("_leftImg8bit.png")?;
-    let city = image.parent()?;
-    let split = city.parent()?;
-    let dataset = split.parent()?.parent()?;
-    let folder = dataset.join(top).join(split.file_name()?).join(city.file_name()?);
-    Some(folder.join(format!("{stem}_{ending}.png")))
-}
 
 /// Writes all files of a frame below `dir`.
 pub fn write(dir: &Path, place: &Place<'_>, frame: &Frame) -> anyhow::Result<()> {
@@ -116,6 +47,8 @@ pub fn instances(frame: &Frame) -> Vec<u16> {
 
 #[cfg(test)]
 mod tests {
+    use perception::cityscapes::sibling;
+
     use super::*;
 
     #[test]

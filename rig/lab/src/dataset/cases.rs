@@ -10,12 +10,13 @@ use base::progress::{self, Interrupt};
 use drivers::vision;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::footage::Footage;
+use perception::cityscapes::Place;
 use replay::{Label, Recording};
 
 use super::manifest::Manifest;
 use super::provenance::{Drive, FrameLine};
 use super::recipe::{CaseUsed, CasesRecipe, Recipe, city};
-use crate::cityscapes::{self, Place};
+use crate::cityscapes;
 use crate::looks::Studio;
 
 /// Which corner cases become a dataset.

@@ -17,6 +17,7 @@ use base::spread::{jobs, spread};
 use drivers::vision;
 use indicatif::ProgressBar;
 use kernel::World;
+use perception::cityscapes::Place;
 use render::{Camera, RENDERER_VERSION, RenderOptions, Renderer};
 use replay::KERNEL_VERSION;
 use serde::{Deserialize, Serialize};
@@ -25,7 +26,7 @@ use super::drive::ExpertDrive;
 use super::manifest::{Manifest, PARTS};
 use super::provenance::{self, Drive, FrameLine};
 use super::recipe::{MapUsed, NaturalRecipe, Recipe};
-use crate::cityscapes::{self, Place};
+use crate::cityscapes;
 
 /// What natural frames are asked for.
 #[derive(Clone, Debug)]

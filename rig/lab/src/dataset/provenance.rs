@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::time::Tick;
+use perception::cityscapes::{Kind, Place};
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES, train_id};
 use render::{Frame, RENDERER_VERSION};
 use serde::{Deserialize, Serialize};
 
-use crate::cityscapes::{self, Kind, Place};
+use crate::cityscapes;
 
 /// A frame's provenance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

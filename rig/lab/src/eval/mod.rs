@@ -246,7 +246,8 @@ fn text(summary: &Summary<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cityscapes::{self, Kind, Place};
+    use crate::cityscapes;
+    use perception::cityscapes::{Kind, Place};
     use render::Frame;
 
     const SIZE: (u32, u32) = (64, 32);
@@ -300,7 +301,7 @@ mod tests {
         let mut sum = ConfusionMatrix::default();
         for image in split::images(&data, "val").expect("pictures") {
             let mask = png::read(&prediction(&masks, &image), 1).expect("a mask").1;
-            let labels = cityscapes::sibling(&image, Kind::LabelIds).expect("a path");
+            let labels = perception::cityscapes::sibling(&image, Kind::LabelIds).expect("a path");
             sum.add(&png::read(&labels, 1).expect("labels").1, &mask);
         }
         assert_eq!((sum, 2), (one.matrix, one.scenes.len()));

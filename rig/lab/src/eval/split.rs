@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use base::png;
+use perception::cityscapes::{IMAGE_ENDING, Kind, sibling};
 use perception::classes::tag_of_train_id;
 use perception::training::{check_train_ids, image_paths};
 use render::Frame;
-
-use crate::cityscapes::{Kind, sibling};
 
 /// A picture with its ground truth.
 pub(super) struct Labelled {
@@ -36,7 +35,7 @@ pub(super) fn scene(image: &Path) -> String {
 /// The name of a picture's files without their endings: `CITY_SEQ_FRAME`.
 pub(super) fn name(image: &Path) -> String {
     let file = image.file_name().unwrap_or_default().to_string_lossy();
-    file.strip_suffix("_leftImg8bit.png").unwrap_or(&file).to_owned()
+    file.strip_suffix(IMAGE_ENDING).unwrap_or(&file).to_owned()
 }
 
 /// Reads a picture with its ground truth.

@@ -7,10 +7,11 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use base::png;
 use base::progress::{self, Interrupt};
+use perception::cityscapes::Kind;
 use rayon::prelude::*;
 
 use super::Dataset;
-use crate::cityscapes::{Kind, train_ids};
+use crate::cityscapes::train_ids;
 use crate::dataset::provenance::{self, FrameLine, Part};
 
 /// Where the scenes of other parts begin, so that no two frames have one name.
