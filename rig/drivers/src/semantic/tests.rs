@@ -6,6 +6,8 @@ use kernel::signals::LightPhase;
 use kernel::{Controls, ops};
 use render::{Camera, SemanticTag};
 
+use kernel::ego;
+
 use super::*;
 use crate::MaskView;
 
