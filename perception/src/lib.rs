@@ -15,6 +15,7 @@ mod image;
 mod metadata;
 mod metrics;
 mod onnx;
+mod parts;
 mod peel;
 mod segmenter;
 mod taps;

@@ -7,6 +7,7 @@ use prost::Message;
 
 use crate::metadata::{Layout, Metadata, Normalisation};
 use crate::onnx::pb::{self, tensor_proto::DataType};
+use crate::parts::{self, int, ints, text, value};
 use crate::{ClassMap, Mask};
 
 pub const CLASSES: [&str; 3] = ["Pedestrian", "Vegetation", "Sky"];
@@ -56,21 +57,6 @@ pub fn metadata() -> Metadata {
     }
 }
 
-fn ints(name: &str, values: &[i64]) -> pb::AttributeProto {
-    let kind = pb::attribute_proto::AttributeType::Ints as i32;
-    pb::AttributeProto { name: name.into(), r#type: kind, ints: values.to_vec(), ..Default::default() }
-}
-
-fn int(name: &str, value: i64) -> pb::AttributeProto {
-    let kind = pb::attribute_proto::AttributeType::Int as i32;
-    pb::AttributeProto { name: name.into(), r#type: kind, i: value, ..Default::default() }
-}
-
-fn text(name: &str, value: &str) -> pb::AttributeProto {
-    let kind = pb::attribute_proto::AttributeType::String as i32;
-    pb::AttributeProto { name: name.into(), r#type: kind, s: value.into(), ..Default::default() }
-}
-
 fn node(op: &str, inputs: &[&str], output: &str, attribute: Vec<pb::AttributeProto>) -> pb::NodeProto {
     pb::NodeProto {
         op_type: op.into(),
@@ -85,20 +71,6 @@ fn node(op: &str, inputs: &[&str], output: &str, attribute: Vec<pb::AttributePro
 fn floats(name: &str, dims: &[i64], values: Vec<f32>) -> pb::TensorProto {
     let data_type = DataType::Float as i32;
     pb::TensorProto { name: name.into(), dims: dims.to_vec(), data_type, float_data: values, ..Default::default() }
-}
-
-/// A value of the graph with its type and shape; negative dimensions are open and named.
-pub fn value(name: &str, element: DataType, dims: &[i64]) -> pb::ValueInfoProto {
-    use pb::tensor_shape_proto::{Dimension, dimension::Value};
-    let dimension = |&n: &i64| {
-        let value = if n < 0 { Value::DimParam(format!("d{}", -n)) } else { Value::DimValue(n) };
-        Dimension { value: Some(value), ..Default::default() }
-    };
-    let shape = pb::TensorShapeProto { dim: dims.iter().map(dimension).collect() };
-    let tensor = pb::type_proto::Tensor { elem_type: element as i32, shape: Some(shape) };
-    let value = pb::type_proto::Value::TensorType(tensor);
-    let r#type = Some(pb::TypeProto { value: Some(value), ..Default::default() });
-    pb::ValueInfoProto { name: name.into(), r#type, ..Default::default() }
 }
 
 impl Toy {
@@ -166,14 +138,7 @@ impl Toy {
 }
 
 fn finish(graph: pb::GraphProto, metadata: Option<&Metadata>) -> pb::ModelProto {
-    let entry = |(key, value)| pb::StringStringEntryProto { key, value };
-    pb::ModelProto {
-        ir_version: 8,
-        opset_import: vec![pb::OperatorSetIdProto { domain: String::new(), version: 13 }],
-        graph: Some(graph),
-        metadata_props: metadata.map(Metadata::to_props).unwrap_or_default().into_iter().map(entry).collect(),
-        ..Default::default()
-    }
+    parts::model(graph, metadata.map(Metadata::to_props).unwrap_or_default())
 }
 
 /// A network that gives one score for each of three classes to the whole picture.

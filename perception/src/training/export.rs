@@ -3,6 +3,8 @@
 //! stride (upsampling and argmax are left to [`crate::Segmenter`]). The same weights give the same
 //! bytes.
 
+use std::collections::BTreeMap;
+
 use prost::Message;
 
 use super::network::{Graph, Kernel, Resample, Size, fast_scnn};
@@ -13,10 +15,8 @@ use crate::checkpoint::RECIPE_KEY;
 use crate::classes::TRAIN_CLASSES;
 use crate::metadata::{Layout, Metadata};
 use crate::onnx::pb::{self, tensor_proto::DataType};
+use crate::parts::{self, int, ints};
 use crate::{ClassMap, PerceptionError};
-
-const OPSET: i64 = 13;
-const IR_VERSION: i64 = 8;
 
 /// The model's bytes, for pictures of `width` x `height` pixels. `recipe` is a JSON text that goes
 /// into the metadata.
@@ -28,19 +28,10 @@ pub(super) fn onnx(weights: &Weights, width: usize, height: usize, recipe: &str)
     writer.graph.name = "fast-scnn".into();
     writer.graph.input = vec![value_info(&input)];
     writer.graph.output = vec![value_info(&output)];
-    let opset = pb::OperatorSetIdProto { version: OPSET, ..Default::default() };
-    let model = pb::ModelProto {
-        ir_version: IR_VERSION,
-        opset_import: vec![opset],
-        producer_name: "aeye".into(),
-        graph: Some(writer.graph),
-        metadata_props: props(recipe)?,
-        ..Default::default()
-    };
-    Ok(model.encode_to_vec())
+    Ok(pb::ModelProto { producer_name: "aeye".into(), ..parts::model(writer.graph, props(recipe)?) }.encode_to_vec())
 }
 
-fn props(recipe: &str) -> Result<Vec<pb::StringStringEntryProto>, PerceptionError> {
+fn props(recipe: &str) -> Result<BTreeMap<String, String>, PerceptionError> {
     let metadata = Metadata {
         classes: ClassMap::from_names(&TRAIN_CLASSES.map(|c| c.name))?,
         normalisation: Some(pictures::NORMALISATION),
@@ -49,7 +40,7 @@ fn props(recipe: &str) -> Result<Vec<pb::StringStringEntryProto>, PerceptionErro
     };
     let mut pairs = metadata.to_props();
     pairs.insert(RECIPE_KEY.into(), recipe.into());
-    Ok(pairs.into_iter().map(|(key, value)| pb::StringStringEntryProto { key, value }).collect())
+    Ok(pairs)
 }
 
 /// A feature map by the name it has in the graph.
@@ -59,29 +50,9 @@ struct Value {
     size: Size,
 }
 
-fn value_info(value: &Value) -> pb::ValueInfoProto {
-    use pb::tensor_shape_proto::{Dimension, dimension};
-    let Size { rows, cols, channels } = value.size;
-    let dimension = |n: usize| Dimension { value: Some(dimension::Value::DimValue(n as i64)), ..Default::default() };
-    let shape = pb::TensorShapeProto { dim: [1, channels, rows, cols].map(dimension).to_vec() };
-    let tensor = pb::type_proto::Tensor { elem_type: DataType::Float as i32, shape: Some(shape) };
-    let kind = pb::type_proto::Value::TensorType(tensor);
-    let r#type = Some(pb::TypeProto { value: Some(kind), ..Default::default() });
-    pb::ValueInfoProto { name: value.name.clone(), r#type, ..Default::default() }
-}
-
-fn ints(name: &str, values: &[usize]) -> pb::AttributeProto {
-    pb::AttributeProto {
-        name: name.into(),
-        r#type: pb::attribute_proto::AttributeType::Ints as i32,
-        ints: values.iter().map(|v| *v as i64).collect(),
-        ..Default::default()
-    }
-}
-
-fn int(name: &str, value: usize) -> pb::AttributeProto {
-    let r#type = pb::attribute_proto::AttributeType::Int as i32;
-    pb::AttributeProto { name: name.into(), r#type, i: value as i64, ..Default::default() }
+fn value_info(Value { name, size }: &Value) -> pb::ValueInfoProto {
+    let Size { rows, cols, channels } = *size;
+    parts::value(name, DataType::Float, &[1, channels as i64, rows as i64, cols as i64])
 }
 
 /// Writes nodes on a walk over the network.
@@ -137,11 +108,11 @@ impl<'a> Writer<'a> {
         let bias = self.constant(format!("bias{at}"), &[outputs], bias);
         let padding = if side == 3 { dilation } else { 0 };
         let attributes = vec![
-            ints("dilations", &[dilation; 2]),
-            int("group", group),
-            ints("kernel_shape", &[side; 2]),
-            ints("pads", &[padding; 4]),
-            ints("strides", &[stride; 2]),
+            ints("dilations", &[dilation as i64; 2]),
+            int("group", group as i64),
+            ints("kernel_shape", &[side as i64; 2]),
+            ints("pads", &[padding as i64; 4]),
+            ints("strides", &[stride as i64; 2]),
         ];
         self.node("Conv", &[&x.name, &weights, &bias], attributes, kernel.output(x.size))
     }
@@ -197,7 +168,7 @@ impl Graph for Writer<'_> {
     }
 
     fn spread(&mut self, x: &Value, side: usize) -> Value {
-        self.node("DepthToSpace", &[&x.name], vec![int("blocksize", side)], x.size.spread(side))
+        self.node("DepthToSpace", &[&x.name], vec![int("blocksize", side as i64)], x.size.spread(side))
     }
 
     fn concat(&mut self, parts: &[Value]) -> Value {

@@ -1,0 +1,53 @@
+//! Parts of ONNX models, as they are written here.
+
+use std::collections::BTreeMap;
+
+use crate::onnx::pb::{self, tensor_proto::DataType};
+
+const OPSET: i64 = 13;
+const IR_VERSION: i64 = 8;
+
+/// A model of a graph, with metadata.
+pub fn model(graph: pb::GraphProto, props: BTreeMap<String, String>) -> pb::ModelProto {
+    let entry = |(key, value)| pb::StringStringEntryProto { key, value };
+    pb::ModelProto {
+        ir_version: IR_VERSION,
+        opset_import: vec![pb::OperatorSetIdProto { version: OPSET, ..Default::default() }],
+        graph: Some(graph),
+        metadata_props: props.into_iter().map(entry).collect(),
+        ..Default::default()
+    }
+}
+
+/// Whole numbers of an operator.
+pub fn ints(name: &str, values: &[i64]) -> pb::AttributeProto {
+    let kind = pb::attribute_proto::AttributeType::Ints as i32;
+    pb::AttributeProto { name: name.into(), r#type: kind, ints: values.to_vec(), ..Default::default() }
+}
+
+/// A whole number of an operator.
+pub fn int(name: &str, value: i64) -> pb::AttributeProto {
+    let kind = pb::attribute_proto::AttributeType::Int as i32;
+    pb::AttributeProto { name: name.into(), r#type: kind, i: value, ..Default::default() }
+}
+
+/// A word of an operator.
+#[cfg(test)]
+pub fn text(name: &str, value: &str) -> pb::AttributeProto {
+    let kind = pb::attribute_proto::AttributeType::String as i32;
+    pb::AttributeProto { name: name.into(), r#type: kind, s: value.into(), ..Default::default() }
+}
+
+/// A value of the graph with its type and shape; negative dimensions are open and named.
+pub fn value(name: &str, element: DataType, dims: &[i64]) -> pb::ValueInfoProto {
+    use pb::tensor_shape_proto::{Dimension, dimension::Value};
+    let dimension = |&n: &i64| {
+        let value = if n < 0 { Value::DimParam(format!("d{}", -n)) } else { Value::DimValue(n) };
+        Dimension { value: Some(value), ..Default::default() }
+    };
+    let shape = pb::TensorShapeProto { dim: dims.iter().map(dimension).collect() };
+    let tensor = pb::type_proto::Tensor { elem_type: element as i32, shape: Some(shape) };
+    let value = pb::type_proto::Value::TensorType(tensor);
+    let r#type = Some(pb::TypeProto { value: Some(value), ..Default::default() });
+    pb::ValueInfoProto { name: name.into(), r#type, ..Default::default() }
+}
