@@ -20,24 +20,14 @@ mod names;
 mod report;
 mod workspace;
 
-/// Folders of packages that are still to be freed of their circles, with why they are not yet.
-const KNOWN: [(&str, &str); 0] = [];
-
 #[test]
 fn nothing_imports_itself_around_a_circle() {
-    let packages = workspace::packages();
     let mut broken = Vec::new();
-    for package in &packages {
-        let folder = &package.folder;
-        let known = KNOWN.iter().any(|(known, _)| known == folder);
+    for package in workspace::packages() {
         match report::of_package(&package.name, &package.files) {
-            Ok(found) if known && found.is_empty() => broken.push(format!("{folder}: is free now, take it from KNOWN")),
-            Ok(_) if known => {}
-            Ok(found) => broken.extend(found.iter().map(|circle| format!("{folder}: {circle}"))),
-            Err(error) => broken.push(format!("{folder}: {error}")),
+            Ok(found) => broken.extend(found.iter().map(|circle| format!("{}: {circle}", package.folder))),
+            Err(error) => broken.push(format!("{}: {error}", package.folder)),
         }
     }
-    let gone = KNOWN.iter().filter(|(known, _)| !packages.iter().any(|package| package.folder == *known));
-    broken.extend(gone.map(|(folder, _)| format!("{folder}: is no package, take it from KNOWN")));
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
 }
