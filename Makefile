@@ -6,7 +6,7 @@ TEST_PACKAGES := xvfb xdotool
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test bench oracles setup build
+.PHONY: demo test bench oracles headless setup build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -17,6 +17,7 @@ test: PACKAGES += $(TEST_PACKAGES)
 test: setup
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
+	cargo clippy --release -p aeye --no-default-features --all-targets -- -D warnings
 	cargo test --release --workspace
 	kernel/tests/portable.sh
 
@@ -28,6 +29,11 @@ bench: setup
 oracles: PACKAGES += python3-venv
 oracles: build
 	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
+
+## The program without windows, wheels and CUDA, which a C compiler is enough for.
+headless: PACKAGES := gcc libc6-dev
+headless: setup
+	cargo build --release -p aeye --no-default-features
 
 # The whole workspace, so that demo, test and bench ask the same features of the dependencies.
 build: setup

@@ -5,15 +5,15 @@ use std::sync::Arc;
 use base::failure::{is_divergence, sentence};
 use base::image::Image;
 use base::newest::Newest;
+use drivers::film::Film;
+use drivers::film::reel::{Moment, Reel};
+use drivers::film::seen::{Picture, Seen, SeenTrack};
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::{ConfusionMatrix, Mask};
 use render::{Camera, Frame, RenderOptions, Renderer};
 
-use super::film::Film;
 use super::layers::{self, Layer};
-use super::reel::{Moment, Reel};
-use super::seen::{Seen, SeenTrack};
 
 /// Width of images and true classes, pixels: the multiple of the semantic driver's camera nearest below.
 const WIDTH: u32 = 768;
@@ -72,9 +72,6 @@ pub struct Request {
     /// Index of the checkpoint that predicts.
     pub checkpoint: usize,
 }
-
-/// An image, or why there is none.
-pub type Picture = Result<Arc<Image>, String>;
 
 /// What was asked for.
 #[derive(Debug)]
