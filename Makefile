@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test bench oracles check-long setup tools build
+.PHONY: demo test bench oracles check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -24,6 +24,7 @@ test: setup tools
 	cargo deny check -D unnecessary-skip -D unmatched-skip licenses bans sources
 	tests/advisories.sh
 	cargo clippy --release --workspace --all-targets -- -D warnings
+	cargo clippy --release -p aeye --no-default-features --all-targets -- -D warnings
 	cargo test --release --workspace
 	kernel/tests/portable.sh
 
@@ -39,6 +40,11 @@ oracles: build
 ## What takes long: oracles and benchmarks. docs/check-long.txt says when all of it passed, and of which commit.
 check-long:
 	tests/check_long.sh
+
+## The program without windows, wheels and CUDA, which a C compiler is enough for.
+headless: PACKAGES := gcc libc6-dev
+headless: setup
+	cargo build --release -p aeye --no-default-features
 
 # The whole workspace, so that demo, test and bench ask the same features of the dependencies.
 build: setup

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use prost::Message;
 // Only looked for by name, among the runtimes that are linked.
+#[cfg(feature = "cuda")]
 use tract_cuda as _;
 use tract_onnx::prelude::*;
 
@@ -55,7 +56,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<pb::ModelProto, String> {
 pub(crate) fn runtime(name: &str) -> Result<&'static dyn Runtime, String> {
     // Libraries that are found but lack a symbol make their bindings panic.
     let found = catch_unwind(|| runtime_for_name(name)).map_err(|_| "its libraries do not fit".to_owned())?;
-    found.map_err(reason)?.ok_or_else(|| "it is not built in".into())
+    found.map_err(reason)?.ok_or_else(|| format!("this program was built without it (the feature {name})"))
 }
 
 fn reason(error: TractError) -> String {

@@ -2,9 +2,12 @@
 
 pub mod checkpoint;
 pub mod crew;
+pub mod film;
 pub mod footprint;
+pub mod pictures;
 pub mod recorded_eye;
 pub mod safety;
+pub mod seat;
 pub mod semantic;
 pub mod session;
 pub mod simulate;

@@ -3,6 +3,7 @@
 mod circles;
 mod classes;
 mod datasets;
+mod headless;
 mod lab;
 mod real_maps;
 mod render_frame;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use drivers::checkpoint::CheckpointChoice;
-use live::drive::{Pictures, Screens};
-use live::units::SeatChoice;
+use drivers::pictures::{Pictures, Screens};
+use drivers::seat::SeatChoice;
 use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server;

@@ -72,6 +72,7 @@ pub enum Command {
     Demo(DemoArgs),
     /// List and calibrate wheels and gamepads.
     #[command(subcommand)]
+    #[cfg_attr(not(feature = "live"), command(hide = true))]
     Wheel(WheelCommand),
     /// Say what this machine has and how fast it is.
     Doctor(DoctorArgs),

@@ -1,10 +1,10 @@
 //! Values of arguments, read from text.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use drivers::pictures::Screens;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::{TICK_HZ, Tick};
 use lab::experiment::Preset;
-use live::drive::Screens;
 
 /// An experiment with a name.
 pub fn preset() -> impl TypedValueParser<Value = Preset> {

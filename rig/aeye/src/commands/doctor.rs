@@ -8,13 +8,11 @@ use base::maps::Map;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{TickInput, World};
-use live::drive::{self, LiveFigures};
-use live::units::hardware::Hardware;
 use perception::Compute;
 use render::{Camera, RenderOptions, Renderer};
 use serde::Serialize;
 
-use super::wheel;
+use super::windows::{self, LiveFigures};
 use crate::cli::DoctorArgs;
 use crate::exit::Verdict;
 use crate::print::print;
@@ -22,15 +20,6 @@ use crate::print::print;
 /// Ticks, frames and inferences that are measured.
 const TICKS: u32 = 600;
 const FRAMES: u32 = 20;
-
-/// Sizes of the safety driver's picture, largest first.
-const SIZES: [(u32, u32); 5] = [(1280, 720), (960, 540), (640, 360), (480, 270), (320, 180)];
-/// Pictures a second that leave room for a busy street.
-const ENOUGH_FPS: f64 = 18.0;
-/// Pictures a second from which on nearly every tick has one, and the machine may have more to give.
-const ALL_FPS: f64 = 50.0;
-/// Median age of masks from which on they should be made quicker, milliseconds.
-const OLD_MASK_MS: f64 = 100.0;
 
 /// What this machine has.
 #[derive(Debug, Serialize)]
@@ -79,7 +68,7 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
         problems: Vec::new(),
         notes: Vec::new(),
     };
-    match devices() {
+    match windows::devices() {
         Ok(devices) => findings.devices = devices,
         Err(error) => findings.notes.push(sentence(&error)),
     }
@@ -87,9 +76,9 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
         findings.problems.push(sentence(&error));
     }
     if args.seconds > 0 && findings.problems.is_empty() {
-        match drive::trial(&args.checkpoint, &(&args.pictures).into(), args.seconds) {
-            Ok(figures) => {
-                findings.advice.extend(advice(args, &figures));
+        match windows::trial(args) {
+            Ok((figures, advice)) => {
+                findings.advice = advice;
                 findings.live = Some(figures);
             }
             Err(error) if error.is::<Usage>() => return Err(error),
@@ -100,39 +89,9 @@ pub fn run(args: &DoctorArgs, json: bool) -> anyhow::Result<Verdict> {
     Ok(if findings.problems.is_empty() { Verdict::Ok } else { Verdict::CheckFailed })
 }
 
-/// What to use here, from how it went with these sizes: pictures of the largest of [`SIZES`] that should
-/// come often enough, and masks that should be young enough.
-fn advice(args: &DoctorArgs, figures: &LiveFigures) -> Vec<String> {
-    let pixels = |(width, height): (u32, u32)| f64::from(width * height);
-    // As if the time of a picture went with its pixels, which overstates what smaller ones bring.
-    let fps = |size| figures.safety_fps * pixels(args.pictures.image_size) / pixels(size);
-    let size = SIZES.into_iter().find(|size| fps(*size) >= ENOUGH_FPS).unwrap_or(SIZES[SIZES.len() - 1]);
-    let larger = SIZES.into_iter().rev().find(|size| pixels(*size) > pixels(args.pictures.image_size));
-    let mut said = figures.shortfalls();
-    said.push(match larger {
-        Some((width, height)) if figures.safety_fps >= ALL_FPS => {
-            format!("there is room for larger pictures: measure --image-size {width}x{height}")
-        }
-        _ if size == args.pictures.image_size => "the safety driver's pictures suit this machine".into(),
-        _ => format!("drive with --image-size {}x{}", size.0, size.1),
-    });
-    let masks_are_old =
-        figures.mask_age_ms.is_none_or(|age| age.median > OLD_MASK_MS) || figures.semantic_fps < ENOUGH_FPS;
-    said.push(match masks_are_old {
-        true => "for younger masks: a smaller --mask-size or checkpoint, and no other window over the drivers'".into(),
-        false => "masks of this checkpoint and size suit this machine, with all three windows".into(),
-    });
-    said
-}
-
 fn adapters() -> Vec<Adapter> {
     let adapters = render::adapters().into_iter();
     adapters.map(|a| Adapter { name: a.name, backend: a.backend, driver: a.driver, is_cpu: a.is_cpu }).collect()
-}
-
-/// Names of the wheels and gamepads that are plugged in.
-fn devices() -> anyhow::Result<Vec<String>> {
-    Ok(Hardware::open()?.devices().into_iter().map(|d| format!("{} at {}", d.name, d.path)).collect())
 }
 
 /// World step, rendering and inference, as a drive needs them.
@@ -183,7 +142,7 @@ fn text(findings: &Findings) -> String {
         line("adapter", format!("{} ({kind}, {}, {})", a.name, a.backend, a.driver));
     }
     if findings.devices.is_empty() {
-        line("device", wheel::none_found());
+        line("device", windows::none_found());
     }
     for device in &findings.devices {
         line("device", device.clone());

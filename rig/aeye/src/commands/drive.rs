@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::path::Path;
-use std::sync::Arc;
 
 use anyhow::{Context, bail};
 use base::clock::EverySecond;
@@ -13,7 +12,6 @@ use base::progress::Interrupt;
 use drivers::simulate;
 use drivers::vision::Vision;
 use kernel::{Scenario, World};
-use live::drive::Options;
 use measures::RunFigures;
 use perception::Compute;
 use render::{RenderOptions, Renderer};
@@ -21,6 +19,7 @@ use replay::Recording;
 use study::{Lineup, Study};
 use viewers::server::Publisher;
 
+use super::windows;
 use crate::cli::DriveArgs;
 use crate::exit::Verdict;
 use crate::print::print;
@@ -53,27 +52,11 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
     rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
     if args.headless {
-        headless(args, &scenario, &map, json)?
+        headless(args, &scenario, &map, json)?;
     } else {
-        live::drive::drive(options(args, scenario, map, json))?
-    };
-    Ok(Verdict::Ok)
-}
-
-fn options(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> Options {
-    Options {
-        map,
-        scenario,
-        seats: [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default),
-        calibration: args.calibration.clone(),
-        force: args.force,
-        foxglove: args.foxglove,
-        checkpoint: args.checkpoint.clone(),
-        pictures: (&args.pictures).into(),
-        study: (&args.study).into(),
-        record: args.record.clone(),
-        tell: Arc::new(move |path, figures| tell(path, figures, json)),
+        windows::drive(args, scenario, map, move |path, figures| tell(path, figures, json))?;
     }
+    Ok(Verdict::Ok)
 }
 
 /// Prints what a recording at a path holds.

@@ -1,4 +1,7 @@
 //! A file a command: its arguments become options, its result is printed.
+//!
+//! What needs windows or wheels is in `windows`; a build without the feature `live` has `windowless` in its place, which
+//! says so.
 
 pub mod campaign;
 pub mod compare;
@@ -18,4 +21,9 @@ pub mod statistics;
 pub mod train;
 pub mod verify;
 pub mod view;
-pub mod wheel;
+#[cfg(not(feature = "live"))]
+pub mod windowless;
+#[cfg(feature = "live")]
+pub mod windows;
+#[cfg(not(feature = "live"))]
+pub use windowless as windows;

@@ -35,13 +35,13 @@ use base::maps::Map;
 use base::output;
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::pictures::{Pictures, Screens};
+use drivers::seat::SeatChoice;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{Scenario, World};
-use perception::Compute;
 use render::Camera;
 use study::{Lineup, Study};
 
-use crate::units::SeatChoice;
 pub use aftermath::Tell;
 use board::{About, Board, Message, Wake};
 use seating::Seating;
@@ -75,28 +75,6 @@ pub struct Options {
     pub record: PathBuf,
     /// Told what each run came to.
     pub tell: Tell,
-}
-
-/// How the live rig makes its pictures.
-#[derive(Clone, Debug)]
-pub struct Pictures {
-    /// Size of the safety driver's picture, pixels.
-    pub image_size: (u32, u32),
-    /// Size of the semantic driver's mask, pixels (default: the checkpoint's own).
-    pub mask_size: Option<(u32, u32)>,
-    /// What computes the networks.
-    pub inference: Compute,
-    /// Monitors that the safety driver's view is spread over.
-    pub screens: Screens,
-}
-
-/// Monitors that a view is spread over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Screens {
-    /// One.
-    One,
-    /// Three side by side.
-    Three,
 }
 
 /// Drives in windows until the operators have had enough.

@@ -32,9 +32,10 @@ pub use keyboard::Key;
 use keyboard::Keyboard;
 use slot::{Binding, Unit};
 use source::{DeviceId, DeviceInfo, InputSource, RawEvent, Simulated};
-pub use status::{KEYBOARD, SeatChoice, UnitEvent, UnitEventKind, UnitState, UnitStatus};
+pub use status::{UnitEvent, UnitEventKind, UnitState, UnitStatus};
 
 use base::words;
+pub use drivers::seat::{KEYBOARD, SeatChoice};
 
 /// How hard a car without a driver brakes, fraction of the pedal.
 const STOP_BRAKE: f32 = 0.6;

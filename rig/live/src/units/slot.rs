@@ -1,11 +1,12 @@
 //! A seat and what is in it.
 
+use drivers::seat::KEYBOARD;
 use kernel::{Controls, Seat};
 
 use super::device::DeviceUnit;
 use super::keyboard::Keyboard;
 use super::source::{DeviceId, DeviceInfo};
-use super::status::{KEYBOARD, UnitState, UnitStatus};
+use super::status::{UnitState, UnitStatus};
 
 /// What moves the controls of a seat.
 #[derive(Debug)]

@@ -10,10 +10,10 @@ use base::failure::sentence;
 use base::image::Image;
 use base::output;
 use base::png;
+use drivers::film::Film;
 use kernel::time::Tick;
 use replay::Case;
 
-use super::film::Film;
 use super::projector::Shown;
 
 /// Something to be kept.

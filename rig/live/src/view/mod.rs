@@ -1,50 +1,33 @@
-//! The replay viewer: a recording or case in a window, tick by tick, in every layer; and a check
-//! without a window that what the semantic driver saw can be made again.
+//! The replay viewer: a recording or case in a window, tick by tick, in every layer.
 //!
 //! The window never waits: what is to be shown is a request of which the newest wins, and another
 //! thread simulates, draws and predicts. Files are written by a third.
 
 mod clerk;
-pub mod digests;
-pub mod film;
+mod hud;
 mod layers;
-mod picture;
 mod playback;
 mod projector;
 mod range;
-mod reel;
-mod seen;
 mod staleness;
 mod timeline;
 mod viewing;
 mod windows;
 
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::sync::mpsc;
 
 use anyhow::Context;
-use base::failure::Usage;
 use base::newest::Newest;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::film::Film;
 use drivers::vision::Eye;
 
-use film::Film;
 use projector::Projector;
 use viewing::Viewing;
 use windows::{Links, Window, Word};
 
-/// Opens a recording or case for looking at it; a blind one only to `reveal` its checkpoint.
-pub fn open(path: &Path, reveal: bool) -> anyhow::Result<Film> {
-    let film = Film::open(path)?;
-    if study::is_blind(&film.log().manifest.provenance) && !reveal {
-        let file = path.display();
-        return Err(Usage(format!("{file}: a blind drive; expected --reveal, which tells its checkpoint")).into());
-    }
-    Ok(film)
-}
-
-/// Shows it in a window until that is closed.
+/// Shows a recording or case in a window until that is closed.
 pub fn watch(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<()> {
     let window = Window::new()?;
     let recorded = film.eye.find_as_it_was(choices)?;

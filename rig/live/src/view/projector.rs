@@ -5,16 +5,15 @@ use std::sync::Arc;
 use base::failure::{is_divergence, sentence};
 use base::image::Image;
 use base::newest::Newest;
+use drivers::film::Film;
+use drivers::film::reel::{Moment, Reel};
+use drivers::film::seen::{Picture, Seen, SeenTrack};
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::{ConfusionMatrix, Mask};
 use render::{Camera, Frame, RenderOptions, Renderer};
 
-use super::film::Film;
 use super::layers::{self, Layer};
-use super::picture::Picture;
-use super::reel::{Moment, Reel};
-use super::seen::{Seen, SeenTrack};
 
 /// Width of images and true classes, pixels: the multiple of the semantic driver's camera nearest below.
 const WIDTH: u32 = 768;

@@ -1,11 +1,11 @@
 //! The timeline: drag on it to go anywhere. Its curve is the age of the mask on the semantic driver's
 //! screen.
 
+use drivers::film::Film;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 use kernel::time::{TICK_HZ, Tick};
 
 use super::colours::{ATTENTION, WRONG};
-use crate::view::film::Film;
 use crate::view::staleness::greatest_ages;
 use crate::view::timeline::{MarkKind, Timeline, seconds};
 use crate::view::viewing::{Action, Viewing};

@@ -1,12 +1,13 @@
 //! What the window looks like: both views above, the facts and the events below them, and at the
 //! bottom the timeline with its buttons.
 
+use drivers::film::Film;
 use egui::{Align, Color32, Layout, Panel, Rect, RichText, Sense, Ui, Vec2};
 
 use super::colours::ATTENTION;
 use super::{bar, facts};
 use crate::desktop::{HudText, Picture, overlay};
-use crate::view::film::Film;
+use crate::view::hud;
 use crate::view::layers::Layer;
 use crate::view::projector::{Shown, Viewpoint};
 use crate::view::timeline::seconds;
@@ -95,7 +96,7 @@ fn legend(i: usize, viewing: &Viewing, shown: Option<&Shown>) -> String {
 /// The HUD belongs to what both drivers saw.
 fn hud(shown: &Shown, i: usize) -> Option<HudText> {
     let is_drivers = shown.request.viewpoint == Viewpoint::Driver || shown.request.layers[i] == Layer::Seen;
-    shown.moment.as_ref().filter(|_| is_drivers).map(|moment| moment.hud_text())
+    shown.moment.as_ref().filter(|_| is_drivers).map(|moment| hud::text(moment))
 }
 
 fn reason_instead(ui: &mut Ui, into: Rect, reason: &str) {

@@ -1,6 +1,10 @@
 //! What there is to know about the tick: the car, both drivers, the mask on the screen, and what
 //! happened around it.
 
+use drivers::film::Film;
+use drivers::film::digests::hex;
+use drivers::film::reel::Moment;
+use drivers::film::seen::Seen;
 use egui::{Color32, Grid, RichText, ScrollArea, Ui};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{Controls, Seat};
@@ -8,11 +12,8 @@ use replay::MaskShown;
 
 use super::bar;
 use super::colours::{ATTENTION, RIGHT, WRONG};
-use crate::view::digests::hex;
-use crate::view::film::Film;
+use crate::view::hud;
 use crate::view::projector::Shown;
-use crate::view::reel::Moment;
-use crate::view::seen::Seen;
 use crate::view::timeline::seconds;
 use crate::view::viewing::{Action, Viewing};
 
@@ -39,7 +40,7 @@ const PLAIN: Color32 = Color32::from_gray(235);
 
 fn car_and_drivers(ui: &mut Ui, moment: &Moment) {
     let hud = &moment.hud;
-    let text = moment.hud_text();
+    let text = hud::text(moment);
     Grid::new("car").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         let is_taken = moment.applied.is_some_and(|a| a.steering == Seat::Safety || a.pedals == Seat::Safety);
         row(ui, "in control", text.control, if is_taken { ATTENTION } else { PLAIN });

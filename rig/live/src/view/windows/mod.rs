@@ -6,6 +6,7 @@ mod face;
 mod facts;
 mod keys;
 
+use drivers::film::Film;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::time::Duration;
@@ -20,7 +21,6 @@ use winit::keyboard::ModifiersState;
 use winit::window::WindowId;
 
 use super::clerk::Errand;
-use super::film::Film;
 use super::projector::{Request, Shown};
 use super::viewing::{Action, Order, Viewing};
 use crate::desktop::{self, Pane};

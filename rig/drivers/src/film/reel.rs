@@ -5,10 +5,8 @@ use std::sync::Arc;
 use kernel::arbiter::{Applied, Phase};
 use kernel::events::Hud;
 use kernel::time::Tick;
-use kernel::{RoadNetwork, SceneSnapshot, Seat, TickInput};
+use kernel::{RoadNetwork, SceneSnapshot, TickInput};
 use replay::{Error, Log, Replayer};
-
-use crate::desktop::HudText;
 
 /// What there is to know about a tick.
 #[derive(Clone, Debug)]
@@ -25,15 +23,6 @@ pub struct Moment {
     pub applied: Option<Applied>,
     /// Distance driven so far, millimetres.
     pub odometer_mm: u64,
-}
-
-impl Moment {
-    /// The HUD of both drivers.
-    pub fn hud_text(&self) -> HudText {
-        let seat = |of: fn(&Applied) -> Seat| self.applied.as_ref().map_or(Seat::Semantic, of);
-        let is_reverse = self.applied.is_some_and(|applied| applied.controls.has(kernel::Controls::REVERSE));
-        HudText::new(&self.hud, seat(|applied| applied.steering), seat(|applied| applied.pedals), is_reverse)
-    }
 }
 
 /// A log and a world that follows it. Every tick on the way is compared with the log.

@@ -3,14 +3,16 @@
 use std::sync::Arc;
 
 use base::image::Image;
-use drivers::vision::{Eye, digest_of};
 use kernel::time::Tick;
 use render::{Camera, Renderer};
 use replay::MaskShown;
 
-use super::film::Film;
-use super::picture::Picture;
+use super::Film;
 use super::reel::Reel;
+use crate::vision::{Eye, digest_of};
+
+/// An image, or why there is none.
+pub type Picture = Result<Arc<Image>, String>;
 
 /// The mask on the semantic driver's screen at a tick.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,13 +1,19 @@
-//! A recording or case, opened to be looked at.
+//! A recording or case, opened to be looked at: its ticks again, and what the semantic driver saw at each. No window is
+//! needed for any of it.
+
+pub mod digests;
+pub mod reel;
+pub mod seen;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::Context;
-use drivers::recorded_eye::RecordedEye;
 use kernel::RoadNetwork;
 use kernel::time::Tick;
 use replay::{Log, MaskShown, Recording};
+
+use crate::recorded_eye::RecordedEye;
 
 /// A file, its map, and what it says about the semantic driver's eye.
 pub struct Film {

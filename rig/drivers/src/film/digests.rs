@@ -5,15 +5,15 @@ use std::fmt;
 
 use anyhow::{Context, anyhow, bail};
 use base::progress;
-use drivers::checkpoint::CheckpointChoice;
-use drivers::vision::{self, Eye, digest_of};
 use kernel::time::Tick;
 use render::{Camera, RenderOptions, Renderer};
 use replay::MaskShown;
 use serde::Serialize;
 
-use super::film::Film;
+use super::Film;
 use super::reel::Reel;
+use crate::checkpoint::CheckpointChoice;
+use crate::vision::{self, Eye, digest_of};
 
 /// What the comparison came to.
 #[derive(Debug, Serialize)]

@@ -1,0 +1,56 @@
+//! What needs windows, wheels or gamepads: all that this program has of the crate `live`.
+
+mod trial;
+mod wheel;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use base::maps::Map;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::film::Film;
+use kernel::Scenario;
+pub use live::drive::LiveFigures;
+use live::drive::{Options, Tell};
+use live::units::hardware::Hardware;
+use measures::RunFigures;
+
+use crate::cli::DriveArgs;
+pub use trial::trial;
+pub use wheel::{none_found, run as wheels};
+
+/// Live runs, until the operators have had enough.
+pub fn drive(
+    args: &DriveArgs,
+    scenario: Scenario,
+    map: Map,
+    tell: impl Fn(&Path, &RunFigures) -> anyhow::Result<()> + Send + Sync + 'static,
+) -> anyhow::Result<()> {
+    live::drive::drive(options(args, scenario, map, Arc::new(tell)))
+}
+
+fn options(args: &DriveArgs, scenario: Scenario, map: Map, tell: Tell) -> Options {
+    Options {
+        map,
+        scenario,
+        seats: [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default),
+        calibration: args.calibration.clone(),
+        force: args.force,
+        foxglove: args.foxglove,
+        checkpoint: args.checkpoint.clone(),
+        pictures: (&args.pictures).into(),
+        study: (&args.study).into(),
+        record: args.record.clone(),
+        tell,
+    }
+}
+
+/// Shows a recording or case until its window is closed.
+pub fn watch(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<()> {
+    live::view::watch(film, choices)
+}
+
+/// Names of the wheels and gamepads that are plugged in.
+pub fn devices() -> anyhow::Result<Vec<String>> {
+    Ok(Hardware::open()?.devices().into_iter().map(|d| format!("{} at {}", d.name, d.path)).collect())
+}
