@@ -52,7 +52,7 @@ fn without_a_graphics_driver_each_command_says_what_to_install_and_leaves_nothin
         "drive --headless --seconds 4 --record new.mcap",
         "campaign --checkpoint truth --runs 1 --out new",
         "rerender run.mcap --checkpoint truth --out new",
-        "compare run.mcap --checkpoint truth early --out new",
+        "compare run.mcap --checkpoint truth,early --out new",
         "report run.mcap --checkpoint truth --out new.html",
         "dataset natural --scenes 1 --val-scenes 0 --frames 1 --out new",
         "demo --out new",

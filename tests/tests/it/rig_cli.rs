@@ -95,8 +95,10 @@ fn nonsense_on_the_command_line_is_usage() {
         &["campaign", "--checkpoint", "truth", "--out", "d", "--runs", "0"],
         &["rerender", "x.mcap", "--checkpoint", "truth", "--size", "0x0", "--out", "d"],
         &["rerender", "x.mcap", "--checkpoint", "truth", "--fps", "7", "--out", "d"],
-        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--gate", "speed>=1", "--out", "d"],
-        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--gate", "miou~1", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth,early", "--gate", "speed>=1", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth,early", "--gate", "miou~1", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--out", "d"],
+        &["rerender", "--checkpoint", "full", "c.onnx", "x.mcap", "--out", "d"],
         &["fly"],
     ] {
         let error = Cli::try_parse_from([&["aeye"], arguments].concat()).expect_err("nonsense");
@@ -173,7 +175,9 @@ fn the_readme_names_every_command_as_it_is_called() {
     let calls = readme.lines().filter_map(|line| line.strip_prefix("| `aeye ")?.split('`').next());
     let mut named: Vec<&str> = calls.clone().filter_map(|call| call.split(' ').next()).collect();
     for call in calls {
-        let words = call.split(' ').map(|word| if word == "N" { "1" } else { word.trim_end_matches("...") });
+        let words = call
+            .split(' ')
+            .map(|word| if word == "N" { "1" } else { word.trim_end_matches("...").trim_end_matches(',') });
         let parsed = Cli::try_parse_from(["aeye"].into_iter().chain(words));
         assert!(parsed.is_ok(), "aeye {call}: {:?}", parsed.err());
     }

@@ -6,7 +6,7 @@ use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use lab::experiment::Preset;
 
-use super::values::{jobs, people, preset};
+use super::values::{CHECKPOINTS, MAPS, jobs, people, preset};
 
 /// Arguments of `campaign`.
 #[derive(Args, Clone, Debug)]
@@ -14,11 +14,11 @@ use super::values::{jobs, people, preset};
 pub struct CampaignArgs {
     /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
     /// the same runs.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones (default: the scenario's
     /// map, or all).
-    #[arg(long, value_delimiter = ',', value_name = "NAMES|all")]
+    #[arg(long, value_delimiter = ',', value_name = MAPS)]
     pub maps: Vec<String>,
     /// A scenario file; its seed and length are replaced for each run.
     #[arg(long, value_name = "FILE.toml")]

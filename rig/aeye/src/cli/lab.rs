@@ -7,17 +7,17 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, Tick};
 use lab::compare::Gate;
 
-use super::values::{duration, frame_rate, jobs, moment, size};
+use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, size};
 
 /// Arguments of `rerender`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye rerender <FILE>... --checkpoint <C>... --out <DIR> [OPTIONS]")]
+#[command(override_usage = "aeye rerender <FILE|DIR>... --checkpoint <C,...> --out <DIR> [OPTIONS]")]
 pub struct RerenderArgs {
     /// Recordings or cases, or folders with cases anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Length of the window that ends at the intervention (or at the end), as in `3s`.
     #[arg(long, default_value = "3s", value_parser = duration)]
@@ -39,13 +39,13 @@ pub struct RerenderArgs {
 
 /// Arguments of `export`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye export <FILE>... [--checkpoint <C>...] --out <OUT.mcap|DIR> [OPTIONS]")]
+#[command(override_usage = "aeye export <FILE|DIR>... [--checkpoint <C,...>] --out <OUT.mcap|DIR> [OPTIONS]")]
 pub struct ExportArgs {
     /// Recordings or cases, or folders with cases anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Checkpoints whose masks come along with the ground truth.
-    #[arg(long, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
     /// window everything is exported.
@@ -70,18 +70,18 @@ pub struct ExportArgs {
 
 /// Arguments of `compare`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye compare <CASE>... --checkpoint <A> <B>... --out <DIR> [OPTIONS]")]
+#[command(override_usage = "aeye compare <FILE|DIR>... --checkpoint <A,B,...> --out <DIR> [OPTIONS]")]
 pub struct CompareArgs {
     /// Corner cases, or folders with cases anywhere below.
-    #[arg(required = true, value_name = "CASE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Two or more checkpoints; the first is the baseline.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// A condition on every checkpoint but the baseline, as in `ped_iou>=0.5`. Metrics: ped_iou, miou,
     /// ped_recall_on_path, hazards_seen (share of the hazards seen 1 s or more before the intervention),
     /// first_sight_s (mean), and against the baseline the numbers of cases fixed and broken.
-    #[arg(long, value_name = "METRIC>=NUMBER")]
+    #[arg(long, value_delimiter = ',', value_name = "METRIC>=NUMBER,...")]
     pub gate: Vec<Gate>,
     /// A checkpoint than which no other may be worse: of no metric may the paired 95 % interval of the
     /// difference lie below 0 as a whole.
@@ -105,7 +105,7 @@ pub struct CompareArgs {
 pub struct RedriveArgs {
     /// Recordings or cases with an intervention (or a collision that nobody prevented, for
     /// `--checkpoint`), or folders with cases anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// The safety driver does nothing from the tick of the intervention on; the semantic driver is a bot
     /// that looks through the recorded checkpoint. What would have happened?
@@ -113,10 +113,10 @@ pub struct RedriveArgs {
     pub without_intervention: bool,
     /// Bots drive from the first tick at hand, at least 3 s before the intervention, the semantic one
     /// looking through this checkpoint. Is there an intervention again?
-    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, value_name = CHECKPOINT)]
     pub checkpoint: Option<CheckpointChoice>,
     /// Where the recorded checkpoint may be found, if it does not come with the program.
-    #[arg(long, value_name = "FILE.onnx")]
+    #[arg(long, value_delimiter = ',', value_name = "FILE.onnx,...")]
     pub recorded: Vec<CheckpointChoice>,
     /// Tell the checkpoint of blind drives.
     #[arg(long)]
@@ -136,13 +136,13 @@ pub struct RedriveArgs {
 
 /// Arguments of `report`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye report <CASE>... --checkpoint <C>... --out <FILE.html> [OPTIONS]")]
+#[command(override_usage = "aeye report <FILE|DIR>... --checkpoint <C,...> --out <FILE.html> [OPTIONS]")]
 pub struct ReportArgs {
     /// Corner cases, or folders with cases anywhere below; the recordings beside them give route and kilometres.
-    #[arg(required = true, value_name = "CASE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Size of the pictures.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]

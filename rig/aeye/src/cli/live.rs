@@ -11,7 +11,7 @@ use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server;
 
-use super::values::{force, screens, size, threshold};
+use super::values::{CHECKPOINT, CHECKPOINTS, file, force, screens, size, threshold};
 
 /// Arguments of `drive`.
 #[derive(Args, Clone, Debug)]
@@ -28,7 +28,7 @@ pub struct DriveArgs {
     pub safety: Option<SeatChoice>,
     /// Calibrations of wheels and gamepads, chosen by the names of their devices; others are read by
     /// presets.
-    #[arg(long, value_name = "FILE.toml", conflicts_with = "headless")]
+    #[arg(long, value_delimiter = ',', value_name = "FILE.toml,...", conflicts_with = "headless")]
     pub calibration: Vec<PathBuf>,
     /// Greatest force of wheels and gamepads, 0 (off) to 1 (all that they can).
     #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION", conflicts_with = "headless")]
@@ -43,7 +43,7 @@ pub struct DriveArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,
     /// What the semantic driver sees: a bundled checkpoint, ground truth, or an ONNX file.
-    #[arg(long, default_value = "truth", value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, default_value = "truth", value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// Seed of everything random; replaces the scenario's.
     #[arg(long)]
@@ -114,7 +114,7 @@ pub struct StudyArgs {
     #[arg(long)]
     pub familiarisation: bool,
     /// Two or more checkpoints, of which each run draws one by its seed without telling which.
-    #[arg(long, num_args = 2.., value_name = "early|full|truth|FILE.onnx", conflicts_with = "checkpoint")]
+    #[arg(long, value_delimiter = ',', value_name = CHECKPOINTS, conflicts_with = "checkpoint")]
     pub blind: Vec<CheckpointChoice>,
 }
 
@@ -143,7 +143,7 @@ pub struct DoctorArgs {
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub seconds: u32,
     /// What the semantic driver sees there.
-    #[arg(long, default_value = "full", value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, default_value = "full", value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// The pictures there.
     #[command(flatten)]
@@ -171,11 +171,11 @@ Cases and screenshots go beside FILE, under names with their ticks that are free
 #[command(after_help = VIEW_KEYS)]
 pub struct ViewArgs {
     /// A recording or case; one that was cut off is shown as far as it goes.
-    #[arg(value_name = "FILE")]
+    #[arg(value_parser = file(), value_name = "FILE")]
     pub file: PathBuf,
-    /// A checkpoint to look through; may be given several times (default: the bundled ones). The one
-    /// that the run was driven through is among them when it is bundled.
-    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    /// Checkpoints to look through (default: the bundled ones). The one that the run was driven through is
+    /// among them when it is bundled.
+    #[arg(long, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Opens no window: makes every mask that was shown again and compares its digest with the logged
     /// one; exit code 3 if any differs. Equal digests are promised on the adapter that made them.
@@ -201,7 +201,7 @@ pub enum WheelCommand {
 #[derive(Args, Clone, Debug)]
 pub struct WheelListArgs {
     /// Calibrations to choose from, by the name of their device.
-    #[arg(long, value_name = "FILE.toml")]
+    #[arg(long, value_delimiter = ',', value_name = "FILE.toml,...")]
     pub calibration: Vec<PathBuf>,
 }
 

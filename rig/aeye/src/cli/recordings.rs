@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::values::file;
+
 /// Arguments of `verify`.
 #[derive(Args, Clone, Debug)]
 pub struct VerifyArgs {
     /// Recordings or cases, or folders with such files anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Also go back this many ticks again and again and compare (rollback self-check).
     #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(1..=600))]
@@ -22,7 +24,7 @@ pub struct VerifyArgs {
 #[derive(Args, Clone, Debug)]
 pub struct InspectArgs {
     /// Recordings or cases, or folders with such files anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Tell which checkpoint drove blind drives.
     #[arg(long)]
@@ -33,7 +35,7 @@ pub struct InspectArgs {
 #[derive(Args, Clone, Debug)]
 pub struct QuestionnaireArgs {
     /// Recordings.
-    #[arg(required = true, value_name = "RECORDING")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// The drivers' answers.
     #[arg(long, value_name = "FILE.toml")]
@@ -45,7 +47,7 @@ pub struct QuestionnaireArgs {
 pub struct StatisticsArgs {
     /// Recordings, in the order in which they were driven, or folders of them. Corner cases in folders
     /// and drives to get used to the rig do not count.
-    #[arg(required = true, value_name = "FILE|DIR")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// The checkpoint that rates are compared with (default: that of the first recording).
     #[arg(long, value_name = "NAME")]

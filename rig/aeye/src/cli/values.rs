@@ -1,10 +1,35 @@
 //! Values of arguments, read from text.
 
+use std::path::{Path, PathBuf};
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::{TICK_HZ, Tick};
 use lab::experiment::Preset;
 use live::drive::Screens;
+
+/// What stands for a checkpoint in help.
+pub const CHECKPOINT: &str = "early|full|truth|FILE.onnx";
+/// What stands for several: an option that takes a list takes it with commas, or is given again.
+pub const CHECKPOINTS: &str = "early|full|truth|FILE.onnx,...";
+/// What stands for several maps.
+pub const MAPS: &str = "NAME|FILE.xodr|all,...";
+
+/// A recording, a case or a folder. The name of a checkpoint is refused: it is what is left over when a list
+/// is given with spaces.
+pub fn file() -> impl TypedValueParser<Value = PathBuf> {
+    clap::builder::PathBufValueParser::new().try_map(|path| if is_checkpoint(&path) { Err(LIST) } else { Ok(path) })
+}
+
+const LIST: &str = "is a checkpoint where a recording, case or folder is expected; \
+                    several checkpoints are given as --checkpoint early,full";
+
+fn is_checkpoint(path: &Path) -> bool {
+    let choice = path.to_str().map(|text| text.parse::<CheckpointChoice>());
+    let is_named = matches!(choice, Some(Ok(CheckpointChoice::Truth | CheckpointChoice::Bundled(_))));
+    (is_named && !path.exists()) || path.extension().is_some_and(|ending| ending == "onnx")
+}
 
 /// An experiment with a name.
 pub fn preset() -> impl TypedValueParser<Value = Preset> {
@@ -78,6 +103,12 @@ pub fn frame_rate(text: &str) -> Result<u32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_checkpoint_is_no_file() {
+        assert!(is_checkpoint(Path::new("truth")) && is_checkpoint(Path::new("runs/c.onnx")));
+        assert!(!is_checkpoint(Path::new("early.case.mcap")) && !is_checkpoint(Path::new("./early")));
+    }
 
     #[test]
     fn values_are_read_and_nonsense_is_refused() {

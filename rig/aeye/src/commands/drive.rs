@@ -35,6 +35,11 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
             "--headless shows no pictures; expected none of --image-size, --mask-size, --inference and --screens";
         return Err(Usage(said.into()).into());
     }
+    if args.study.blind.len() == 1 {
+        return Err(
+            Usage("--blind draws one of several; expected two or more checkpoints, as in early,full".into()).into()
+        );
+    }
     if library::is_case_name(&args.record) {
         return Err(
             Usage(format!("{}: is named as a corner case; expected another name", args.record.display())).into()
