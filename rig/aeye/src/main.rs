@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use base::failure::{Failed, sentence};
 use clap::Parser;
 
 fn main() -> ExitCode {
@@ -9,7 +10,10 @@ fn main() -> ExitCode {
     let cli = aeye::cli::Cli::parse();
     let result = aeye::run(&cli);
     if let Err(error) = &result {
-        eprintln!("error: {}", base::failure::sentence(error));
+        if let Some(failed) = error.downcast_ref::<Failed>() {
+            failed.sentences().for_each(|sentence| eprintln!("error: {sentence}"));
+        }
+        eprintln!("error: {}", sentence(error));
     }
     aeye::exit::code(&result)
 }

@@ -25,9 +25,10 @@ pub struct RerenderArgs {
     /// Frames a second; must divide 60.
     #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
     pub fps: u32,
-    /// Size of the pictures.
-    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
@@ -60,10 +61,15 @@ pub struct ExportArgs {
     /// Pictures a second; must divide 60. What is measured is exported at every tick.
     #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
     pub fps: u32,
-    /// Size of the pictures.
-    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
-    /// File of the export, with its layout for viewers beside it; or a folder, for several files.
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
+    /// Files exported at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
+    /// File of the export, with its layout for viewers beside it; or a folder, for several files. What is whole
+    /// there and follows from the same files, checkpoints and options is kept.
     #[arg(long, value_name = "OUT.mcap|DIR")]
     pub out: PathBuf,
 }
@@ -87,9 +93,10 @@ pub struct CompareArgs {
     /// difference lie below 0 as a whole.
     #[arg(long, value_name = "NAME")]
     pub no_worse_than: Option<String>,
-    /// Size of the pictures.
-    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs)]
     pub jobs: Option<u16>,
@@ -129,7 +136,11 @@ pub struct RedriveArgs {
     /// How long after the intervention a fork goes on, seconds.
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=60))]
     pub seconds: u16,
-    /// Folder of the forks' recordings and of `redrive.jsonl`; must not exist or be empty.
+    /// Files driven on at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
+    /// Folder of the forks' recordings and of `redrive.jsonl`. One that this command began is completed: forks
+    /// that are there and follow from the same file, checkpoint and options are kept.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -144,9 +155,10 @@ pub struct ReportArgs {
     /// Checkpoints to look through.
     #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
-    /// Size of the pictures.
-    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
     /// Where the page goes.
     #[arg(long, value_name = "FILE.html")]
     pub out: PathBuf,

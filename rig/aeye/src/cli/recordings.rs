@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::values::file;
+use super::values::{file, jobs};
 
 /// Arguments of `verify`.
 #[derive(Args, Clone, Debug)]
@@ -18,6 +18,9 @@ pub struct VerifyArgs {
     /// Compare with this recording tick by tick, and name the field that differs first.
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
+    /// Files checked at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
 }
 
 /// Arguments of `inspect`.
@@ -29,6 +32,9 @@ pub struct InspectArgs {
     /// Tell which checkpoint drove blind drives.
     #[arg(long)]
     pub reveal: bool,
+    /// Files read at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
 }
 
 /// Arguments of `questionnaire`.
@@ -45,8 +51,8 @@ pub struct QuestionnaireArgs {
 /// Arguments of `statistics`.
 #[derive(Args, Clone, Debug)]
 pub struct StatisticsArgs {
-    /// Recordings, in the order in which they were driven, or folders of them. Corner cases in folders
-    /// and drives to get used to the rig do not count.
+    /// Recordings, in the order in which they were driven, or folders with recordings anywhere below. Corner
+    /// cases and forks in folders, and drives to get used to the rig, do not count.
     #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// The checkpoint that rates are compared with (default: that of the first recording).
@@ -55,4 +61,7 @@ pub struct StatisticsArgs {
     /// Tell the checkpoints of blind drives; without this they are all one.
     #[arg(long)]
     pub reveal: bool,
+    /// Recordings read at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
 }

@@ -1,5 +1,6 @@
 //! Says what this machine has and how fast it is.
 
+use base::output::Typed;
 use std::fmt::Write;
 
 use base::clock::seconds_of;
@@ -47,6 +48,11 @@ struct Findings {
     problems: Vec<String>,
     /// What does not work and drives can do without.
     notes: Vec<String>,
+}
+
+/// What `aeye doctor` prints.
+impl Typed for Findings {
+    const TYPE: &'static str = "aeye.doctor";
 }
 
 /// A graphics adapter.

@@ -9,15 +9,17 @@ use base::clock::EverySecond;
 use base::failure::Usage;
 use base::library;
 use base::maps::{Map, read_scenario};
+use base::output::Typed;
 use base::progress::Interrupt;
 use drivers::simulate;
 use drivers::vision::Vision;
 use kernel::{Scenario, World};
-use live::drive::Options;
+use live::drive::{Options, case_path};
 use measures::RunFigures;
 use perception::Compute;
 use render::{RenderOptions, Renderer};
 use replay::Recording;
+use serde::Serialize;
 use study::{Lineup, Study};
 use viewers::server::Publisher;
 
@@ -81,9 +83,29 @@ fn options(args: &DriveArgs, scenario: Scenario, map: Map, json: bool) -> Option
     }
 }
 
+/// What is printed of a run.
+#[derive(Serialize)]
+struct Driven<'a> {
+    /// The recording.
+    recording: String,
+    /// The corner case beside it; none of drives without one, and without windows.
+    case: Option<String>,
+    /// What it came to.
+    #[serde(flatten)]
+    figures: &'a RunFigures,
+}
+
+/// A line of `aeye drive`, of a run.
+impl Typed for Driven<'_> {
+    const TYPE: &'static str = "aeye.drive";
+}
+
 /// Prints what a recording at a path holds.
 fn tell(path: &Path, figures: &RunFigures, json: bool) -> anyhow::Result<()> {
-    print(json, figures, || format!("{}: {figures}", path.display()))
+    let case = case_path(path);
+    let case = case.is_file().then(|| case.display().to_string());
+    let driven = Driven { recording: path.display().to_string(), case, figures };
+    print(json, &driven, || format!("{}: {figures}", path.display()))
 }
 
 fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<()> {

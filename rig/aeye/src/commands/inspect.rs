@@ -1,10 +1,13 @@
 //! Says what is in a recording or case.
 
+use base::output::Typed;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
-use base::library;
+use base::failure::{Failed, Failure};
+use base::library::{self, Found, Kind};
+use base::spread::{in_order, jobs};
 use base::words;
 use kernel::time::{TICK_HZ, Tick};
 use measures::{Criticality, Measures, RunFigures, Tally, human};
@@ -47,6 +50,11 @@ struct Contents {
     scenario: String,
 }
 
+/// A line of `aeye inspect`, of a file.
+impl Typed for Contents {
+    const TYPE: &'static str = "aeye.inspect";
+}
+
 /// What is printed after several files.
 #[derive(Serialize)]
 struct Overall {
@@ -54,6 +62,11 @@ struct Overall {
     files: usize,
     #[serde(flatten)]
     tally: Tally,
+}
+
+/// The last line of `aeye inspect` of several files.
+impl Typed for Overall {
+    const TYPE: &'static str = "aeye.inspect.overall";
 }
 
 /// The intervention.
@@ -102,22 +115,41 @@ impl NoteLine {
 /// Runs `aeye inspect`.
 pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
     let (mut seen, mut verdict) = (Vec::new(), Verdict::Ok);
-    for file in &library::recordings(&args.files)? {
-        let recording = Recording::open(file)?;
-        let measured = measure(&recording);
-        if matches!(measured, Err(replay::Error::Diverged(_))) {
-            verdict = Verdict::CheckFailed;
-        }
-        let contents = read(file, &recording, measured, args.reveal)?;
-        print(json, &contents, || text(&contents))?;
-        seen.push((recording, contents.measures));
-    }
+    let Found { files, mut failed } = library::list(&args.files, Kind::All);
+    in_order(
+        jobs(args.jobs),
+        files.len(),
+        |index| look(&files[index].path, args.reveal),
+        |index, looked| {
+            match looked {
+                Ok((recording, contents, diverged)) => {
+                    if diverged {
+                        verdict = Verdict::CheckFailed;
+                    }
+                    print(json, &contents, || text(&contents))?;
+                    seen.push((recording, contents.measures));
+                }
+                Err(error) => failed.push(Failure::new(&files[index].path, &error)),
+            }
+            Ok(())
+        },
+    )?;
     if seen.len() > 1 {
         let tally = Tally::of(seen.iter().map(|(recording, measures)| (recording, measures.as_ref())));
         let overall = Overall { kind: "overall", files: seen.len(), tally };
         print(json, &overall, || paragraph(overall.tally.lines()))?;
     }
+    Failed::check(&failed, seen.len())?;
     Ok(verdict)
+}
+
+/// A file, what is printed for it, and whether its replay is not the run that was recorded.
+fn look(file: &Path, reveal: bool) -> anyhow::Result<(Recording, Contents, bool)> {
+    let recording = Recording::open(file)?;
+    let measured = measure(&recording);
+    let diverged = matches!(measured, Err(replay::Error::Diverged(_)));
+    let contents = read(file, &recording, measured, reveal)?;
+    Ok((recording, contents, diverged))
 }
 
 /// The measures of a recording, or why there are none.

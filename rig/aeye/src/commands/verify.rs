@@ -1,10 +1,12 @@
 //! Simulates recordings again and compares every tick.
 
+use base::output::Typed;
 use std::path::Path;
 
-use base::failure::sentence;
-use base::library;
+use base::failure::{Failed, Failure};
+use base::library::{self, Found, Kind};
 use base::progress;
+use base::spread::{in_order, jobs};
 use replay::{Divergence, Error, Recording, Report};
 use serde::Serialize;
 
@@ -29,6 +31,11 @@ struct Checked {
     /// Why the file cannot be checked.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+}
+
+/// A line of `aeye verify`, of a file.
+impl Typed for Checked {
+    const TYPE: &'static str = "aeye.verify";
 }
 
 /// Where a replay first differs.
@@ -59,33 +66,34 @@ impl From<Divergence> for Where {
 
 /// Runs `aeye verify`.
 pub fn run(args: &VerifyArgs, json: bool) -> anyhow::Result<Verdict> {
-    let files = library::recordings(&args.files)?;
+    let Found { files, mut failed } = library::list(&args.files, Kind::All);
     let bar = progress::bar("verify", files.len() as u64);
-    let (mut diverged, mut failures) = (false, Vec::new());
-    for file in &files {
-        let checked = match check(file, args) {
-            Ok(checked) => checked,
-            Err(error) => {
-                let error = sentence(&error);
-                failures.push(error.clone());
-                failed(file, error)
-            }
-        };
-        diverged |= checked.divergence.is_some();
-        bar.suspend(|| print(json, &checked, || text(&checked)))?;
-        bar.inc(1);
-    }
+    let (mut diverged, mut well) = (false, 0);
+    let show = |checked: &Checked| bar.suspend(|| print(json, checked, || text(checked)));
+    failed.iter().try_for_each(|failure| show(&unchecked(failure)))?;
+    in_order(
+        jobs(args.jobs),
+        files.len(),
+        |index| check(&files[index].path, args),
+        |index, checked| {
+            let checked = checked.unwrap_or_else(|error| {
+                let failure = Failure::new(&files[index].path, &error);
+                failed.push(failure.clone());
+                unchecked(&failure)
+            });
+            diverged |= checked.divergence.is_some();
+            well += usize::from(checked.error.is_none());
+            bar.inc(1);
+            show(&checked)
+        },
+    )?;
     bar.finish_and_clear();
-    match failures.len() {
-        0 if diverged => Ok(Verdict::CheckFailed),
-        0 => Ok(Verdict::Ok),
-        1 => anyhow::bail!("{}", failures[0]),
-        n => anyhow::bail!("{n} of {} files cannot be checked; the first: {}", files.len(), failures[0]),
-    }
+    Failed::check(&failed, well)?;
+    Ok(Verdict::of_check(!diverged))
 }
 
-fn failed(file: &Path, error: String) -> Checked {
-    let file = file.display().to_string();
+fn unchecked(failure: &Failure) -> Checked {
+    let Failure { file, error, .. } = failure.clone();
     Checked { file, ticks: 0, ok: false, finished: None, keyframes: None, divergence: None, error: Some(error) }
 }
 

@@ -1,5 +1,6 @@
 //! Lists and calibrates wheels and gamepads.
 
+use base::output::Typed;
 use std::io::{BufRead, Write};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -45,12 +46,24 @@ struct Entry {
     calibration: Option<&'static str>,
 }
 
+/// Every device.
+#[derive(Debug, Serialize)]
+struct Listed {
+    /// Those that are there.
+    devices: Vec<Entry>,
+}
+
+/// What `aeye wheel list` prints.
+impl Typed for Listed {
+    const TYPE: &'static str = "aeye.wheel.list";
+}
+
 fn list(args: &WheelListArgs, json: bool) -> anyhow::Result<()> {
     let own = args.calibration.iter().map(|file| calibration::read(file)).collect::<anyhow::Result<Vec<_>>>()?;
     let devices = Hardware::open()?.devices();
-    let entries: Vec<Entry> = devices.iter().map(|device| entry(&own, device)).collect();
-    print(json, &serde_json::json!({ "devices": entries }), || {
-        let lines: Vec<String> = entries.iter().map(line).collect();
+    let listed = Listed { devices: devices.iter().map(|device| entry(&own, device)).collect() };
+    print(json, &listed, || {
+        let lines: Vec<String> = listed.devices.iter().map(line).collect();
         if lines.is_empty() { none_found() } else { lines.join("\n") }
     })
 }

@@ -1,5 +1,6 @@
 //! What a campaign came to, computed from its recordings alone.
 
+use base::output::Typed;
 use std::collections::BTreeMap;
 
 use measures::run_figures::RunFigures;
@@ -76,6 +77,11 @@ pub struct CampaignFigures {
     pub checkpoints: Vec<CheckpointFigures>,
     /// The runs, in order.
     pub runs: Vec<RunLine>,
+}
+
+/// `campaign.json`, and what `aeye campaign` prints.
+impl Typed for CampaignFigures {
+    const TYPE: &'static str = "aeye.campaign";
 }
 
 /// The figures of a campaign's runs.

@@ -1,6 +1,8 @@
 //! What `compare.json` holds and the command prints.
 
+use base::failure::Failure;
 use base::library::Entry;
+use base::output::Typed;
 use drivers::vision::{self, Eye};
 use kernel::time::Tick;
 use perception::ConfusionMatrix;
@@ -28,6 +30,13 @@ pub struct Summary {
     pub cases: Vec<CaseLine>,
     /// The conditions that were asked for.
     pub gates: Vec<Passage>,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
+}
+
+/// `compare.json`, which holds no `speed`.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.compare";
 }
 
 /// A checkpoint over all cases.
@@ -87,6 +96,7 @@ impl Summary {
             checkpoints: (0..eyes.len()).map(checkpoint).collect(),
             cases: cases.iter().enumerate().map(case).collect(),
             gates: Vec::new(),
+            failed: Vec::new(),
         }
     }
 }
@@ -179,6 +189,11 @@ pub struct Compared {
     pub summary: Summary,
     /// `None` where everything was there already.
     pub speed: Option<Speed>,
+}
+
+/// `compare.json`, and with `speed` what `aeye compare` prints.
+impl Typed for Compared {
+    const TYPE: &'static str = "aeye.compare";
 }
 
 impl Compared {

@@ -1,5 +1,6 @@
 //! `dataset.json`: what a dataset is made from, and what came of it.
 
+use base::output::Typed;
 use std::fs;
 use std::path::Path;
 
@@ -76,6 +77,11 @@ pub struct Manifest {
     pub labels_digest: String,
     /// BLAKE3 over `frames.jsonl`.
     pub digest: String,
+}
+
+/// `dataset.json`, and what `aeye dataset natural` and `aeye dataset cases` print.
+impl Typed for Manifest {
+    const TYPE: &'static str = "aeye.dataset";
 }
 
 impl Manifest {

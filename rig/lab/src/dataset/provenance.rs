@@ -1,5 +1,6 @@
 //! `frames.jsonl`: a line for each frame of a dataset says where it comes from.
 
+use base::output::{Typed, json_line};
 use std::collections::BTreeMap;
 
 use kernel::SceneSnapshot;
@@ -55,6 +56,11 @@ pub struct FrameLine {
     pub rgb_digest: String,
     /// BLAKE3 over label ids (a byte a pixel) and instance ids (two, low one first).
     pub labels_digest: String,
+}
+
+/// A line of `frames.jsonl`.
+impl Typed for FrameLine {
+    const TYPE: &'static str = "aeye.dataset.frame";
 }
 
 /// Weather as it is written.
@@ -157,7 +163,7 @@ fn class_pixels(tags: &[u8]) -> BTreeMap<String, u64> {
 
 /// Lines as they stand in the file.
 pub(super) fn text(lines: &[FrameLine]) -> anyhow::Result<String> {
-    lines.iter().map(|line| Ok(serde_json::to_string(line)? + "\n")).collect()
+    lines.iter().map(|line| Ok(json_line(line)? + "\n")).collect()
 }
 
 /// The lines of such a text.

@@ -1,5 +1,6 @@
 //! Makes a dataset again from its recipe, so that it travels as kilobytes.
 
+use base::output::Typed;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +30,11 @@ pub struct Rebuilt {
     pub same: bool,
     /// Whether all label and instance ids are.
     pub same_labels: bool,
+}
+
+/// What `aeye dataset rebuild` prints.
+impl Typed for Rebuilt {
+    const TYPE: &'static str = "aeye.dataset.rebuild";
 }
 
 impl Rebuilt {

@@ -6,6 +6,7 @@
 mod people;
 mod split;
 
+use base::output::Typed;
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 use std::fs;
@@ -79,6 +80,11 @@ pub struct Summary<'a> {
     pixels_per_frame: BTreeMap<&'static str, f64>,
     pedestrians: &'a Pedestrians,
     confusion: Confusion<'a>,
+}
+
+/// What `aeye eval` prints.
+impl Typed for Summary<'_> {
+    const TYPE: &'static str = "aeye.eval";
 }
 
 impl<'a> Summary<'a> {

@@ -24,6 +24,7 @@ mod stages;
 mod table_1;
 mod text;
 
+use base::output::Typed;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -73,6 +74,11 @@ pub struct Tables {
     pub table_2: Vec<CheckpointStatistics>,
 }
 
+/// `tables.json` of `aeye experiment`.
+impl Typed for Tables {
+    const TYPE: &'static str = "aeye.experiment.tables";
+}
+
 /// What an experiment came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
@@ -81,6 +87,11 @@ pub struct Outcome {
     /// Its figures.
     #[serde(flatten)]
     pub tables: Tables,
+}
+
+/// What `aeye experiment` prints.
+impl Typed for Outcome {
+    const TYPE: &'static str = "aeye.experiment";
 }
 
 impl fmt::Display for Outcome {

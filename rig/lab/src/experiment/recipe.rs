@@ -1,5 +1,6 @@
 //! The numbers of an experiment.
 
+use base::output::Typed;
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
@@ -31,6 +32,11 @@ pub struct Recipe {
     pub training: Training,
     /// The campaign that compares them.
     pub second_campaign: SecondCampaign,
+}
+
+/// What `aeye experiment --print-recipe` prints.
+impl Typed for Recipe {
+    const TYPE: &'static str = "aeye.experiment.recipe";
 }
 
 /// The initial data: scenes of one frame a second.

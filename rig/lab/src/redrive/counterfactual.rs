@@ -1,5 +1,6 @@
 //! The verdict on an intervention, kept beside its recording.
 
+use base::output::Typed;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -41,6 +42,11 @@ pub struct Counterfactual {
     pub closest: Extremes,
     /// What it follows from.
     key: Key,
+}
+
+/// `NAME.counterfactual.json` of a campaign.
+impl Typed for Counterfactual {
+    const TYPE: &'static str = "aeye.counterfactual";
 }
 
 /// Everything that decides a counterfactual.

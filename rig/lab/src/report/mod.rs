@@ -11,17 +11,20 @@ mod trace;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::anyhow;
+use base::failure::{Failed, Failure};
+use base::library::{self, Found, Kind, Listed};
 use base::progress;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::Eye;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::Tally;
 use measures::footage::Footage;
 use perception::ConfusionMatrix;
 use render::AdapterChoice;
-use replay::Recording;
+use replay::{Log, Recording};
 
-use super::looks::{Studio, look, open_eyes};
+use super::looks::{Size, Studio, look, open_eyes};
 use drive::Drive;
 use page::{CasePart, Page};
 pub use page::{Class, STYLE, legend};
@@ -29,42 +32,74 @@ use story::Story;
 pub use strip::Seen;
 use strip::Strip;
 
-/// The page about these corner cases, each drawn at `size` and looked at through each checkpoint.
-/// Kilometres and minutes are those of all recordings that lie beside the cases. Drives to get used
-/// to the rig do not count.
-pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<String> {
-    let mut eyes = open_eyes(choices, size)?;
+/// A page, and what it is not about.
+pub struct Report {
+    /// The page.
+    pub html: String,
+    /// How many corner cases are on it.
+    pub cases: usize,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
+}
+
+/// What came of a case.
+enum Told {
+    Case(Box<(Drive, CasePart, Vec<ConfusionMatrix>)>),
+    /// It was a drive to get used to the rig.
+    Uncounted,
+}
+
+/// The page about the corner cases among files and folders, each drawn at a size (see [`open_eyes`]) and looked at through each
+/// checkpoint. Kilometres and minutes are those of all recordings in and below the folders of the cases. Drives
+/// to get used to the rig do not count.
+pub fn render(places: &[PathBuf], choices: &[CheckpointChoice], size: Option<Size>) -> anyhow::Result<Report> {
+    let (mut eyes, size) = open_eyes(choices, size)?;
     AdapterChoice::default().find()?;
     let mut studio = Studio::new(size);
     let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
     let (mut cases, mut drives, mut seen) = (Vec::new(), Vec::new(), Seen::nothing());
+    let Found { files, mut failed } = library::list(places, Kind::Cases).or_failed()?;
     let bar = progress::bar("report", files.len() as u64);
-    for path in files {
-        let drive = Drive::of(path)?;
-        if drive.is_familiarisation() {
-            eprintln!("{}: left out, a drive to get used to the rig", path.display());
-            continue;
+    for file in &files {
+        match tell(file, &mut studio, &mut eyes, &mut seen) {
+            Ok(Told::Case(told)) => {
+                let (drive, part, matrices) = *told;
+                overall.iter_mut().zip(&matrices).for_each(|(sum, matrix)| sum.merge(matrix));
+                cases.push(part);
+                drives.push(drive);
+            }
+            Ok(Told::Uncounted) => eprintln!("{}: left out, a drive to get used to the rig", file.path.display()),
+            Err(error) => failed.push(Failure::new(&file.path, &error)),
         }
-        let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
-        let mut strip = Strip::new(&eyes, &footage);
-        for scene in &footage.scenes {
-            let frame = studio.draw(&footage.network, scene)?;
-            let masks = look(&mut eyes, &frame)?;
-            strip.add(&frame, &masks, &mut seen)?;
-        }
-        overall.iter_mut().zip(strip.matrices()).for_each(|(sum, matrix)| sum.merge(matrix));
-        let story = Story::of(&drive, &footage)?;
-        let trace = trace::of(&footage);
-        cases.push(CasePart::new(&footage.name, story, strip, trace));
-        drives.push(drive);
         bar.inc(1);
     }
     bar.finish_and_clear();
     if cases.is_empty() {
-        bail!("no case is left: expected one of a drive that counts");
+        let why = Failed::check(&failed, 0).err();
+        return Err(why.unwrap_or_else(|| anyhow!("no case is left: expected one of a drive that counts")));
     }
     let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
-    Page::new(&eyes, size, &overall, &seen, (&exposure(files)?, &tally), cases).render()
+    let (number, exposure) = (cases.len(), exposure(&files, &mut failed));
+    let html = Page::new(&eyes, size, &overall, &seen, (&exposure, &tally), cases).render()?;
+    Ok(Report { html, cases: number, failed })
+}
+
+/// What is on the page about a case.
+fn tell(file: &Listed, studio: &mut Studio, eyes: &mut [Eye], seen: &mut Seen) -> anyhow::Result<Told> {
+    let drive = Drive::of(&file.path)?;
+    if drive.is_familiarisation() {
+        return Ok(Told::Uncounted);
+    }
+    let footage = Footage::read(&file.path, CLIP_TICKS, CLIP_FPS)?;
+    let mut strip = Strip::new(eyes, &footage);
+    for scene in &footage.scenes {
+        let frame = studio.draw(&footage.network, scene)?;
+        let masks = look(eyes, &frame)?;
+        strip.add(&frame, &masks, seen)?;
+    }
+    let matrices = strip.matrices().to_vec();
+    let (story, trace) = (Story::of(&drive, &footage)?, trace::of(&footage));
+    Ok(Told::Case(Box::new((drive, CasePart::new(&file.name, story, strip, trace), matrices))))
 }
 
 /// What was driven.
@@ -75,30 +110,30 @@ struct Exposure {
     minutes: f64,
 }
 
-/// Sums over the recordings in the folders of the cases.
-fn exposure(cases: &[PathBuf]) -> anyhow::Result<Exposure> {
+/// Sums over the recordings in and below the folders of the cases.
+fn exposure(cases: &[Listed], failed: &mut Vec<Failure>) -> Exposure {
     let here = Path::new(".");
-    let folder = |path: &PathBuf| path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(here).to_owned();
+    let folder = |case: &Listed| case.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(here).to_owned();
+    let folders: BTreeSet<PathBuf> = cases.iter().map(folder).collect();
+    // A folder may hold cases alone.
+    let recordings = library::list(&Vec::from_iter(folders), Kind::Drives).files;
     let mut sum = Exposure::default();
-    for folder in cases.iter().map(folder).collect::<BTreeSet<_>>() {
-        let entries = std::fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
-        let mut paths = entries.map(|e| e.map(|e| e.path())).collect::<Result<Vec<_>, _>>()?;
-        paths.sort();
-        for path in paths.iter().filter(|path| is_recording(path)) {
-            let recording = Recording::open(path)?;
-            let log = recording.log();
-            if study::is_familiarisation(&log.manifest.provenance) {
-                continue;
-            }
-            sum.recordings += 1;
-            sum.km += log.odometer_mm() as f64 / 1e6;
-            sum.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
+    for Listed { path, .. } in recordings {
+        match Recording::open(&path) {
+            Ok(recording) => sum.add(recording.log()),
+            Err(error) => failed.push(Failure::new(&path, &error.into())),
         }
     }
-    Ok(sum)
+    sum
 }
 
-fn is_recording(path: &Path) -> bool {
-    let name = path.to_string_lossy();
-    name.ends_with(".mcap") && !name.ends_with(".case.mcap")
+impl Exposure {
+    fn add(&mut self, log: &Log) {
+        if study::is_familiarisation(&log.manifest.provenance) {
+            return;
+        }
+        self.recordings += 1;
+        self.km += log.odometer_mm() as f64 / 1e6;
+        self.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
+    }
 }

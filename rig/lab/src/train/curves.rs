@@ -1,5 +1,6 @@
 //! What every epoch came to, as lines of JSON and as a picture.
 
+use base::output::Typed;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -25,6 +26,11 @@ pub struct Epoch {
     pub pedestrian_iou: Option<f64>,
     /// IoU on the validation split by class name.
     pub iou: BTreeMap<&'static str, Option<f64>>,
+}
+
+/// A line of `C.jsonl`, and what `aeye train` prints of an epoch.
+impl Typed for Epoch {
+    const TYPE: &'static str = "aeye.train.epoch";
 }
 
 impl fmt::Display for Epoch {

@@ -4,6 +4,7 @@
 mod card;
 mod curves;
 
+use base::output::Typed;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -25,10 +26,21 @@ use base::progress::{self, Interrupt};
 pub struct Summary {
     /// Its file.
     pub checkpoint: PathBuf,
+    /// Its card.
+    pub card: PathBuf,
+    /// What every epoch came to, as lines of JSON.
+    pub curves: PathBuf,
+    /// The same as a picture.
+    pub picture: PathBuf,
     /// Its digest, as recordings and evaluations name it, in hexadecimal digits.
     pub digest: String,
     /// Whether it was there already, from the same options and the same dataset.
     pub was_there: bool,
+}
+
+/// What `aeye train` prints at its end.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.train";
 }
 
 /// Endings of what is written beside a checkpoint: its card, its learning curves, and their picture.
@@ -132,7 +144,9 @@ fn write(args: &Options, options: &TrainOptions, trained: &Trained) -> anyhow::R
 }
 
 fn summary(args: &Options, checkpoint: &Checkpoint, was_there: bool) -> Summary {
-    Summary { checkpoint: args.out.clone(), digest: checkpoint.digest().to_hex().to_string(), was_there }
+    let [card, curves, picture] = BESIDE.map(|ending| beside(&args.out, ending));
+    let digest = checkpoint.digest().to_hex().to_string();
+    Summary { checkpoint: args.out.clone(), card, curves, picture, digest, was_there }
 }
 
 fn options(args: &Options) -> TrainOptions {

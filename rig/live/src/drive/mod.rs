@@ -44,6 +44,7 @@ use study::{Lineup, Study};
 use crate::units::SeatChoice;
 pub use aftermath::Tell;
 use board::{About, Board, Message, Wake};
+pub use disk::case_path;
 use seating::Seating;
 use simulation::{Links, Plan, Simulation};
 pub use timings::LiveFigures;

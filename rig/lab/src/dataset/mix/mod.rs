@@ -10,6 +10,7 @@ mod choice;
 mod files;
 mod parts;
 
+use base::output::Typed;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
@@ -84,6 +85,11 @@ pub struct Sets {
     pub pedestrian: Manifest,
     /// `corner-case`.
     pub corner_case: Manifest,
+}
+
+/// What `aeye dataset mix` prints.
+impl Typed for Sets {
+    const TYPE: &'static str = "aeye.dataset.mix";
 }
 
 impl Sets {
