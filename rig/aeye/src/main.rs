@@ -3,11 +3,12 @@
 use std::process::ExitCode;
 
 use base::failure::{Failed, sentence};
-use clap::Parser;
+use clap::FromArgMatches;
 
 fn main() -> ExitCode {
     aeye::quiet::start_over_without_complaints();
-    let cli = aeye::cli::Cli::parse();
+    let matches = aeye::help::command().get_matches();
+    let cli = aeye::cli::Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let result = aeye::run(&cli);
     if let Err(error) = &result {
         if let Some(failed) = error.downcast_ref::<Failed>() {

@@ -91,7 +91,11 @@ fn a_training_that_is_killed_ends_with_the_same_files_and_is_done_once() {
 
     let again = train(dir.path(), "whole/c.onnx").output().expect("the program starts");
     let said = String::from_utf8_lossy(&again.stderr).into_owned();
-    assert!(String::from_utf8_lossy(&again.stdout).lines().count() == 1 && said.starts_with("whole/c.onnx: is trained already"), "{said}");
+    assert!(
+        String::from_utf8_lossy(&again.stdout).lines().count() == 1
+            && said.starts_with("whole/c.onnx: is trained already"),
+        "{said}"
+    );
 
     let other = train(dir.path(), "whole/c.onnx").args(["--seed", "9"]).output().expect("the program starts");
     let said = String::from_utf8_lossy(&other.stderr).into_owned();

@@ -3,6 +3,7 @@
 mod circles;
 mod classes;
 mod datasets;
+mod json_page;
 mod lab;
 mod real_maps;
 mod render_frame;
@@ -19,6 +20,7 @@ mod rig_criticality;
 mod rig_experiment;
 mod rig_export;
 mod rig_learning;
+mod rig_pages;
 mod rig_pipeline;
 mod rig_redrive;
 mod rig_rerender;

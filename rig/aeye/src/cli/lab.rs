@@ -7,7 +7,7 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, Tick};
 use lab::compare::Gate;
 
-use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, size};
+use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, seconds, size};
 
 /// Arguments of `rerender`.
 #[derive(Args, Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct RerenderArgs {
     #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Length of the window that ends at the intervention (or at the end), as in `3s`.
-    #[arg(long, default_value = "3s", value_parser = duration)]
+    #[arg(long, default_value = "3s", value_parser = duration, value_name = "DURATION")]
     pub last: Tick,
     /// Frames a second; must divide 60.
     #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
@@ -30,7 +30,7 @@ pub struct RerenderArgs {
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what is whole and follows from
     /// the same files, checkpoints and options is kept.
@@ -50,7 +50,7 @@ pub struct ExportArgs {
     pub checkpoint: Vec<CheckpointChoice>,
     /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
     /// window everything is exported.
-    #[arg(long, value_parser = duration, conflicts_with_all = ["from", "to"])]
+    #[arg(long, value_parser = duration, value_name = "DURATION", conflicts_with_all = ["from", "to"])]
     pub last: Option<Tick>,
     /// Only from this time of the run on, as in `10s`.
     #[arg(long, value_parser = moment, value_name = "TIME")]
@@ -98,7 +98,7 @@ pub struct CompareArgs {
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what follows from the same cases,
     /// checkpoints and size is kept.
@@ -123,7 +123,7 @@ pub struct RedriveArgs {
     #[arg(long, value_name = CHECKPOINT)]
     pub checkpoint: Option<CheckpointChoice>,
     /// Where the recorded checkpoint may be found, if it does not come with the program.
-    #[arg(long, value_delimiter = ',', value_name = "FILE.onnx,...")]
+    #[arg(long = "recorded-checkpoint", value_delimiter = ',', value_name = "FILE.onnx,...")]
     pub recorded: Vec<CheckpointChoice>,
     /// Tell the checkpoint of blind drives.
     #[arg(long)]
@@ -133,9 +133,9 @@ pub struct RedriveArgs {
     /// safety drivers of other reaction times.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=30))]
     pub vary: u16,
-    /// How long after the intervention a fork goes on, seconds.
-    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=60))]
-    pub seconds: u16,
+    /// How long after the intervention a fork goes on, 1s to 60s.
+    #[arg(long = "after", default_value = "10s", value_parser = seconds(1..=60), value_name = "DURATION")]
+    pub seconds: u32,
     /// Files driven on at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,

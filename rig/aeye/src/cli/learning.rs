@@ -51,7 +51,7 @@ pub struct MixArgs {
     #[arg(long, value_name = "DIR")]
     pub pool: PathBuf,
     /// Dataset of corner cases.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long = "corner-cases", value_name = "DIR")]
     pub cases: PathBuf,
     /// Training frames replaced (paper: 1500; default: as many as the corner cases have).
     #[arg(long, value_name = "N")]
@@ -70,14 +70,14 @@ pub struct MixArgs {
 pub struct RebuildArgs {
     /// `dataset.json` of a dataset, or its folder.
     pub recipe: PathBuf,
-    /// Corner cases that the recipe asks for, or folders of them; they are found by their digests.
-    #[arg(long, value_delimiter = ',', value_name = "FILE|DIR,...")]
+    /// Corner cases that the recipe asks for, or folders with cases anywhere below; they are found by their digests.
+    #[arg(value_parser = file(), value_name = "FILE|DIR")]
     pub cases: Vec<PathBuf>,
     /// OpenDRIVE files of maps that are not bundled.
     #[arg(long, value_delimiter = ',', value_name = "FILE.xodr,...")]
     pub maps: Vec<String>,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]
@@ -115,7 +115,7 @@ pub struct NaturalArgs {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]
@@ -169,10 +169,13 @@ pub struct EvalArgs {
     #[arg(long, value_name = "DIR")]
     pub dataset: PathBuf,
     /// Which split.
-    #[arg(long, default_value = "val")]
+    #[arg(long, default_value = "val", value_name = "SPLIT")]
     pub split: String,
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
     /// Folder for the predictions, as `CITY/CITY_SEQ_FRAME_pred_labelIds.png` in tags; must not exist or
     /// be empty.
     #[arg(long, value_name = "DIR")]
-    pub save_predictions: Option<PathBuf>,
+    pub out: Option<PathBuf>,
 }

@@ -11,7 +11,7 @@ use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server;
 
-use super::values::{CHECKPOINT, CHECKPOINTS, file, force, screens, size, threshold};
+use super::values::{CHECKPOINT, CHECKPOINTS, file, force, screens, seconds, size, threshold};
 
 /// Arguments of `drive`.
 #[derive(Args, Clone, Debug)]
@@ -48,8 +48,8 @@ pub struct DriveArgs {
     /// Seed of everything random; replaces the scenario's.
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Longest simulated time, seconds; 4 to 86400, as `rules.max_seconds` of scenarios.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(4..=86_400))]
+    /// Longest simulated time of a run, 4s to 24h, as `rules.max_seconds` of scenarios.
+    #[arg(long = "max-time", value_parser = seconds(4..=86_400), value_name = "DURATION")]
     pub seconds: Option<u32>,
     /// The pictures in windows.
     #[command(flatten)]
@@ -62,8 +62,17 @@ pub struct DriveArgs {
     /// `rules.steer_threshold` of scenarios (default there: 0.1).
     #[arg(long, value_parser = threshold, value_name = "FRACTION")]
     pub steer_threshold: Option<f32>,
+    /// Print the scenario that would be driven, as a file for `--scenario`, and do nothing.
+    #[arg(long)]
+    pub print_scenario: bool,
     /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
-    #[arg(long, value_name = "FILE.mcap")]
+    #[arg(
+        long,
+        value_name = "FILE.mcap",
+        required_unless_present = "print_scenario",
+        default_value_if("print_scenario", "true", "none.mcap"),
+        hide_default_value = true
+    )]
     pub record: PathBuf,
     /// What makes it part of a study with people.
     #[command(flatten, next_help_heading = "Study")]
@@ -139,8 +148,8 @@ impl PictureArgs {
 /// Arguments of `doctor`.
 #[derive(Args, Clone, Debug)]
 pub struct DoctorArgs {
-    /// How long bots drive in windows to measure real time, seconds of simulated time; 0: not at all.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    /// How long bots drive in windows to measure real time, in simulated time; 0s: not at all.
+    #[arg(long = "max-time", default_value = "20s", value_parser = seconds(0..=86_400), value_name = "DURATION")]
     pub seconds: u32,
     /// What the semantic driver sees there.
     #[arg(long, default_value = "full", value_name = CHECKPOINT)]
@@ -213,7 +222,7 @@ pub struct WheelCalibrateArgs {
     pub device: Option<String>,
     /// Where the calibration goes.
     #[arg(long, value_name = "FILE.toml")]
-    pub calibration: PathBuf,
+    pub out: PathBuf,
 }
 
 /// Arguments of `wheel import`.
@@ -228,5 +237,5 @@ pub struct WheelImportArgs {
     pub device: Option<String>,
     /// Where the calibration goes.
     #[arg(long, value_name = "FILE.toml")]
-    pub calibration: PathBuf,
+    pub out: PathBuf,
 }

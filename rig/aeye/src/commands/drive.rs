@@ -59,6 +59,10 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
     rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
     rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
+    if args.print_scenario {
+        print!("{}", scenario.to_toml());
+        return Ok(Verdict::Ok);
+    }
     if args.headless {
         headless(args, &scenario, &map, json)?
     } else {

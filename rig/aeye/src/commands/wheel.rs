@@ -97,21 +97,21 @@ fn line(entry: &Entry) -> String {
 }
 
 fn by_asking(args: &WheelCalibrateArgs, json: bool) -> anyhow::Result<()> {
-    output::check_file(&args.calibration)?;
+    output::check_file(&args.out)?;
     let mut hardware = Hardware::open()?;
     let device = pick(&hardware.devices(), args.device.as_deref())?;
     eprintln!("{} at {}", device.name, device.path);
     let calibration = calibrate(&mut hardware, &device, &mut Terminal::new())?;
-    write(&calibration, &args.calibration, json)
+    write(&calibration, &args.out, json)
 }
 
 fn by_import(args: &WheelImportArgs, json: bool) -> anyhow::Result<()> {
-    output::check_file(&args.calibration)?;
+    output::check_file(&args.out)?;
     let name = args.file.display();
     let text = std::fs::read_to_string(&args.file).with_context(|| name.to_string())?;
     let device = args.device.as_deref().map(|path| pick(&Hardware::open()?.devices(), Some(path))).transpose()?;
     let calibration = carla::import(&text, device.as_ref()).map_err(|problem| anyhow!("{name}: {problem}"))?;
-    write(&calibration, &args.calibration, json)
+    write(&calibration, &args.out, json)
 }
 
 fn write(calibration: &Calibration, path: &Path, json: bool) -> anyhow::Result<()> {

@@ -69,7 +69,7 @@ fn check(folder: &Path, file: &str) {
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_blind_headless_drive_tells_nothing() {
     let dir = folder();
-    let drive = "drive --headless --map rural --seconds 4 --record run.mcap --semantic-name P07 --blind";
+    let drive = "drive --headless --map rural --max-time 4s --record run.mcap --semantic-name P07 --blind";
     let text = said(&aeye(dir.path(), drive).arg(CANDIDATES.join(",")).output().expect("aeye runs"));
     assert!(!tells(&text), "{text}");
     assert_eq!(made(dir.path()), ["run.mcap"]);

@@ -84,7 +84,9 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
 pub(super) fn cases_in(places: &[PathBuf]) -> anyhow::Result<Vec<(PathBuf, CaseUsed)>> {
     let read = |entry: Entry| Ok((entry.path.clone(), CaseUsed::read(&entry)?));
     let found = library::find(places, Kind::Cases);
-    Failed::check(&found.failed, found.files.len())?;
+    if !found.failed.is_empty() {
+        return Err(Failed::new(found.failed).into());
+    }
     found.files.into_iter().map(read).collect()
 }
 

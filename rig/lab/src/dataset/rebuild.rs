@@ -157,6 +157,6 @@ impl Sources {
             return Ok(path.clone());
         }
         let CaseUsed { name, digest, .. } = used;
-        bail!("case {name} with digest {digest}: expected it among the files and folders after --cases")
+        bail!("case {name} with digest {digest}: expected it among the files and folders after the recipe")
     }
 }

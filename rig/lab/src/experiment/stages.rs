@@ -269,7 +269,7 @@ impl Stages<'_> {
         if self.interrupt.is_raised() {
             bail!("interrupted; the same command goes on from there");
         }
-        let evaluation = eval::evaluate(&CheckpointChoice::File(network.to_owned()), dataset, TEST)?;
+        let evaluation = eval::evaluate(&CheckpointChoice::File(network.to_owned()), dataset, TEST, self.jobs)?;
         Ok(evaluation.scenes.into_iter().map(|scene| scene.matrix).collect())
     }
 

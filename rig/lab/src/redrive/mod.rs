@@ -115,7 +115,7 @@ pub struct Options {
     /// safety drivers of other reaction times.
     pub vary: u16,
     /// How long after the intervention a fork goes on, seconds.
-    pub seconds: u16,
+    pub seconds: u32,
     /// Files driven on at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the forks' recordings and of `redrive.jsonl`. One that was begun is completed.
@@ -130,7 +130,7 @@ struct Key {
     without_intervention: bool,
     checkpoint: String,
     variation: u16,
-    seconds: u16,
+    seconds: u32,
     kernel: String,
     program: String,
     renderer: String,
@@ -278,7 +278,8 @@ fn eye_of(args: &Options, log: &Log) -> anyhow::Result<Eye> {
     }
     let recorded = RecordedEye::of(&log.manifest.provenance)?;
     let found = recorded.find(&args.recorded)?;
-    found.with_context(|| format!("was driven through {:?}; expected that file as --recorded", recorded.name))
+    found
+        .with_context(|| format!("was driven through {:?}; expected that file as --recorded-checkpoint", recorded.name))
 }
 
 /// What a variation does otherwise than the recording.
