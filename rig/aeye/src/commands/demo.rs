@@ -28,9 +28,13 @@ const RUN_SECONDS: u32 = 180;
 /// What the command prints at the end.
 #[derive(Serialize)]
 struct Summary {
+    /// The page.
     report: String,
+    /// Runs that were driven.
     runs: usize,
+    /// Corner cases.
     cases: usize,
+    /// Kilometres driven.
     km: f64,
 }
 

@@ -36,9 +36,13 @@ const OLD_MASK_MS: f64 = 100.0;
 /// What this machine has.
 #[derive(Debug, Serialize)]
 struct Findings {
+    /// Cores of the processor.
     cores: usize,
+    /// Graphics adapters.
     adapters: Vec<Adapter>,
+    /// Wheels and gamepads.
     devices: Vec<String>,
+    /// Measured times.
     budgets: Vec<Budget>,
     /// How well drives in windows keep real time, where there is a display.
     live: Option<LiveFigures>,
@@ -58,16 +62,22 @@ impl Typed for Findings {
 /// A graphics adapter.
 #[derive(Debug, Serialize)]
 struct Adapter {
+    /// Its name.
     name: String,
+    /// The graphics interface.
     backend: String,
+    /// Its driver.
     driver: String,
+    /// Whether it computes on the CPU.
     is_cpu: bool,
 }
 
 /// A measured time.
 #[derive(Debug, Serialize)]
 struct Budget {
+    /// What was measured.
     what: String,
+    /// How long it took, ms.
     ms: f64,
     /// How many of it fit into the time that a live drive gives it.
     times_real_time: f64,

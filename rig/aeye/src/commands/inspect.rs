@@ -22,31 +22,51 @@ use crate::print::print;
 /// What is printed for a file.
 #[derive(Debug, Serialize)]
 struct Contents {
+    /// The file.
     file: String,
+    /// `recording` or `case`.
     kind: &'static str,
+    /// Size of the file, bytes.
     bytes: u64,
+    /// Version of the kernel that made it.
     kernel: String,
+    /// Whether its writer came to its end.
     finished: bool,
+    /// Whether the drivers did not know the checkpoint.
     blind: bool,
+    /// The first tick.
     first_tick: Tick,
+    /// The last tick.
     last_tick: Tick,
+    /// Number of keyframes.
     keyframes: usize,
+    /// Number of masks that were shown.
     masks: usize,
     #[serde(flatten)]
     figures: RunFigures,
+    /// Digest of the map, hexadecimal.
     map_digest: String,
+    /// Whether the file holds its map.
     embedded_map: bool,
+    /// How it came about, by name.
     provenance: BTreeMap<String, String>,
+    /// What the drivers answered.
     questionnaire: Questionnaire,
+    /// The intervention, if there was one.
     intervention: Option<Takeover>,
+    /// The window, of a corner case.
     window: Option<Window>,
+    /// What happened in the world.
     events: Vec<EventLine>,
+    /// What happened to the rig.
     notes: Vec<NoteLine>,
+    /// How the drivers did.
     measures: Option<Measures>,
     /// Why there are no measures.
     unmeasured: Option<String>,
     /// Of a corner case.
     criticality: Option<Criticality>,
+    /// What the run started from, as TOML.
     scenario: String,
 }
 
@@ -58,7 +78,9 @@ impl Typed for Contents {
 /// What is printed after several files.
 #[derive(Serialize)]
 struct Overall {
+    /// `overall`.
     kind: &'static str,
+    /// Files that it is about.
     files: usize,
     #[serde(flatten)]
     tally: Tally,
@@ -72,18 +94,26 @@ impl Typed for Overall {
 /// The intervention.
 #[derive(Debug, Serialize)]
 struct Takeover {
+    /// When.
     tick: Tick,
+    /// Whether the brake was beyond its threshold.
     by_brake: bool,
+    /// Whether the steering was beyond its threshold.
     by_steering: bool,
+    /// Speed of the ego car, m/s.
     speed_mps: f32,
 }
 
 /// The window of a corner case.
 #[derive(Debug, Serialize)]
 struct Window {
+    /// The first tick.
     from: Tick,
+    /// The last tick.
     to: Tick,
+    /// Scenes that the case holds.
     scenes: usize,
+    /// BLAKE3 of the recording that it was cut from.
     source: String,
 }
 
@@ -92,17 +122,24 @@ struct Window {
 struct EventLine {
     #[serde(skip)]
     words: String,
+    /// When.
     tick: Tick,
+    /// What.
     kind: String,
+    /// Number of the other road user, if there is one.
     actor: u32,
+    /// Speed of the ego car, m/s.
     speed_mps: f32,
 }
 
 /// Something that happened to the rig.
 #[derive(Debug, Serialize)]
 struct NoteLine {
+    /// When.
     tick: Tick,
+    /// What.
     kind: &'static str,
+    /// Whose unit: `semantic` or `safety`.
     seat: String,
 }
 

@@ -14,7 +14,9 @@ use crate::print::print;
 /// What is printed for a recording.
 #[derive(Serialize)]
 struct Attached {
+    /// The recording.
     recording: String,
+    /// The file of the answers.
     answers: String,
 }
 

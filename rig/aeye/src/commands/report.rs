@@ -13,9 +13,13 @@ use crate::print::print;
 /// What the command prints.
 #[derive(Serialize)]
 struct Summary {
+    /// The page.
     report: String,
+    /// Corner cases on it.
     cases: usize,
+    /// Its size, bytes.
     bytes: usize,
+    /// Files that were left out, and why.
     failed: Vec<Failure>,
 }
 

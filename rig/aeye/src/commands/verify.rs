@@ -17,15 +17,19 @@ use crate::print::print;
 /// What is printed for a file.
 #[derive(Debug, Serialize)]
 struct Checked {
+    /// The file.
     file: String,
     /// Ticks simulated and compared.
     ticks: u64,
+    /// Whether every tick is identical.
     ok: bool,
     /// Whether the writer came to its end; if not, up to a second is missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     finished: Option<bool>,
+    /// Keyframes compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     keyframes: Option<usize>,
+    /// Where it first differs.
     #[serde(skip_serializing_if = "Option::is_none")]
     divergence: Option<Where>,
     /// Why the file cannot be checked.
@@ -41,12 +45,19 @@ impl Typed for Checked {
 /// Where a replay first differs.
 #[derive(Debug, Serialize)]
 struct Where {
+    /// The first tick that differs.
     tick: u64,
+    /// Part of the state.
     part: String,
+    /// Number of the road user.
     actor: Option<u32>,
+    /// Field of the part.
     field: String,
+    /// What was recorded.
     expected: String,
+    /// What the replay gave.
     got: String,
+    /// Tick at which that was read.
     seen_at: u64,
 }
 

@@ -36,11 +36,17 @@ pub fn run(command: &WheelCommand, json: bool) -> anyhow::Result<Verdict> {
 /// A device.
 #[derive(Debug, Serialize)]
 struct Entry {
+    /// Where it is.
     path: String,
+    /// Its name.
     name: String,
+    /// Number of its vendor.
     vendor: u16,
+    /// Number of the product.
     product: u16,
+    /// Number of its axes.
     axes: usize,
+    /// Number of its buttons.
     buttons: usize,
     /// Where its calibration comes from; none when it has to be calibrated first.
     calibration: Option<&'static str>,

@@ -42,7 +42,9 @@ impl Typed for Summary {
 /// A checkpoint over all cases.
 #[derive(Serialize)]
 pub struct CheckpointLine {
+    /// Its name.
     pub name: String,
+    /// Its digest, hexadecimal.
     pub digest: String,
     /// Share of the pixels of people on the path that are predicted as pedestrian.
     pub ped_recall_on_path: Option<f64>,
@@ -52,6 +54,7 @@ pub struct CheckpointLine {
     pub first_sight_s: Option<f64>,
     #[serde(flatten)]
     pub figures: Figures,
+    /// Against the baseline; left out for itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_baseline: Option<Contest>,
 }
@@ -59,17 +62,22 @@ pub struct CheckpointLine {
 /// A case through all checkpoints.
 #[derive(Serialize)]
 pub struct CaseLine {
+    /// Name of the case.
     pub file: String,
+    /// BLAKE3 of the file.
     pub digest: String,
+    /// Frames that were looked at.
     pub frames: usize,
     /// Whom the intervention is about.
     pub hazard: Option<String>,
+    /// What each checkpoint made of it.
     pub checkpoints: Vec<LookLine>,
 }
 
 /// A case through one checkpoint.
 #[derive(Serialize)]
 pub struct LookLine {
+    /// Name of the checkpoint.
     pub name: String,
     /// Tick of the first frame in which the hazard is seen.
     pub first_seen_tick: Option<Tick>,
@@ -79,6 +87,7 @@ pub struct LookLine {
     pub gain_s: Option<f64>,
     /// Against the baseline; `None` for itself.
     pub verdict: Option<Verdict>,
+    /// As over all cases.
     pub ped_recall_on_path: Option<f64>,
     #[serde(flatten)]
     pub figures: Figures,

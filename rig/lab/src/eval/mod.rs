@@ -67,18 +67,27 @@ impl Evaluation {
 /// An evaluation as it is printed.
 #[derive(Serialize)]
 pub struct Summary<'a> {
+    /// Its name.
     checkpoint: &'a str,
+    /// Its digest, hexadecimal.
     digest: &'a str,
+    /// The folder.
     dataset: String,
+    /// Which split.
     split: &'a str,
+    /// Number of scenes.
     scenes: usize,
+    /// Number of frames.
     frames: usize,
     #[serde(flatten)]
     figures: &'a Figures,
     /// Mean of the labelled pixels a scene and a frame, by class.
     pixels_per_scene: BTreeMap<&'static str, f64>,
+    /// The same a frame.
     pixels_per_frame: BTreeMap<&'static str, f64>,
+    /// How many people were seen.
     pedestrians: &'a Pedestrians,
+    /// Pixels by labelled and predicted class.
     confusion: Confusion<'a>,
 }
 

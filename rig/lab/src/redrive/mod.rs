@@ -44,16 +44,21 @@ const NEAR_MISS_S: f64 = 1.5;
 /// A fork, a line of `redrive.jsonl`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Line {
+    /// The file.
     file: String,
     /// 0 is the case itself.
     variation: u16,
+    /// Its recording, in the folder of the results.
     recording: String,
     /// What the semantic bot looked through.
     checkpoint: String,
     /// Of the takeover, or of the collision that nobody prevented.
     intervention_tick: Tick,
+    /// First tick that may differ from the recorded run.
     fork_tick: Tick,
+    /// What it says about the intervention.
     verdict: Verdict,
+    /// The first thing that went wrong.
     harm: Option<Harm>,
     /// From the recorded intervention to the harm, seconds; negative before it.
     harm_after_s: Option<f64>,

@@ -35,10 +35,13 @@ use super::store::{Settings, Store};
 struct Line<'a> {
     /// What it sums over: `frame`, `file` or `overall`.
     over: &'a str,
+    /// Name of the file, of a line of a frame or file.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<&'a str>,
+    /// Tick of the frame, of a line of a frame.
     #[serde(skip_serializing_if = "Option::is_none")]
     tick: Option<Tick>,
+    /// Name of the checkpoint.
     checkpoint: &'a str,
     #[serde(flatten)]
     figures: Figures,
