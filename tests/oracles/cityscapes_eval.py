@@ -67,7 +67,7 @@ def same(what, ours, theirs):
 
 def compare(program, dataset, masks, checkpoint, labels):
     measured = aeye(
-        program, "eval", "--checkpoint", checkpoint, "--dataset", dataset, "--save-predictions", masks
+        program, "eval", "--checkpoint", checkpoint, "--dataset", dataset, "--out", masks
     )
     truths = sorted(map(str, (dataset / "gtFine" / "val").glob("*/*_gtFine_labelIds.png")))
     assert len(truths) == measured["frames"] == SCENES * FRAMES >= 100, f"{len(truths)} frames"

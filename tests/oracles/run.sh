@@ -24,7 +24,7 @@ mkdir "$work"
 
 python "$here/cityscapes_eval.py" "$aeye" "$work"
 
-"$aeye" drive --headless --map city --seconds 20 --record "$work/drive.mcap"
+"$aeye" drive --headless --map city --max-time 20s --record "$work/drive.mcap"
 "$aeye" campaign --checkpoint early --seed 5 --cases 1 --out "$work/drives"
 python "$here/export_readers.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.case.mcap
 

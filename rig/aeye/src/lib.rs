@@ -4,6 +4,7 @@
 pub mod cli;
 pub mod commands;
 pub mod exit;
+pub mod help;
 pub mod print;
 pub mod quiet;
 
@@ -38,5 +39,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Demo(args) => commands::demo::run(args, json),
         Command::Wheel(command) => commands::windows::wheels(command, json),
         Command::Doctor(args) => commands::doctor::run(args, json),
+        Command::Completions(args) => commands::shell::completions(args),
+        Command::Man(args) => commands::shell::man(args),
     }
 }

@@ -2,14 +2,19 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use base::failure::{Failed, sentence};
+use clap::FromArgMatches;
 
 fn main() -> ExitCode {
     aeye::quiet::start_over_without_complaints();
-    let cli = aeye::cli::Cli::parse();
+    let matches = aeye::help::command().get_matches();
+    let cli = aeye::cli::Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let result = aeye::run(&cli);
     if let Err(error) = &result {
-        eprintln!("error: {}", base::failure::sentence(error));
+        if let Some(failed) = error.downcast_ref::<Failed>() {
+            failed.sentences().for_each(|sentence| eprintln!("error: {sentence}"));
+        }
+        eprintln!("error: {}", sentence(error));
     }
     aeye::exit::code(&result)
 }

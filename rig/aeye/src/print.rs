@@ -4,16 +4,15 @@ use std::fmt::Display;
 use std::io::Write;
 
 use anyhow::Context;
-use base::output::json_line;
-use serde::Serialize;
+use base::output::{Typed, json_line};
 
 /// Prints a result: one line of JSON, or its text.
-pub fn result<T: Serialize + Display>(json: bool, value: &T) -> anyhow::Result<()> {
+pub fn result<T: Typed + Display>(json: bool, value: &T) -> anyhow::Result<()> {
     print(json, value, || value.to_string())
 }
 
 /// Prints a value: one line of JSON, or this text.
-pub fn print<T: Serialize>(json: bool, value: &T, text: impl FnOnce() -> String) -> anyhow::Result<()> {
+pub fn print<T: Typed>(json: bool, value: &T, text: impl FnOnce() -> String) -> anyhow::Result<()> {
     let line = if json { json_line(value)? } else { text() };
     let mut out = std::io::stdout().lock();
     writeln!(out, "{line}").and_then(|()| out.flush()).context("stdout")

@@ -84,7 +84,7 @@ fn a_full_disk_is_named_and_what_it_leaves_can_be_completed_or_is_nothing() {
     made(folder, "dataset cases a.case.mcap --size 128x64 --out cases");
     made(folder, &format!("{NATURAL} --seed 2 --out pool"));
     let before = names(folder);
-    let mix = "dataset mix --natural natural --pool pool --cases cases --replace 4 --out mix";
+    let mix = "dataset mix --natural natural --pool pool --corner-cases cases --replace 4 --out mix";
     let said = full("4", folder, mix);
     assert!(said.contains("frames.jsonl"), "{said}");
     assert_eq!(names(folder), before, "nothing is left");

@@ -19,7 +19,7 @@ fn a_drive_is_seen_from_afar_while_garbage_does_no_harm() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut drive = Command::new(env!("CARGO_BIN_EXE_aeye"))
         .current_dir(dir.path())
-        .args("drive --headless --map rural --checkpoint truth --seconds 60 --foxglove 0 --record a.mcap".split(' '))
+        .args("drive --headless --map rural --checkpoint truth --max-time 60s --foxglove 0 --record a.mcap".split(' '))
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()

@@ -49,10 +49,10 @@ fn without_a_graphics_driver_each_command_says_what_to_install_and_leaves_nothin
     let dir = tempfile::tempdir().expect("a folder");
     blind_drive(&dir.path().join("run.mcap"));
     for command in [
-        "drive --headless --seconds 4 --record new.mcap",
+        "drive --headless --max-time 4s --record new.mcap",
         "campaign --checkpoint truth --runs 1 --out new",
         "rerender run.mcap --checkpoint truth --out new",
-        "compare run.mcap --checkpoint truth early --out new",
+        "compare run.mcap --checkpoint truth,early --out new",
         "report run.mcap --checkpoint truth --out new.html",
         "dataset natural --scenes 1 --val-scenes 0 --frames 1 --out new",
         "demo --out new",

@@ -83,13 +83,20 @@ fn a_training_that_is_killed_ends_with_the_same_files_and_is_done_once() {
     let differing: Vec<_> = files.iter().filter(|(name, bytes)| after_a_kill[*name] != **bytes).map(|f| f.0).collect();
     assert!(differing.is_empty(), "{differing:?}");
     let printed = String::from_utf8(whole.stdout).expect("UTF-8");
-    assert_eq!(printed.as_bytes(), files["c.jsonl"]);
+    let (epochs, end) = printed.trim_end().rsplit_once('\n').expect("epochs and an end");
+    assert_eq!(format!("{epochs}\n").as_bytes(), files["c.jsonl"]);
+    let end: serde_json::Value = serde_json::from_str(end).expect("JSON");
+    assert_eq!((&end["type"], &end["card"]), (&"aeye.train".into(), &"whole/c.md".into()));
     let first: serde_json::Value = serde_json::from_str(printed.lines().next().expect("a line")).expect("JSON");
     assert!(first["iou"]["Sky"].is_f64() && first["rate"].as_f64().is_some_and(|rate| (rate - 2e-3).abs() < 1e-9));
 
     let again = train(dir.path(), "whole/c.onnx").output().expect("the program starts");
     let said = String::from_utf8_lossy(&again.stderr).into_owned();
-    assert!(again.stdout.is_empty() && said.starts_with("whole/c.onnx: is trained already"), "{said}");
+    assert!(
+        String::from_utf8_lossy(&again.stdout).lines().count() == 1
+            && said.starts_with("whole/c.onnx: is trained already"),
+        "{said}"
+    );
 
     let other = train(dir.path(), "whole/c.onnx").args(["--seed", "9"]).output().expect("the program starts");
     let said = String::from_utf8_lossy(&other.stderr).into_owned();

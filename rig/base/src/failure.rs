@@ -1,5 +1,10 @@
 //! What can go wrong with a command, beyond what libraries say.
 
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+
 /// The command line asks for something that does not exist or contradicts itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Usage(pub String);
@@ -12,8 +17,73 @@ impl std::fmt::Display for Usage {
 
 impl std::error::Error for Usage {}
 
-/// Whether an error says that a replay is not the run that was recorded.
+/// A file among many that a command could not work on, while it went on with the rest.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Failure {
+    /// The file or folder.
+    pub file: String,
+    /// Why, in a sentence that names it.
+    pub error: String,
+    /// Whether its replay is not the run that was recorded.
+    #[serde(skip)]
+    pub is_divergence: bool,
+}
+
+impl Failure {
+    /// That of a file.
+    pub fn new(path: &Path, error: &anyhow::Error) -> Self {
+        let (file, mut text) = (path.display().to_string(), sentence(error));
+        if !text.contains(&file) {
+            text = format!("{file}: {text}");
+        }
+        Self { file, error: text, is_divergence: is_divergence(error) }
+    }
+}
+
+/// What a command over many files ends with when some of them, or all, could not be worked on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failed {
+    failures: Vec<Failure>,
+    /// Files that went well.
+    rest: usize,
+}
+
+impl Failed {
+    /// Of a command for which nothing is left.
+    pub fn new(failures: Vec<Failure>) -> Self {
+        Self { failures, rest: 0 }
+    }
+
+    /// An error if there are failures; so many files went well.
+    pub fn check(failures: &[Failure], rest: usize) -> anyhow::Result<()> {
+        if failures.is_empty() { Ok(()) } else { Err(Self { failures: failures.to_vec(), rest }.into()) }
+    }
+
+    /// What is said of each of several files before the error itself.
+    pub fn sentences(&self) -> impl Iterator<Item = &str> {
+        let several = self.rest + self.failures.len() > 1;
+        self.failures.iter().filter(move |_| several).map(|failure| failure.error.as_str())
+    }
+}
+
+impl fmt::Display for Failed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.rest, self.failures.as_slice()) {
+            (0, []) => f.write_str("no file is left"),
+            (0, [only]) => f.write_str(&only.error),
+            (rest, failures) => write!(f, "{} of {} files failed", failures.len(), rest + failures.len()),
+        }
+    }
+}
+
+impl std::error::Error for Failed {}
+
+/// Whether an error says that a replay is not the run that was recorded, and nothing worse; of several files
+/// each must say so.
 pub fn is_divergence(error: &anyhow::Error) -> bool {
+    if let Some(failed) = error.downcast_ref::<Failed>() {
+        return failed.failures.iter().all(|failure| failure.is_divergence);
+    }
     let diverged = |error: &replay::Error| matches!(error, replay::Error::Diverged(_));
     error.chain().any(|e| e.downcast_ref::<replay::Error>().is_some_and(diverged))
 }
@@ -33,6 +103,18 @@ pub fn sentence(error: &anyhow::Error) -> String {
 mod tests {
     use super::*;
     use anyhow::Context;
+
+    #[test]
+    fn one_file_says_why_and_several_say_how_many() {
+        let failure = |file: &str| Failure::new(Path::new(file), &anyhow::anyhow!("no room"));
+        let one = Failed::new(vec![failure("a.mcap")]);
+        assert_eq!((one.to_string().as_str(), one.sentences().count()), ("a.mcap: no room", 0));
+        let error = Failed::check(&[failure("a.mcap")], 2).expect_err("one failed");
+        let failed = error.downcast_ref::<Failed>().expect("of files");
+        assert_eq!(failed.to_string(), "1 of 3 files failed");
+        assert_eq!(failed.sentences().collect::<Vec<_>>(), ["a.mcap: no room"]);
+        assert!(!is_divergence(&error) && Failed::check(&[], 2).is_ok());
+    }
 
     #[test]
     fn a_sentence_says_each_cause_once() {

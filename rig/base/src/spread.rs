@@ -1,7 +1,9 @@
 //! Work that is spread over threads; what it gives does not depend on how.
 
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
 /// Calls `work` once for each index below `count` on `jobs` threads, each with a state of its own.
@@ -36,6 +38,45 @@ pub fn spread<S>(
     failed.into_inner().unwrap_or_else(|e| e.into_inner()).map_or(Ok(()), Err)
 }
 
+/// Calls `work` once for each index below `count` on `jobs` threads, and `take` with what it gives, in the order
+/// of the indices and as early as that allows. After the first error of `take` no further index is started.
+pub fn in_order<T: Send>(
+    jobs: usize,
+    count: usize,
+    work: impl Fn(usize) -> T + Sync,
+    mut take: impl FnMut(usize, T) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let next = AtomicUsize::new(0);
+    let (sender, done) = channel();
+    let run = |sender: Sender<(usize, T)>| {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count || sender.send((index, work(index))).is_err() {
+                return;
+            }
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..jobs.clamp(1, count.max(1)) {
+            let (run, sender) = (&run, sender.clone());
+            scope.spawn(move || run(sender));
+        }
+        drop(sender);
+        let (mut waiting, mut turn) = (BTreeMap::new(), 0);
+        for (index, value) in done {
+            waiting.insert(index, value);
+            while let Some(value) = waiting.remove(&turn) {
+                if let Err(error) = take(turn, value) {
+                    next.store(count, Ordering::Relaxed);
+                    return Err(error);
+                }
+                turn += 1;
+            }
+        }
+        Ok(())
+    })
+}
+
 /// The number of threads to use: what was asked for, or one a core.
 pub fn jobs(asked: Option<u16>) -> usize {
     asked.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from)
@@ -44,6 +85,20 @@ pub fn jobs(asked: Option<u16>) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_done_beside_each_other_comes_in_its_order() {
+        let mut taken = Vec::new();
+        let take = |i, square: usize| {
+            assert_eq!(square, i * i);
+            taken.push(i);
+            Ok(())
+        };
+        in_order(3, 50, |i| i * i, take).expect("no error");
+        assert_eq!(taken, (0..50).collect::<Vec<_>>());
+        let stop = |i, ()| if i == 4 { anyhow::bail!("four") } else { Ok(()) };
+        assert_eq!(in_order(2, 1000, |_| (), stop).expect_err("fails").to_string(), "four");
+    }
 
     #[test]
     fn every_index_comes_once_and_an_error_ends_it() {

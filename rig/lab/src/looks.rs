@@ -5,19 +5,34 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use base::failure::Usage;
 use drivers::checkpoint::CheckpointChoice;
-use drivers::vision::Eye;
+use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{RoadNetwork, SceneSnapshot};
 use perception::Mask;
 use render::{Camera, Frame, RenderOptions, Renderer};
 
-/// The eyes that a command line asks for, ready for pictures of one size.
-pub fn open_eyes(choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<Vec<Eye>> {
+/// The eyes that a command line asks for, and the size of the pictures that they all look at: the one that is
+/// asked for, else that which the first network takes. Others see those pictures resampled.
+pub fn open_eyes(choices: &[CheckpointChoice], size: Option<Size>) -> anyhow::Result<(Vec<Eye>, Size)> {
+    let size = match size {
+        Some(size) => size,
+        None => own_size(choices)?,
+    };
     let eyes = choices.iter().map(|choice| Eye::open_at(choice, size)).collect::<anyhow::Result<Vec<_>>>()?;
     let names: BTreeSet<&str> = eyes.iter().map(Eye::name).collect();
     if names.len() < eyes.len() {
         return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
     }
-    Ok(eyes)
+    Ok((eyes, size))
+}
+
+/// Width and height of pictures, pixels.
+pub type Size = (u32, u32);
+
+fn own_size(choices: &[CheckpointChoice]) -> anyhow::Result<Size> {
+    match choices.iter().find(|choice| **choice != CheckpointChoice::Truth) {
+        Some(network) => Ok(Eye::open(network)?.size()),
+        None => Ok(DEFAULT_SIZE),
+    }
 }
 
 /// A renderer for each map, all with the driver's camera.

@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
-/// Everything that a result follows from.
+/// Everything that what is seen in pictures follows from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Key {
     /// BLAKE3 of the recording or case.
@@ -65,8 +65,8 @@ impl Settings {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Kept<T> {
-    key: Key,
+struct Kept<K, T> {
+    key: K,
     value: T,
 }
 
@@ -117,14 +117,14 @@ impl Store {
     }
 
     /// A result, if it is there, whole and of this key.
-    pub fn find<T: DeserializeOwned>(&self, name: &str, key: &Key) -> Option<T> {
+    pub fn find<T: DeserializeOwned, K: DeserializeOwned + PartialEq>(&self, name: &str, key: &K) -> Option<T> {
         let bytes = fs::read(self.file(name)).ok()?;
-        let kept: Kept<T> = serde_json::from_slice(&bytes).ok()?;
+        let kept: Kept<K, T> = serde_json::from_slice(&bytes).ok()?;
         (kept.key == *key).then_some(kept.value)
     }
 
     /// Keeps a result.
-    pub fn keep<T: Serialize>(&self, name: &str, key: Key, value: T) -> anyhow::Result<()> {
+    pub fn keep<T: Serialize, K: Serialize>(&self, name: &str, key: K, value: T) -> anyhow::Result<()> {
         let file = self.file(name);
         output::create_folder(file.parent().unwrap_or(&self.folder))?;
         output::write_file(&file, &serde_json::to_vec(&Kept { key, value })?)
@@ -183,11 +183,11 @@ mod tests {
         assert!(!out.exists(), "nothing was kept");
         Store::open(&out, "test").expect("free").keep("a/b/full", key("x"), vec![3, 4]).expect("writable");
         let store = Store::open(&out, "test").expect("of the same kind");
-        assert_eq!(store.find::<Vec<u8>>("a/b/full", &key("x")), Some(vec![3, 4]));
-        assert_eq!(store.find::<Vec<u8>>("a/b/full", &key("y")), None);
-        assert_eq!(store.find::<Vec<u8>>("a/b/early", &key("x")), None);
+        assert_eq!(store.find::<Vec<u8>, Key>("a/b/full", &key("x")), Some(vec![3, 4]));
+        assert_eq!(store.find::<Vec<u8>, Key>("a/b/full", &key("y")), None);
+        assert_eq!(store.find::<Vec<u8>, Key>("a/b/early", &key("x")), None);
         store.forget_below("a/b").expect("removed");
-        assert_eq!(store.find::<Vec<u8>>("a/b/full", &key("x")), None);
+        assert_eq!(store.find::<Vec<u8>, Key>("a/b/full", &key("x")), None);
     }
 
     #[test]

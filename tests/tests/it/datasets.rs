@@ -94,7 +94,7 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
     assert!(natural::make(&other, &interrupt).unwrap_err().to_string().contains("another recipe"));
     assert_eq!(contents(&a), whole);
     let eval_args =
-        EvalArgs { checkpoint: CheckpointChoice::Truth, dataset: a, split: "val".into(), save_predictions: None };
+        EvalArgs { checkpoint: CheckpointChoice::Truth, dataset: a, split: "val".into(), jobs: None, out: None };
     assert_eq!(eval::run(&eval_args, true).unwrap(), Verdict::Ok);
 }
 
@@ -325,7 +325,7 @@ fn recipes_alone_make_the_same_folders_again() {
     assert!(!dir.path().join("again-1.parts").exists());
 
     let said = again(&args.cases, Vec::new(), "never").unwrap_err().to_string();
-    assert!(said.starts_with("case a.case with digest ") && said.contains("after --cases"), "{said}");
+    assert!(said.starts_with("case a.case with digest ") && said.contains("after the recipe"), "{said}");
     assert!(!dir.path().join("never").exists());
 
     // What if the first one had come out otherwise?

@@ -14,7 +14,15 @@ use tests::recordings::{TAKEOVER, recorded};
 
 fn rerender_args(file: &Path, out: PathBuf) -> RerenderArgs {
     let checkpoint = vec![CheckpointChoice::Truth];
-    RerenderArgs { files: vec![file.to_owned()], checkpoint, last: 180, fps: 10, size: (128, 64), jobs: None, out }
+    RerenderArgs {
+        files: vec![file.to_owned()],
+        checkpoint,
+        last: 180,
+        fps: 10,
+        size: Some((128, 64)),
+        jobs: None,
+        out,
+    }
 }
 
 #[test]
@@ -54,7 +62,7 @@ fn a_divergent_or_damaged_recording_leaves_no_pictures() {
     let out = dir.path().join("out");
     let diverged = rerender::run(&rerender_args(&forged, out.clone()), true);
     assert_eq!(exit::number(&diverged), 3, "{diverged:?}");
-    let looked_at = inspect::run(&InspectArgs { files: vec![forged.clone()], reveal: false }, true);
+    let looked_at = inspect::run(&InspectArgs { files: vec![forged.clone()], reveal: false, jobs: None }, true);
     assert_eq!(exit::number(&looked_at), 3, "{looked_at:?}");
     let mut bytes = fs::read(&recording).unwrap();
     let middle = bytes.len() / 2;
@@ -72,7 +80,7 @@ fn a_divergent_or_damaged_recording_leaves_no_pictures() {
 fn a_report_stands_alone_and_escapes_what_people_wrote() {
     let dir = tempfile::tempdir().unwrap();
     let (_, case) = recorded(dir.path());
-    let html = report::render(&[case], &[CheckpointChoice::Truth], (64, 32)).unwrap();
+    let html = report::render(&[case], &[CheckpointChoice::Truth], Some((64, 32))).unwrap().html;
     assert_eq!(html.matches("data:image/png;base64,").count(), 90);
     assert!(html.contains("a &lt;test&gt;") && !html.contains("<test>"));
     assert!(html.contains("<svg") && html.contains("<circle") && html.contains("15.8 s"));

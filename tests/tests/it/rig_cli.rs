@@ -90,13 +90,15 @@ fn nonsense_on_the_command_line_is_usage() {
     for arguments in [
         &["drive"][..],
         &["drive", "--headless", "--safety", "keyboard", "--record", "x.mcap"],
-        &["drive", "--headless", "--record", "x.mcap", "--seconds", "3"],
+        &["drive", "--headless", "--record", "x.mcap", "--max-time", "3"],
         &["campaign", "--checkpoint", "truth", "--out", "d"],
         &["campaign", "--checkpoint", "truth", "--out", "d", "--runs", "0"],
         &["rerender", "x.mcap", "--checkpoint", "truth", "--size", "0x0", "--out", "d"],
         &["rerender", "x.mcap", "--checkpoint", "truth", "--fps", "7", "--out", "d"],
-        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--gate", "speed>=1", "--out", "d"],
-        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--gate", "miou~1", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth,early", "--gate", "speed>=1", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth,early", "--gate", "miou~1", "--out", "d"],
+        &["compare", "x.mcap", "--checkpoint", "truth", "early", "--out", "d"],
+        &["rerender", "--checkpoint", "full", "c.onnx", "x.mcap", "--out", "d"],
         &["fly"],
     ] {
         let error = Cli::try_parse_from([&["aeye"], arguments].concat()).expect_err("nonsense");
@@ -148,7 +150,7 @@ fn places_that_cannot_hold_results_are_refused_before_the_work() {
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_full_disk_is_named_with_the_recording() {
-    let sentence = sentence_of(&["drive", "--headless", "--map", "rural", "--seconds", "4", "--record", "/dev/full"]);
+    let sentence = sentence_of(&["drive", "--headless", "--map", "rural", "--max-time", "4", "--record", "/dev/full"]);
     assert!(sentence.starts_with("/dev/full: No space left on device"), "{sentence}");
 }
 
@@ -160,7 +162,7 @@ fn a_bundled_checkpoint_by_name_and_by_path_gives_the_same_recording() {
     let recording = |checkpoint: &str, name: &str| {
         let record = dir.path().join(name);
         let record = record.to_str().expect("UTF-8");
-        let drive = ["drive", "--headless", "--map", "rural", "--seconds", "4", "--record", record];
+        let drive = ["drive", "--headless", "--map", "rural", "--max-time", "4", "--record", record];
         assert_eq!(aeye(&[&drive[..], &["--checkpoint", checkpoint]].concat()).0, 0);
         fs::read(record).expect("a recording")
     };
@@ -173,7 +175,9 @@ fn the_readme_names_every_command_as_it_is_called() {
     let calls = readme.lines().filter_map(|line| line.strip_prefix("| `aeye ")?.split('`').next());
     let mut named: Vec<&str> = calls.clone().filter_map(|call| call.split(' ').next()).collect();
     for call in calls {
-        let words = call.split(' ').map(|word| if word == "N" { "1" } else { word.trim_end_matches("...") });
+        let words = call
+            .split(' ')
+            .map(|word| if word == "N" { "1" } else { word.trim_end_matches("...").trim_end_matches(',') });
         let parsed = Cli::try_parse_from(["aeye"].into_iter().chain(words));
         assert!(parsed.is_ok(), "aeye {call}: {:?}", parsed.err());
     }

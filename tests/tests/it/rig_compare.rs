@@ -47,7 +47,7 @@ fn args(files: &[&Path], checkpoint: &[CheckpointChoice], out: &Path) -> Compare
         checkpoint: checkpoint.to_vec(),
         gate: vec![],
         no_worse_than: None,
-        size: SIZE,
+        size: Some(SIZE),
         jobs: Some(2),
         out: out.to_owned(),
     }

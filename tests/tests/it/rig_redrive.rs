@@ -41,6 +41,7 @@ fn args(file: PathBuf, checkpoint: Option<CheckpointChoice>, out: PathBuf) -> Re
         reveal: false,
         vary: 1,
         seconds: 4,
+        jobs: None,
         out,
     }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use measures::statistics::of_recordings;
+use measures::statistics::{Choice, of_recordings};
 use replay::{Case, Recording};
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
@@ -23,7 +23,7 @@ fn write(folder: &Path, name: &str, recording: &Recording) -> PathBuf {
 }
 
 fn refused(paths: &[PathBuf], reference: Option<&str>) -> String {
-    of_recordings(paths, reference, false).expect_err("refused").to_string()
+    of_recordings(paths, Choice { reference, ..Choice::default() }).expect_err("refused").to_string()
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn every_ride_counts_once_for_its_checkpoint() {
     let case_path = dir.path().join("0.case.mcap");
     fs::write(&case_path, case.encode().unwrap()).unwrap();
 
-    let of = of_recordings(&[dir.path().to_owned()], None, false).unwrap();
+    let of = of_recordings(&[dir.path().to_owned()], Choice::default()).unwrap().checkpoints;
     let counts: Vec<_> = of.iter().map(|c| (c.checkpoint.as_str(), c.statistics.rides, c.statistics.cases)).collect();
     assert_eq!(counts, [("old", 2, 1), ("new", 1, 0)]);
     let (old, new) = (&of[0], &of[1]);
@@ -58,7 +58,13 @@ fn every_ride_counts_once_for_its_checkpoint() {
     );
     assert!(refused(std::slice::from_ref(&fork), None).contains("a fork of aeye redrive"));
     fs::remove_file(fork).unwrap();
-    assert!(refused(&[dir.path().join("0.mcap"), dir.path().to_owned()], None).contains("given before"));
+    let (again, copy) = (dir.path().join("0.mcap"), dir.path().join("below/copy.mcap"));
+    fs::create_dir(dir.path().join("below")).unwrap();
+    fs::copy(&again, &copy).unwrap();
+    let both = of_recordings(&[again, dir.path().to_owned()], Choice::default()).unwrap();
+    assert_eq!(both.checkpoints[0].statistics.rides, 2, "a file that is given twice counts once, and so does a copy");
+    assert!(both.failed.iter().all(|failure| failure.error.contains("given before")) && both.failed.len() == 1);
+    fs::remove_file(copy).unwrap();
     assert!(refused(&[dir.path().to_owned()], Some("newest")).contains("expected one of old, new"));
     assert!(refused(&[dir.path().join("3.mcap")], None).contains("no recording counts"));
     let empty = tempfile::tempdir().unwrap();
@@ -73,7 +79,7 @@ fn blind_drives_are_one_until_they_are_revealed() {
         write(dir.path(), file, &recording(false, &entries));
     }
     let names = |reveal| {
-        let of = of_recordings(&[dir.path().to_owned()], None, reveal).unwrap();
+        let of = of_recordings(&[dir.path().to_owned()], Choice { reveal, ..Choice::default() }).unwrap().checkpoints;
         of.into_iter().map(|c| c.checkpoint).collect::<Vec<_>>()
     };
     assert_eq!((names(false), names(true)), (vec!["blind".to_owned()], vec!["old".into(), "new".into()]));

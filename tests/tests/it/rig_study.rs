@@ -186,16 +186,16 @@ fn a_report_reveals_and_leaves_familiarisation_out() {
     let practice = labelled(dir.path(), 2, Label::Walker, &[("familiarisation", "true")]);
     let render = |files: &[&String]| {
         let files: Vec<_> = files.iter().map(|file| file.as_str().into()).collect();
-        report::render(&files, &[CheckpointChoice::Truth], (64, 32))
+        report::render(&files, &[CheckpointChoice::Truth], Some((64, 32)))
     };
-    let html = render(&[&counts, &practice]).expect("a page");
+    let html = render(&[&counts, &practice]).expect("a page").html;
     for words in ["network-x, and the drivers did not know it", "P07", "1 of 1", "takeovers out of boredom", "Mask age"]
     {
         assert!(html.contains(words), "{words}");
     }
     assert_eq!(html.matches("<h2 id=").count(), 1);
     assert_eq!(html.matches("<b>1</b>runs").count(), 1);
-    let error = render(&[&practice]).expect_err("nothing is left");
+    let error = render(&[&practice]).err().expect("nothing is left");
     assert!(error.to_string().contains("no case is left"), "{error}");
 }
 

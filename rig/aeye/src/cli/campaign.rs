@@ -6,7 +6,7 @@ use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use lab::experiment::Preset;
 
-use super::values::{jobs, people, preset};
+use super::values::{CHECKPOINTS, MAPS, jobs, people, preset, seconds};
 
 /// Arguments of `campaign`.
 #[derive(Args, Clone, Debug)]
@@ -14,23 +14,23 @@ use super::values::{jobs, people, preset};
 pub struct CampaignArgs {
     /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
     /// the same runs.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones (default: the scenario's
     /// map, or all).
-    #[arg(long, value_delimiter = ',', value_name = "NAMES|all")]
+    #[arg(long, value_delimiter = ',', value_name = MAPS)]
     pub maps: Vec<String>,
     /// A scenario file; its seed and length are replaced for each run.
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,
     /// Number of runs of each checkpoint.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub runs: Option<u32>,
     /// Kilometres of each checkpoint.
     #[arg(long)]
     pub km: Option<f64>,
     /// Corner cases of each checkpoint.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub cases: Option<u32>,
     /// Corner cases of each checkpoint with the label `walker`: takeovers because of people on foot.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -38,15 +38,18 @@ pub struct CampaignArgs {
     /// People on foot, instead of as many as the scenario or the map's default has.
     #[arg(long, value_parser = people, value_name = "N")]
     pub pedestrians: Option<u16>,
-    /// Longest simulated time of a run, seconds.
-    #[arg(long, default_value_t = 240, value_parser = clap::value_parser!(u32).range(10..=86_400))]
+    /// Longest simulated time of a run, 10s to 24h.
+    #[arg(long = "max-time", default_value = "4m", value_parser = seconds(10..=86_400), value_name = "DURATION")]
     pub run_seconds: u32,
     /// Seed of the campaign; run `i` follows from it and `i` alone.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Print the scenario of the first run, as a file for `--scenario`, and do nothing.
+    #[arg(long)]
+    pub print_scenario: bool,
     /// Folder of the results; a campaign that was interrupted goes on there.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -76,7 +79,7 @@ pub struct ExperimentArgs {
     #[arg(long)]
     pub print_recipe: bool,
     /// Drives at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the results; an experiment that was interrupted goes on there.
     #[arg(long, value_name = "DIR", required_unless_present = "print_recipe")]

@@ -7,29 +7,30 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, Tick};
 use lab::compare::Gate;
 
-use super::values::{duration, frame_rate, jobs, moment, size};
+use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, seconds, size};
 
 /// Arguments of `rerender`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye rerender <FILE>... --checkpoint <C>... --out <DIR> [OPTIONS]")]
+#[command(override_usage = "aeye rerender <FILE|DIR>... --checkpoint <C,...> --out <DIR> [OPTIONS]")]
 pub struct RerenderArgs {
     /// Recordings or cases, or folders with cases anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Length of the window that ends at the intervention (or at the end), as in `3s`.
-    #[arg(long, default_value = "3s", value_parser = duration)]
+    #[arg(long, default_value = "3s", value_parser = duration, value_name = "DURATION")]
     pub last: Tick,
     /// Frames a second; must divide 60.
     #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
     pub fps: u32,
-    /// Size of the pictures.
-    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what is whole and follows from
     /// the same files, checkpoints and options is kept.
@@ -39,17 +40,17 @@ pub struct RerenderArgs {
 
 /// Arguments of `export`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye export <FILE>... [--checkpoint <C>...] --out <OUT.mcap|DIR> [OPTIONS]")]
+#[command(override_usage = "aeye export <FILE|DIR>... [--checkpoint <C,...>] --out <OUT.mcap|DIR> [OPTIONS]")]
 pub struct ExportArgs {
     /// Recordings or cases, or folders with cases anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Checkpoints whose masks come along with the ground truth.
-    #[arg(long, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
     /// window everything is exported.
-    #[arg(long, value_parser = duration, conflicts_with_all = ["from", "to"])]
+    #[arg(long, value_parser = duration, value_name = "DURATION", conflicts_with_all = ["from", "to"])]
     pub last: Option<Tick>,
     /// Only from this time of the run on, as in `10s`.
     #[arg(long, value_parser = moment, value_name = "TIME")]
@@ -60,38 +61,44 @@ pub struct ExportArgs {
     /// Pictures a second; must divide 60. What is measured is exported at every tick.
     #[arg(long, default_value_t = CLIP_FPS, value_parser = frame_rate)]
     pub fps: u32,
-    /// Size of the pictures.
-    #[arg(long, default_value = "512x256", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
-    /// File of the export, with its layout for viewers beside it; or a folder, for several files.
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
+    /// Files exported at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
+    /// File of the export, with its layout for viewers beside it; or a folder, for several files. What is whole
+    /// there and follows from the same files, checkpoints and options is kept.
     #[arg(long, value_name = "OUT.mcap|DIR")]
     pub out: PathBuf,
 }
 
 /// Arguments of `compare`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye compare <CASE>... --checkpoint <A> <B>... --out <DIR> [OPTIONS]")]
+#[command(override_usage = "aeye compare <FILE|DIR>... --checkpoint <A,B,...> --out <DIR> [OPTIONS]")]
 pub struct CompareArgs {
     /// Corner cases, or folders with cases anywhere below.
-    #[arg(required = true, value_name = "CASE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Two or more checkpoints; the first is the baseline.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// A condition on every checkpoint but the baseline, as in `ped_iou>=0.5`. Metrics: ped_iou, miou,
     /// ped_recall_on_path, hazards_seen (share of the hazards seen 1 s or more before the intervention),
     /// first_sight_s (mean), and against the baseline the numbers of cases fixed and broken.
-    #[arg(long, value_name = "METRIC>=NUMBER")]
+    #[arg(long, value_delimiter = ',', value_name = "METRIC>=NUMBER,...")]
     pub gate: Vec<Gate>,
     /// A checkpoint than which no other may be worse: of no metric may the paired 95 % interval of the
     /// difference lie below 0 as a whole.
     #[arg(long, value_name = "NAME")]
     pub no_worse_than: Option<String>,
-    /// Size of the pictures.
-    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what follows from the same cases,
     /// checkpoints and size is kept.
@@ -105,7 +112,7 @@ pub struct CompareArgs {
 pub struct RedriveArgs {
     /// Recordings or cases with an intervention (or a collision that nobody prevented, for
     /// `--checkpoint`), or folders with cases anywhere below.
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// The safety driver does nothing from the tick of the intervention on; the semantic driver is a bot
     /// that looks through the recorded checkpoint. What would have happened?
@@ -113,10 +120,10 @@ pub struct RedriveArgs {
     pub without_intervention: bool,
     /// Bots drive from the first tick at hand, at least 3 s before the intervention, the semantic one
     /// looking through this checkpoint. Is there an intervention again?
-    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, value_name = CHECKPOINT)]
     pub checkpoint: Option<CheckpointChoice>,
     /// Where the recorded checkpoint may be found, if it does not come with the program.
-    #[arg(long, value_name = "FILE.onnx")]
+    #[arg(long = "recorded-checkpoint", value_delimiter = ',', value_name = "FILE.onnx,...")]
     pub recorded: Vec<CheckpointChoice>,
     /// Tell the checkpoint of blind drives.
     #[arg(long)]
@@ -126,27 +133,32 @@ pub struct RedriveArgs {
     /// safety drivers of other reaction times.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=30))]
     pub vary: u16,
-    /// How long after the intervention a fork goes on, seconds.
-    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..=60))]
-    pub seconds: u16,
-    /// Folder of the forks' recordings and of `redrive.jsonl`; must not exist or be empty.
+    /// How long after the intervention a fork goes on, 1s to 60s.
+    #[arg(long = "after", default_value = "10s", value_parser = seconds(1..=60), value_name = "DURATION")]
+    pub seconds: u32,
+    /// Files driven on at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
+    /// Folder of the forks' recordings and of `redrive.jsonl`. One that this command began is completed: forks
+    /// that are there and follow from the same file, checkpoint and options are kept.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
 
 /// Arguments of `report`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye report <CASE>... --checkpoint <C>... --out <FILE.html> [OPTIONS]")]
+#[command(override_usage = "aeye report <FILE|DIR>... --checkpoint <C,...> --out <FILE.html> [OPTIONS]")]
 pub struct ReportArgs {
     /// Corner cases, or folders with cases anywhere below; the recordings beside them give route and kilometres.
-    #[arg(required = true, value_name = "CASE")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
-    #[arg(long, required = true, num_args = 1.., value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
-    /// Size of the pictures.
-    #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
-    pub size: (u32, u32),
+    /// Size of the pictures (default: that which the first network takes, 256x128 where it takes any); other
+    /// networks see them resampled.
+    #[arg(long, value_parser = size, value_name = "WxH")]
+    pub size: Option<(u32, u32)>,
     /// Where the page goes.
     #[arg(long, value_name = "FILE.html")]
     pub out: PathBuf,

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use drivers::checkpoint::CheckpointChoice;
 use replay::Label;
 
-use super::values::{jobs, people, rate, size};
+use super::values::{CHECKPOINT, MAPS, file, jobs, people, rate, size};
 
 /// The datasets that can be made.
 #[derive(Debug, Subcommand)]
@@ -25,10 +25,10 @@ pub enum DatasetCommand {
 #[derive(Args, Clone, Debug)]
 pub struct CasesArgs {
     /// Corner cases, or folders of them.
-    #[arg(required = true, value_name = "CASE|DIR")]
+    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
-    /// Take only cases with this label: walker, vehicle, rules or boredom; may be given again.
-    #[arg(long)]
+    /// Take only cases with these labels: walker, vehicle, rules, boredom.
+    #[arg(long, value_delimiter = ',', value_name = "LABEL,...")]
     pub label: Vec<Label>,
     /// Which split they become.
     #[arg(long, default_value = "train", value_parser = ["train", "val", "test"])]
@@ -51,7 +51,7 @@ pub struct MixArgs {
     #[arg(long, value_name = "DIR")]
     pub pool: PathBuf,
     /// Dataset of corner cases.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long = "corner-cases", value_name = "DIR")]
     pub cases: PathBuf,
     /// Training frames replaced (paper: 1500; default: as many as the corner cases have).
     #[arg(long, value_name = "N")]
@@ -70,14 +70,14 @@ pub struct MixArgs {
 pub struct RebuildArgs {
     /// `dataset.json` of a dataset, or its folder.
     pub recipe: PathBuf,
-    /// Corner cases that the recipe asks for, or folders of them; they are found by their digests.
-    #[arg(long, num_args = 1.., value_name = "CASE|DIR")]
+    /// Corner cases that the recipe asks for, or folders with cases anywhere below; they are found by their digests.
+    #[arg(value_parser = file(), value_name = "FILE|DIR")]
     pub cases: Vec<PathBuf>,
     /// OpenDRIVE files of maps that are not bundled.
-    #[arg(long, value_delimiter = ',', value_name = "FILE.xodr")]
+    #[arg(long, value_delimiter = ',', value_name = "FILE.xodr,...")]
     pub maps: Vec<String>,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]
@@ -106,7 +106,7 @@ pub struct NaturalArgs {
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
-    #[arg(long, value_delimiter = ',', default_value = "all", value_name = "NAMES|all")]
+    #[arg(long, value_delimiter = ',', default_value = "all", value_name = MAPS)]
     pub maps: Vec<String>,
     /// People on foot in each scene, instead of as many as the map's default scenario has.
     #[arg(long, value_parser = people, value_name = "N")]
@@ -115,7 +115,7 @@ pub struct NaturalArgs {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
-    #[arg(long, value_parser = jobs)]
+    #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]
@@ -163,16 +163,19 @@ pub struct TrainArgs {
 #[derive(Args, Clone, Debug)]
 pub struct EvalArgs {
     /// Checkpoint.
-    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// Dataset folder.
     #[arg(long, value_name = "DIR")]
     pub dataset: PathBuf,
     /// Which split.
-    #[arg(long, default_value = "val")]
+    #[arg(long, default_value = "val", value_name = "SPLIT")]
     pub split: String,
+    /// Frames looked at at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
     /// Folder for the predictions, as `CITY/CITY_SEQ_FRAME_pred_labelIds.png` in tags; must not exist or
     /// be empty.
     #[arg(long, value_name = "DIR")]
-    pub save_predictions: Option<PathBuf>,
+    pub out: Option<PathBuf>,
 }

@@ -11,7 +11,7 @@ use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server;
 
-use super::values::{force, screens, size, threshold};
+use super::values::{CHECKPOINT, CHECKPOINTS, file, force, screens, seconds, size, threshold};
 
 /// Arguments of `drive`.
 #[derive(Args, Clone, Debug)]
@@ -28,7 +28,7 @@ pub struct DriveArgs {
     pub safety: Option<SeatChoice>,
     /// Calibrations of wheels and gamepads, chosen by the names of their devices; others are read by
     /// presets.
-    #[arg(long, value_name = "FILE.toml", conflicts_with = "headless")]
+    #[arg(long, value_delimiter = ',', value_name = "FILE.toml,...", conflicts_with = "headless")]
     pub calibration: Vec<PathBuf>,
     /// Greatest force of wheels and gamepads, 0 (off) to 1 (all that they can).
     #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION", conflicts_with = "headless")]
@@ -43,13 +43,13 @@ pub struct DriveArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,
     /// What the semantic driver sees: a bundled checkpoint, ground truth, or an ONNX file.
-    #[arg(long, default_value = "truth", value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, default_value = "truth", value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// Seed of everything random; replaces the scenario's.
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Longest simulated time, seconds; 4 to 86400, as `rules.max_seconds` of scenarios.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(4..=86_400))]
+    /// Longest simulated time of a run, 4s to 24h, as `rules.max_seconds` of scenarios.
+    #[arg(long = "max-time", value_parser = seconds(4..=86_400), value_name = "DURATION")]
     pub seconds: Option<u32>,
     /// The pictures in windows.
     #[command(flatten)]
@@ -62,8 +62,17 @@ pub struct DriveArgs {
     /// `rules.steer_threshold` of scenarios (default there: 0.1).
     #[arg(long, value_parser = threshold, value_name = "FRACTION")]
     pub steer_threshold: Option<f32>,
+    /// Print the scenario that would be driven, as a file for `--scenario`, and do nothing.
+    #[arg(long)]
+    pub print_scenario: bool,
     /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
-    #[arg(long, value_name = "FILE.mcap")]
+    #[arg(
+        long,
+        value_name = "FILE.mcap",
+        required_unless_present = "print_scenario",
+        default_value_if("print_scenario", "true", "none.mcap"),
+        hide_default_value = true
+    )]
     pub record: PathBuf,
     /// What makes it part of a study with people.
     #[command(flatten, next_help_heading = "Study")]
@@ -114,7 +123,7 @@ pub struct StudyArgs {
     #[arg(long)]
     pub familiarisation: bool,
     /// Two or more checkpoints, of which each run draws one by its seed without telling which.
-    #[arg(long, num_args = 2.., value_name = "early|full|truth|FILE.onnx", conflicts_with = "checkpoint")]
+    #[arg(long, value_delimiter = ',', value_name = CHECKPOINTS, conflicts_with = "checkpoint")]
     pub blind: Vec<CheckpointChoice>,
 }
 
@@ -139,11 +148,11 @@ impl PictureArgs {
 /// Arguments of `doctor`.
 #[derive(Args, Clone, Debug)]
 pub struct DoctorArgs {
-    /// How long bots drive in windows to measure real time, seconds of simulated time; 0: not at all.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    /// How long bots drive in windows to measure real time, in simulated time; 0s: not at all.
+    #[arg(long = "max-time", default_value = "20s", value_parser = seconds(0..=86_400), value_name = "DURATION")]
     pub seconds: u32,
     /// What the semantic driver sees there.
-    #[arg(long, default_value = "full", value_name = "early|full|truth|FILE.onnx")]
+    #[arg(long, default_value = "full", value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// The pictures there.
     #[command(flatten)]
@@ -171,11 +180,11 @@ Cases and screenshots go beside FILE, under names with their ticks that are free
 #[command(after_help = VIEW_KEYS)]
 pub struct ViewArgs {
     /// A recording or case; one that was cut off is shown as far as it goes.
-    #[arg(value_name = "FILE")]
+    #[arg(value_parser = file(), value_name = "FILE")]
     pub file: PathBuf,
-    /// A checkpoint to look through; may be given several times (default: the bundled ones). The one
-    /// that the run was driven through is among them when it is bundled.
-    #[arg(long, value_name = "early|full|truth|FILE.onnx")]
+    /// Checkpoints to look through (default: the bundled ones). The one that the run was driven through is
+    /// among them when it is bundled.
+    #[arg(long, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Opens no window: makes every mask that was shown again and compares its digest with the logged
     /// one; exit code 3 if any differs. Equal digests are promised on the adapter that made them.
@@ -201,7 +210,7 @@ pub enum WheelCommand {
 #[derive(Args, Clone, Debug)]
 pub struct WheelListArgs {
     /// Calibrations to choose from, by the name of their device.
-    #[arg(long, value_name = "FILE.toml")]
+    #[arg(long, value_delimiter = ',', value_name = "FILE.toml,...")]
     pub calibration: Vec<PathBuf>,
 }
 
@@ -213,7 +222,7 @@ pub struct WheelCalibrateArgs {
     pub device: Option<String>,
     /// Where the calibration goes.
     #[arg(long, value_name = "FILE.toml")]
-    pub calibration: PathBuf,
+    pub out: PathBuf,
 }
 
 /// Arguments of `wheel import`.
@@ -228,5 +237,5 @@ pub struct WheelImportArgs {
     pub device: Option<String>,
     /// Where the calibration goes.
     #[arg(long, value_name = "FILE.toml")]
-    pub calibration: PathBuf,
+    pub out: PathBuf,
 }

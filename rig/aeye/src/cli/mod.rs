@@ -5,6 +5,7 @@ mod lab;
 mod learning;
 mod live;
 mod recordings;
+mod shell;
 mod values;
 
 use clap::{Parser, Subcommand};
@@ -16,6 +17,7 @@ pub use live::{
     DoctorArgs, DriveArgs, PictureArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs, WheelListArgs,
 };
 pub use recordings::{InspectArgs, QuestionnaireArgs, StatisticsArgs, VerifyArgs};
+pub use shell::{CompletionsArgs, ManArgs};
 
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
 ///
@@ -76,6 +78,10 @@ pub enum Command {
     Wheel(WheelCommand),
     /// Say what this machine has and how fast it is.
     Doctor(DoctorArgs),
+    /// Completions of the command line for a shell.
+    Completions(CompletionsArgs),
+    /// Man pages.
+    Man(ManArgs),
 }
 
 #[cfg(test)]

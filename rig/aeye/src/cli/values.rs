@@ -1,10 +1,36 @@
 //! Values of arguments, read from text.
 
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::Screens;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::{TICK_HZ, Tick};
 use lab::experiment::Preset;
+
+/// What stands for a checkpoint in help.
+pub const CHECKPOINT: &str = "early|full|truth|FILE.onnx";
+/// What stands for several: an option that takes a list takes it with commas, or is given again.
+pub const CHECKPOINTS: &str = "early|full|truth|FILE.onnx,...";
+/// What stands for several maps.
+pub const MAPS: &str = "NAME|FILE.xodr|all,...";
+
+/// A recording, a case or a folder. The name of a checkpoint is refused: it is what is left over when a list
+/// is given with spaces.
+pub fn file() -> impl TypedValueParser<Value = PathBuf> {
+    clap::builder::PathBufValueParser::new().try_map(|path| if is_checkpoint(&path) { Err(LIST) } else { Ok(path) })
+}
+
+const LIST: &str = "is a checkpoint where a recording, case or folder is expected; \
+                    several checkpoints are given as --checkpoint early,full";
+
+fn is_checkpoint(path: &Path) -> bool {
+    let choice = path.to_str().map(|text| text.parse::<CheckpointChoice>());
+    let is_named = matches!(choice, Some(Ok(CheckpointChoice::Truth | CheckpointChoice::Bundled(_))));
+    (is_named && !path.exists()) || path.extension().is_some_and(|ending| ending == "onnx")
+}
 
 /// An experiment with a name.
 pub fn preset() -> impl TypedValueParser<Value = Preset> {
@@ -25,18 +51,34 @@ pub fn size(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| "expected WIDTHxHEIGHT with sides of 8 to 8192 pixels, as in 512x256".into())
 }
 
-/// A number of seconds such as `3s` or `0.5s`, as ticks.
-pub fn duration(text: &str) -> Result<Tick, String> {
-    let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
-    let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (1.0..=1e9).contains(t));
-    ticks.map(|t| t as Tick).ok_or_else(|| "expected a number of seconds, as in 3s".into())
+/// A time such as `3s`, `0.5s`, `2m` or `1h`, as ticks. A number alone is seconds.
+fn ticks(text: &str) -> Option<f64> {
+    let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let unit = units.iter().find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, *seconds)));
+    let (number, seconds) = unit.unwrap_or((text, 1.0));
+    let ticks = number.parse::<f64>().ok()? * seconds * f64::from(TICK_HZ);
+    Some(ticks.round()).filter(|ticks| (0.0..=1e9).contains(ticks))
 }
 
-/// A time of a run such as `0s` or `12.5s`, as a tick.
+/// How long something takes, as ticks.
+pub fn duration(text: &str) -> Result<Tick, String> {
+    let ticks = ticks(text).filter(|ticks| *ticks >= 1.0);
+    ticks.map(|t| t as Tick).ok_or_else(|| "expected a duration, as in 3s, 0.5s or 2m".into())
+}
+
+/// A time of a run, as a tick.
 pub fn moment(text: &str) -> Result<Tick, String> {
-    let seconds = text.strip_suffix('s').unwrap_or(text).parse::<f64>().ok();
-    let ticks = seconds.map(|s| (s * f64::from(TICK_HZ)).round()).filter(|t| (0.0..=1e9).contains(t));
-    ticks.map(|t| t as Tick).ok_or_else(|| "expected a time in seconds, as in 12.5s".into())
+    ticks(text).map(|t| t as Tick).ok_or_else(|| "expected a time of the run, as in 0s, 12.5s or 2m".into())
+}
+
+/// A duration in whole seconds.
+pub fn seconds(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let seconds = ticks(text).map(|ticks| ticks / f64::from(TICK_HZ)).filter(|s| s.fract() == 0.0);
+        let seconds = seconds.map(|s| s as u32).filter(|s| range.contains(s));
+        let (low, high) = (range.start(), range.end());
+        seconds.ok_or_else(|| format!("expected whole seconds from {low}s to {high}s, as in 20s or 2m"))
+    }
 }
 
 /// A first learning rate.
@@ -80,11 +122,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_checkpoint_is_no_file() {
+        assert!(is_checkpoint(Path::new("truth")) && is_checkpoint(Path::new("runs/c.onnx")));
+        assert!(!is_checkpoint(Path::new("early.case.mcap")) && !is_checkpoint(Path::new("./early")));
+    }
+
+    #[test]
     fn values_are_read_and_nonsense_is_refused() {
         assert_eq!(size("512x256"), Ok((512, 256)));
         assert!(size("512").is_err() && size("0x9").is_err() && size("12x99999999").is_err());
         assert_eq!(duration("3s"), Ok(180));
         assert_eq!(duration("0.5"), Ok(30));
+        assert_eq!((duration("2m"), duration("1h")), (Ok(7200), Ok(216_000)));
+        assert_eq!((seconds(4..=60)("4"), seconds(4..=60)("1m")), (Ok(4), Ok(60)));
+        assert!(seconds(4..=60)("3s").is_err() && seconds(4..=60)("4.5s").is_err() && seconds(0..=9)("-1").is_err());
         assert!(duration("-1s").is_err() && duration("NaN").is_err());
         assert_eq!((moment("0s"), moment("1.5")), (Ok(0), Ok(90)));
         assert!(moment("-1").is_err() && moment("s").is_err());

@@ -2,7 +2,7 @@
 
 use base::failure::Usage;
 use base::progress::Interrupt;
-use lab::campaign::{Options, Until, drive};
+use lab::campaign::{Options, Until, drive, plan};
 
 use crate::cli::CampaignArgs;
 use crate::exit::Verdict;
@@ -10,7 +10,12 @@ use crate::print;
 
 /// Runs `aeye campaign`.
 pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
-    print::result(json, &drive(&options(args)?, &Interrupt::listen()?)?)?;
+    let options = options(args)?;
+    if args.print_scenario {
+        print!("{}", plan(&options)?.scenario_of(0).to_toml());
+        return Ok(Verdict::Ok);
+    }
+    print::result(json, &drive(&options, &Interrupt::listen()?)?)?;
     Ok(Verdict::Ok)
 }
 

@@ -1,5 +1,6 @@
 //! Checkpoints side by side over a library of corner cases.
 
+use base::failure::Failed;
 use base::progress::Interrupt;
 use lab::compare::{Options, compare};
 
@@ -14,5 +15,6 @@ pub fn run(args: &CompareArgs, json: bool) -> anyhow::Result<Verdict> {
     let compared = compare(&options, &Interrupt::listen()?)?;
     print::result(json, &compared)?;
     compared.failed().for_each(|passage| eprintln!("gate: {}", passage.sentence));
+    Failed::check(&compared.summary.failed, compared.summary.cases.len())?;
     Ok(Verdict::of_check(compared.failed().next().is_none()))
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use base::output;
+use base::output::Typed;
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
@@ -23,16 +24,23 @@ use crate::print::print;
 const CASES: u32 = 3;
 /// Longest simulated time of a run, seconds.
 const RUN_SECONDS: u32 = 180;
-/// Size of the pictures, the one that the bundled checkpoints take.
-const SIZE: (u32, u32) = (256, 128);
 
 /// What the command prints at the end.
 #[derive(Serialize)]
 struct Summary {
+    /// The page.
     report: String,
+    /// Runs that were driven.
     runs: usize,
+    /// Corner cases.
     cases: usize,
+    /// Kilometres driven.
     km: f64,
+}
+
+/// The last line of `aeye demo`.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.demo";
 }
 
 /// Runs `aeye demo`.
@@ -44,7 +52,7 @@ pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
     let figures = campaign::drive(&campaign_options(args, early.clone(), &drives), &Interrupt::listen()?)?;
     eprintln!("2/4 verifying every recording");
     let files = files(&drives, &figures);
-    if verify::run(&VerifyArgs { files: files.all, rewind: None, against: None }, json)? != Verdict::Ok {
+    if verify::run(&VerifyArgs { files: files.all, rewind: None, against: None, jobs: None }, json)? != Verdict::Ok {
         return Ok(Verdict::CheckFailed);
     }
     eprintln!("3/4 drawing the corner cases again through both checkpoints");
@@ -55,7 +63,7 @@ pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
     }
     eprintln!("4/4 writing the report");
     let path = args.out.join("report.html");
-    output::write_file(&path, report::render(&files.cases, &both, SIZE)?.as_bytes())?;
+    output::write_file(&path, report::render(&files.cases, &both, None)?.html.as_bytes())?;
     let path = fs::canonicalize(&path).with_context(|| path.display().to_string())?;
     let summary = Summary {
         report: path.display().to_string(),
@@ -85,7 +93,7 @@ fn campaign_options(args: &DemoArgs, checkpoint: CheckpointChoice, out: &Path) -
 fn rerender_args(args: &DemoArgs, cases: &[PathBuf], checkpoint: &[CheckpointChoice]) -> anyhow::Result<RerenderArgs> {
     let out = args.out.join("rerendered");
     let (last, fps) = (CLIP_TICKS, CLIP_FPS);
-    Ok(RerenderArgs { files: cases.to_vec(), checkpoint: checkpoint.to_vec(), last, fps, size: SIZE, jobs: None, out })
+    Ok(RerenderArgs { files: cases.to_vec(), checkpoint: checkpoint.to_vec(), last, fps, size: None, jobs: None, out })
 }
 
 /// The files of a campaign.

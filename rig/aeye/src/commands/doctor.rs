@@ -5,6 +5,7 @@ use std::fmt::Write;
 use base::clock::seconds_of;
 use base::failure::{Usage, sentence};
 use base::maps::Map;
+use base::output::Typed;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{TickInput, World};
@@ -24,9 +25,13 @@ const FRAMES: u32 = 20;
 /// What this machine has.
 #[derive(Debug, Serialize)]
 struct Findings {
+    /// Cores of the processor.
     cores: usize,
+    /// Graphics adapters.
     adapters: Vec<Adapter>,
+    /// Wheels and gamepads.
     devices: Vec<String>,
+    /// Measured times.
     budgets: Vec<Budget>,
     /// How well drives in windows keep real time, where there is a display.
     live: Option<LiveFigures>,
@@ -38,19 +43,30 @@ struct Findings {
     notes: Vec<String>,
 }
 
+/// What `aeye doctor` prints.
+impl Typed for Findings {
+    const TYPE: &'static str = "aeye.doctor";
+}
+
 /// A graphics adapter.
 #[derive(Debug, Serialize)]
 struct Adapter {
+    /// Its name.
     name: String,
+    /// The graphics interface.
     backend: String,
+    /// Its driver.
     driver: String,
+    /// Whether it computes on the CPU.
     is_cpu: bool,
 }
 
 /// A measured time.
 #[derive(Debug, Serialize)]
 struct Budget {
+    /// What was measured.
     what: String,
+    /// How long it took, ms.
     ms: f64,
     /// How many of it fit into the time that a live drive gives it.
     times_real_time: f64,

@@ -7,7 +7,9 @@ use anyhow::{Context, bail};
 use base::clock::EverySecond;
 use base::failure::Usage;
 use base::library;
+use base::library::case_path;
 use base::maps::{Map, read_scenario};
+use base::output::Typed;
 use base::progress::Interrupt;
 use drivers::simulate;
 use drivers::vision::Vision;
@@ -16,6 +18,7 @@ use measures::RunFigures;
 use perception::Compute;
 use render::{RenderOptions, Renderer};
 use replay::Recording;
+use serde::Serialize;
 use study::{Lineup, Study};
 use viewers::server::Publisher;
 
@@ -34,6 +37,11 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
             "--headless shows no pictures; expected none of --image-size, --mask-size, --inference and --screens";
         return Err(Usage(said.into()).into());
     }
+    if args.study.blind.len() == 1 {
+        return Err(
+            Usage("--blind draws one of several; expected two or more checkpoints, as in early,full".into()).into()
+        );
+    }
     if library::is_case_name(&args.record) {
         return Err(
             Usage(format!("{}: is named as a corner case; expected another name", args.record.display())).into()
@@ -51,6 +59,10 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
     rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
     rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
+    if args.print_scenario {
+        print!("{}", scenario.to_toml());
+        return Ok(Verdict::Ok);
+    }
     if args.headless {
         headless(args, &scenario, &map, json)?;
     } else {
@@ -59,9 +71,29 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     Ok(Verdict::Ok)
 }
 
+/// What is printed of a run.
+#[derive(Serialize)]
+struct Driven<'a> {
+    /// The recording.
+    recording: String,
+    /// The corner case beside it; none of drives without one, and without windows.
+    case: Option<String>,
+    /// What it came to.
+    #[serde(flatten)]
+    figures: &'a RunFigures,
+}
+
+/// A line of `aeye drive`, of a run.
+impl Typed for Driven<'_> {
+    const TYPE: &'static str = "aeye.drive";
+}
+
 /// Prints what a recording at a path holds.
 fn tell(path: &Path, figures: &RunFigures, json: bool) -> anyhow::Result<()> {
-    print(json, figures, || format!("{}: {figures}", path.display()))
+    let case = case_path(path);
+    let case = case.is_file().then(|| case.display().to_string());
+    let driven = Driven { recording: path.display().to_string(), case, figures };
+    print(json, &driven, || format!("{}: {figures}", path.display()))
 }
 
 fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<()> {

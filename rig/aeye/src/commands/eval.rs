@@ -8,10 +8,10 @@ use crate::print;
 
 /// Runs `aeye eval`.
 pub fn run(args: &EvalArgs, json: bool) -> anyhow::Result<Verdict> {
-    let EvalArgs { checkpoint, dataset, split, save_predictions } = args;
-    let evaluation = match save_predictions {
-        Some(folder) => evaluate_and_keep(checkpoint, dataset, split, folder)?,
-        None => evaluate(checkpoint, dataset, split)?,
+    let EvalArgs { checkpoint, dataset, split, jobs, out } = args;
+    let evaluation = match out {
+        Some(folder) => evaluate_and_keep(checkpoint, dataset, split, folder, *jobs)?,
+        None => evaluate(checkpoint, dataset, split, *jobs)?,
     };
     print::result(json, &Summary::new(&evaluation, dataset, split))?;
     Ok(Verdict::Ok)

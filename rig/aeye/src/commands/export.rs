@@ -1,5 +1,6 @@
 //! Recordings and cases as files for viewers of robot logs.
 
+use base::failure::Failed;
 use base::progress::Interrupt;
 use lab::export::{Options, export};
 
@@ -9,8 +10,10 @@ use crate::print;
 
 /// Runs `aeye export`.
 pub fn run(args: &ExportArgs, json: bool) -> anyhow::Result<Verdict> {
-    let ExportArgs { files, checkpoint, last, from, to, fps, size, out } = args.clone();
-    let options = Options { files, checkpoint, last, from, to, fps, size, out };
-    print::result(json, &export(&options, &Interrupt::listen()?)?)?;
+    let ExportArgs { files, checkpoint, last, from, to, fps, size, jobs, out } = args.clone();
+    let options = Options { files, checkpoint, last, from, to, fps, size, jobs, out };
+    let summary = export(&options, &Interrupt::listen()?)?;
+    print::result(json, &summary)?;
+    Failed::check(&summary.failed, summary.exports.len())?;
     Ok(Verdict::Ok)
 }

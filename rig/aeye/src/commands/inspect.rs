@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
-use base::library;
+use base::failure::{Failed, Failure};
+use base::library::{self, Found, Kind};
+use base::output::Typed;
+use base::spread::{in_order, jobs};
 use base::words;
 use kernel::time::{TICK_HZ, Tick};
 use measures::{Criticality, Measures, RunFigures, Tally, human};
@@ -19,58 +22,98 @@ use crate::print::print;
 /// What is printed for a file.
 #[derive(Debug, Serialize)]
 struct Contents {
+    /// The file.
     file: String,
+    /// `recording` or `case`.
     kind: &'static str,
+    /// Size of the file, bytes.
     bytes: u64,
+    /// Version of the kernel that made it.
     kernel: String,
+    /// Whether its writer came to its end.
     finished: bool,
+    /// Whether the drivers did not know the checkpoint.
     blind: bool,
+    /// The first tick.
     first_tick: Tick,
+    /// The last tick.
     last_tick: Tick,
+    /// Number of keyframes.
     keyframes: usize,
+    /// Number of masks that were shown.
     masks: usize,
     #[serde(flatten)]
     figures: RunFigures,
+    /// Digest of the map, hexadecimal.
     map_digest: String,
+    /// Whether the file holds its map.
     embedded_map: bool,
+    /// How it came about, by name.
     provenance: BTreeMap<String, String>,
+    /// What the drivers answered.
     questionnaire: Questionnaire,
+    /// The intervention, if there was one.
     intervention: Option<Takeover>,
+    /// The window, of a corner case.
     window: Option<Window>,
+    /// What happened in the world.
     events: Vec<EventLine>,
+    /// What happened to the rig.
     notes: Vec<NoteLine>,
+    /// How the drivers did.
     measures: Option<Measures>,
     /// Why there are no measures.
     unmeasured: Option<String>,
     /// Of a corner case.
     criticality: Option<Criticality>,
+    /// What the run started from, as TOML.
     scenario: String,
+}
+
+/// A line of `aeye inspect`, of a file.
+impl Typed for Contents {
+    const TYPE: &'static str = "aeye.inspect";
 }
 
 /// What is printed after several files.
 #[derive(Serialize)]
 struct Overall {
+    /// `overall`.
     kind: &'static str,
+    /// Files that it is about.
     files: usize,
     #[serde(flatten)]
     tally: Tally,
 }
 
+/// The last line of `aeye inspect` of several files.
+impl Typed for Overall {
+    const TYPE: &'static str = "aeye.inspect.overall";
+}
+
 /// The intervention.
 #[derive(Debug, Serialize)]
 struct Takeover {
+    /// When.
     tick: Tick,
+    /// Whether the brake was beyond its threshold.
     by_brake: bool,
+    /// Whether the steering was beyond its threshold.
     by_steering: bool,
+    /// Speed of the ego car, m/s.
     speed_mps: f32,
 }
 
 /// The window of a corner case.
 #[derive(Debug, Serialize)]
 struct Window {
+    /// The first tick.
     from: Tick,
+    /// The last tick.
     to: Tick,
+    /// Scenes that the case holds.
     scenes: usize,
+    /// BLAKE3 of the recording that it was cut from.
     source: String,
 }
 
@@ -79,17 +122,24 @@ struct Window {
 struct EventLine {
     #[serde(skip)]
     words: String,
+    /// When.
     tick: Tick,
+    /// What.
     kind: String,
+    /// Number of the other road user, if there is one.
     actor: u32,
+    /// Speed of the ego car, m/s.
     speed_mps: f32,
 }
 
 /// Something that happened to the rig.
 #[derive(Debug, Serialize)]
 struct NoteLine {
+    /// When.
     tick: Tick,
+    /// What.
     kind: &'static str,
+    /// Whose unit: `semantic` or `safety`.
     seat: String,
 }
 
@@ -102,22 +152,41 @@ impl NoteLine {
 /// Runs `aeye inspect`.
 pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
     let (mut seen, mut verdict) = (Vec::new(), Verdict::Ok);
-    for file in &library::recordings(&args.files)? {
-        let recording = Recording::open(file)?;
-        let measured = measure(&recording);
-        if matches!(measured, Err(replay::Error::Diverged(_))) {
-            verdict = Verdict::CheckFailed;
-        }
-        let contents = read(file, &recording, measured, args.reveal)?;
-        print(json, &contents, || text(&contents))?;
-        seen.push((recording, contents.measures));
-    }
+    let Found { files, mut failed } = library::list(&args.files, Kind::All);
+    in_order(
+        jobs(args.jobs),
+        files.len(),
+        |index| look(&files[index].path, args.reveal),
+        |index, looked| {
+            match looked {
+                Ok((recording, contents, diverged)) => {
+                    if diverged {
+                        verdict = Verdict::CheckFailed;
+                    }
+                    print(json, &contents, || text(&contents))?;
+                    seen.push((recording, contents.measures));
+                }
+                Err(error) => failed.push(Failure::new(&files[index].path, &error)),
+            }
+            Ok(())
+        },
+    )?;
     if seen.len() > 1 {
         let tally = Tally::of(seen.iter().map(|(recording, measures)| (recording, measures.as_ref())));
         let overall = Overall { kind: "overall", files: seen.len(), tally };
         print(json, &overall, || paragraph(overall.tally.lines()))?;
     }
+    Failed::check(&failed, seen.len())?;
     Ok(verdict)
+}
+
+/// A file, what is printed for it, and whether its replay is not the run that was recorded.
+fn look(file: &Path, reveal: bool) -> anyhow::Result<(Recording, Contents, bool)> {
+    let recording = Recording::open(file)?;
+    let measured = measure(&recording);
+    let diverged = matches!(measured, Err(replay::Error::Diverged(_)));
+    let contents = read(file, &recording, measured, reveal)?;
+    Ok((recording, contents, diverged))
 }
 
 /// The measures of a recording, or why there are none.

@@ -17,6 +17,7 @@ pub mod questionnaire;
 pub mod redrive;
 pub mod report;
 pub mod rerender;
+pub mod shell;
 pub mod statistics;
 pub mod train;
 pub mod verify;

@@ -2,6 +2,7 @@
 
 use anyhow::bail;
 use base::output;
+use base::output::Typed;
 use replay::Recording;
 use serde::Serialize;
 use study::{self, Questionnaire, attached};
@@ -13,8 +14,15 @@ use crate::print::print;
 /// What is printed for a recording.
 #[derive(Serialize)]
 struct Attached {
+    /// The recording.
     recording: String,
+    /// The file of the answers.
     answers: String,
+}
+
+/// A line of `aeye questionnaire`, of a recording.
+impl Typed for Attached {
+    const TYPE: &'static str = "aeye.questionnaire";
 }
 
 /// Answers are of a seat: in all of the recordings the same people must have sat there.

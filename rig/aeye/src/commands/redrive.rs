@@ -1,5 +1,7 @@
 //! Corner cases driven on from before the intervention.
 
+use base::failure::Failed;
+use base::progress::Interrupt;
 use lab::redrive::{Options, redrive};
 
 use crate::cli::RedriveArgs;
@@ -8,8 +10,11 @@ use crate::print;
 
 /// Runs `aeye redrive`.
 pub fn run(args: &RedriveArgs, json: bool) -> anyhow::Result<Verdict> {
-    let RedriveArgs { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, out } = args.clone();
-    let options = Options { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, out };
-    print::result(json, &redrive(&options)?)?;
+    let RedriveArgs { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, jobs, out } =
+        args.clone();
+    let options = Options { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, jobs, out };
+    let summary = redrive(&options, &Interrupt::listen()?)?;
+    print::result(json, &summary)?;
+    Failed::check(&summary.failed, summary.files)?;
     Ok(Verdict::Ok)
 }

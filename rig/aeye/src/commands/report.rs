@@ -1,7 +1,9 @@
 //! One self-contained page about corner cases.
 
-use base::{library, output};
-use lab::report;
+use base::failure::{Failed, Failure};
+use base::output;
+use base::output::Typed;
+use lab::report::{self, Report};
 use serde::Serialize;
 
 use crate::cli::ReportArgs;
@@ -11,18 +13,28 @@ use crate::print::print;
 /// What the command prints.
 #[derive(Serialize)]
 struct Summary {
+    /// The page.
     report: String,
+    /// Corner cases on it.
     cases: usize,
+    /// Its size, bytes.
     bytes: usize,
+    /// Files that were left out, and why.
+    failed: Vec<Failure>,
+}
+
+/// What `aeye report` prints.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.report";
 }
 
 /// Runs `aeye report`.
 pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
     output::check_file(&args.out)?;
-    let files = library::cases(&args.files)?;
-    let html = report::render(&files, &args.checkpoint, args.size)?;
+    let Report { html, cases, failed } = report::render(&args.files, &args.checkpoint, args.size)?;
     output::write_file(&args.out, html.as_bytes())?;
-    let summary = Summary { report: args.out.display().to_string(), cases: files.len(), bytes: html.len() };
+    let summary = Summary { report: args.out.display().to_string(), cases, bytes: html.len(), failed };
     print(json, &summary, || summary.report.clone())?;
+    Failed::check(&summary.failed, cases)?;
     Ok(Verdict::Ok)
 }

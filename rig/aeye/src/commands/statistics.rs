@@ -1,24 +1,19 @@
 //! Statistics of recordings, checkpoint by checkpoint.
 
-use measures::statistics::{CheckpointStatistics, of_recordings, table};
-use serde::Serialize;
+use base::failure::Failed;
+use measures::statistics::{Choice, of_recordings, table};
 
 use crate::cli::StatisticsArgs;
 use crate::exit::Verdict;
 use crate::print::print;
 
-/// What the command prints.
-#[derive(Serialize)]
-struct Summary {
-    checkpoints: Vec<CheckpointStatistics>,
-}
-
 /// Runs `aeye statistics`.
 pub fn run(args: &StatisticsArgs, json: bool) -> anyhow::Result<Verdict> {
-    let checkpoints = of_recordings(&args.files, args.reference.as_deref(), args.reveal)?;
-    let summary = Summary { checkpoints };
+    let StatisticsArgs { files, reference, reveal, jobs } = args;
+    let summary = of_recordings(files, Choice { reference: reference.as_deref(), reveal: *reveal, jobs: *jobs })?;
     print(json, &summary, || {
         table(summary.checkpoints.iter().map(|c| (c.checkpoint.as_str(), &c.statistics, c.against_reference.as_ref())))
     })?;
+    Failed::check(&summary.failed, summary.checkpoints.iter().map(|c| c.statistics.rides).sum())?;
     Ok(Verdict::Ok)
 }

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use base::failure::sentence;
-use base::library;
+use base::failure::{Failed, Failure};
+use base::library::{self, Found, Kind};
+use base::output::Typed;
 use base::progress;
+use base::spread::{in_order, jobs};
 use replay::{Divergence, Error, Recording, Report};
 use serde::Serialize;
 
@@ -15,15 +17,19 @@ use crate::print::print;
 /// What is printed for a file.
 #[derive(Debug, Serialize)]
 struct Checked {
+    /// The file.
     file: String,
     /// Ticks simulated and compared.
     ticks: u64,
+    /// Whether every tick is identical.
     ok: bool,
     /// Whether the writer came to its end; if not, up to a second is missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     finished: Option<bool>,
+    /// Keyframes compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     keyframes: Option<usize>,
+    /// Where it first differs.
     #[serde(skip_serializing_if = "Option::is_none")]
     divergence: Option<Where>,
     /// Why the file cannot be checked.
@@ -31,15 +37,27 @@ struct Checked {
     error: Option<String>,
 }
 
+/// A line of `aeye verify`, of a file.
+impl Typed for Checked {
+    const TYPE: &'static str = "aeye.verify";
+}
+
 /// Where a replay first differs.
 #[derive(Debug, Serialize)]
 struct Where {
+    /// The first tick that differs.
     tick: u64,
+    /// Part of the state.
     part: String,
+    /// Number of the road user.
     actor: Option<u32>,
+    /// Field of the part.
     field: String,
+    /// What was recorded.
     expected: String,
+    /// What the replay gave.
     got: String,
+    /// Tick at which that was read.
     seen_at: u64,
 }
 
@@ -59,33 +77,34 @@ impl From<Divergence> for Where {
 
 /// Runs `aeye verify`.
 pub fn run(args: &VerifyArgs, json: bool) -> anyhow::Result<Verdict> {
-    let files = library::recordings(&args.files)?;
+    let Found { files, mut failed } = library::list(&args.files, Kind::All);
     let bar = progress::bar("verify", files.len() as u64);
-    let (mut diverged, mut failures) = (false, Vec::new());
-    for file in &files {
-        let checked = match check(file, args) {
-            Ok(checked) => checked,
-            Err(error) => {
-                let error = sentence(&error);
-                failures.push(error.clone());
-                failed(file, error)
-            }
-        };
-        diverged |= checked.divergence.is_some();
-        bar.suspend(|| print(json, &checked, || text(&checked)))?;
-        bar.inc(1);
-    }
+    let (mut diverged, mut well) = (false, 0);
+    let show = |checked: &Checked| bar.suspend(|| print(json, checked, || text(checked)));
+    failed.iter().try_for_each(|failure| show(&unchecked(failure)))?;
+    in_order(
+        jobs(args.jobs),
+        files.len(),
+        |index| check(&files[index].path, args),
+        |index, checked| {
+            let checked = checked.unwrap_or_else(|error| {
+                let failure = Failure::new(&files[index].path, &error);
+                failed.push(failure.clone());
+                unchecked(&failure)
+            });
+            diverged |= checked.divergence.is_some();
+            well += usize::from(checked.error.is_none());
+            bar.inc(1);
+            show(&checked)
+        },
+    )?;
     bar.finish_and_clear();
-    match failures.len() {
-        0 if diverged => Ok(Verdict::CheckFailed),
-        0 => Ok(Verdict::Ok),
-        1 => anyhow::bail!("{}", failures[0]),
-        n => anyhow::bail!("{n} of {} files cannot be checked; the first: {}", files.len(), failures[0]),
-    }
+    Failed::check(&failed, well)?;
+    Ok(Verdict::of_check(!diverged))
 }
 
-fn failed(file: &Path, error: String) -> Checked {
-    let file = file.display().to_string();
+fn unchecked(failure: &Failure) -> Checked {
+    let Failure { file, error, .. } = failure.clone();
     Checked { file, ticks: 0, ok: false, finished: None, keyframes: None, divergence: None, error: Some(error) }
 }
 

@@ -69,15 +69,15 @@ fn check(folder: &Path, file: &str) {
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_blind_headless_drive_tells_nothing() {
     let dir = folder();
-    let drive = "drive --headless --map rural --seconds 4 --record run.mcap --semantic-name P07 --blind";
-    let text = said(&aeye(dir.path(), drive).args(CANDIDATES).output().expect("aeye runs"));
+    let drive = "drive --headless --map rural --max-time 4s --record run.mcap --semantic-name P07 --blind";
+    let text = said(&aeye(dir.path(), drive).arg(CANDIDATES.join(",")).output().expect("aeye runs"));
     assert!(!tells(&text), "{text}");
     assert_eq!(made(dir.path()), ["run.mcap"]);
     check(dir.path(), "run.mcap");
     // Which one it was follows from the seed.
     let checkpoint = |seed: u32| {
         let drive = drive.replace("run.mcap", &format!("{seed}.mcap"));
-        let output = aeye(dir.path(), &drive).args(CANDIDATES).args(["--seed", &seed.to_string()]).output();
+        let output = aeye(dir.path(), &drive).arg(CANDIDATES.join(",")).args(["--seed", &seed.to_string()]).output();
         said(&output.expect("aeye runs"));
         let recording = Recording::open(&dir.path().join(format!("{seed}.mcap"))).expect("a recording");
         recording.log().manifest.provenance["checkpoint"].clone()
@@ -95,7 +95,7 @@ fn a_blind_live_drive_for_familiarisation_tells_nothing_and_leaves_no_case() {
                  --semantic-name P07 --safety-name P03 --blind";
     let mut command = aeye(dir.path(), drive);
     command
-        .args(CANDIDATES)
+        .arg(CANDIDATES.join(","))
         .env("DISPLAY", display.name())
         .env("XDG_CONFIG_HOME", display.folder())
         .env_remove("WAYLAND_DISPLAY");

@@ -36,7 +36,7 @@ fn drive(folder: &Path) -> PathBuf {
     let bytes = BYTES.get_or_init(|| {
         let arguments = ["drive", "--headless", "--map", "city", "--checkpoint", "early", "--seed", "3"];
         let length = (LAST / 60).to_string();
-        let (code, _, said) = aeye(&[&arguments[..], &["--seconds", &length, "--record"]].concat(), &path);
+        let (code, _, said) = aeye(&[&arguments[..], &["--max-time", &length, "--record"]].concat(), &path);
         assert_eq!(code, Some(0), "{said}");
         fs::read(&path).expect("a recording")
     });

@@ -14,21 +14,35 @@ pub use pending::{PendingFile, PendingFolder};
 /// Version of everything that `--json` prints; raised when a field changes its meaning or goes.
 pub const JSON_VERSION: u32 = 2;
 
+/// What is written as JSON, under a name that stays. docs/json.md lists all of them.
+pub trait Typed: Serialize {
+    /// `aeye.` and the command, with what more tells it from others.
+    const TYPE: &'static str;
+}
+
+/// Every JSON begins with what it is.
 #[derive(Serialize)]
-struct Versioned<'a, T> {
+struct Envelope<'a, T> {
+    r#type: &'static str,
     version: u32,
     #[serde(flatten)]
     value: &'a T,
 }
 
-/// One line of JSON with its `version`.
-pub fn json_line<T: Serialize>(value: &T) -> anyhow::Result<String> {
-    Ok(serde_json::to_string(&Versioned { version: JSON_VERSION, value })?)
+impl<'a, T: Typed> Envelope<'a, T> {
+    fn of(value: &'a T) -> Self {
+        Self { r#type: T::TYPE, version: JSON_VERSION, value }
+    }
 }
 
-/// Indented JSON with its `version`, for files.
-pub fn json_file<T: Serialize>(value: &T) -> anyhow::Result<String> {
-    let mut text = serde_json::to_string_pretty(&Versioned { version: JSON_VERSION, value })?;
+/// One line of JSON with its `type` and `version`.
+pub fn json_line<T: Typed>(value: &T) -> anyhow::Result<String> {
+    Ok(serde_json::to_string(&Envelope::of(value))?)
+}
+
+/// Indented JSON with its `type` and `version`, for files.
+pub fn json_file<T: Typed>(value: &T) -> anyhow::Result<String> {
+    let mut text = serde_json::to_string_pretty(&Envelope::of(value))?;
     text.push('\n');
     Ok(text)
 }
@@ -143,11 +157,15 @@ mod tests {
     }
 
     #[test]
-    fn json_carries_its_version() {
+    fn json_says_what_it_is() {
         #[derive(Serialize)]
         struct Ticks {
             ticks: u64,
         }
-        assert_eq!(json_line(&Ticks { ticks: 3 }).expect("serialises"), r#"{"version":2,"ticks":3}"#);
+        impl Typed for Ticks {
+            const TYPE: &'static str = "aeye.ticks";
+        }
+        let line = json_line(&Ticks { ticks: 3 }).expect("serialises");
+        assert_eq!(line, r#"{"type":"aeye.ticks","version":2,"ticks":3}"#);
     }
 }

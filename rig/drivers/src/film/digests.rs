@@ -1,5 +1,6 @@
 //! Makes every mask of a log again and compares its digest with the one that was logged.
 
+use base::output::Typed;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -39,6 +40,11 @@ pub struct Digests {
     /// Masks of frames from before the file's first tick.
     before_start: usize,
     first_difference: Option<Difference>,
+}
+
+/// What `aeye view --digests` prints.
+impl Typed for Digests {
+    const TYPE: &'static str = "aeye.view.digests";
 }
 
 /// A mask that is not the logged one.

@@ -61,7 +61,8 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
     Ok(figures)
 }
 
-fn plan(options: &Options) -> anyhow::Result<Plan> {
+/// What the options come to.
+pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let scenario = options.scenario.as_deref().map(read_scenario).transpose()?;
     let maps = match &scenario {
         Some((_, map)) if options.maps.is_empty() => vec![map.clone()],

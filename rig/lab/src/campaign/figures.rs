@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use base::output::Typed;
 use measures::run_figures::RunFigures;
 use measures::statistics::{Comparison, Ride, Statistics};
 use replay::{Label, Recording};
@@ -76,6 +77,11 @@ pub struct CampaignFigures {
     pub checkpoints: Vec<CheckpointFigures>,
     /// The runs, in order.
     pub runs: Vec<RunLine>,
+}
+
+/// `campaign.json`, and what `aeye campaign` prints.
+impl Typed for CampaignFigures {
+    const TYPE: &'static str = "aeye.campaign";
 }
 
 /// The figures of a campaign's runs.

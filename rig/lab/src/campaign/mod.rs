@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use kernel::Scenario;
 use kernel::rng::{self, Stream};
 
-pub use drive::{Options, drive};
+pub use drive::{Options, drive, plan};
 pub use figures::{CampaignFigures, RunLine, figures};
 pub use workers::drive_all;
 

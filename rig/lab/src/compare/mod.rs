@@ -29,9 +29,9 @@ use self::metrics::CaseSums;
 use self::summary::Speed;
 pub use self::summary::{Compared, Summary};
 use super::looks::open_eyes;
-use super::pipeline::{Crew, Studios};
+use super::pipeline::{Crew, Studios, set_aside};
 use super::store::{Settings, Store};
-use base::failure::Usage;
+use base::failure::{Failed, Usage};
 use base::library;
 use base::output;
 use base::progress::{self, Interrupt};
@@ -54,8 +54,8 @@ pub struct Options {
     /// A checkpoint than which no other may be worse: of no metric may the paired 95 % interval of the
     /// difference lie below 0 as a whole.
     pub no_worse_than: Option<String>,
-    /// Size of the pictures.
-    pub size: (u32, u32),
+    /// Size of the pictures; none: that which the first network takes.
+    pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what follows from the same cases,
@@ -67,20 +67,25 @@ pub struct Options {
 pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "compare")?;
-    let cases = library::find(&args.files)?;
-    library::check_cases(&cases)?;
-    let eyes = open_eyes(&args.checkpoint, args.size)?;
+    let library::Found { files: mut cases, mut failed } = library::find_cases(&args.files).or_failed()?;
+    let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
     let reference = reference(args, &eyes)?;
-    let settings = Settings::new(CLIP_TICKS, CLIP_FPS, args.size);
+    let settings = Settings::new(CLIP_TICKS, CLIP_FPS, size);
     let bar = progress::bar("frames", 0);
-    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings, bar: &bar };
+    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings: settings.clone(), bar: &bar };
     let left = work.left();
     bar.set_length(left.len() as u64 * u64::from(CLIP_FRAMES));
-    let (size, jobs, studios) = (args.size, jobs(args.jobs), Studios::default());
+    let (jobs, studios) = (jobs(args.jobs), Studios::default());
     let crew = Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
     let alone = crew.alone()?;
-    let pace = crew.run()?;
+    let (pace, unread) = crew.run()?;
+    let studios = crew.studios;
     bar.finish_and_clear();
+    failed.extend(set_aside(&mut cases, unread));
+    if cases.is_empty() {
+        return Err(Failed::new(failed).into());
+    }
+    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings, bar: &bar };
     let Some(looked) = work.all() else {
         bail!("{}: interrupted; the same command goes on from there", args.out.display());
     };
@@ -91,11 +96,12 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
         }
     }
     let sums = sums(&looked, eyes.len());
-    let mut summary = Summary::new(args.size, &cases, &eyes, &looked, &sums);
+    let mut summary = Summary::new(size, &cases, &eyes, &looked, &sums);
+    summary.failed = failed;
     summary.gates = passages(args, &eyes, &sums, reference);
     let differing = differing::most(&looked);
     let render = |studio: &mut _| page::render(&summary, &cases, (&mut eyes.clone(), studio), &differing, interrupt);
-    let page = crew.studios.with(size, render)?;
+    let page = studios.with(size, render)?;
     output::write_file(&args.out.join("report.html"), page.as_bytes())?;
     output::write_file(&args.out.join("compare.json"), output::json_file(&summary)?.as_bytes())?;
     Ok(Compared { summary, speed: Speed::of(pace, alone, eyes.len()) })

@@ -1,6 +1,8 @@
 //! What `compare.json` holds and the command prints.
 
+use base::failure::Failure;
 use base::library::Entry;
+use base::output::Typed;
 use drivers::vision::{self, Eye};
 use kernel::time::Tick;
 use perception::ConfusionMatrix;
@@ -28,12 +30,21 @@ pub struct Summary {
     pub cases: Vec<CaseLine>,
     /// The conditions that were asked for.
     pub gates: Vec<Passage>,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
+}
+
+/// `compare.json`, which holds no `speed`.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.compare";
 }
 
 /// A checkpoint over all cases.
 #[derive(Serialize)]
 pub struct CheckpointLine {
+    /// Its name.
     pub name: String,
+    /// Its digest, hexadecimal.
     pub digest: String,
     /// Share of the pixels of people on the path that are predicted as pedestrian.
     pub ped_recall_on_path: Option<f64>,
@@ -43,6 +54,7 @@ pub struct CheckpointLine {
     pub first_sight_s: Option<f64>,
     #[serde(flatten)]
     pub figures: Figures,
+    /// Against the baseline; left out for itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_baseline: Option<Contest>,
 }
@@ -50,17 +62,22 @@ pub struct CheckpointLine {
 /// A case through all checkpoints.
 #[derive(Serialize)]
 pub struct CaseLine {
+    /// Name of the case.
     pub file: String,
+    /// BLAKE3 of the file.
     pub digest: String,
+    /// Frames that were looked at.
     pub frames: usize,
     /// Whom the intervention is about.
     pub hazard: Option<String>,
+    /// What each checkpoint made of it.
     pub checkpoints: Vec<LookLine>,
 }
 
 /// A case through one checkpoint.
 #[derive(Serialize)]
 pub struct LookLine {
+    /// Name of the checkpoint.
     pub name: String,
     /// Tick of the first frame in which the hazard is seen.
     pub first_seen_tick: Option<Tick>,
@@ -70,6 +87,7 @@ pub struct LookLine {
     pub gain_s: Option<f64>,
     /// Against the baseline; `None` for itself.
     pub verdict: Option<Verdict>,
+    /// As over all cases.
     pub ped_recall_on_path: Option<f64>,
     #[serde(flatten)]
     pub figures: Figures,
@@ -87,6 +105,7 @@ impl Summary {
             checkpoints: (0..eyes.len()).map(checkpoint).collect(),
             cases: cases.iter().enumerate().map(case).collect(),
             gates: Vec::new(),
+            failed: Vec::new(),
         }
     }
 }
@@ -179,6 +198,11 @@ pub struct Compared {
     pub summary: Summary,
     /// `None` where everything was there already.
     pub speed: Option<Speed>,
+}
+
+/// `compare.json`, and with `speed` what `aeye compare` prints.
+impl Typed for Compared {
+    const TYPE: &'static str = "aeye.compare";
 }
 
 impl Compared {

@@ -4,7 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use base::library::{self, Entry};
+use base::failure::Failed;
+use base::library::{self, Entry, Kind};
 use base::output::PendingFolder;
 use base::progress::{self, Interrupt};
 use drivers::vision;
@@ -49,10 +50,14 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     build(&CasesRecipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, interrupt)
 }
 
-/// The corner cases among files and folders, each once.
+/// The corner cases among files and folders, each once. One that cannot be read is an error: a dataset is whole.
 pub(super) fn cases_in(places: &[PathBuf]) -> anyhow::Result<Vec<(PathBuf, CaseUsed)>> {
     let read = |entry: Entry| Ok((entry.path.clone(), CaseUsed::read(&entry)?));
-    library::find(places)?.into_iter().map(read).collect()
+    let found = library::find(places, Kind::Cases);
+    if !found.failed.is_empty() {
+        return Err(Failed::new(found.failed).into());
+    }
+    found.files.into_iter().map(read).collect()
 }
 
 impl CaseUsed {

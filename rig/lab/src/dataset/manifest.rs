@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use base::output;
+use base::output::Typed;
 use perception::classes::TRAIN_CLASSES;
 use render::RENDERER_VERSION;
 use replay::KERNEL_VERSION;
@@ -44,6 +45,11 @@ pub struct Manifest {
     pub labels_digest: String,
     /// BLAKE3 over `frames.jsonl`.
     pub digest: String,
+}
+
+/// `dataset.json`, and what `aeye dataset natural` and `aeye dataset cases` print.
+impl Typed for Manifest {
+    const TYPE: &'static str = "aeye.dataset";
 }
 
 impl Manifest {

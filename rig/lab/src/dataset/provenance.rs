@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use base::output::{Typed, json_line};
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::time::Tick;
@@ -56,6 +57,11 @@ pub struct FrameLine {
     pub rgb_digest: String,
     /// BLAKE3 over label ids (a byte a pixel) and instance ids (two, low one first).
     pub labels_digest: String,
+}
+
+/// A line of `frames.jsonl`.
+impl Typed for FrameLine {
+    const TYPE: &'static str = "aeye.dataset.frame";
 }
 
 /// Weather as it is written.
@@ -158,7 +164,7 @@ fn class_pixels(tags: &[u8]) -> BTreeMap<String, u64> {
 
 /// Lines as they stand in the file.
 pub(super) fn text(lines: &[FrameLine]) -> anyhow::Result<String> {
-    lines.iter().map(|line| Ok(serde_json::to_string(line)? + "\n")).collect()
+    lines.iter().map(|line| Ok(json_line(line)? + "\n")).collect()
 }
 
 /// The lines of such a text.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use base::maps::Map;
 use base::output::PendingFolder;
+use base::output::Typed;
 use base::progress::Interrupt;
 use drivers::vision;
 use render::RENDERER_VERSION;
@@ -30,6 +31,11 @@ pub struct Rebuilt {
     pub same: bool,
     /// Whether all label and instance ids are.
     pub same_labels: bool,
+}
+
+/// What `aeye dataset rebuild` prints.
+impl Typed for Rebuilt {
+    const TYPE: &'static str = "aeye.dataset.rebuild";
 }
 
 impl Rebuilt {
@@ -152,6 +158,6 @@ impl Sources {
             return Ok(path.clone());
         }
         let CaseUsed { name, digest, .. } = used;
-        bail!("case {name} with digest {digest}: expected it among the files and folders after --cases")
+        bail!("case {name} with digest {digest}: expected it among the files and folders after the recipe")
     }
 }

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
+use base::output::Typed;
 use perception::ConfusionMatrix;
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use serde::Serialize;
@@ -66,19 +67,33 @@ impl Evaluation {
 /// An evaluation as it is printed.
 #[derive(Serialize)]
 pub struct Summary<'a> {
+    /// Its name.
     checkpoint: &'a str,
+    /// Its digest, hexadecimal.
     digest: &'a str,
+    /// The folder.
     dataset: String,
+    /// Which split.
     split: &'a str,
+    /// Number of scenes.
     scenes: usize,
+    /// Number of frames.
     frames: usize,
     #[serde(flatten)]
     figures: &'a Figures,
     /// Mean of the labelled pixels a scene and a frame, by class.
     pixels_per_scene: BTreeMap<&'static str, f64>,
+    /// The same a frame.
     pixels_per_frame: BTreeMap<&'static str, f64>,
+    /// How many people were seen.
     pedestrians: &'a Pedestrians,
+    /// Pixels by labelled and predicted class.
     confusion: Confusion<'a>,
+}
+
+/// What `aeye eval` prints.
+impl Typed for Summary<'_> {
+    const TYPE: &'static str = "aeye.eval";
 }
 
 impl<'a> Summary<'a> {
@@ -107,9 +122,14 @@ impl fmt::Display for Summary<'_> {
     }
 }
 
-/// Measures a checkpoint on a split, on all cores.
-pub fn evaluate(checkpoint: &CheckpointChoice, dataset: &Path, split: &str) -> anyhow::Result<Evaluation> {
-    look(checkpoint, dataset, split, None, jobs(None))
+/// Measures a checkpoint on a split with so many frames at the same time.
+pub fn evaluate(
+    checkpoint: &CheckpointChoice,
+    dataset: &Path,
+    split: &str,
+    asked: Option<u16>,
+) -> anyhow::Result<Evaluation> {
+    look(checkpoint, dataset, split, None, jobs(asked))
 }
 
 /// As [`evaluate`]; the masks go below a new folder.
@@ -118,9 +138,10 @@ pub fn evaluate_and_keep(
     dataset: &Path,
     split: &str,
     predictions: &Path,
+    asked: Option<u16>,
 ) -> anyhow::Result<Evaluation> {
     let folder = PendingFolder::new(predictions)?;
-    let evaluation = look(checkpoint, dataset, split, Some(folder.path()), jobs(None))?;
+    let evaluation = look(checkpoint, dataset, split, Some(folder.path()), jobs(asked))?;
     folder.finish()?;
     Ok(evaluation)
 }
@@ -278,7 +299,7 @@ mod tests {
     fn truth_is_perfect_and_ignored_pixels_stay_ignored() {
         let dir = tempfile::tempdir().expect("a folder");
         dataset(dir.path());
-        let all = evaluate(&CheckpointChoice::Truth, dir.path(), "val").expect("measured");
+        let all = evaluate(&CheckpointChoice::Truth, dir.path(), "val", None).expect("measured");
         assert_eq!((all.figures.miou, all.frames()), (Some(1.0), 4));
         assert_eq!(all.figures.pixels, 4 * 64 * 32 - 4 * 16 * 16, "a quarter of the upper half is Ground");
         assert_eq!(
@@ -313,7 +334,7 @@ mod tests {
         let dir = tempfile::tempdir().expect("a folder");
         dataset(dir.path());
         let said = |checkpoint: &CheckpointChoice, split: &str| {
-            let said = evaluate(checkpoint, dir.path(), split).expect_err("refused").to_string();
+            let said = evaluate(checkpoint, dir.path(), split, None).expect_err("refused").to_string();
             assert!(!said.contains('\n'), "{said}");
             said
         };

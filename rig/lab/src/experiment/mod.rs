@@ -30,6 +30,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
+use base::output::Typed;
 use render::AdapterChoice;
 use serde::Serialize;
 
@@ -41,6 +42,11 @@ use self::stages::Stages;
 use base::output;
 use base::progress::Interrupt;
 
+/// `tables.json` of `aeye experiment`.
+impl Typed for Tables {
+    const TYPE: &'static str = "aeye.experiment.tables";
+}
+
 /// What an experiment came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
@@ -49,6 +55,11 @@ pub struct Outcome {
     /// Its figures.
     #[serde(flatten)]
     pub tables: Tables,
+}
+
+/// What `aeye experiment` prints.
+impl Typed for Outcome {
+    const TYPE: &'static str = "aeye.experiment";
 }
 
 impl fmt::Display for Outcome {

@@ -45,7 +45,7 @@ pub fn shots(
     seen: &mut Seen,
 ) -> anyhow::Result<Vec<Shot>> {
     let choices: Vec<_> = checkpoints.iter().cloned().map(CheckpointChoice::File).collect();
-    let mut eyes = open_eyes(&choices, size)?;
+    let (mut eyes, _) = open_eyes(&choices, Some(size))?;
     let mut studio = Studio::new(size);
     let mut shots = Vec::new();
     for path in cases.iter().take(CASES) {

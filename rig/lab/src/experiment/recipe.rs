@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
+use base::output::Typed;
 use base::toml_text;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::CLIP_FRAMES;
@@ -31,6 +32,11 @@ pub struct Recipe {
     pub training: Training,
     /// The campaign that compares them.
     pub second_campaign: SecondCampaign,
+}
+
+/// What `aeye experiment --print-recipe` prints.
+impl Typed for Recipe {
+    const TYPE: &'static str = "aeye.experiment.recipe";
 }
 
 /// The initial data: scenes of one frame a second.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use base::failure::Failed;
 use base::output;
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
@@ -81,7 +82,9 @@ impl Stages<'_> {
         let second_campaign = self.second_campaign(&firsts)?;
         let folder = self.out.join(SECOND_CAMPAIGN);
         let recordings: Vec<PathBuf> = second_campaign.runs.iter().map(|run| folder.join(&run.file)).collect();
-        let table_2 = statistics::of_recordings(&recordings, None, false)?;
+        let of_all = statistics::of_recordings(&recordings, statistics::Choice::default())?;
+        Failed::check(&of_all.failed, recordings.len())?;
+        let table_2 = of_all.checkpoints;
         say(8, "writing tables and report");
         let tables = Tables { table_1, table_2 };
         let (networks, datasets) = (firsts, self.datasets()?);
@@ -268,7 +271,7 @@ impl Stages<'_> {
         if self.interrupt.is_raised() {
             bail!("interrupted; the same command goes on from there");
         }
-        let evaluation = eval::evaluate(&CheckpointChoice::File(network.to_owned()), dataset, TEST)?;
+        let evaluation = eval::evaluate(&CheckpointChoice::File(network.to_owned()), dataset, TEST, self.jobs)?;
         Ok(evaluation.scenes.into_iter().map(|scene| scene.matrix).collect())
     }
 

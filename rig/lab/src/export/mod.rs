@@ -14,15 +14,17 @@ mod sink;
 mod telemetry;
 mod topics;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
-use base::failure::Usage;
-use base::library;
+use anyhow::bail;
+use base::failure::{Failed, Failure, Usage};
+use base::library::{self, Found, Kind, Listed};
+use base::output::Typed;
 use base::output::{self, PendingFile};
 use base::progress::{self, Interrupt};
+use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 use kernel::time::{TICK_HZ, Tick};
@@ -30,7 +32,8 @@ use measures::footage::decisive_tick;
 use replay::{Exported, Log, Recording, exported};
 use serde::Serialize;
 
-use super::looks::{Studio, open_eyes};
+use super::looks::{Size, open_eyes};
+use super::pipeline::Studios;
 
 pub use film::Counts;
 use film::{Camera, Window};
@@ -43,6 +46,13 @@ pub struct Summary {
     pub layout: PathBuf,
     /// The files.
     pub exports: Vec<Export>,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
+}
+
+/// What `aeye export` prints.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.export";
 }
 
 /// A file that was written.
@@ -79,8 +89,10 @@ pub struct Options {
     pub to: Option<Tick>,
     /// Pictures a second; must divide 60. What is measured is exported at every tick.
     pub fps: u32,
-    /// Size of the pictures.
-    pub size: (u32, u32),
+    /// Size of the pictures; none: that which the first network takes.
+    pub size: Option<(u32, u32)>,
+    /// Files exported at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
     /// File of the export, with its layout for viewers beside it; or a folder, for several files.
     pub out: PathBuf,
 }
@@ -99,19 +111,36 @@ impl fmt::Display for Summary {
 
 /// Exports what is asked for; what is whole already is kept.
 pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
-    let Places { layout, files } = places(args)?;
-    let mut eyes = open_eyes(&args.checkpoint, args.size)?;
-    let mut studio = Studio::new(args.size);
-    let mut camera = Camera { studio: &mut studio, eyes: &mut eyes };
+    let Places { layout, files, mut failed } = places(args)?;
+    let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
+    let studios = Studios::default();
+    let bar = progress::bar("files", files.len() as u64);
+    let work = |index: usize| {
+        let (file, out) = &files[index];
+        studios.with(size, |studio| {
+            let mut camera = Camera { studio, eyes: &mut eyes.clone() };
+            let recording = Recording::open(file)?;
+            export_one((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
+        })
+    };
     let mut exports = Vec::new();
-    for (file, out) in files {
-        let recording = Recording::open(&file)?;
-        let export = export_one(args, (&file, &recording), out, &mut camera, interrupt);
-        exports.push(export.with_context(|| file.display().to_string())?);
+    in_order(jobs(args.jobs), files.len(), work, |index, export| {
+        let file = &files[index].0;
+        match export {
+            Ok(export) => exports.push(export),
+            Err(error) if interrupt.is_raised() => return Err(error.context(file.display().to_string())),
+            Err(error) => failed.push(Failure::new(file, &error)),
+        }
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    if exports.is_empty() {
+        return Err(Failed::new(failed).into());
     }
     let panels = layout::layout(eyes.iter().map(Eye::name));
     output::write_file(&layout, &serde_json::to_vec_pretty(&panels)?)?;
-    Ok(Summary { layout, exports })
+    Ok(Summary { layout, exports, failed })
 }
 
 /// Where everything goes.
@@ -119,11 +148,12 @@ struct Places {
     layout: PathBuf,
     /// What is exported, and to where.
     files: Vec<(PathBuf, PathBuf)>,
+    failed: Vec<Failure>,
 }
 
 /// One file goes to `OUT.mcap`, or into a folder as several do.
 fn places(args: &Options) -> anyhow::Result<Places> {
-    let given = library::cases(&args.files)?;
+    let Found { files: given, failed } = library::list(&args.files, Kind::Cases).or_failed()?;
     let is_file = args.out.extension().is_some_and(|ending| ending == "mcap") && !args.out.is_dir();
     if is_file && given.len() > 1 {
         let sentence = format!("{}: is one file; expected a folder for several", args.out.display());
@@ -131,25 +161,15 @@ fn places(args: &Options) -> anyhow::Result<Places> {
     }
     if is_file {
         output::check_file(&args.out)?;
-        let layout = args.out.with_extension("layout.json");
-        return Ok(Places { layout, files: given.into_iter().map(|file| (file, args.out.clone())).collect() });
     }
-    let mut names = BTreeSet::new();
-    let mut files = Vec::new();
-    for file in given {
-        let name = file.file_name().unwrap_or_default().to_owned();
-        let to = args.out.join(&name);
-        files.push((file, to));
-        if !names.insert(name.clone()) {
-            let name = name.to_string_lossy();
-            return Err(Usage(format!("two files are named {name}; expected names that differ")).into());
-        }
-    }
-    Ok(Places { layout: args.out.join("layout.json"), files })
+    let to = |file: &Listed| if is_file { args.out.clone() } else { args.out.join(format!("{}.mcap", file.name)) };
+    let layout = if is_file { args.out.with_extension("layout.json") } else { args.out.join("layout.json") };
+    let files = given.into_iter().map(|file| (file.path.clone(), to(&file))).collect();
+    Ok(Places { layout, files, failed })
 }
 
 fn export_one(
-    args: &Options,
+    (args, size): (&Options, Size),
     (file, recording): (&Path, &Recording),
     out: PathBuf,
     camera: &mut Camera<'_>,
@@ -162,24 +182,21 @@ fn export_one(
     let (log, network) = (recording.log(), recording.network()?);
     let window = window(log, args)?;
     output::create_folder(out.parent().unwrap_or(Path::new(".")))?;
-    let (about, counts) = (about(recording, &window, args, camera.eyes), Counts::of(log, &window));
+    let (about, counts) = (about(recording, &window, (args, size), camera.eyes), Counts::of(log, &window));
     let (from, to) = window.ticks.clone().into_inner();
     let kept = there == Some(Exported { about: about.clone(), is_whole: true });
     let export = Export { file: file.to_owned(), out, from, to, kept, counts };
     if kept {
         return Ok(export);
     }
-    let bar = progress::bar("frames", counts.frames as u64);
     let mut sink = Sink::new(PendingFile::new(&export.out)?, about)?;
     film::shoot((log, &network), &window, camera, &mut sink, || {
-        bar.inc(1);
         if interrupt.is_raised() {
             bail!("interrupted; nothing of its export is kept");
         }
         Ok(())
     })?;
     sink.finish()?.finish()?;
-    bar.finish_and_clear();
     Ok(export)
 }
 
@@ -200,13 +217,18 @@ fn window(log: &Log, args: &Options) -> anyhow::Result<Window> {
 }
 
 /// What the export was made from.
-fn about(recording: &Recording, window: &Window, args: &Options, eyes: &[Eye]) -> BTreeMap<String, String> {
+fn about(
+    recording: &Recording,
+    window: &Window,
+    (args, size): (&Options, Size),
+    eyes: &[Eye],
+) -> BTreeMap<String, String> {
     let eyes: Vec<String> = eyes.iter().map(|eye| format!("{} {}", eye.name(), eye.digest())).collect();
     let entries = [
         ("source", blake3::Hash::from_bytes(recording.digest()).to_hex().to_string()),
         ("ticks", format!("{} to {}", window.ticks.start(), window.ticks.end())),
         ("fps", args.fps.to_string()),
-        ("size", format!("{}x{}", args.size.0, args.size.1)),
+        ("size", format!("{}x{}", size.0, size.1)),
         ("checkpoints", eyes.join(", ")),
         ("adapter", drivers::vision::adapter()),
         ("program", env!("CARGO_PKG_VERSION").to_owned()),

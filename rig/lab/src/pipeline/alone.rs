@@ -30,13 +30,16 @@ type Drawn<'f, W> = (&'f Film<W>, Frame);
 
 impl<W: Work> Crew<'_, W> {
     /// Measures both stages on the first files, with the threads that they have in [`Crew::run`]; what they
-    /// find is dropped. `None` where too few files are left for it to be worth it.
+    /// find is dropped. `None` where too few files are left for it to be worth it, or none of the first is whole.
     pub fn alone(&self) -> anyhow::Result<Option<Alone>> {
         if self.files.len() < LEAST || self.interrupt.is_raised() {
             return Ok(None);
         }
-        let films = self.files.iter().take(SAMPLE).map(|index| Film::read(self.work, *index));
-        let films = films.collect::<anyhow::Result<Vec<_>>>()?;
+        let films = self.files.iter().take(SAMPLE).filter_map(|index| Film::read(self.work, *index).ok());
+        let films: Vec<_> = films.collect();
+        if films.is_empty() {
+            return Ok(None);
+        }
         let (drawn, draw_s) = self.draw_alone(&films)?;
         let look_s = self.look_alone(&drawn)?;
         let frames = drawn.len() as f64;

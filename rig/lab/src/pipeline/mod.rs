@@ -9,6 +9,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
 use base::clock::seconds_of;
+use base::failure::Failure;
+use base::library::Entry;
 use base::progress::Interrupt;
 use drivers::vision::Eye;
 use measures::footage::Footage;
@@ -31,7 +33,7 @@ pub trait Work: Sync {
     /// What is found out about a frame.
     type Seen: Send;
 
-    /// Replays a file.
+    /// Replays a file. An error is that file's alone: the others go on.
     fn read(&self, index: usize) -> anyhow::Result<(Footage, Self::Notes)>;
 
     /// Looks at a frame.
@@ -75,6 +77,15 @@ impl Pace {
     }
 }
 
+/// Takes the files that could not be read out of those that were given.
+pub fn set_aside(files: &mut Vec<Entry>, unread: Vec<Unread>) -> Vec<Failure> {
+    let failed = unread.iter().map(|(index, error)| Failure::new(&files[*index].path, error)).collect();
+    for (index, _) in unread.into_iter().rev() {
+        files.remove(index);
+    }
+    failed
+}
+
 /// The crew and its work.
 pub struct Crew<'a, W> {
     /// What is done.
@@ -115,7 +126,11 @@ struct Board<'a, W> {
     frames: AtomicUsize,
     has_failed: AtomicBool,
     failure: Mutex<Option<anyhow::Error>>,
+    unread: Mutex<Vec<Unread>>,
 }
+
+/// The number of a file that could not be read, and why.
+pub type Unread = (usize, anyhow::Error);
 
 impl<W: Work> Film<W> {
     fn read(work: &W, index: usize) -> anyhow::Result<Self> {
@@ -131,20 +146,24 @@ impl<W: Work> Crew<'_, W> {
         self.jobs.div_ceil(LOOKING_A_DRAWING).max(1)
     }
 
-    /// Does the work. After the first error nothing new is begun, and that error is returned.
-    pub fn run(&self) -> anyhow::Result<Pace> {
+    /// Does the work with every file that can be read, and gives those that cannot, by number. After the first
+    /// other error nothing new is begun, and that error is returned.
+    pub fn run(&self) -> anyhow::Result<(Pace, Vec<Unread>)> {
         let board = Board {
             crew: self,
             next: AtomicUsize::new(0),
             frames: AtomicUsize::new(0),
             has_failed: AtomicBool::new(false),
             failure: Mutex::new(None),
+            unread: Mutex::new(Vec::new()),
         };
         let ((), seconds) = seconds_of(|| board.run());
-        match lock(&board.failure).take() {
-            Some(error) => Err(error),
-            None => Ok(Pace { frames: board.frames.load(Ordering::Relaxed), seconds }),
+        if let Some(error) = lock(&board.failure).take() {
+            return Err(error);
         }
+        let mut unread = std::mem::take(&mut *lock(&board.unread));
+        unread.sort_by_key(|(index, _)| *index);
+        Ok((Pace { frames: board.frames.load(Ordering::Relaxed), seconds }, unread))
     }
 }
 
@@ -180,7 +199,13 @@ impl<W: Work> Board<'_, W> {
     }
 
     fn draw(&self, index: usize, studio: &mut Studio, shots: &SyncSender<Shot<W>>) -> anyhow::Result<()> {
-        let film = Arc::new(Film::read(self.crew.work, index)?);
+        let film = match Film::read(self.crew.work, index) {
+            Ok(film) => Arc::new(film),
+            Err(error) => {
+                lock(&self.unread).push((index, error));
+                return Ok(());
+            }
+        };
         for (number, scene) in film.footage.scenes.iter().enumerate() {
             if self.is_over() {
                 break;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use base::output;
+use base::output::Typed;
 use drivers::vision::Vision;
 use kernel::RoadNetwork;
 use kernel::time::{Tick, seconds};
@@ -41,6 +42,11 @@ pub struct Counterfactual {
     pub closest: Extremes,
     /// What it follows from.
     key: Key,
+}
+
+/// `NAME.counterfactual.json` of a campaign.
+impl Typed for Counterfactual {
+    const TYPE: &'static str = "aeye.counterfactual";
 }
 
 /// Everything that decides a counterfactual.

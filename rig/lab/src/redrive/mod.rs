@@ -1,7 +1,8 @@
 //! Counterfactuals: corner cases driven on from before the intervention.
 //!
 //! `OUT/NAME.fork.mcap` for each file (`NAME.fork-1.mcap` and so on for variations), recordings that verify as
-//! any other, and `OUT/redrive.jsonl`, a line for each.
+//! any other, and `OUT/redrive.jsonl`, a line for each. Forks that are there are found again through
+//! `OUT/.redrive`.
 
 mod counterfactual;
 mod fork;
@@ -10,26 +11,29 @@ mod verdict;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
+use base::output::Typed;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, Scenario};
-use render::{RenderOptions, Renderer};
-use replay::{Log, Recording};
-use serde::Serialize;
+use render::{AdapterChoice, RENDERER_VERSION, RenderOptions, Renderer};
+use replay::{KERNEL_VERSION, Log, Recording};
+use serde::{Deserialize, Serialize};
 
 pub use self::counterfactual::Counterfactual;
-use self::fork::{Fork, Harm, Otherwise, from_takeover, takeover};
+use self::fork::{Course, Fork, Harm, Otherwise, from_takeover, takeover};
 use self::verdict::Verdict;
-use base::failure::Usage;
-use base::library;
-use base::output::{PendingFolder, json_line};
-use base::progress;
+use super::store::Store;
+use base::failure::{Failed, Failure, Usage};
+use base::library::{self, Kind, Listed};
+use base::output::{self, json_line};
+use base::progress::{self, Interrupt};
+use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::recorded_eye::RecordedEye;
-use drivers::vision::{Eye, Vision};
+use drivers::vision::{self, Eye, Vision};
 use measures::criticality::{Extreme, Extremes};
 
 /// A variation lets the safety driver go so much earlier than the one before.
@@ -38,18 +42,23 @@ const VARIATION_TICKS: Tick = TICK_HZ as Tick / 10;
 const NEAR_MISS_S: f64 = 1.5;
 
 /// A fork, a line of `redrive.jsonl`.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Line {
+    /// The file.
     file: String,
     /// 0 is the case itself.
     variation: u16,
+    /// Its recording, in the folder of the results.
     recording: String,
     /// What the semantic bot looked through.
     checkpoint: String,
     /// Of the takeover, or of the collision that nobody prevented.
     intervention_tick: Tick,
+    /// First tick that may differ from the recorded run.
     fork_tick: Tick,
+    /// What it says about the intervention.
     verdict: Verdict,
+    /// The first thing that went wrong.
     harm: Option<Harm>,
     /// From the recorded intervention to the harm, seconds; negative before it.
     harm_after_s: Option<f64>,
@@ -65,15 +74,29 @@ pub struct Line {
     closest: Extremes,
 }
 
+/// A line of `redrive.jsonl`.
+impl Typed for Line {
+    const TYPE: &'static str = "aeye.redrive.fork";
+}
+
 /// What came of it.
 #[derive(Debug, Serialize)]
 pub struct Summary {
     /// Folder of the forks.
     pub out: String,
+    /// Files that were driven on.
+    pub files: usize,
     /// The forks.
     pub forks: Vec<Line>,
     /// How many forks came to each verdict.
     pub verdicts: BTreeMap<&'static str, usize>,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
+}
+
+/// What `aeye redrive` prints.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.redrive";
 }
 
 /// What is driven on, and how.
@@ -97,35 +120,74 @@ pub struct Options {
     /// safety drivers of other reaction times.
     pub vary: u16,
     /// How long after the intervention a fork goes on, seconds.
-    pub seconds: u16,
-    /// Folder of the forks' recordings and of `redrive.jsonl`; must not exist or be empty.
+    pub seconds: u32,
+    /// Files driven on at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
+    /// Folder of the forks' recordings and of `redrive.jsonl`. One that was begun is completed.
     pub out: PathBuf,
 }
 
-/// Drives every file on.
-pub fn redrive(args: &Options) -> anyhow::Result<Summary> {
-    let out = PendingFolder::new(&args.out)?;
-    let mut forks = Vec::new();
-    let files = library::cases(&args.files)?;
-    let bar = progress::bar("files", files.len() as u64);
-    for path in &files {
-        forks.extend(forks_of(args, path, out.path()).with_context(|| path.display().to_string())?);
-        bar.inc(1);
+/// Everything that a fork follows from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Key {
+    /// BLAKE3 of the recording or case.
+    log: String,
+    without_intervention: bool,
+    checkpoint: String,
+    variation: u16,
+    seconds: u32,
+    kernel: String,
+    program: String,
+    renderer: String,
+    adapter: String,
+}
+
+/// What is kept of a fork: its line, and the digest of its recording.
+type Kept = (Line, String);
+
+/// Drives every file on; forks that are there already are kept.
+pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
+    AdapterChoice::default().find()?;
+    let store = Store::open(&args.out, "redrive")?;
+    let library::Found { files, mut failed } = library::list(&args.files, Kind::Cases).or_failed()?;
+    // That of an earlier call would not be about these files.
+    let table = args.out.join("redrive.jsonl");
+    if table.exists() {
+        fs::remove_file(&table).with_context(|| table.display().to_string())?;
     }
+    let bar = progress::bar("files", files.len() as u64);
+    let (mut forks, mut well) = (Vec::new(), 0);
+    let drive = |index: usize| forks_of(args, &files[index], (&store, interrupt));
+    in_order(jobs(args.jobs), files.len(), drive, |index, lines| {
+        let path = &files[index].path;
+        let place = || path.display().to_string();
+        match lines {
+            Ok(lines) => {
+                forks.extend(lines);
+                well += 1;
+            }
+            Err(error) if interrupt.is_raised() || error.is::<Usage>() => return Err(error).with_context(place),
+            Err(error) => failed.push(Failure::new(path, &error.context(place()))),
+        }
+        bar.inc(1);
+        Ok(())
+    })?;
     bar.finish_and_clear();
+    if forks.is_empty() {
+        return Err(Failed::new(failed).into());
+    }
     let lines = forks.iter().map(json_line).collect::<anyhow::Result<Vec<_>>>()?;
-    let path = out.path().join("redrive.jsonl");
-    fs::write(&path, lines.join("\n") + "\n").with_context(|| path.display().to_string())?;
-    out.finish()?;
+    output::write_file(&table, (lines.join("\n") + "\n").as_bytes())?;
     let mut verdicts = BTreeMap::new();
     forks.iter().for_each(|line| *verdicts.entry(line.verdict.name()).or_insert(0) += 1);
-    Ok(Summary { out: args.out.display().to_string(), forks, verdicts })
+    Ok(Summary { out: args.out.display().to_string(), files: well, forks, verdicts, failed })
 }
 
 /// All forks of a file.
-fn forks_of(args: &Options, path: &Path, out: &Path) -> anyhow::Result<Vec<Line>> {
-    let recording = Recording::open(path)?;
+fn forks_of(args: &Options, file: &Listed, (store, interrupt): (&Store, &Interrupt)) -> anyhow::Result<Vec<Line>> {
+    let recording = Recording::open(&file.path)?;
     let network = recording.network()?;
+    let digest = blake3::Hash::from_bytes(recording.digest()).to_hex().to_string();
     let log = recording.into_log();
     if args.without_intervention {
         log.intervention.context("holds no intervention that could be left out")?;
@@ -135,39 +197,83 @@ fn forks_of(args: &Options, path: &Path, out: &Path) -> anyhow::Result<Vec<Line>
         return Err(Usage("a blind drive; expected --reveal, which tells its checkpoint".into()).into());
     }
     let eye = eye_of(args, &log)?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.strip_suffix(".mcap").unwrap_or(&name);
-    let name = name.strip_suffix(".case").unwrap_or(name);
-    let mut vision = Vision::new(Renderer::new(&network, &RenderOptions::default())?, eye.clone());
+    let name = file.name.strip_suffix(".case").unwrap_or(&file.name);
+    let mut vision = None;
     let mut lines = Vec::new();
     for variation in 0..=args.vary {
-        let fork = variant(args, &log, &network, variation);
-        let (course, after) = fork.drive(&log, &network, vision)?;
-        vision = after.with_eye(eye.clone());
-        let file = if variation == 0 { format!("{name}.fork.mcap") } else { format!("{name}.fork-{variation}.mcap") };
-        let to = out.join(&file);
-        if to.exists() {
-            bail!("two files are named {name}; expected names that differ");
+        let (mark, key) = (format!("{name}/{variation}"), key(args, &digest, &eye, variation));
+        let to = if variation == 0 { format!("{name}.fork.mcap") } else { format!("{name}.fork-{variation}.mcap") };
+        if let Some(line) = kept(args, store, &mark, &key) {
+            lines.push(Line { file: file.path.display().to_string(), recording: to, ..line });
+            continue;
         }
-        fs::write(&to, &course.recording).with_context(|| to.display().to_string())?;
-        lines.push(Line {
-            file: path.display().to_string(),
-            variation,
-            recording: file,
-            checkpoint: eye.name().to_owned(),
-            intervention_tick: at,
-            fork_tick: course.fork_tick,
-            verdict: Verdict::of(&course, fork.otherwise, at),
-            harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
-            harm: course.harm,
-            collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
-            collision: course.collision,
-            recorded_harm: course.recorded_harm,
-            intervention_again: course.intervention,
-            closest: course.closest,
-        });
+        if interrupt.is_raised() {
+            bail!("interrupted; the same command goes on from there");
+        }
+        let seeing = match vision.take() {
+            Some(vision) => vision,
+            None => Vision::new(Renderer::new(&network, &RenderOptions::default())?, eye.clone()),
+        };
+        let (course, after) = variant(args, &log, &network, variation).drive(&log, &network, seeing)?;
+        vision = Some(after.with_eye(eye.clone()));
+        let path = args.out.join(&to);
+        output::create_folder(path.parent().unwrap_or(&args.out))?;
+        output::write_file(&path, &course.recording)?;
+        let recorded = blake3::hash(&course.recording).to_hex().to_string();
+        let line = line(file, (variation, to), &eye, at, course, args);
+        store.keep(&mark, key, (&line, recorded))?;
+        lines.push(line);
     }
     Ok(lines)
+}
+
+fn key(args: &Options, log: &str, eye: &Eye, variation: u16) -> Key {
+    Key {
+        log: log.to_owned(),
+        without_intervention: args.without_intervention,
+        checkpoint: eye.digest(),
+        variation,
+        seconds: args.seconds,
+        kernel: KERNEL_VERSION.to_owned(),
+        program: env!("CARGO_PKG_VERSION").to_owned(),
+        renderer: RENDERER_VERSION.to_owned(),
+        adapter: vision::adapter(),
+    }
+}
+
+/// A fork that an earlier call left whole.
+fn kept(args: &Options, store: &Store, mark: &str, key: &Key) -> Option<Line> {
+    let (line, digest): Kept = store.find(mark, key)?;
+    let bytes = fs::read(args.out.join(&line.recording)).ok()?;
+    (blake3::hash(&bytes).to_hex().to_string() == digest).then_some(line)
+}
+
+/// What came of a fork.
+fn line(
+    file: &Listed,
+    (variation, recording): (u16, String),
+    eye: &Eye,
+    at: Tick,
+    course: Course,
+    args: &Options,
+) -> Line {
+    let otherwise = otherwise(args, variation);
+    Line {
+        file: file.path.display().to_string(),
+        variation,
+        recording,
+        checkpoint: eye.name().to_owned(),
+        intervention_tick: at,
+        fork_tick: course.fork_tick,
+        verdict: Verdict::of(&course, otherwise, at),
+        harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
+        harm: course.harm,
+        collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
+        collision: course.collision,
+        recorded_harm: course.recorded_harm,
+        intervention_again: course.intervention,
+        closest: course.closest,
+    }
 }
 
 /// What the semantic bot looks through.
@@ -177,16 +283,22 @@ fn eye_of(args: &Options, log: &Log) -> anyhow::Result<Eye> {
     }
     let recorded = RecordedEye::of(&log.manifest.provenance)?;
     let found = recorded.find(&args.recorded)?;
-    found.with_context(|| format!("was driven through {:?}; expected that file as --recorded", recorded.name))
+    found
+        .with_context(|| format!("was driven through {:?}; expected that file as --recorded-checkpoint", recorded.name))
+}
+
+/// What a variation does otherwise than the recording.
+fn otherwise(args: &Options, variation: u16) -> Otherwise {
+    if args.without_intervention {
+        Otherwise::NoIntervention { earlier_ticks: Tick::from(variation) * VARIATION_TICKS }
+    } else {
+        Otherwise::OtherEye { person: variation.into() }
+    }
 }
 
 /// The fork itself, or a variation of it; both follow from the file and the number alone.
 fn variant(args: &Options, log: &Log, network: &Arc<RoadNetwork>, variation: u16) -> Fork {
-    let otherwise = if args.without_intervention {
-        Otherwise::NoIntervention { earlier_ticks: Tick::from(variation) * VARIATION_TICKS }
-    } else {
-        Otherwise::OtherEye { person: variation.into() }
-    };
+    let otherwise = otherwise(args, variation);
     let seed = log.manifest.scenario.seed.wrapping_add(variation.into());
     let weather = (variation > 0).then(|| Scenario::default_for(&network.name, seed).weather);
     Fork { otherwise, weather, after_ticks: Tick::from(args.seconds) * Tick::from(TICK_HZ) }

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
-use replay::Recording;
+use base::failure::Failure;
+use base::library::{self, Kind, Listed};
+use replay::{Log, Recording};
 
 /// What was driven.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,30 +18,30 @@ pub struct Exposure {
     pub minutes: f64,
 }
 
-/// Sums over the recordings in the folders of the cases.
-pub fn exposure(cases: &[PathBuf]) -> anyhow::Result<Exposure> {
+/// Sums over the recordings in and below the folders of the cases.
+pub fn exposure(cases: &[Listed], failed: &mut Vec<Failure>) -> Exposure {
     let here = Path::new(".");
-    let folder = |path: &PathBuf| path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(here).to_owned();
+    let folder = |case: &Listed| case.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(here).to_owned();
+    let folders: BTreeSet<PathBuf> = cases.iter().map(folder).collect();
+    // A folder may hold cases alone.
+    let recordings = library::list(&Vec::from_iter(folders), Kind::Drives).files;
     let mut sum = Exposure::default();
-    for folder in cases.iter().map(folder).collect::<BTreeSet<_>>() {
-        let entries = std::fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
-        let mut paths = entries.map(|e| e.map(|e| e.path())).collect::<Result<Vec<_>, _>>()?;
-        paths.sort();
-        for path in paths.iter().filter(|path| is_recording(path)) {
-            let recording = Recording::open(path)?;
-            let log = recording.log();
-            if study::is_familiarisation(&log.manifest.provenance) {
-                continue;
-            }
-            sum.recordings += 1;
-            sum.km += log.odometer_mm() as f64 / 1e6;
-            sum.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
+    for Listed { path, .. } in recordings {
+        match Recording::open(&path) {
+            Ok(recording) => sum.add(recording.log()),
+            Err(error) => failed.push(Failure::new(&path, &error.into())),
         }
     }
-    Ok(sum)
+    sum
 }
 
-fn is_recording(path: &Path) -> bool {
-    let name = path.to_string_lossy();
-    name.ends_with(".mcap") && !name.ends_with(".case.mcap")
+impl Exposure {
+    fn add(&mut self, log: &Log) {
+        if study::is_familiarisation(&log.manifest.provenance) {
+            return;
+        }
+        self.recordings += 1;
+        self.km += log.odometer_mm() as f64 / 1e6;
+        self.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
+    }
 }

@@ -12,7 +12,9 @@ pub use self::options::Options;
 use std::{fmt, fs};
 
 use anyhow::{Context, bail};
-use base::library;
+use base::failure::{Failed, Failure};
+use base::library::{self, Kind};
+use base::output::Typed;
 use base::output::{self, json_line};
 use base::progress::{self, Interrupt};
 use base::spread::jobs;
@@ -25,7 +27,7 @@ use serde::Serialize;
 use self::pictures::{Matrices, Pictures};
 use super::figures::{Figures, table};
 use super::looks::open_eyes;
-use super::pipeline::{Crew, Studios};
+use super::pipeline::{Crew, Studios, set_aside};
 use super::store::{Settings, Store};
 
 /// A line of `metrics.jsonl`.
@@ -33,13 +35,21 @@ use super::store::{Settings, Store};
 struct Line<'a> {
     /// What it sums over: `frame`, `file` or `overall`.
     over: &'a str,
+    /// Name of the file, of a line of a frame or file.
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<&'a str>,
+    /// Tick of the frame, of a line of a frame.
     #[serde(skip_serializing_if = "Option::is_none")]
     tick: Option<Tick>,
+    /// Name of the checkpoint.
     checkpoint: &'a str,
     #[serde(flatten)]
     figures: Figures,
+}
+
+/// A line of `metrics.jsonl`.
+impl Typed for Line<'_> {
+    const TYPE: &'static str = "aeye.rerender.metrics";
 }
 
 /// What came of it.
@@ -53,6 +63,13 @@ pub struct Summary {
     pub frames: usize,
     /// What each checkpoint made of them.
     pub checkpoints: Vec<Seen>,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
+}
+
+/// What `aeye rerender` prints.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.rerender";
 }
 
 /// A checkpoint over all frames.
@@ -69,7 +86,7 @@ pub struct Seen {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { out, files, frames, checkpoints } = self;
+        let Self { out, files, frames, checkpoints, .. } = self;
         let columns: Vec<_> = checkpoints.iter().map(|c| (c.name.clone(), c.figures.clone())).collect();
         write!(f, "{}\n{frames} frames of {files} files in {out}", table(&columns))
     }
@@ -79,21 +96,26 @@ impl fmt::Display for Summary {
 pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "rerender")?;
-    let files = library::find(&args.files)?;
-    let eyes = open_eyes(&args.checkpoint, args.size)?;
+    let library::Found { mut files, mut failed } = library::find(&args.files, Kind::Cases).or_failed()?;
+    let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
     let metrics = args.out.join("metrics.jsonl");
     // That of an earlier call would not be about these files.
     if metrics.exists() {
         fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;
     }
     let bar = progress::bar("frames", 0);
-    let settings = Settings::new(args.last, args.fps, args.size);
-    let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings };
+    let settings = Settings::new(args.last, args.fps, size);
+    let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings: settings.clone() };
     let left = work.left();
     bar.set_length(work.expected() * left.len() as u64);
-    let (size, jobs, studios) = (args.size, jobs(args.jobs), Studios::default());
-    Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
+    let (jobs, studios) = (jobs(args.jobs), Studios::default());
+    let (_, unread) = Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
     bar.finish_and_clear();
+    failed.extend(set_aside(&mut files, unread));
+    if files.is_empty() {
+        return Err(Failed::new(failed).into());
+    }
+    let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings };
     let Some(found) = work.found() else {
         bail!("{}: interrupted; the same command goes on from there", args.out.display());
     };
@@ -106,7 +128,7 @@ pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary
         figures: matrix.into(),
     };
     let checkpoints = eyes.iter().zip(&overall).map(seen).collect();
-    Ok(Summary { out: args.out.display().to_string(), files: files.len(), frames, checkpoints })
+    Ok(Summary { out: args.out.display().to_string(), files: files.len(), frames, checkpoints, failed })
 }
 
 /// The text of `metrics.jsonl`, and each checkpoint's matrix over all; `found` is by file and checkpoint.

@@ -16,8 +16,8 @@ pub struct Options {
     pub last: Tick,
     /// Frames a second; must divide 60.
     pub fps: u32,
-    /// Size of the pictures.
-    pub size: (u32, u32),
+    /// Size of the pictures; none: that which the first network takes.
+    pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what is whole and follows from

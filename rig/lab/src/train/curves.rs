@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use base::output::Typed;
 use base::output::json_line;
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use perception::training::{EpochReport, TrainOptions};
@@ -25,6 +26,11 @@ pub struct Epoch {
     pub pedestrian_iou: Option<f64>,
     /// IoU on the validation split by class name.
     pub iou: BTreeMap<&'static str, Option<f64>>,
+}
+
+/// A line of `C.jsonl`, and what `aeye train` prints of an epoch.
+impl Typed for Epoch {
+    const TYPE: &'static str = "aeye.train.epoch";
 }
 
 impl fmt::Display for Epoch {

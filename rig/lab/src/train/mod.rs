@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use base::output::Typed;
 use indicatif::ProgressBar;
 use perception::Checkpoint;
 use perception::training::{self, Origin, Progress, TrainOptions, Trained};
@@ -27,10 +28,21 @@ use base::progress::{self, Interrupt};
 pub struct Summary {
     /// Its file.
     pub checkpoint: PathBuf,
+    /// Its card.
+    pub card: PathBuf,
+    /// What every epoch came to, as lines of JSON.
+    pub curves: PathBuf,
+    /// The same as a picture.
+    pub picture: PathBuf,
     /// Its digest, as recordings and evaluations name it, in hexadecimal digits.
     pub digest: String,
     /// Whether it was there already, from the same options and the same dataset.
     pub was_there: bool,
+}
+
+/// What `aeye train` prints at its end.
+impl Typed for Summary {
+    const TYPE: &'static str = "aeye.train";
 }
 
 /// Endings of what is written beside a checkpoint: its card, its learning curves, and their picture.
@@ -107,7 +119,9 @@ fn write(args: &Options, options: &TrainOptions, trained: &Trained) -> anyhow::R
 }
 
 fn summary(args: &Options, checkpoint: &Checkpoint, was_there: bool) -> Summary {
-    Summary { checkpoint: args.out.clone(), digest: checkpoint.digest().to_hex().to_string(), was_there }
+    let [card, curves, picture] = BESIDE.map(|ending| beside(&args.out, ending));
+    let digest = checkpoint.digest().to_hex().to_string();
+    Summary { checkpoint: args.out.clone(), card, curves, picture, digest, was_there }
 }
 
 fn options(args: &Options) -> TrainOptions {

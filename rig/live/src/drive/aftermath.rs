@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use base::library::case_path;
 use base::output;
 use measures::run_figures::RunFigures;
 use replay::{Case, Recording};
-
-use super::disk::case_path;
 
 /// Hears where the recording of a run is and what the run came to.
 pub type Tell = Arc<dyn Fn(&Path, &RunFigures) -> anyhow::Result<()> + Send + Sync>;

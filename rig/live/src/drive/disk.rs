@@ -8,6 +8,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::JoinHandle;
 
 use anyhow::Context;
+use base::library::case_path;
 
 /// A file that is written in the background. Bytes reach it in order; each flush reaches the system.
 pub struct BackgroundFile {
@@ -92,12 +93,6 @@ fn number_of(record: &Path, name: &str) -> Option<u32> {
     let digits = rest.split(|c: char| !c.is_ascii_digit()).next().unwrap_or_default();
     let number = if digits.is_empty() { 1 } else { digits.parse().ok()? };
     Some(number).filter(is_run)
-}
-
-/// The path of a corner case beside its recording.
-pub fn case_path(recording: &Path) -> PathBuf {
-    let name = recording.file_name().unwrap_or_default().to_string_lossy();
-    recording.with_file_name(format!("{}.case.mcap", name.strip_suffix(".mcap").unwrap_or(&name)))
 }
 
 /// The recording of a run.

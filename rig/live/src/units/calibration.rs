@@ -1,5 +1,6 @@
 //! What the raw values of a device mean.
 
+use base::output::Typed;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
@@ -143,6 +144,11 @@ pub struct Calibration {
     /// The buttons.
     #[serde(default)]
     pub buttons: Buttons,
+}
+
+/// What `aeye wheel calibrate` and `import` print.
+impl Typed for Calibration {
+    const TYPE: &'static str = "aeye.wheel.calibration";
 }
 
 impl Calibration {

@@ -361,7 +361,7 @@ fn found(calibrations: &[Calibration], device: &DeviceInfo) -> String {
         Some(_) if presets::is_known_wheel(device) => "a wheel that is known".into(),
         Some(_) => "read as a gamepad: left stick steers, right trigger is throttle, left trigger brake".into(),
         None => format!(
-            "of no use before aeye wheel calibrate --device {path} --calibration FILE.toml, \
+            "of no use before aeye wheel calibrate --device {path} --out FILE.toml, \
              and --calibration FILE.toml here"
         ),
     };

@@ -1,10 +1,13 @@
 //! Rides by checkpoint.
 
+use base::output::Typed;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
-use base::failure::Usage;
+use anyhow::{anyhow, bail};
+use base::failure::{Failed, Failure, Usage};
+use base::library::{self, Found, Kind, Listed};
+use base::spread::{in_order, jobs};
 use replay::Recording;
 use serde::Serialize;
 
@@ -36,17 +39,41 @@ struct Group {
     rides: Vec<Ride>,
 }
 
-/// Statistics of recordings and of folders of them (where corner cases are left out), checkpoint by
-/// checkpoint in the order of their first rides. The reference is the first unless it is named. Blind
-/// drives are all one, unless their checkpoints are to be revealed.
-pub fn of_recordings(
-    paths: &[PathBuf],
-    reference: Option<&str>,
-    reveal: bool,
-) -> anyhow::Result<Vec<CheckpointStatistics>> {
-    let mut groups = group(&recordings(paths)?, reveal)?;
+/// How the statistics are made.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Choice<'a> {
+    /// The checkpoint that others are compared with; that of the first ride if none is named.
+    pub reference: Option<&'a str>,
+    /// Blind drives are all one, unless their checkpoints are to be revealed.
+    pub reveal: bool,
+    /// Recordings read at the same time.
+    pub jobs: Option<u16>,
+}
+
+/// Statistics, and what they leave out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StatisticsOfAll {
+    /// Those of each checkpoint.
+    pub checkpoints: Vec<CheckpointStatistics>,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
+}
+
+/// What `aeye statistics` prints.
+impl Typed for StatisticsOfAll {
+    const TYPE: &'static str = "aeye.statistics";
+}
+
+/// Statistics of recordings and of those anywhere below folders (where corner cases and forks are left out),
+/// checkpoint by checkpoint in the order of their first rides.
+pub fn of_recordings(paths: &[PathBuf], choice: Choice<'_>) -> anyhow::Result<StatisticsOfAll> {
+    let (mut groups, failed) = group(library::list(paths, Kind::Drives), choice)?;
     tell_apart(&mut groups);
-    let Some(first) = groups.first() else { bail!("no recording counts: all are drives to get used to the rig") };
+    let Some(first) = groups.first() else {
+        let why = Failed::check(&failed, 0).err();
+        return Err(why.unwrap_or_else(|| anyhow!("no recording counts: all are drives to get used to the rig")));
+    };
+    let reference = choice.reference;
     let name = reference.unwrap_or(&first.checkpoint);
     let names: Vec<_> = groups.iter().map(|g| g.checkpoint.as_str()).collect();
     let Some(at) = names.iter().position(|n| *n == name) else {
@@ -58,69 +85,62 @@ pub fn of_recordings(
         let against_reference = (i != at).then(|| Comparison::of(&reference, &statistics));
         CheckpointStatistics { checkpoint: group.checkpoint, digest: group.digest, statistics, against_reference }
     };
-    Ok(groups.into_iter().enumerate().map(of).collect())
+    Ok(StatisticsOfAll { checkpoints: groups.into_iter().enumerate().map(of).collect(), failed })
 }
 
-/// The recordings among files and folders.
-fn recordings(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
-    for path in paths {
-        if !path.is_dir() {
-            found.push(path.clone());
-            continue;
-        }
-        let context = || path.display().to_string();
-        let entries = std::fs::read_dir(path).with_context(context)?;
-        let mut inside = entries.map(|e| e.map(|e| e.path())).collect::<Result<Vec<_>, _>>().with_context(context)?;
-        inside.retain(|path| is_recording(path));
-        if inside.is_empty() {
-            bail!("{}: holds no recording; expected NAME.mcap", path.display());
-        }
-        inside.sort_by_cached_key(|path| turn(path));
-        found.append(&mut inside);
-    }
-    Ok(found)
+/// What is known of a ride.
+struct Known {
+    digest: [u8; 32],
+    checkpoint: String,
+    checkpoint_digest: Option<String>,
+    /// None for a drive to get used to the rig.
+    ride: Option<Ride>,
 }
 
-/// What recordings are sorted by: `drive.mcap`, `drive-2.mcap` ... `drive-10.mcap` were driven in this order.
-fn turn(path: &Path) -> (String, u64) {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let numbered = name.rsplit_once('-').and_then(|(stem, number)| Some((stem.to_owned(), number.parse().ok()?)));
-    numbered.unwrap_or((name, 1))
-}
-
-fn is_recording(path: &Path) -> bool {
-    let name = path.to_string_lossy();
-    name.ends_with(".mcap") && !name.ends_with(".case.mcap")
-}
-
-/// Rides by checkpoint, in the order of their first recordings.
-fn group(files: &[PathBuf], reveal: bool) -> anyhow::Result<Vec<Group>> {
+/// Rides by checkpoint, in the order of their first recordings, and the files that are none.
+fn group(found: Found<Listed>, choice: Choice<'_>) -> anyhow::Result<(Vec<Group>, Vec<Failure>)> {
+    let Found { files, mut failed } = found;
     let mut groups: Vec<Group> = Vec::new();
     let mut known = BTreeSet::new();
-    for path in files {
-        let recording = Recording::open(path)?;
-        let log = recording.log();
-        if log.manifest.case.is_some() {
-            bail!("{}: a corner case; expected the recording that it was cut from", path.display());
+    let read = |index: usize| read(&files[index].path, choice.reveal);
+    in_order(jobs(choice.jobs), files.len(), read, |index, ride| {
+        let path = &files[index].path;
+        let new = ride.and_then(|ride| match known.insert(ride.digest) {
+            true => Ok(ride),
+            false => bail!("{}: the same recording was given before; expected each once", path.display()),
+        });
+        match new {
+            Ok(Known { ride: Some(ride), checkpoint, checkpoint_digest: digest, .. }) => {
+                match groups.iter_mut().find(|g| g.digest == digest && g.checkpoint == checkpoint) {
+                    Some(group) => group.rides.push(ride),
+                    None => groups.push(Group { checkpoint, digest, rides: vec![ride] }),
+                }
+            }
+            Ok(_) => {}
+            Err(error) => failed.push(Failure::new(path, &error)),
         }
-        if log.manifest.provenance.contains_key("fork") {
-            bail!("{}: a fork of aeye redrive, which nobody drove; expected recordings of drives", path.display());
-        }
-        if !known.insert(recording.digest()) {
-            bail!("{}: the same recording was given before; expected each once", path.display());
-        }
-        let Some(ride) = Ride::of(&recording) else { continue };
-        let told = study::tellable(&log.manifest.provenance, reveal);
-        let digest = told.get("checkpoint_digest").cloned();
-        let untold = if study::is_blind(&log.manifest.provenance) { BLIND } else { UNKNOWN };
-        let checkpoint = told.get("checkpoint").cloned().unwrap_or_else(|| untold.into());
-        match groups.iter_mut().find(|g| g.digest == digest && g.checkpoint == checkpoint) {
-            Some(group) => group.rides.push(ride),
-            None => groups.push(Group { checkpoint, digest, rides: vec![ride] }),
-        }
+        Ok(())
+    })?;
+    Ok((groups, failed))
+}
+
+fn read(path: &Path, reveal: bool) -> anyhow::Result<Known> {
+    let recording = Recording::open(path)?;
+    let manifest = &recording.log().manifest;
+    if manifest.case.is_some() {
+        bail!("{}: a corner case; expected the recording that it was cut from", path.display());
     }
-    Ok(groups)
+    if manifest.provenance.contains_key("fork") {
+        bail!("{}: a fork of aeye redrive, which nobody drove; expected recordings of drives", path.display());
+    }
+    let told = study::tellable(&manifest.provenance, reveal);
+    let untold = if study::is_blind(&manifest.provenance) { BLIND } else { UNKNOWN };
+    Ok(Known {
+        digest: recording.digest(),
+        checkpoint: told.get("checkpoint").cloned().unwrap_or_else(|| untold.into()),
+        checkpoint_digest: told.get("checkpoint_digest").cloned(),
+        ride: Ride::of(&recording),
+    })
 }
 
 /// Checkpoints of one name get the beginning of their digests.
@@ -131,18 +151,5 @@ fn tell_apart(groups: &mut [Group]) {
         if let Some(digest) = group.digest.as_ref().filter(|_| twins > 1) {
             group.checkpoint = format!("{}@{}", group.checkpoint, digest.get(..8).unwrap_or(digest));
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn runs_of_a_session_come_in_their_order() {
-        let order = ["drive.mcap", "drive-2.mcap", "drive-10.mcap", "early-0002.mcap", "early-0010.mcap", "p-07.mcap"];
-        let mut paths: Vec<PathBuf> = order.iter().rev().map(PathBuf::from).collect();
-        paths.sort_by_cached_key(|path| turn(path));
-        assert_eq!(paths, order.map(PathBuf::from));
     }
 }

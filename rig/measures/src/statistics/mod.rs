@@ -12,7 +12,7 @@ use replay::Label;
 use serde::Serialize;
 
 pub use compare::Comparison;
-pub use groups::{CheckpointStatistics, of_recordings};
+pub use groups::{CheckpointStatistics, Choice, StatisticsOfAll, of_recordings};
 pub use legs::Legs;
 pub use ride::Ride;
 pub use text::table;

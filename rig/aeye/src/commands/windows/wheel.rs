@@ -8,6 +8,7 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use base::failure::Usage;
 use base::output;
+use base::output::Typed;
 use live::units::calibration::{self, Calibration};
 use live::units::hardware::Hardware;
 use live::units::source::DeviceInfo;
@@ -35,22 +36,40 @@ pub fn run(command: &WheelCommand, json: bool) -> anyhow::Result<Verdict> {
 /// A device.
 #[derive(Debug, Serialize)]
 struct Entry {
+    /// Where it is.
     path: String,
+    /// Its name.
     name: String,
+    /// Number of its vendor.
     vendor: u16,
+    /// Number of the product.
     product: u16,
+    /// Number of its axes.
     axes: usize,
+    /// Number of its buttons.
     buttons: usize,
     /// Where its calibration comes from; none when it has to be calibrated first.
     calibration: Option<&'static str>,
 }
 
+/// Every device.
+#[derive(Debug, Serialize)]
+struct Listed {
+    /// Those that are there.
+    devices: Vec<Entry>,
+}
+
+/// What `aeye wheel list` prints.
+impl Typed for Listed {
+    const TYPE: &'static str = "aeye.wheel.list";
+}
+
 fn list(args: &WheelListArgs, json: bool) -> anyhow::Result<()> {
     let own = args.calibration.iter().map(|file| calibration::read(file)).collect::<anyhow::Result<Vec<_>>>()?;
     let devices = Hardware::open()?.devices();
-    let entries: Vec<Entry> = devices.iter().map(|device| entry(&own, device)).collect();
-    print(json, &serde_json::json!({ "devices": entries }), || {
-        let lines: Vec<String> = entries.iter().map(line).collect();
+    let listed = Listed { devices: devices.iter().map(|device| entry(&own, device)).collect() };
+    print(json, &listed, || {
+        let lines: Vec<String> = listed.devices.iter().map(line).collect();
         if lines.is_empty() { none_found() } else { lines.join("\n") }
     })
 }
@@ -84,21 +103,21 @@ fn line(entry: &Entry) -> String {
 }
 
 fn by_asking(args: &WheelCalibrateArgs, json: bool) -> anyhow::Result<()> {
-    output::check_file(&args.calibration)?;
+    output::check_file(&args.out)?;
     let mut hardware = Hardware::open()?;
     let device = pick(&hardware.devices(), args.device.as_deref())?;
     eprintln!("{} at {}", device.name, device.path);
     let calibration = calibrate(&mut hardware, &device, &mut Terminal::new())?;
-    write(&calibration, &args.calibration, json)
+    write(&calibration, &args.out, json)
 }
 
 fn by_import(args: &WheelImportArgs, json: bool) -> anyhow::Result<()> {
-    output::check_file(&args.calibration)?;
+    output::check_file(&args.out)?;
     let name = args.file.display();
     let text = std::fs::read_to_string(&args.file).with_context(|| name.to_string())?;
     let device = args.device.as_deref().map(|path| pick(&Hardware::open()?.devices(), Some(path))).transpose()?;
     let calibration = carla::import(&text, device.as_ref()).map_err(|problem| anyhow!("{name}: {problem}"))?;
-    write(&calibration, &args.calibration, json)
+    write(&calibration, &args.out, json)
 }
 
 fn write(calibration: &Calibration, path: &Path, json: bool) -> anyhow::Result<()> {

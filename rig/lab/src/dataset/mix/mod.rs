@@ -17,6 +17,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use base::failure::Usage;
+use base::output::Typed;
 use base::output::{self, PendingFolder};
 use base::progress::Interrupt;
 use serde::Serialize;
@@ -37,6 +38,11 @@ pub struct Sets {
     pub pedestrian: Manifest,
     /// `corner-case`.
     pub corner_case: Manifest,
+}
+
+/// What `aeye dataset mix` prints.
+impl Typed for Sets {
+    const TYPE: &'static str = "aeye.dataset.mix";
 }
 
 impl Sets {

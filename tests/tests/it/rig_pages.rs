@@ -1,0 +1,53 @@
+//! The pages of `docs` say what the program does.
+
+use aeye::help;
+use kernel::Scenario;
+
+const SCENARIO: &str = include_str!("../../../docs/scenario.md");
+const COMMAND_LINE: &str = include_str!("../../../docs/command-line.md");
+
+#[test]
+fn the_example_of_a_scenario_has_every_key_and_so_has_its_table() {
+    let example = SCENARIO.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("an example");
+    let scenario = Scenario::from_toml(example).expect("a scenario");
+    assert_ne!(scenario, Scenario::default_for("city", 7));
+    // Every key is printed where none is left out.
+    let mut all: Vec<String> = keys(&scenario.to_toml());
+    let mut on_page: Vec<String> =
+        SCENARIO.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned())).collect();
+    let mut in_example = keys(example);
+    for list in [&mut all, &mut on_page, &mut in_example] {
+        list.sort_unstable();
+    }
+    assert_eq!(on_page, all);
+    assert_eq!(in_example, all);
+}
+
+/// `section.key` of everything in a text.
+fn keys(text: &str) -> Vec<String> {
+    let table: toml::Table = text.parse().expect("TOML");
+    let mut keys = Vec::new();
+    for (name, value) in &table {
+        match value.as_table() {
+            Some(section) => keys.extend(section.keys().map(|key| format!("{name}.{key}"))),
+            None => keys.push(name.clone()),
+        }
+    }
+    keys
+}
+
+#[test]
+fn options_that_take_lists_take_commas_and_are_on_the_page() {
+    let command = help::command();
+    let commands: Vec<_> =
+        command.get_subcommands().flat_map(|c| std::iter::once(c).chain(c.get_subcommands())).collect();
+    let options = commands.iter().flat_map(|command| command.get_arguments().filter(|arg| !arg.is_positional()));
+    for option in options {
+        let name = option.get_long().unwrap_or_default();
+        let many = matches!(option.get_action(), clap::ArgAction::Append);
+        assert!(!many || option.get_value_delimiter() == Some(','), "--{name} takes a list without commas");
+        assert!(!many || COMMAND_LINE.contains(&format!("`--{name}`")), "--{name} takes a list and is not on the page");
+        let most = option.get_num_args().map_or(1, |range| range.max_values());
+        assert!(most <= 1, "--{name} eats what follows it");
+    }
+}
