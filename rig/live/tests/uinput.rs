@@ -13,36 +13,43 @@ use live::units::{CarState, Polled, SeatChoice, Seats, UnitEventKind, UnitState,
 /// A device and the axes of its wheel, throttle and brake: code, greatest value, rest.
 struct Make {
     name: &'static str,
-    id: [u16; 2],
+    /// Vendor, product and version.
+    id: [u16; 3],
     axes: [(AbsoluteAxisCode, i32, i32); 3],
+    /// Axes that mean nothing here.
+    others: &'static [AbsoluteAxisCode],
     first_button: u16,
 }
 
 const WHEEL: Make = Make {
     name: "Logitech G29 Driving Force Racing Wheel",
-    id: [0x046d, 0xc24f],
+    id: [0x046d, 0xc24f, 1],
     axes: [
         (AbsoluteAxisCode::ABS_X, 65_535, 32_768),
         (AbsoluteAxisCode::ABS_Z, 255, 255),
         (AbsoluteAxisCode::ABS_RZ, 255, 255),
     ],
+    others: &[AbsoluteAxisCode::ABS_Y],
     first_button: 0x120,
 };
+/// A PS4 controller with an old driver, whose triggers are where others have a right stick: SDL knows.
 const PAD: Make = Make {
     name: "A-Eye test pad",
-    id: [0x1209, 0xae1e],
-    axes: [(AbsoluteAxisCode::ABS_X, 255, 128), (AbsoluteAxisCode::ABS_RZ, 255, 0), (AbsoluteAxisCode::ABS_Z, 255, 0)],
+    id: [0x054c, 0x05c4, 0x0111],
+    axes: [(AbsoluteAxisCode::ABS_X, 255, 128), (AbsoluteAxisCode::ABS_RY, 255, 0), (AbsoluteAxisCode::ABS_RX, 255, 0)],
+    others: &[AbsoluteAxisCode::ABS_Y, AbsoluteAxisCode::ABS_Z, AbsoluteAxisCode::ABS_RZ],
     first_button: 0x130,
 };
 
 impl Make {
     fn plug_in(&self) -> VirtualDevice {
         let keys: AttributeSet<KeyCode> = (0..10).map(|i| KeyCode(self.first_button + i)).collect();
-        let [vendor, product] = self.id;
-        let id = InputId::new(BusType::BUS_USB, vendor, product, 1);
+        let [vendor, product, version] = self.id;
+        let id = InputId::new(BusType::BUS_USB, vendor, product, version);
         let mut builder = VirtualDevice::builder().expect("uinput").name(self.name).input_id(id);
         builder = builder.with_keys(&keys).expect("keys");
-        for (code, max, rest) in self.axes.into_iter().chain([(AbsoluteAxisCode::ABS_Y, 255, 128)]) {
+        let others = self.others.iter().map(|code| (*code, 255, 128));
+        for (code, max, rest) in self.axes.into_iter().chain(others) {
             let setup = UinputAbsSetup::new(code, AbsInfo::new(rest, 0, max, 0, 0, 1));
             builder = builder.with_absolute_axis(&setup).expect("an axis");
         }

@@ -16,7 +16,16 @@ const SEATS: [Seat; 2] = [Seat::Semantic, Seat::Safety];
 
 /// Raw values are the kernel's own.
 fn calibration() -> Calibration {
-    let axis = |axis, min, max| Axis { axis, min, rest: 0, max, invert: false, dead_zone: 0.0, curve: Curve::Linear };
+    let axis = |axis, min, max| Axis {
+        axis,
+        button: false,
+        min,
+        rest: 0,
+        max,
+        invert: false,
+        dead_zone: 0.0,
+        curve: Curve::Linear,
+    };
     Calibration {
         device: NAME.into(),
         rotation_deg: 900.0,
@@ -38,6 +47,7 @@ fn wheel(id: usize) -> RawEvent {
         product: 0,
         axes: axes.map(|(code, min, max)| AxisRange { code, min, max }).into(),
         buttons: vec![0x120],
+        layout: None,
     })
 }
 

@@ -35,7 +35,7 @@ const ONLOOKERS: [&str; 2] = ["tests", "benches"];
 const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows/", "rig/live/src/view/windows/"];
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str]); 10] = [
+const NAMED_ONCE: [(&str, &[&str]); 11] = [
     ("rapier3d::", &["kernel/src/physics.rs", "kernel/src/physics/"]),
     ("tract_onnx", &["perception/src/onnx.rs"]),
     ("tract_cuda", &["perception/src/onnx.rs"]),
@@ -43,6 +43,7 @@ const NAMED_ONCE: [(&str, &[&str]); 10] = [
     ("wgpu::", &["render/", WINDOWS[0], WINDOWS[1], WINDOWS[2]]),
     ("winit::", &WINDOWS),
     ("egui::", &WINDOWS),
+    ("gilrs::", &["rig/live/src/units/mappings.rs"]),
     ("gilrs_core::", &["rig/live/src/units/hardware.rs"]),
     ("tungstenite::", &["rig/viewers/src/server/client.rs", "rig/viewers/src/server/tests.rs"]),
     ("evdev::", &["rig/live/src/drive/force/linux.rs"]),

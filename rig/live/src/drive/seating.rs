@@ -152,6 +152,7 @@ pub fn is_unwatched(polled: &Polled) -> bool {
 mod tests {
     use super::*;
     use crate::units::source::{AxisRange, RawEvent, Simulated};
+    use crate::units::testing::LAYOUT;
 
     fn gamepad(id: usize) -> RawEvent {
         RawEvent::Connected(DeviceInfo {
@@ -162,6 +163,7 @@ mod tests {
             product: 2,
             axes: [0, 2, 5].map(|code| AxisRange { code, min: 0, max: 255 }).into(),
             buttons: vec![0x130],
+            layout: Some(LAYOUT),
         })
     }
 

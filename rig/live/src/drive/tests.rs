@@ -19,6 +19,7 @@ use super::seating::Seating;
 use super::simulation::{Links, Plan, Simulation};
 use super::stage::{Press, Stage};
 use crate::units::source::{AxisRange, DeviceInfo, RawEvent, Simulated};
+use crate::units::testing::LAYOUT;
 use crate::units::{SeatChoice, Seats};
 
 /// Codes of the simulated wheels, as a gamepad's preset reads them.
@@ -40,6 +41,7 @@ fn device(id: usize) -> RawEvent {
         product: 2,
         axes: [WHEEL, BRAKE, THROTTLE].map(|code| AxisRange { code, min: 0, max: 255 }).into(),
         buttons: vec![0x130],
+        layout: Some(LAYOUT),
     })
 }
 

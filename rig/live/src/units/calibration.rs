@@ -52,6 +52,9 @@ impl Curve {
 pub struct Axis {
     /// Code of the axis.
     pub axis: u16,
+    /// It is a button in the place of a pedal, whose raw values are 0 and 1; `axis` is its code.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub button: bool,
     /// Raw value at one end.
     pub min: i32,
     /// Raw value when nobody touches it.
@@ -70,6 +73,17 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// A button in the place of a pedal.
+    pub fn of_button(code: u16) -> Self {
+        let curve = Curve::Linear;
+        Self { axis: code, button: true, min: 0, rest: 0, max: 1, invert: false, dead_zone: 0.0, curve }
+    }
+
+    /// Whether both are the same axis or button of a device.
+    fn is_where(&self, other: &Self) -> bool {
+        (self.axis, self.button) == (other.axis, other.button)
+    }
+
     /// Travel from rest to the end towards `min` (negative) or `max` (positive), -1 to 1, with the
     /// dead zone taken out.
     fn travel(&self, raw: i32) -> f64 {
@@ -101,6 +115,9 @@ impl Axis {
             return Some(format!(
                 "{name}: min {min}, rest {rest}, max {max}, expected min <= rest <= max and min < max"
             ));
+        }
+        if self.button && (min, rest, max) != (0, 0, 1) {
+            return Some(format!("{name}: a button has min 0, rest 0 and max 1"));
         }
         if !(0.0..=0.5).contains(&dead_zone) {
             return Some(format!("{name}: dead_zone is {dead_zone}, expected 0 to 0.5"));
@@ -183,6 +200,9 @@ impl Calibration {
                 "rotation_deg is {rotation_deg} and used_deg {used_deg}, expected 30 <= used_deg <= rotation_deg <= 3600"
             ));
         }
+        if steering.button {
+            return Some(String::from("steering: a button steers to one side only, expected an axis"));
+        }
         if steering.rest == steering.min || steering.rest == steering.max {
             return Some(String::from("steering: the rest is at an end, expected it between min and max"));
         }
@@ -191,12 +211,12 @@ impl Calibration {
             if pedal.rest == end {
                 return Some(format!("{name}: the rest is where the pedal is fully pressed; is invert wrong?"));
             }
-            if pedal.axis == steering.axis {
+            if pedal.is_where(steering) {
                 return Some(format!("{name}: axis {} is the wheel's", pedal.axis));
             }
         }
         let opposite = throttle.invert != brake.invert && throttle.rest == brake.rest;
-        (throttle.axis == brake.axis && !opposite)
+        (throttle.is_where(brake) && !opposite)
             .then(|| String::from("pedals that share an axis need the same rest, and invert = true for one of them"))
     }
 }
@@ -249,7 +269,16 @@ mod tests {
 
     #[test]
     fn combined_pedals_share_an_axis() {
-        let pedal = Axis { axis: 1, min: 0, rest: 128, max: 255, invert: false, dead_zone: 0.0, curve: Curve::Linear };
+        let pedal = Axis {
+            axis: 1,
+            button: false,
+            min: 0,
+            rest: 128,
+            max: 255,
+            invert: false,
+            dead_zone: 0.0,
+            curve: Curve::Linear,
+        };
         let mut wheel = g29();
         (wheel.throttle, wheel.brake) = (Axis { invert: true, ..pedal }, pedal);
         assert_eq!(wheel.problem(), None);
@@ -257,6 +286,23 @@ mod tests {
         assert_eq!([both(0), both(128), both(255)], [(1.0, 0.0), (0.0, 0.0), (0.0, 1.0)]);
         wheel.brake.invert = true;
         assert!(wheel.problem().is_some_and(|p| p.contains("share an axis")));
+    }
+
+    #[test]
+    fn a_button_is_a_pedal_and_steers_nothing() {
+        let mut pad = g29();
+        (pad.throttle, pad.brake) = (Axis::of_button(5), Axis::of_button(2));
+        assert_eq!(pad.problem(), None, "codes of buttons are no codes of axes");
+        assert_eq!([0, 1].map(|raw| pad.throttle.pressed(raw)), [0.0, 1.0]);
+        assert_eq!(Calibration::from_toml(&pad.to_toml().unwrap()), Ok(pad.clone()));
+        assert!(!g29().to_toml().unwrap().contains("button ="));
+        pad.brake.axis = 5;
+        assert!(pad.problem().is_some_and(|p| p.contains("share an axis")));
+        pad.brake = Axis { max: 255, ..Axis::of_button(2) };
+        assert!(pad.problem().is_some_and(|p| p.starts_with("brake: a button has min 0")));
+        (pad.brake, pad.steering.button) = (Axis::of_button(2), true);
+        (pad.steering.min, pad.steering.rest, pad.steering.max) = (0, 0, 1);
+        assert!(pad.problem().is_some_and(|p| p.starts_with("steering: a button")));
     }
 
     #[test]

@@ -80,9 +80,13 @@ impl DeviceUnit {
 
     /// An axis moved.
     pub fn axis(&mut self, code: u16, value: i32) {
+        self.moved_to(code, false, value);
+    }
+
+    fn moved_to(&mut self, code: u16, is_button: bool, value: i32) {
         let Calibration { steering, throttle, brake, .. } = &self.calibration;
         for (raw, axis) in self.raw.iter_mut().zip([steering, throttle, brake]) {
-            if axis.axis == code {
+            if (axis.axis, axis.button) == (code, is_button) {
                 *raw = value;
             }
         }
@@ -104,6 +108,7 @@ impl DeviceUnit {
             self.seen_asked |= pressed;
         }
         self.gear_asked |= pressed && is(buttons.reverse);
+        self.moved_to(code, true, i32::from(pressed));
     }
 
     /// Arms the device if it may be armed; true if that happened now.

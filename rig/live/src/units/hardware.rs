@@ -1,16 +1,18 @@
-//! The devices of this machine. The only file that names gilrs: its layer without filters and
-//! mappings, since it maps no wheels.
+//! The devices of this machine. The only file that names the raw layer of gilrs, which gives every
+//! event as it is: the one above it knows no wheels.
 
 use std::collections::VecDeque;
 
 use gilrs_core::{Error, EvCode, EventType, Gamepad, Gilrs};
 
+use super::mappings::Mappings;
 use super::source::{AxisRange, DeviceId, DeviceInfo, InputSource, RawEvent};
 
 /// The devices of this machine.
 #[derive(Debug)]
 pub struct Hardware {
     gilrs: Gilrs,
+    mappings: Mappings,
     /// Devices that were there at the start.
     found: VecDeque<RawEvent>,
 }
@@ -22,14 +24,29 @@ impl Hardware {
             Ok(gilrs) | Err(Error::NotImplemented(gilrs)) => gilrs,
             Err(error) => anyhow::bail!("game devices: {error}"),
         };
-        let ids = 0..gilrs.last_gamepad_hint();
-        let found = ids.filter_map(|id| info(&gilrs, id)).map(RawEvent::Connected).collect();
-        Ok(Self { gilrs, found })
+        let mut hardware = Self { gilrs, mappings: Mappings::read(), found: VecDeque::new() };
+        hardware.found = hardware.devices().into_iter().map(RawEvent::Connected).collect();
+        Ok(hardware)
     }
 
     /// The devices that are there now.
     pub fn devices(&self) -> Vec<DeviceInfo> {
-        (0..self.gilrs.last_gamepad_hint()).filter_map(|id| info(&self.gilrs, id)).collect()
+        (0..self.gilrs.last_gamepad_hint()).filter_map(|id| self.info(id)).collect()
+    }
+
+    fn info(&self, id: DeviceId) -> Option<DeviceInfo> {
+        self.pad(id).map(|pad| info(pad, id, &self.mappings))
+    }
+
+    fn pad(&self, id: DeviceId) -> Option<&Gamepad> {
+        self.gilrs.gamepad(id).filter(|pad| pad.is_connected())
+    }
+
+    /// A device was plugged in.
+    fn connected(&mut self, id: DeviceId) -> Option<RawEvent> {
+        let make = self.pad(id)?.uuid();
+        self.mappings.meet(make);
+        self.info(id).map(RawEvent::Connected)
     }
 }
 
@@ -46,8 +63,8 @@ impl InputSource for Hardware {
                 EventType::ButtonPressed(code) => RawEvent::Button { device, code: number(code), pressed: true },
                 EventType::ButtonReleased(code) => RawEvent::Button { device, code: number(code), pressed: false },
                 EventType::Disconnected => RawEvent::Lost(device),
-                EventType::Connected => match info(&self.gilrs, device) {
-                    Some(info) => RawEvent::Connected(info),
+                EventType::Connected => match self.connected(device) {
+                    Some(connected) => connected,
                     None => continue,
                 },
                 _ => continue,
@@ -61,14 +78,14 @@ fn number(code: EvCode) -> u16 {
     code.into_u32() as u16
 }
 
-fn info(gilrs: &Gilrs, id: DeviceId) -> Option<DeviceInfo> {
-    let pad = gilrs.gamepad(id).filter(|pad| pad.is_connected())?;
+fn info(pad: &Gamepad, id: DeviceId, mappings: &Mappings) -> DeviceInfo {
     let axis = |code: &EvCode| {
         pad.axis_info(*code).map(|range| AxisRange { code: number(*code), min: range.min, max: range.max })
     };
     let mut axes: Vec<AxisRange> = pad.axes().iter().filter_map(axis).collect();
     axes.sort_by_key(|a| a.code);
-    Some(DeviceInfo {
+    let [axis_codes, button_codes] = [pad.axes(), pad.buttons()].map(whole);
+    DeviceInfo {
         id,
         path: path(pad, id),
         name: pad.name().to_owned(),
@@ -76,7 +93,13 @@ fn info(gilrs: &Gilrs, id: DeviceId) -> Option<DeviceInfo> {
         product: pad.product_id().unwrap_or(0),
         axes,
         buttons: pad.buttons().iter().copied().map(number).collect(),
-    })
+        layout: mappings.layout(pad.uuid(), &axis_codes, &button_codes),
+    }
+}
+
+/// Codes with the kind of event.
+fn whole(codes: &[EvCode]) -> Vec<u32> {
+    codes.iter().map(|code| code.into_u32()).collect()
 }
 
 #[cfg(target_os = "linux")]

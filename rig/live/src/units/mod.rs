@@ -13,12 +13,14 @@ pub mod carla;
 mod device;
 pub mod hardware;
 pub mod keyboard;
+pub mod layout;
+mod mappings;
 pub mod presets;
 mod slot;
 pub mod source;
 pub mod status;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 pub mod wizard;
 
 use std::path::PathBuf;
@@ -258,13 +260,11 @@ impl Seats {
             RawEvent::Lost(id) => self.lost(id),
             RawEvent::Axis { device, code, value } => {
                 if let Some(seat) = self.seat_of(device) {
-                    self.move_axis(seat, code, value);
+                    self.touch(seat, |unit| unit.axis(code, value));
                 }
             }
             RawEvent::Button { device, code, pressed } => match self.seat_of(device) {
-                Some(seat) => {
-                    self.binding(seat).and_then(Binding::unit).into_iter().for_each(|u| u.button(code, pressed))
-                }
+                Some(seat) => self.touch(seat, |unit| unit.button(code, pressed)),
                 None if pressed => self.pressed_on(device),
                 None => {}
             },
@@ -326,9 +326,10 @@ impl Seats {
         }
     }
 
-    fn move_axis(&mut self, seat: Seat, code: u16, value: i32) {
+    /// A driver moves something of the seat's device, which may arm it.
+    fn touch(&mut self, seat: Seat, act: impl FnOnce(&mut DeviceUnit)) {
         let Some(unit) = self.binding(seat).and_then(Binding::unit) else { return };
-        unit.axis(code, value);
+        act(unit);
         if unit.arm() {
             let unit = self.units[seat as usize].status().unit;
             self.events.push(UnitEvent { seat, kind: UnitEventKind::Armed, unit });
@@ -347,7 +348,8 @@ impl Seats {
     }
 }
 
-/// The calibration of a device: the one that bears its name, else its preset.
+/// The calibration of a device: the one that bears its name, else its preset, else that of a gamepad
+/// with its layout.
 pub fn calibration_of(calibrations: &[Calibration], device: &DeviceInfo) -> Option<Calibration> {
     let own = calibrations.iter().find(|c| c.device == device.name).cloned();
     own.or_else(|| presets::preset(device))

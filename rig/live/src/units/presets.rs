@@ -1,7 +1,8 @@
-//! Calibrations of wheels that many people have, and one for any gamepad. The axes of a device that
-//! is there bring their own ends.
+//! Calibrations of wheels that many people have, and one for all gamepads whose layout is known. The
+//! axes of a device that is there bring their own ends.
 
 use super::calibration::{Axis, Buttons, Calibration, Curve};
+use super::layout::{Layout, Trigger};
 use super::source::DeviceInfo;
 
 // Codes of axes and buttons in the Linux kernel.
@@ -9,14 +10,9 @@ const ABS_X: u16 = 0x00;
 const ABS_Y: u16 = 0x01;
 const ABS_Z: u16 = 0x02;
 const ABS_RZ: u16 = 0x05;
-const ABS_GAS: u16 = 0x09;
-const ABS_BRAKE: u16 = 0x0a;
 const BTN_TRIGGER: u16 = 0x120;
 const BTN_THUMB: u16 = 0x121;
 const BTN_THUMB2: u16 = 0x122;
-const BTN_SOUTH: u16 = 0x130;
-const BTN_EAST: u16 = 0x131;
-const BTN_WEST: u16 = 0x134;
 
 /// Dead zone of a stick, which never rests exactly.
 const STICK_DEAD_ZONE: f32 = 0.12;
@@ -48,17 +44,20 @@ pub fn t300() -> Calibration {
 }
 
 /// Any gamepad: the left stick steers, the triggers are the pedals.
-pub fn gamepad() -> Calibration {
-    let axis =
-        |axis, min, rest| Axis { axis, min, rest, max: 255, invert: false, dead_zone: 0.0, curve: Curve::Linear };
+pub fn gamepad(layout: &Layout) -> Calibration {
+    let axis = |axis, rest| Axis { button: false, max: 255, rest, ..Axis::of_button(axis) };
+    let pedal = |trigger| match trigger {
+        Trigger::Axis(code) => axis(code, 0),
+        Trigger::Button(code) => Axis::of_button(code),
+    };
     Calibration {
         device: "gamepad".into(),
         rotation_deg: 90.0,
         used_deg: 90.0,
-        steering: Axis { dead_zone: STICK_DEAD_ZONE, curve: Curve::Square, ..axis(ABS_X, 0, 128) },
-        throttle: axis(ABS_RZ, 0, 0),
-        brake: axis(ABS_Z, 0, 0),
-        buttons: Buttons { hand_brake: Some(BTN_SOUTH), reverse: Some(BTN_EAST), seen: Some(BTN_WEST) },
+        steering: Axis { dead_zone: STICK_DEAD_ZONE, curve: Curve::Square, ..axis(layout.left_stick_x, 128) },
+        throttle: pedal(layout.right_trigger),
+        brake: pedal(layout.left_trigger),
+        buttons: Buttons { hand_brake: layout.south, reverse: layout.east, seen: layout.west },
     }
 }
 
@@ -66,6 +65,7 @@ pub fn gamepad() -> Calibration {
 fn wheel(device: &str, rotation_deg: f32, pedal_max: i32, throttle: u16, brake: u16) -> Calibration {
     let pedal = |axis| Axis {
         axis,
+        button: false,
         min: 0,
         rest: pedal_max,
         max: pedal_max,
@@ -85,15 +85,15 @@ fn wheel(device: &str, rotation_deg: f32, pedal_max: i32, throttle: u16, brake: 
 }
 
 /// The calibration of a device that nobody has calibrated: its preset, or that of a gamepad. `None`
-/// when it lacks one of the axes.
+/// when it is neither, or lacks one of the axes.
 pub fn preset(device: &DeviceInfo) -> Option<Calibration> {
-    let known = known_wheel(device);
-    let mut calibration = known.map_or_else(gamepad, |(_, _, wheel)| wheel());
-    if known.is_none() && device.axis(ABS_GAS).is_some() && device.axis(ABS_BRAKE).is_some() {
-        (calibration.throttle.axis, calibration.brake.axis) = (ABS_GAS, ABS_BRAKE);
-    }
+    let mut calibration = match known_wheel(device) {
+        Some((_, _, wheel)) => wheel(),
+        None => gamepad(device.layout.as_ref()?),
+    };
     calibration.device.clone_from(&device.name);
-    for axis in [&mut calibration.steering, &mut calibration.throttle, &mut calibration.brake] {
+    let Calibration { steering, throttle, brake, .. } = &mut calibration;
+    for axis in [steering, throttle, brake].into_iter().filter(|axis| !axis.button) {
         let range = device.axis(axis.axis)?;
         fit(axis, range.min, range.max);
     }
@@ -125,11 +125,11 @@ pub(super) fn fit(axis: &mut Axis, min: i32, max: i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::testing::device;
+    use crate::units::testing::{LAYOUT, device};
 
     #[test]
     fn every_preset_is_sound() {
-        for calibration in [g29(), g920(), t150(), t300(), gamepad()] {
+        for calibration in [g29(), g920(), t150(), t300(), gamepad(&LAYOUT)] {
             assert_eq!(calibration.problem(), None, "{}", calibration.device);
             let text = calibration.to_toml().unwrap();
             assert_eq!(Calibration::from_toml(&text), Ok(calibration));
@@ -147,10 +147,32 @@ mod tests {
     }
 
     #[test]
-    fn a_device_without_the_axes_has_no_preset() {
+    fn a_known_wheel_is_no_gamepad_whatever_its_layout() {
+        let mut wheel = device(0, "/dev/input/event5");
+        (wheel.vendor, wheel.product) = (0x046d, 0xc24f);
+        assert!(wheel.layout.is_some());
+        assert_eq!(preset(&wheel).unwrap().rotation_deg, 900.0);
+    }
+
+    #[test]
+    fn a_gamepad_is_read_by_its_layout() {
+        let mut pad = device(0, "/dev/input/event5");
+        let brake = Trigger::Button(0x136);
+        pad.layout = Some(Layout { left_stick_x: 5, right_trigger: Trigger::Axis(1), left_trigger: brake, ..LAYOUT });
+        let calibration = preset(&pad).unwrap();
+        assert_eq!((calibration.steering.axis, calibration.steering.rest), (5, 128));
+        assert_eq!((calibration.throttle.axis, calibration.throttle.rest, calibration.throttle.max), (1, 0, 255));
+        assert_eq!(calibration.brake, Axis::of_button(0x136));
+        assert_eq!(calibration.buttons.hand_brake, Some(0x130));
+    }
+
+    #[test]
+    fn a_device_without_the_axes_or_a_layout_has_no_preset() {
         let mut pedals = device(0, "/dev/input/event5");
         assert_eq!(preset(&pedals).unwrap().steering.dead_zone, STICK_DEAD_ZONE);
         pedals.axes.retain(|a| a.code != ABS_X);
         assert_eq!(preset(&pedals), None);
+        let unknown = DeviceInfo { layout: None, ..device(0, "/dev/input/event5") };
+        assert_eq!(preset(&unknown), None);
     }
 }

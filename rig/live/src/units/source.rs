@@ -3,6 +3,8 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::layout::Layout;
+
 /// Number of a device, valid while it is connected.
 pub type DeviceId = usize;
 
@@ -34,6 +36,8 @@ pub struct DeviceInfo {
     pub axes: Vec<AxisRange>,
     /// Codes of its buttons.
     pub buttons: Vec<u16>,
+    /// Where its elements are, if it is known as a gamepad.
+    pub layout: Option<Layout>,
 }
 
 impl DeviceInfo {

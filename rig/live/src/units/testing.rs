@@ -1,8 +1,19 @@
-//! Simulated wheels for the tests of this folder.
+//! Simulated devices for tests.
 
+use super::layout::{Layout, Trigger};
 use super::source::{AxisRange, DeviceInfo};
 
-/// A wheel with the axes of a G29, of no known make.
+/// That of most gamepads.
+pub(crate) const LAYOUT: Layout = Layout {
+    left_stick_x: 0,
+    right_trigger: Trigger::Axis(5),
+    left_trigger: Trigger::Axis(2),
+    south: Some(0x130),
+    east: Some(0x131),
+    west: Some(0x134),
+};
+
+/// A wheel with the axes of a G29, of no known make, that passes for a gamepad.
 pub(super) fn device(id: usize, path: &str) -> DeviceInfo {
     let axis = |code, max| AxisRange { code, min: 0, max };
     DeviceInfo {
@@ -13,5 +24,6 @@ pub(super) fn device(id: usize, path: &str) -> DeviceInfo {
         product: 2,
         axes: vec![axis(0, 65_535), axis(1, 255), axis(2, 255), axis(5, 255)],
         buttons: (0x120..0x138).collect(),
+        layout: Some(LAYOUT),
     }
 }

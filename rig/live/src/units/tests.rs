@@ -1,5 +1,7 @@
 //! Seats with simulated devices.
 
+mod gamepads;
+
 use proptest::prelude::*;
 
 use super::testing::device;

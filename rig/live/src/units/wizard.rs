@@ -104,6 +104,7 @@ impl Wizard<'_> {
             let moved = f64::from(seen.now) - f64::from(rest);
             let axis = Axis {
                 axis: *code,
+                button: false,
                 min: seen.min,
                 rest,
                 max: seen.max,

@@ -191,6 +191,7 @@ mod tests {
             product: 0,
             axes: Vec::new(),
             buttons: Vec::new(),
+            layout: None,
         };
         let two = [device(0, "/dev/input/event98"), device(1, "/dev/input/event99")];
         assert_eq!(pick(&two[..1], None).unwrap().id, 0);

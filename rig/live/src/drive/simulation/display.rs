@@ -1,0 +1,74 @@
+//! What the simulation puts on the board, and the windows that are drawn anew for it.
+
+use std::sync::Arc;
+
+use kernel::{TickInput, TickOutput, World};
+use viewers::feed::Look;
+
+use crate::drive::board::{Board, Status, Wake};
+use crate::drive::traces::Traces;
+
+/// The board, and what is shown of the run that is on.
+pub struct Display {
+    board: Arc<Board>,
+    wake: Box<dyn Fn(Wake) + Send>,
+    traces: Traces,
+    /// Both drivers' controls.
+    pub input: TickInput,
+    last: Option<TickOutput>,
+}
+
+impl Drop for Display {
+    /// Nobody waits for what does not come any more.
+    fn drop(&mut self) {
+        self.board.feed.scene.close();
+        self.board.status.close();
+    }
+}
+
+impl Display {
+    /// Shows nothing yet. `wake` draws windows anew.
+    pub fn new(board: Arc<Board>, wake: Box<dyn Fn(Wake) + Send>) -> Self {
+        Self { board, wake, traces: Traces::default(), input: TickInput::default(), last: None }
+    }
+
+    /// A new run waits, of which nothing has been driven.
+    pub fn begin(&mut self, world: &World) {
+        self.traces = Traces::of(world);
+        self.show_traces();
+        self.last = None;
+    }
+
+    /// Takes a tick in.
+    pub fn tick(&mut self, world: &World, input: TickInput, output: TickOutput) {
+        self.traces.tick(world, &input, &output);
+        self.input = input;
+        self.last = Some(output);
+    }
+
+    /// What the last tick came to.
+    pub fn last(&self) -> Option<&TickOutput> {
+        self.last.as_ref()
+    }
+
+    /// Puts the plots on the board.
+    pub fn show_traces(&self) {
+        self.board.traces.put(self.traces.clone());
+    }
+
+    /// Puts what there is to see on the board.
+    pub fn show_scene(&self, run: u32, world: &World, captured_us: u64) {
+        self.board.feed.scene.put(Look { run, scene: world.scene(), captured_us });
+    }
+
+    /// Puts how the session is on the board, and has windows drawn anew.
+    pub fn show_status(&self, status: Option<Status>, wake: Option<Wake>) {
+        if let Some(status) = status {
+            self.board.feed.telemetry.put(status.telemetry());
+            self.board.status.put(status);
+        }
+        if let Some(wake) = wake {
+            (self.wake)(wake);
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! The thread that drives: it paces the ticks, listens to everybody, and waits for nobody.
+
+mod cutters;
+mod display;
+mod pace;
+mod plan;
+mod recording;
+mod runs;
+mod session;
+mod sights;
+mod status;
+mod voice;
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+
+use base::progress::Interrupt;
+use base::words;
+use drivers::session::SessionState;
+use kernel::arbiter::Outcome;
+use kernel::time::{TICK_HZ, Tick};
+
+use super::board::{Message, Wake};
+use super::run::car_state;
+use super::seating::{self, Seating};
+use super::stage::{Press, Stage, Wish};
+use super::timings::Timings;
+use crate::units::Polled;
+pub use plan::{Links, Plan};
+use session::Session;
+
+/// The control centre is drawn anew after so many ticks.
+const CENTRE_TICKS: u64 = 6;
+
+/// A session that is driven.
+pub struct Simulation {
+    session: Session,
+    inbox: Receiver<Message>,
+    interrupt: Interrupt,
+}
+
+/// Why a session ends.
+enum End {
+    Asked,
+    Closed,
+    Signal,
+}
+
+impl End {
+    fn words(&self) -> &'static str {
+        match self {
+            Self::Asked => "the operators ended it",
+            Self::Closed => "a window was closed",
+            Self::Signal => "it was ended by Ctrl-C or SIGTERM",
+        }
+    }
+}
+
+impl Simulation {
+    /// Takes the seats and makes the first world.
+    pub fn new(plan: Plan, seating: Seating, links: Links) -> anyhow::Result<Self> {
+        let Links { board, inbox, outbox, wake, clock, interrupt } = links;
+        let session = Session::new(plan, seating, board, wake, outbox, clock)?;
+        Ok(Self { session, inbox, interrupt })
+    }
+
+    /// Drives until the operators have had enough, and says how well it kept real time. The last
+    /// recording is finished whatever happens.
+    pub fn drive(mut self) -> anyhow::Result<Timings> {
+        let end = self.listen_and_tick();
+        let session = &mut self.session;
+        let unfinished = session.end_run(session.runs.stage.annotation());
+        let cut = session.join_cutters();
+        let mut last = Ok(());
+        if let (Ok(Some(path)), true) = (&unfinished, session.is_attended()) {
+            let why = end.as_ref().map_or("it could not go on", End::words);
+            let path_said = path.display();
+            session.voice.say(format_args!("the run is over: {why}; its recording is complete: {path_said}"));
+            last = session.look_back(path);
+        }
+        end?;
+        unfinished?;
+        last?;
+        cut?;
+        Ok(self.session.pace.timings())
+    }
+
+    fn listen_and_tick(&mut self) -> anyhow::Result<End> {
+        loop {
+            let wait = self.session.pace.wait(self.session.runs.is_driving());
+            match self.inbox.recv_timeout(wait) {
+                Ok(message) => {
+                    if let Some(end) = self.hear(message)? {
+                        return Ok(end);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    self.turn()?;
+                    if self.session.unattended_over() {
+                        return Ok(End::Asked);
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => return Ok(End::Asked),
+            }
+            if self.interrupt.is_raised() {
+                return Ok(End::Signal);
+            }
+        }
+    }
+
+    /// A tick is due; between runs, the units are looked after all the same.
+    fn turn(&mut self) -> anyhow::Result<()> {
+        let session = &mut self.session;
+        let car = session.runs.world().map(car_state).unwrap_or_default();
+        let (polled, is_news) = session.seating.poll(car);
+        if is_news {
+            session.show_status(Some(Wake::All));
+        }
+        for event in &polled.events {
+            session.note(seating::event_text(event));
+        }
+        session.display.input = polled.input();
+        match &session.runs.stage {
+            Stage::Ready if !session.is_attended() && session.sights.screen().is_some() => session.start()?,
+            Stage::Driving => tick(session, &polled)?,
+            _ => {}
+        }
+        // After a takeover the car is braked to standstill instead, and the case asks for its label.
+        if session.runs.is_driving() && !car.taken_over && seating::is_unwatched(&polled) {
+            let number = session.runs.number();
+            session.voice.say(format_args!("run {number} was ended: the safety driver's unit is lost"));
+            session.finish(None)?;
+        }
+        match &session.runs.stage {
+            Stage::Driving => {}
+            // The jolt of the collision that ended the run fades.
+            Stage::Labelling(_) => session.force.drive(0.0, &[], session.seating.armed_devices()),
+            Stage::Ready => session.force.rest(),
+        }
+        Ok(())
+    }
+
+    fn hear(&mut self, message: Message) -> anyhow::Result<Option<End>> {
+        let session = &mut self.session;
+        match message {
+            // What is typed into a comment drives nothing.
+            Message::SeatKey(_, true) if matches!(session.runs.stage, Stage::Labelling(_)) => {}
+            Message::SeatKey(key, pressed) => session.seating.seats().key(key, pressed),
+            Message::KeysReleased => session.seating.seats().release_keys(),
+            Message::Focus(is_ours) => session.seating.seats().focus(is_ours),
+            Message::Press(press, repeated) => return obey(session, &press, repeated),
+            Message::Shown(seat, view, presented_us) => session.shown(seat, view, presented_us),
+            Message::Note(text) => session.note(text),
+            Message::Closed => return Ok(Some(End::Closed)),
+            Message::Failed(error) => return Err(error),
+        }
+        Ok(None)
+    }
+}
+
+/// Does what an operator's key asks for.
+fn obey(session: &mut Session, press: &Press, repeated: bool) -> anyhow::Result<Option<End>> {
+    match session.runs.stage.press(press, repeated) {
+        Wish::Nothing => session.show_status(Some(Wake::Centre)),
+        Wish::Start => session.start()?,
+        Wish::Swap => session.swap(),
+        Wish::Force => {
+            session.force.toggle();
+            session.show_status(Some(Wake::Centre));
+        }
+        Wish::Annotate(annotation) => session.finish(Some(annotation))?,
+        Wish::Quit => return Ok(Some(End::Asked)),
+    }
+    Ok(None)
+}
+
+/// Drives a tick with what the units gave, and shows what it came to.
+fn tick(session: &mut Session, polled: &Polled) -> anyhow::Result<()> {
+    let Some(run) = session.runs.current() else { return Ok(()) };
+    session.pace.begin_tick();
+    let (state, output, input) = run.tick(polled, session.sights.screen())?;
+    session.force.drive(run.world().hud().speed_mps, &output.events, session.seating.armed_devices());
+    for event in &output.events {
+        session.voice.note(words::event_at(output.tick, event));
+    }
+    let tick = output.tick;
+    session.display.tick(run.world(), input, output);
+    session.show_scene();
+    match state {
+        SessionState::Driving => {}
+        SessionState::Labelling(_) | SessionState::Done(Outcome::Missed) => session.ask()?,
+        SessionState::Done(_) => session.finish(None)?,
+    }
+    if tick.is_multiple_of(Tick::from(TICK_HZ)) {
+        session.voice.say(format_args!("tick {tick}"));
+    }
+    let is_due = tick.is_multiple_of(CENTRE_TICKS);
+    if is_due {
+        session.display.show_traces();
+    }
+    session.show_status(is_due.then_some(Wake::Centre));
+    Ok(())
+}

@@ -1,0 +1,67 @@
+//! When the next tick is due, and how well the session has kept real time.
+
+use std::time::Duration;
+
+use base::clock::SessionClock;
+use kernel::Seat;
+
+use crate::drive::pacing::Pacing;
+use crate::drive::timings::Timings;
+
+/// While nothing drives, the units are asked this often, microseconds.
+const IDLE_US: u64 = 16_667;
+
+/// The ticks of a session against its clock.
+pub struct Pace {
+    clock: SessionClock,
+    pacing: Pacing,
+    timings: Timings,
+}
+
+impl Pace {
+    /// Nothing drives yet.
+    pub fn new(clock: SessionClock) -> Self {
+        Self { clock, pacing: Pacing::starting_at(0), timings: Timings::default() }
+    }
+
+    /// Time since the session began, microseconds.
+    pub fn now_us(&self) -> u64 {
+        self.clock.now_us()
+    }
+
+    /// The schedule of the run.
+    pub fn schedule(&self) -> &Pacing {
+        &self.pacing
+    }
+
+    /// The schedule begins anew: a run starts, or waits for its start.
+    pub fn restart(&mut self) {
+        self.pacing = Pacing::starting_at(self.now_us());
+    }
+
+    /// Time until the units are to be asked again; while a run drives, until its next tick.
+    pub fn wait(&self, is_driving: bool) -> Duration {
+        Duration::from_micros(if is_driving { self.pacing.wait_us(self.now_us()) } else { IDLE_US })
+    }
+
+    /// A tick begins.
+    pub fn begin_tick(&mut self) {
+        self.pacing.begin_tick(self.now_us());
+        self.timings.tick(self.pacing.late_us());
+    }
+
+    /// A picture of this age came onto a driver's screen, microseconds.
+    pub fn shown(&mut self, seat: Seat, age_us: u64) {
+        self.timings.shown(seat, age_us);
+    }
+
+    /// The run is over.
+    pub fn end_run(&mut self) {
+        self.timings.run(self.pacing.driven_us(), self.pacing.slowed_us());
+    }
+
+    /// How well the session kept real time.
+    pub fn timings(self) -> Timings {
+        self.timings
+    }
+}

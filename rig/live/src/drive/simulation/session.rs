@@ -1,0 +1,202 @@
+//! A session from run to run: how a run is prepared, started, ended, and what is shown of it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+
+use base::clock::SessionClock;
+use kernel::Seat;
+use kernel::time::{TICK_HZ, Tick};
+use replay::Annotation;
+use viewers::feed::View;
+
+use super::cutters::Cutters;
+use super::display::Display;
+use super::pace::Pace;
+use super::plan::Plan;
+use super::recording;
+use super::runs::Runs;
+use super::sights::Sights;
+use super::status::Parts;
+use super::voice::Voice;
+use crate::drive::aftermath;
+use crate::drive::board::{Board, Message, Wake};
+use crate::drive::force::Force;
+use crate::drive::run::Run;
+use crate::drive::seating::Seating;
+use crate::drive::stage::{Dialog, Stage};
+
+/// An unattended session that takes three times as long as it should, and this, has failed, microseconds.
+const PATIENCE_US: u64 = 30_000_000;
+
+/// A session of live runs.
+pub struct Session {
+    /// Goes first, so that nobody waits for it while the others end.
+    pub display: Display,
+    pub seating: Seating,
+    pub force: Force,
+    pub voice: Voice,
+    pub runs: Runs,
+    pub pace: Pace,
+    pub sights: Sights,
+    plan: Plan,
+    cutters: Cutters,
+    outbox: Sender<Message>,
+}
+
+impl Session {
+    /// Takes the seats and makes the first world.
+    pub fn new(
+        plan: Plan,
+        seating: Seating,
+        board: Arc<Board>,
+        wake: Box<dyn Fn(Wake) + Send>,
+        outbox: Sender<Message>,
+        clock: SessionClock,
+    ) -> anyhow::Result<Self> {
+        let voice = Voice::new(plan.unattended.is_none());
+        seating.setup().iter().for_each(|line| voice.say(format_args!("{line}")));
+        let force = Force::new(plan.force, &outbox);
+        let (runs, not_counted) = Runs::after_earlier_ones(&plan.record);
+        not_counted.iter().for_each(|line| voice.say(format_args!("{line}")));
+        let mut session = Self {
+            display: Display::new(board.clone(), wake),
+            seating,
+            force,
+            voice,
+            runs,
+            pace: Pace::new(clock),
+            sights: Sights::default(),
+            cutters: Cutters::new(board, outbox.clone(), plan.tell.clone()),
+            plan,
+            outbox,
+        };
+        session.prepare()?;
+        Ok(session)
+    }
+
+    /// Whether people attend it.
+    pub fn is_attended(&self) -> bool {
+        self.plan.unattended.is_none()
+    }
+
+    /// Whether nobody attends it, and all has been driven that was to be driven.
+    pub fn unattended_over(&self) -> bool {
+        // A display that shows nothing would keep it waiting for ever.
+        let is_stuck = |ticks: Tick| self.pace.now_us() > PATIENCE_US + 3 * ticks * 1_000_000 / Tick::from(TICK_HZ);
+        self.plan.unattended.is_some_and(|ticks| self.runs.driven_ticks() >= ticks || is_stuck(ticks))
+    }
+
+    /// Makes the world of the next run and shows it.
+    fn prepare(&mut self) -> anyhow::Result<()> {
+        let world = self.runs.prepare(&self.plan)?;
+        self.display.begin(world);
+        self.voice.say(format_args!("run {} is ready: N starts it", self.runs.number()));
+        self.sights = Sights::default();
+        self.pace.restart();
+        self.show_scene();
+        self.show_status(Some(Wake::All));
+        Ok(())
+    }
+
+    /// Starts the run that waits, if the units are armed.
+    pub fn start(&mut self) -> anyhow::Result<()> {
+        if !self.seating.is_ready() {
+            let why = self.seating.note();
+            self.note(format!("the run cannot start: {}", why.as_deref().unwrap_or("the units are not known yet")));
+            return Ok(());
+        }
+        let Some(world) = self.runs.take_next() else { return Ok(()) };
+        let number = self.runs.number();
+        let manifest = recording::manifest(&self.plan, &self.seating, number, &world);
+        let (path, file) = recording::create(&self.plan.record, number, self.outbox.clone())?;
+        self.voice.say(format_args!("run {number}: recording {}", path.display()));
+        self.runs.start(Run::start(world, &manifest, self.seating.bots(), path, file)?);
+        self.pace.restart();
+        self.voice.forget();
+        self.seating.seats().engage_forward();
+        self.show_status(Some(Wake::All));
+        Ok(())
+    }
+
+    /// The units change seats, between runs.
+    pub fn swap(&mut self) {
+        let said = self.seating.swap();
+        self.voice.say(format_args!("{said}"));
+        self.note(said);
+        self.show_status(Some(Wake::All));
+    }
+
+    /// A view came onto a driver's screen. Ages are those of the pictures that the drivers drove by; a
+    /// picture of another run is none.
+    pub fn shown(&mut self, seat: Seat, view: Arc<View>, presented_us: u64) {
+        if view.run != self.runs.number() {
+            return;
+        }
+        if self.runs.is_driving() {
+            self.pace.shown(seat, presented_us.saturating_sub(view.captured_us));
+        }
+        self.sights.take(seat, view, presented_us);
+    }
+
+    /// Asks the operators for a label; a bot in the safety driver's seat knows it.
+    pub fn ask(&mut self) -> anyhow::Result<()> {
+        match self.runs.bots_word() {
+            Some(annotation) => self.finish(Some(annotation)),
+            None => {
+                let number = self.runs.number();
+                self.voice.say(format_args!("run {number} has ended: label it in the control centre"));
+                self.runs.stage = Stage::Labelling(Dialog::default());
+                self.show_status(Some(Wake::All));
+                Ok(())
+            }
+        }
+    }
+
+    /// Ends the run's recording; its case is cut while the next run waits.
+    pub fn finish(&mut self, annotation: Option<Annotation>) -> anyhow::Result<()> {
+        let Some(path) = self.end_run(annotation)? else { return Ok(()) };
+        self.note(format!("recorded {}", path.display()));
+        if self.is_attended() {
+            self.cutters.cut(&path);
+        }
+        self.prepare()
+    }
+
+    /// Ends the run that is on, as far as there is one, and gives where its recording is.
+    pub fn end_run(&mut self, annotation: Option<Annotation>) -> anyhow::Result<Option<PathBuf>> {
+        let counts = !self.plan.about.is_familiarisation;
+        let Some(recorded) = self.runs.end(annotation, counts) else { return Ok(None) };
+        self.pace.end_run();
+        recorded.map(Some)
+    }
+
+    /// What follows the last run of the session, for which nobody waits any more.
+    pub fn look_back(&self, path: &Path) -> anyhow::Result<()> {
+        aftermath::of(path, &*self.plan.tell).map(drop)
+    }
+
+    /// Waits until the cases of all runs but the last are cut.
+    pub fn join_cutters(&mut self) -> anyhow::Result<()> {
+        self.cutters.join()
+    }
+
+    /// Adds to what the control centre lists.
+    pub fn note(&mut self, text: String) {
+        self.voice.note(text);
+        self.show_status(Some(Wake::Centre));
+    }
+
+    /// Shows what there is to see.
+    pub fn show_scene(&self) {
+        let Some(world) = self.runs.world() else { return };
+        self.display.show_scene(self.runs.number(), world, self.pace.now_us());
+    }
+
+    /// Shows how the session is, and has windows drawn anew.
+    pub fn show_status(&self, wake: Option<Wake>) {
+        let Self { display, seating, force, voice, runs, pace, sights, plan, .. } = self;
+        let parts = Parts { about: &plan.about, seating, force, voice, display, runs, pace, sights };
+        display.show_status(parts.status(), wake);
+    }
+}
