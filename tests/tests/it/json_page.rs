@@ -33,7 +33,7 @@ struct Sources {
 impl Sources {
     fn read(&mut self, folder: &Path) {
         let entries = fs::read_dir(folder).expect("a readable folder").map(|entry| entry.expect("an entry").path());
-        for path in entries {
+        for path in entries.collect::<BTreeSet<_>>() {
             if path.is_dir() {
                 self.read(&path);
             } else if path.extension().is_some_and(|ending| ending == "rs") {
@@ -45,8 +45,8 @@ impl Sources {
 
     fn add(&mut self, file: &Path, item: Item) {
         let name = match &item {
-            Item::Struct(item) => item.ident.to_string(),
-            Item::Enum(item) => item.ident.to_string(),
+            Item::Struct(item) if is_serialised(&item.attrs) => item.ident.to_string(),
+            Item::Enum(item) if is_serialised(&item.attrs) => item.ident.to_string(),
             Item::Impl(item) => {
                 let is_typed = item.trait_.as_ref().is_some_and(|(path, ..)| last(path) == "Typed");
                 if let (true, Some(name), Type::Path(of)) = (is_typed, constant(item), &*item.self_ty) {
@@ -65,6 +65,17 @@ impl Sources {
             |known: &&Known| known.file.components().zip(near.components()).take_while(|(a, b)| a == b).count();
         self.known.get(name)?.iter().max_by_key(|known| (known.file == near, shared(known)))
     }
+}
+
+fn is_serialised(attributes: &[Attribute]) -> bool {
+    attributes.iter().filter(|attribute| attribute.path().is_ident("derive")).any(|attribute| {
+        let mut found = false;
+        let _ = attribute.parse_nested_meta(|meta| {
+            found |= meta.path.is_ident("Serialize");
+            Ok(())
+        });
+        found
+    })
 }
 
 fn last(path: &syn::Path) -> String {

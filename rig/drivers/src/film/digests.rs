@@ -19,8 +19,11 @@ use crate::vision::{self, Eye, digest_of};
 /// What the comparison came to.
 #[derive(Debug, Serialize)]
 pub struct Digests {
+    /// The file.
     file: String,
+    /// Name of the checkpoint.
     checkpoint: String,
+    /// Its digest, hexadecimal.
     checkpoint_digest: String,
     /// Size of the pictures, as in `256x128`.
     camera: String,
@@ -30,15 +33,19 @@ pub struct Digests {
     recorded_adapter: String,
     /// What computes them now, and what did when they were shown.
     inference: &'static str,
+    /// What computed the masks of the drive.
     recorded_inference: &'static str,
     /// Masks in the log.
     masks: usize,
     /// Frames that were drawn and looked at again for them.
     frames: usize,
+    /// Masks with the logged digest.
     equal: usize,
+    /// Masks with another one.
     different: usize,
     /// Masks of frames from before the file's first tick.
     before_start: usize,
+    /// The first of those.
     first_difference: Option<Difference>,
 }
 
@@ -50,9 +57,13 @@ impl Typed for Digests {
 /// A mask that is not the logged one.
 #[derive(Debug, Serialize)]
 struct Difference {
+    /// When the mask came to the screen.
     tick_shown: Tick,
+    /// Tick that it is a picture of.
     tick_of_frame: Tick,
+    /// The digest in the log, hexadecimal.
     logged: String,
+    /// The digest of the mask made again.
     rebuilt: String,
 }
 

@@ -169,9 +169,13 @@ impl CaseLine {
 /// How fast the frames of this call went; those found from earlier calls are not among them.
 #[derive(Serialize)]
 pub struct Speed {
+    /// Frames that were drawn and looked at.
     pub frames: usize,
+    /// Checkpoints that looked at them.
     pub checkpoints: usize,
+    /// Time that it took, seconds.
     pub seconds: f64,
+    /// Frames a second.
     pub frames_per_s: f64,
     /// Each stage with the machine to itself, on the frames of the first cases.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -54,9 +54,13 @@ impl Typed for Counterfactual {
 struct Key {
     /// Digest of the recording, which names the checkpoint.
     recording: String,
+    /// Version of the kernel.
     kernel: String,
+    /// Version of the renderer.
     renderer: String,
+    /// How long after the intervention the fork goes on.
     after_ticks: Tick,
+    /// Version of how verdicts are given.
     verdicts: u32,
 }
 
