@@ -17,6 +17,7 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::Tally;
 use measures::footage::Footage;
+use measures::statistics::Ride;
 use perception::ConfusionMatrix;
 use render::AdapterChoice;
 use replay::Recording;
@@ -30,8 +31,8 @@ pub use strip::Seen;
 use strip::Strip;
 
 /// The page about these corner cases, each drawn at `size` and looked at through each checkpoint.
-/// Kilometres and minutes are those of all recordings that lie beside the cases. Drives to get used
-/// to the rig do not count.
+/// Kilometres, and the corner cases that they are divided by, are those of all recordings that lie beside the
+/// cases, which may be a few of theirs. Drives to get used to the rig do not count.
 pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32)) -> anyhow::Result<String> {
     let mut eyes = open_eyes(choices, size)?;
     AdapterChoice::default().find()?;
@@ -64,38 +65,28 @@ pub fn render(files: &[PathBuf], choices: &[CheckpointChoice], size: (u32, u32))
         bail!("no case is left: expected one of a drive that counts");
     }
     let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
-    Page::new(&eyes, size, &overall, &seen, (&exposure(files)?, &tally), cases).render()
+    Page::new(&eyes, size, &overall, &seen, (&driven(files)?, &tally), cases).render()
 }
 
-/// What was driven.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Exposure {
-    recordings: usize,
-    km: f64,
-    minutes: f64,
-}
-
-/// Sums over the recordings in the folders of the cases.
-fn exposure(cases: &[PathBuf]) -> anyhow::Result<Exposure> {
+/// What was driven beside the cases: the rides of all recordings in their folders, each once, whichever of
+/// their cases are shown. Forks of `aeye redrive` were driven by nobody.
+fn driven(cases: &[PathBuf]) -> anyhow::Result<Vec<Ride>> {
     let here = Path::new(".");
     let folder = |path: &PathBuf| path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(here).to_owned();
-    let mut sum = Exposure::default();
+    let (mut rides, mut known) = (Vec::new(), BTreeSet::new());
     for folder in cases.iter().map(folder).collect::<BTreeSet<_>>() {
         let entries = std::fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
         let mut paths = entries.map(|e| e.map(|e| e.path())).collect::<Result<Vec<_>, _>>()?;
         paths.sort();
         for path in paths.iter().filter(|path| is_recording(path)) {
             let recording = Recording::open(path)?;
-            let log = recording.log();
-            if study::is_familiarisation(&log.manifest.provenance) {
-                continue;
+            let is_fork = recording.log().manifest.provenance.contains_key("fork");
+            if !is_fork && known.insert(recording.digest()) {
+                rides.extend(Ride::of(&recording));
             }
-            sum.recordings += 1;
-            sum.km += log.odometer_mm() as f64 / 1e6;
-            sum.minutes += log.inputs.len() as f64 / f64::from(60 * kernel::time::TICK_HZ);
         }
     }
-    Ok(sum)
+    Ok(rides)
 }
 
 fn is_recording(path: &Path) -> bool {
