@@ -56,7 +56,7 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
     for eye in &eyes {
         runs.extend(drive_all(&plan, eye, jobs, interrupt)?);
     }
-    let figures = figures(plan.seed, &names, runs);
+    let figures = figures(plan.seed, plan.until, &names, runs);
     output::write_file(&plan.out.join("campaign.json"), output::json_file(&figures)?.as_bytes())?;
     Ok(figures)
 }

@@ -7,7 +7,7 @@ use measures::statistics::{Comparison, Ride, Statistics};
 use replay::{Label, Recording};
 use serde::Serialize;
 
-use super::Plan;
+use super::{Plan, Until};
 use crate::redrive::Counterfactual;
 
 /// A run in `campaign.json`.
@@ -68,6 +68,8 @@ pub struct CheckpointFigures {
 pub struct CampaignFigures {
     /// Seed of the campaign.
     pub seed: u64,
+    /// What ended it, checkpoint by checkpoint: intervals and tests are those of that design.
+    pub until: Until,
     /// Kilometres of all runs.
     pub km: f64,
     /// Corner cases of all runs.
@@ -79,12 +81,12 @@ pub struct CampaignFigures {
 }
 
 /// The figures of a campaign's runs.
-pub fn figures(seed: u64, checkpoints: &[String], runs: Vec<RunLine>) -> CampaignFigures {
+pub fn figures(seed: u64, until: Until, checkpoints: &[String], runs: Vec<RunLine>) -> CampaignFigures {
     let mut each: Vec<CheckpointFigures> = Vec::new();
     for name in checkpoints {
         let runs = || runs.iter().filter(|run| run.checkpoint == *name);
         let rides: Vec<Ride> = runs().filter_map(|run| run.ride).collect();
-        let statistics = Statistics::of(&rides);
+        let statistics = Statistics::of(&rides, until.sampling());
         let mut interventions = BTreeMap::new();
         for counterfactual in runs().filter_map(|run| run.without_intervention.as_ref()) {
             *interventions.entry(counterfactual.verdict.name()).or_insert(0) += 1;
@@ -93,5 +95,5 @@ pub fn figures(seed: u64, checkpoints: &[String], runs: Vec<RunLine>) -> Campaig
         each.push(CheckpointFigures { checkpoint: name.clone(), statistics, interventions, against_first });
     }
     let (km, cases) = (each.iter().map(|c| c.statistics.km).sum(), each.iter().map(|c| c.statistics.cases).sum());
-    CampaignFigures { seed, km, cases, checkpoints: each, runs }
+    CampaignFigures { seed, until, km, cases, checkpoints: each, runs }
 }

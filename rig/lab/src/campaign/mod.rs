@@ -10,6 +10,8 @@ use std::path::PathBuf;
 
 use kernel::Scenario;
 use kernel::rng::{self, Stream};
+use measures::statistics::Sampling;
+use serde::Serialize;
 
 pub use drive::{Options, drive};
 pub use figures::{CampaignFigures, RunLine, figures};
@@ -23,7 +25,8 @@ const STALLED_RUNS: usize = 200;
 const CREEP_M: u64 = 5;
 
 /// When a campaign is over; counted for each checkpoint.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Until {
     /// So many runs.
     Runs(u32),
@@ -36,6 +39,16 @@ pub enum Until {
 }
 
 impl Until {
+    /// What exact intervals of its figures rest on. A run ends with its corner case, so a campaign does that stops by
+    /// their number; one that stops by kilometres goes on to the end of its last run, by less than a run's length.
+    pub fn sampling(self) -> Sampling {
+        match self {
+            Self::Runs(_) => Sampling::Rides,
+            Self::Km(_) => Sampling::Length,
+            Self::Cases(_) | Self::PedestrianCases(_) => Sampling::Cases,
+        }
+    }
+
     /// Whether these runs, the first of the campaign, are enough.
     pub fn is_met(&self, runs: &[RunLine]) -> bool {
         let (done, of) = self.progress(runs);
@@ -121,6 +134,7 @@ impl Plan {
 mod tests {
     use super::*;
     use measures::run_figures::RunFigures;
+    use measures::statistics::Ride;
 
     fn runs(each: impl IntoIterator<Item = (f64, bool)>) -> Vec<RunLine> {
         let figures = |km| RunFigures {
@@ -156,5 +170,22 @@ mod tests {
         }
         assert!(!Until::Runs(1000).is_out_of_reach(&stalled));
         assert!(Until::PedestrianCases(1).is_out_of_reach(&slow), "no case is labelled walker");
+    }
+
+    #[test]
+    fn figures_know_what_ended_the_campaign() {
+        let rides = |km: f64| Ride { km, minutes: km, is_case: true, label: None, perception_caused: None };
+        let mut lines = runs([(2.0, true), (3.0, true)]);
+        lines.iter_mut().for_each(|line| line.ride = Some(rides(line.figures.km)));
+        let of = |until| figures(1, until, &["full".to_owned()], lines.clone());
+        let high = |until| of(until).checkpoints[0].statistics.cases_per_km_95.1;
+        assert!(high(Until::Cases(2)) < high(Until::Km(5.0)) && high(Until::Km(5.0)) == high(Until::Runs(2)));
+        let json = |until| serde_json::to_value(of(until)).expect("it has names");
+        let (by_cases, by_km) = (json(Until::PedestrianCases(2)), json(Until::Km(5.0)));
+        assert_eq!((&by_cases["until"]["pedestrian_cases"], &by_km["until"]["km"]), (&2.into(), &5.0.into()));
+        assert_eq!(
+            (&by_cases["checkpoints"][0]["sampling"], &by_km["checkpoints"][0]["sampling"]),
+            (&"cases".into(), &"length".into())
+        );
     }
 }

@@ -79,7 +79,7 @@ impl Stages<'_> {
         let second_campaign = self.second_campaign(&firsts)?;
         let folder = self.out.join(SECOND_CAMPAIGN);
         let recordings: Vec<PathBuf> = second_campaign.runs.iter().map(|run| folder.join(&run.file)).collect();
-        let table_2 = statistics::of_recordings(&recordings, None, false)?;
+        let table_2 = statistics::of_campaign(&recordings, second_campaign.until.sampling())?;
         say(8, "writing tables and report");
         let tables = Tables { table_1, table_2 };
         let (networks, datasets) = (firsts, self.datasets()?);

@@ -8,7 +8,7 @@ use base::failure::Usage;
 use replay::Recording;
 use serde::Serialize;
 
-use super::{Comparison, Ride, Statistics};
+use super::{Comparison, Ride, Sampling, Statistics};
 
 /// What blind drives go by.
 const BLIND: &str = "blind";
@@ -38,11 +38,26 @@ struct Group {
 
 /// Statistics of recordings and of folders of them (where corner cases are left out), checkpoint by
 /// checkpoint in the order of their first rides. The reference is the first unless it is named. Blind
-/// drives are all one, unless their checkpoints are to be revealed.
+/// drives are all one, unless their checkpoints are to be revealed. Recordings do not say what decided how
+/// much was driven.
 pub fn of_recordings(
     paths: &[PathBuf],
     reference: Option<&str>,
     reveal: bool,
+) -> anyhow::Result<Vec<CheckpointStatistics>> {
+    of_sampled(paths, reference, reveal, Sampling::Unknown)
+}
+
+/// The same of all recordings of a campaign, of which that is known; the first checkpoint is the reference.
+pub fn of_campaign(paths: &[PathBuf], sampling: Sampling) -> anyhow::Result<Vec<CheckpointStatistics>> {
+    of_sampled(paths, None, false, sampling)
+}
+
+fn of_sampled(
+    paths: &[PathBuf],
+    reference: Option<&str>,
+    reveal: bool,
+    sampling: Sampling,
 ) -> anyhow::Result<Vec<CheckpointStatistics>> {
     let mut groups = group(&recordings(paths)?, reveal)?;
     tell_apart(&mut groups);
@@ -52,9 +67,9 @@ pub fn of_recordings(
     let Some(at) = names.iter().position(|n| *n == name) else {
         return Err(Usage(format!("no recording is of {name:?}; expected one of {}", names.join(", "))).into());
     };
-    let reference = Statistics::of(&groups[at].rides);
+    let reference = Statistics::of(&groups[at].rides, sampling);
     let of = |(i, group): (usize, Group)| {
-        let statistics = Statistics::of(&group.rides);
+        let statistics = Statistics::of(&group.rides, sampling);
         let against_reference = (i != at).then(|| Comparison::of(&reference, &statistics));
         CheckpointStatistics { checkpoint: group.checkpoint, digest: group.digest, statistics, against_reference }
     };
