@@ -4,7 +4,7 @@ use std::io::Write;
 
 use base::maps::Map;
 use kernel::arbiter::{Outcome, Phase};
-use kernel::time::{CLIP_TICKS, Tick, seconds};
+use kernel::time::{CLIP_TICKS, TICK_HZ, Tick, seconds};
 use kernel::{Keyframe, Scenario, World};
 use replay::{Annotation, Label, Manifest};
 
@@ -17,8 +17,10 @@ use crate::vision::{self, Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
 pub fn fork_before_ticks(label: Label) -> Tick {
     if label == Label::Boredom { BORING_TICKS + CLIP_TICKS } else { CLIP_TICKS }
 }
-/// A fork that is still going this long after the intervention did not need it.
-const FORK_AFTER_TICKS: Tick = seconds(5);
+/// A fork goes on for this long after the intervention; one that comes so far without harm did not need it. The one
+/// time for every such question: `perception_caused` of a recording, what would have happened without the
+/// intervention, and `aeye redrive`, unless it is told otherwise. Predictions of criticality look as far ahead.
+pub const FORK_AFTER_TICKS: Tick = seconds(10);
 
 /// The manifest of a simulated run: bots in both seats, what the semantic one sees, and when.
 pub fn manifest(scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
@@ -103,9 +105,10 @@ fn needed_with_truth(
     }
     let early = |k: &&Keyframe| k.tick + before <= at;
     let Some(start) = keyframes.iter().rev().find(early) else { return Ok((true, vision)) };
-    let mut fork = World::resume(world.scenario(), world.network(), start)?;
+    let end = at + FORK_AFTER_TICKS;
+    let mut fork = World::resume(&lasting(world.scenario().clone(), end), world.network(), start)?;
     let mut crew = Crew::new(vision.with_eye(Eye::Truth));
-    while fork.tick() < at + FORK_AFTER_TICKS && matches!(fork.arbiter().phase, Phase::Arming | Phase::Driving) {
+    while fork.tick() < end && matches!(fork.arbiter().phase, Phase::Arming | Phase::Driving) {
         let (input, _) = crew.act(&fork)?;
         fork.step(&input);
     }
@@ -114,4 +117,25 @@ fn needed_with_truth(
         outcome => outcome.is_some() || fork.arbiter().intervention.is_some(),
     };
     Ok((needed, crew.into_vision()))
+}
+
+/// A scenario whose limit of time does not end a fork before that tick. Rules are not part of the world's state.
+pub fn lasting(mut scenario: Scenario, until: Tick) -> Scenario {
+    let limit_s = &mut scenario.rules.max_seconds;
+    *limit_s = (*limit_s).max((until / Tick::from(TICK_HZ)) as u32 + 1);
+    scenario
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fork_lasts_its_time_although_the_run_would_end() {
+        let mut scenario = Scenario::default_for("city", 1);
+        scenario.rules.max_seconds = 20;
+        let takeover = seconds(19);
+        let limit_s = lasting(scenario.clone(), takeover + FORK_AFTER_TICKS).rules.max_seconds;
+        assert_eq!((limit_s, lasting(scenario, seconds(5)).rules.max_seconds), (30, 20));
+    }
 }

@@ -10,7 +10,8 @@ use drivers::checkpoint::CheckpointChoice;
 use lab::report;
 use replay::Recording;
 use tests::files::contents;
-use tests::recordings::{TAKEOVER, recorded};
+use tests::recordings::{ALONE, TAKEOVER, record, recorded, recorded_in};
+use tests::scenes::busy_city;
 
 fn rerender_args(file: &Path, out: PathBuf) -> RerenderArgs {
     let checkpoint = vec![CheckpointChoice::Truth];
@@ -88,4 +89,26 @@ fn a_report_stands_alone_and_escapes_what_people_wrote() {
     assert_eq!((columns("time "), columns("time more")), (6, 24), "one in five frames is always on the page");
     let outside = ["src=\"http", "href=\"http", "src=\"/", "@import", "url("];
     assert!(outside.iter().all(|link| !html.contains(link)));
+}
+
+/// A page about one of two cases, beside three recordings: its kilometres a case are those of the recordings.
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn kilometres_a_case_do_not_depend_on_how_many_cases_are_shown() {
+    let dir = tempfile::tempdir().unwrap();
+    let (first, case) = recorded(dir.path());
+    let mut other = busy_city();
+    other.scenario.seed += 1;
+    let (second, another) = recorded_in(&other, dir.path(), "b");
+    let calm = dir.path().join("calm.mcap");
+    fs::write(&calm, record(&busy_city(), 600, ALONE)).unwrap();
+    fs::copy(&calm, dir.path().join("calm again.mcap")).unwrap();
+    let km = |path: &PathBuf| Recording::open(path).unwrap().log().odometer_mm() as f64 / 1e6;
+    let per_case =
+        format!("<b>{:.2}</b>km per corner case", [&first, &second, &calm].map(km).iter().sum::<f64>() / 2.0);
+    let page = |cases: &[PathBuf]| report::render(cases, &[CheckpointChoice::Truth], (64, 32)).unwrap();
+    let (one, both) = (page(std::slice::from_ref(&case)), page(&[case, another]));
+    assert!(one.contains(&per_case) && both.contains(&per_case), "{per_case}");
+    assert!(one.contains("<b>1</b>corner cases shown") && one.contains("<b>2</b>corner cases in these runs"));
+    assert!(one.contains("a selection of them") && !both.contains("a selection of them"));
 }

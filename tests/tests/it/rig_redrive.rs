@@ -3,9 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use aeye::cli::RedriveArgs;
+use aeye::cli::{Cli, Command, RedriveArgs};
 use aeye::commands::redrive;
+use clap::Parser;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::simulate::FORK_AFTER_TICKS;
 use drivers::vision::{Eye, Vision};
 use kernel::Controls;
 use kernel::arbiter::Outcome;
@@ -44,6 +46,16 @@ fn args(file: PathBuf, checkpoint: Option<CheckpointChoice>, out: PathBuf) -> Re
         jobs: None,
         out,
     }
+}
+
+/// Whether perception caused a takeover, whether it was needed, and `aeye redrive` ask of the same time.
+#[test]
+fn every_fork_goes_on_for_the_same_time() {
+    let line = ["aeye", "redrive", "a.case.mcap", "--without-intervention", "--out", "forks"];
+    let Command::Redrive(args) = Cli::try_parse_from(line).expect("a valid command line").command else {
+        panic!("another command");
+    };
+    assert_eq!((u64::from(args.seconds) * 60, FORK_AFTER_TICKS), (600, 600));
 }
 
 fn lines(out: &Path) -> Vec<Value> {

@@ -92,6 +92,9 @@ fn a_collision_follows_a_hazard() {
         let hit =
             log.events.iter().find(|(_, event)| event.kind == EventKind::CollisionActor).expect("somebody was hit");
         named += u32::from(last.what.contains(&format!(" {}, 2.0 s before contact", hit.1.actor)));
+        // He follows the route through every curve and sees nobody.
+        let steered = measures.hazards.iter().filter(|hazard| hazard.semantic.by == Some("steering")).count();
+        assert_eq!(steered, 0, "seed {seed}: {:?}", measures.hazards);
         collisions += 1;
     }
     // A hazard may begin with one actor and end with another.

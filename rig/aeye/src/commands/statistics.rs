@@ -10,7 +10,10 @@ use crate::print::print;
 /// Runs `aeye statistics`.
 pub fn run(args: &StatisticsArgs, json: bool) -> anyhow::Result<Verdict> {
     let StatisticsArgs { files, reference, reveal, jobs } = args;
-    let summary = of_recordings(files, Choice { reference: reference.as_deref(), reveal: *reveal, jobs: *jobs })?;
+    let summary = of_recordings(
+        files,
+        Choice { reference: reference.as_deref(), reveal: *reveal, jobs: *jobs, ..Choice::default() },
+    )?;
     print(json, &summary, || {
         table(summary.checkpoints.iter().map(|c| (c.checkpoint.as_str(), &c.statistics, c.against_reference.as_ref())))
     })?;

@@ -15,8 +15,9 @@ use measures::statistics::table;
 use render::AdapterChoice;
 
 use super::figures::{CampaignFigures, figures};
+use super::plan::Plan;
+use super::until::Until;
 use super::workers::drive_all;
-use super::{Plan, Until};
 
 /// What is driven, and until when.
 #[derive(Clone, Debug)]
@@ -56,7 +57,7 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
     for eye in &eyes {
         runs.extend(drive_all(&plan, eye, jobs, interrupt)?);
     }
-    let figures = figures(plan.seed, &names, runs);
+    let figures = figures(plan.seed, plan.until, &names, runs);
     output::write_file(&plan.out.join("campaign.json"), output::json_file(&figures)?.as_bytes())?;
     Ok(figures)
 }

@@ -12,7 +12,8 @@ use kernel::World;
 use render::{RenderOptions, Renderer};
 use replay::{Case, Recording};
 
-use super::{Plan, RunLine};
+use super::plan::Plan;
+use super::run_line::RunLine;
 use crate::redrive::Counterfactual;
 
 /// A run, and its files that are not there yet.

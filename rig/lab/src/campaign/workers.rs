@@ -9,7 +9,9 @@ use drivers::vision::Eye;
 use indicatif::ProgressBar;
 
 use super::driver::{Driven, Driver};
-use super::{Plan, RunLine, STALLED_RUNS, Until};
+use super::plan::Plan;
+use super::run_line::RunLine;
+use super::until::{STALLED_RUNS, Until};
 
 /// What the threads share.
 struct Board<'a> {

@@ -82,7 +82,8 @@ impl Stages<'_> {
         let second_campaign = self.second_campaign(&firsts)?;
         let folder = self.out.join(SECOND_CAMPAIGN);
         let recordings: Vec<PathBuf> = second_campaign.runs.iter().map(|run| folder.join(&run.file)).collect();
-        let of_all = statistics::of_recordings(&recordings, statistics::Choice::default())?;
+        let choice = statistics::Choice { sampling: second_campaign.until.sampling(), ..Default::default() };
+        let of_all = statistics::of_recordings(&recordings, choice)?;
         Failed::check(&of_all.failed, recordings.len())?;
         let table_2 = of_all.checkpoints;
         say(8, "writing tables and report");

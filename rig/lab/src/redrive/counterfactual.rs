@@ -7,9 +7,10 @@ use std::sync::Arc;
 use anyhow::Context;
 use base::output;
 use base::output::Typed;
+use drivers::simulate::FORK_AFTER_TICKS;
 use drivers::vision::Vision;
 use kernel::RoadNetwork;
-use kernel::time::{Tick, seconds};
+use kernel::time::Tick;
 use measures::criticality::Extremes;
 use render::RENDERER_VERSION;
 use replay::{KERNEL_VERSION, Recording};
@@ -20,8 +21,6 @@ use super::verdict::Verdict;
 
 /// Raised when verdicts are given otherwise.
 const VERDICTS: u32 = 2;
-/// How long after the intervention a fork goes on.
-const AFTER_TICKS: Tick = seconds(10);
 
 /// What would have happened without an intervention.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,7 +70,7 @@ impl Key {
             recording: digest.to_string(),
             kernel: KERNEL_VERSION.to_owned(),
             renderer: RENDERER_VERSION.to_owned(),
-            after_ticks: AFTER_TICKS,
+            after_ticks: FORK_AFTER_TICKS,
             verdicts: VERDICTS,
         }
     }
@@ -82,7 +81,7 @@ impl Counterfactual {
     pub fn of(recording: &Recording, network: &Arc<RoadNetwork>, vision: Vision) -> anyhow::Result<(Self, Vision)> {
         let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
         let at = recording.log().intervention.context("holds no intervention")?.tick;
-        let fork = Fork { otherwise, weather: None, after_ticks: AFTER_TICKS };
+        let fork = Fork { otherwise, weather: None, after_ticks: FORK_AFTER_TICKS };
         let (course, vision) = fork.drive(recording.log(), network, vision)?;
         let found = Self {
             verdict: Verdict::of(&course, otherwise, at),

@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use base::words;
 use drivers::crew::Crew;
 use drivers::safety::SafetyBot;
-use drivers::simulate::fork_before_ticks;
+use drivers::simulate::{fork_before_ticks, lasting};
 use drivers::vision::Vision;
 use kernel::arbiter::Phase;
 use kernel::events::{Event, EventKind};
@@ -121,9 +121,7 @@ impl Fork {
         manifest.scenario.weather = self.weather.unwrap_or(manifest.scenario.weather);
         manifest.provenance.extend(self.provenance(fork_tick, &vision));
         let end = at + self.after_ticks;
-        // The recorded run's limit of time is no end of a fork. Rules are not part of the world's state.
-        let limit_s = &mut manifest.scenario.rules.max_seconds;
-        *limit_s = (*limit_s).max((end / Tick::from(TICK_HZ)) as u32 + 1);
+        manifest.scenario = lasting(manifest.scenario, end);
         let mut world = World::resume(&manifest.scenario, network, start)?;
         let mut recorder = Recorder::new(Vec::new(), &manifest, start)?;
         let mut crew = Crew::with(vision, self.safety_driver());

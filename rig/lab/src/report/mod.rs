@@ -2,7 +2,7 @@
 //! checkpoint made of it, and where it happened.
 
 mod drive;
-mod exposure;
+mod driven;
 mod fact;
 mod map;
 mod page;
@@ -26,7 +26,7 @@ use render::AdapterChoice;
 
 use super::looks::{Size, Studio, look, open_eyes};
 use drive::Drive;
-use exposure::exposure;
+use driven::driven;
 use page::{CasePart, Page};
 pub use page::{Class, STYLE, legend};
 use story::Story;
@@ -51,8 +51,8 @@ enum Told {
 }
 
 /// The page about the corner cases among files and folders, each drawn at a size (see [`open_eyes`]) and looked at through each
-/// checkpoint. Kilometres and minutes are those of all recordings in and below the folders of the cases. Drives
-/// to get used to the rig do not count.
+/// checkpoint. Kilometres, and the corner cases that they are divided by, are those of all recordings in and below
+/// the folders of the cases, of which few may be shown. Drives to get used to the rig do not count.
 pub fn render(places: &[PathBuf], choices: &[CheckpointChoice], size: Option<Size>) -> anyhow::Result<Report> {
     let (mut eyes, size) = open_eyes(choices, size)?;
     AdapterChoice::default().find()?;
@@ -80,8 +80,8 @@ pub fn render(places: &[PathBuf], choices: &[CheckpointChoice], size: Option<Siz
         return Err(why.unwrap_or_else(|| anyhow!("no case is left: expected one of a drive that counts")));
     }
     let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
-    let (number, exposure) = (cases.len(), exposure(&files, &mut failed));
-    let html = Page::new(&eyes, size, &overall, &seen, (&exposure, &tally), cases).render()?;
+    let (number, driven) = (cases.len(), driven(&files, &mut failed));
+    let html = Page::new(&eyes, size, &overall, &seen, (&driven, &tally), cases).render()?;
     Ok(Report { html, cases: number, failed })
 }
 

@@ -4,13 +4,13 @@ use anyhow::Context;
 use drivers::vision::Eye;
 use kernel::time::CLIP_FPS;
 use measures::Tally;
+use measures::statistics::Ride;
 use measures::stats::Spread;
 use perception::ConfusionMatrix;
 use perception::classes::{TRAIN_CLASSES, train_id};
 use serde::Serialize;
 
 use super::super::figures::{Figures, decimal};
-use super::exposure::Exposure;
 use super::fact::Fact;
 use super::story::Story;
 use super::strip::{Moment, PictureRow, Seen, Strip};
@@ -115,6 +115,43 @@ fn score_rows(matrices: &[ConfusionMatrix], every_class: bool) -> Vec<Row> {
     }
 }
 
+/// The figures at the top. Kilometres and the corner cases that they are divided by are those of the same
+/// rides, however many cases are shown.
+fn tiles(shown: usize, driven: &[Ride], tally: &Tally) -> Vec<Tile> {
+    let tile = |name, value| Tile { name, value };
+    let mut tiles = vec![tile("corner cases shown", shown.to_string())];
+    if !driven.is_empty() {
+        let (km, minutes) = driven.iter().fold((0.0, 0.0), |(km, min), ride| (km + ride.km, min + ride.minutes));
+        let cases = cases_of(driven);
+        tiles.push(tile("runs", driven.len().to_string()));
+        tiles.push(tile("kilometres driven", format!("{km:.2}")));
+        tiles.push(tile("minutes driven", format!("{minutes:.1}")));
+        tiles.push(tile("corner cases in these runs", cases.to_string()));
+        let per_case = if cases == 0 { "-".into() } else { format!("{:.2}", km / cases as f64) };
+        tiles.push(tile("km per corner case of these runs", per_case));
+    }
+    if tally.labelled > 0 {
+        tiles.push(tile("takeovers out of boredom", format!("{} of {}", tally.boredom, tally.labelled)));
+    }
+    if let Some(Spread { median, n, .. }) = tally.intervention_ms {
+        tiles.push(tile("median from hazard to takeover", format!("{median:.0} ms (n = {n})")));
+    }
+    tiles
+}
+
+fn cases_of(driven: &[Ride]) -> usize {
+    driven.iter().filter(|ride| ride.is_case).count()
+}
+
+/// What the tiles count, in a sentence.
+fn beside(shown: usize, driven: &[Ride]) -> String {
+    if driven.is_empty() {
+        return String::new();
+    }
+    let selection = if shown < cases_of(driven) { "; those shown are a selection of them" } else { "" };
+    format!("Runs, kilometres, minutes and their corner cases are those of all recordings beside the cases{selection}.")
+}
+
 /// The whole page.
 #[derive(Serialize)]
 pub struct Page {
@@ -125,6 +162,8 @@ pub struct Page {
     size: String,
     checkpoints: Vec<Checkpoint>,
     tiles: Vec<Tile>,
+    /// What the tiles count; empty where no recordings lie beside the cases.
+    beside: String,
     overall: Vec<Row>,
     legend: Vec<Class>,
     cases: Vec<CasePart>,
@@ -137,23 +176,9 @@ impl Page {
         (width, height): (u32, u32),
         overall: &[ConfusionMatrix],
         seen: &Seen,
-        (exposure, tally): (&Exposure, &Tally),
+        (driven, tally): (&[Ride], &Tally),
         cases: Vec<CasePart>,
     ) -> Self {
-        let tile = |name, value| Tile { name, value };
-        let mut tiles = vec![tile("corner cases", cases.len().to_string())];
-        if exposure.recordings > 0 {
-            tiles.push(tile("runs", exposure.recordings.to_string()));
-            tiles.push(tile("kilometres driven", format!("{:.2}", exposure.km)));
-            tiles.push(tile("minutes driven", format!("{:.1}", exposure.minutes)));
-            tiles.push(tile("km per corner case", format!("{:.2}", exposure.km / cases.len().max(1) as f64)));
-        }
-        if tally.labelled > 0 {
-            tiles.push(tile("takeovers out of boredom", format!("{} of {}", tally.boredom, tally.labelled)));
-        }
-        if let Some(Spread { median, n, .. }) = tally.intervention_ms {
-            tiles.push(tile("median from hazard to takeover", format!("{median:.0} ms (n = {n})")));
-        }
         let checkpoint = |eye: &Eye| Checkpoint { name: eye.name().to_owned(), digest: eye.digest() };
         Self {
             style: STYLE,
@@ -161,7 +186,8 @@ impl Page {
             fps: CLIP_FPS,
             size: format!("{width}x{height}"),
             checkpoints: eyes.iter().map(checkpoint).collect(),
-            tiles,
+            tiles: tiles(cases.len(), driven, tally),
+            beside: beside(cases.len(), driven),
             overall: score_rows(overall, true),
             legend: legend(seen),
             cases,

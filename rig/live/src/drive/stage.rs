@@ -34,8 +34,13 @@ pub enum Press {
     Escape,
     /// Backspace.
     Backspace,
-    /// A key that types something.
-    Text(String),
+    /// Any other key.
+    Text {
+        /// What it types into a comment.
+        text: String,
+        /// The operators' letter or digit that it stands for; none of a seat's key, whatever that types.
+        command: Option<char>,
+    },
 }
 
 /// What a key asks for.
@@ -63,10 +68,10 @@ impl Stage {
             _ if *press == Press::Escape => Wish::Quit,
             Self::Labelling(dialog) => dialog.press(press, repeated),
             _ if repeated => Wish::Nothing,
-            Self::Ready if is(press, "n") => Wish::Start,
-            Self::Ready if is(press, "x") => Wish::Swap,
-            _ if is(press, "f") => Wish::Force,
-            Self::Ready if is(press, "q") => Wish::Quit,
+            Self::Ready if is(press, 'n') => Wish::Start,
+            Self::Ready if is(press, 'x') => Wish::Swap,
+            _ if is(press, 'f') => Wish::Force,
+            Self::Ready if is(press, 'q') => Wish::Quit,
             _ => Wish::Nothing,
         }
     }
@@ -84,8 +89,8 @@ impl Dialog {
     /// The label comes first, so that keys still held from driving type nothing.
     fn press(&mut self, press: &Press, repeated: bool) -> Wish {
         match (press, self.label) {
-            (Press::Text(text), None) if !repeated => self.label = label_of(text),
-            (Press::Text(text), Some(_)) if !repeated => self.type_in(text),
+            (Press::Text { command, .. }, None) if !repeated => self.label = command.and_then(label_of),
+            (Press::Text { text, .. }, Some(_)) if !repeated => self.type_in(text),
             (Press::Backspace, Some(_)) if self.comment.pop().is_none() => self.label = None,
             (Press::Enter, Some(_)) if !repeated => return self.annotation().map_or(Wish::Nothing, Wish::Annotate),
             (Press::Escape, _) => *self = Self::default(),
@@ -104,13 +109,13 @@ impl Dialog {
     }
 }
 
-fn is(press: &Press, letter: &str) -> bool {
-    matches!(press, Press::Text(text) if text.eq_ignore_ascii_case(letter))
+fn is(press: &Press, letter: char) -> bool {
+    matches!(press, Press::Text { command: Some(command), .. } if *command == letter)
 }
 
 /// The label with a number key: 1 for the first.
-fn label_of(text: &str) -> Option<Label> {
-    let number = text.parse::<usize>().ok()?;
+fn label_of(digit: char) -> Option<Label> {
+    let number = digit.to_digit(10)? as usize;
     Label::ALL.get(number.checked_sub(1)?).copied()
 }
 
@@ -119,7 +124,7 @@ mod tests {
     use super::*;
 
     fn text(text: &str) -> Press {
-        Press::Text(text.into())
+        Press::Text { text: text.into(), command: text.to_lowercase().chars().next() }
     }
 
     fn enter(stage: &mut Stage, keys: &str) {

@@ -100,7 +100,9 @@ impl Bench {
     }
 
     fn press(&self, text: &str) {
-        self.outbox.send(Message::Press(Press::Text(text.into()), false)).unwrap();
+        self.outbox
+            .send(Message::Press(Press::Text { text: text.into(), command: text.chars().next() }, false))
+            .unwrap();
     }
 
     fn axis(&self, device: usize, code: u16, value: i32) {

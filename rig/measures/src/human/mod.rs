@@ -6,6 +6,7 @@
 //! route at its present speed, or goes on braking; vehicles keep to their lanes, people to their
 //! direction. Times are counted from there.
 
+mod following;
 mod log;
 mod reactions;
 mod screen;
@@ -26,6 +27,7 @@ use log::{end_of_driving, is_pressed, ms};
 pub use crate::stats::Spread;
 use base::words;
 
+pub use following::Following;
 pub use reactions::Response;
 pub use screen::ScreenAge;
 pub use tally::Tally;
@@ -88,13 +90,13 @@ impl Measures {
     }
 
     /// Those of a log whose truth is known.
-    pub fn with_truth(log: &Log, Truth { episodes, moving }: Truth) -> Self {
+    pub fn with_truth(log: &Log, Truth { episodes, moving, following }: Truth) -> Self {
         let rate = |seat| steering::reversals_per_min(log, seat);
         let mut onsets = episodes.iter().skip(1).map(|e| e.onset).collect::<Vec<_>>().into_iter();
         let times = |episode: Episode| {
             let next = onsets.next().map_or(Tick::MAX, |onset| onset - 1);
             let until = episode.end.max(episode.onset + ANSWER_TICKS).min(next).min(end_of_driving(log));
-            HazardTimes::of(log, episode, until)
+            HazardTimes::of(log, episode, until, &following)
         };
         Self {
             hazards: episodes.into_iter().map(times).collect(),
@@ -112,9 +114,9 @@ impl Measures {
 
 impl HazardTimes {
     /// What came of a hazard up to a tick.
-    fn of(log: &Log, episode: Episode, until: Tick) -> Self {
+    fn of(log: &Log, episode: Episode, until: Tick, following: &[Following]) -> Self {
         let onset = episode.onset;
-        let response = |seat| Response::of(log, seat, onset, until);
+        let response = |seat| Response::of(log, seat, (onset, until), following);
         let intervention = log.intervention.map(|i| i.tick).filter(|tick| (onset..=until).contains(tick));
         Self {
             semantic: response(Seat::Semantic),

@@ -14,7 +14,7 @@ use super::log::{controls, end_of_driving};
 
 /// Steering wheel at full steering, degrees to either side: that of a wheel with 900 degrees from
 /// stop to stop, whatever device was used.
-const FULL_DEG: f32 = 450.0;
+pub const FULL_DEG: f32 = 450.0;
 /// Least movement that is a reversal, degrees of the steering wheel.
 pub const GAP_DEG: f64 = 2.0;
 /// Cut-off frequency of the low-pass, hertz.

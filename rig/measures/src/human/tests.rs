@@ -42,7 +42,7 @@ fn episode(onset: Tick, end: Tick) -> Episode {
 }
 
 fn truth(episodes: Vec<Episode>) -> Truth {
-    Truth { episodes, moving: vec![true; TICKS as usize] }
+    Truth { episodes, moving: vec![true; TICKS as usize], following: vec![Following::default(); TICKS as usize] }
 }
 
 /// Changes one seat's controls from a tick on.
@@ -109,6 +109,48 @@ fn what_happens_before_or_long_after_a_hazard_is_no_answer_to_it() {
     assert_eq!((measures.hazards[0].intervention_ms, measures.decisive()), (None, None));
     let lasting = Measures::with_truth(&log, truth(vec![episode(200, 440)]));
     assert_eq!(lasting.hazards[0].intervention_ms, Some(3833), "a hazard that lasts can be answered late");
+}
+
+/// What the semantic driver is found to do about a hazard from tick 200 to 440, steering and pedals as scripted, on a
+/// route that asks for such angles.
+fn answer(script: impl Fn(Tick) -> Controls, route: impl Fn(Tick) -> Following) -> Option<&'static str> {
+    let mut log = log();
+    for (tick, input) in (1..).zip(&mut log.inputs) {
+        input.semantic = script(tick);
+    }
+    let truth = Truth { following: (1..=TICKS).map(route).collect(), ..truth(vec![episode(200, 440)]) };
+    Measures::with_truth(&log, truth).hazards[0].semantic.by
+}
+
+/// Steering wheel in degrees, with the accelerator half pressed.
+fn wheel(deg: f32) -> Controls {
+    Controls::from_fractions(deg / 450.0, 0.5, 0.0)
+}
+
+#[test]
+fn who_follows_a_curve_does_not_react_and_who_leaves_it_does() {
+    // From tick 220 on the route bends to the right within half a second.
+    let bend = |tick: Tick| 90.0 * (tick.saturating_sub(220) as f32 / 30.0).min(1.0);
+    let route = |tick: Tick| Following { least_deg: 0.0, most_deg: bend(tick) };
+    assert_eq!(answer(|tick| wheel(bend(tick)), route), None);
+    assert_eq!(answer(|tick| wheel(bend(tick.saturating_sub(20))), route), None, "late");
+    assert_eq!(answer(|tick| wheel(bend(tick)), |_| Following::default()), Some("steering"), "no curve is there");
+    let swerve = |tick: Tick| if tick < 260 { 0.0 } else { 40.0 };
+    assert_eq!(answer(|tick| wheel(bend(tick) + swerve(tick)), route), Some("steering"));
+    assert_eq!(answer(|tick| wheel(-swerve(tick)), |_| Following::default()), Some("steering"));
+}
+
+#[test]
+fn twitches_as_before_are_no_reaction_and_braking_is_one() {
+    let twitch = |tick: Tick| 12.0 * (1.7 * tick as f32).sin();
+    let pedals = |tick: Tick| 0.5 + 0.08 * (0.9 * tick as f32).cos();
+    let nervous = |tick| Controls::from_fractions(twitch(tick) / 450.0, pedals(tick), 0.0);
+    assert_eq!(answer(nervous, |_| Following::default()), None);
+    let braking = |tick: Tick| if tick < 250 { nervous(tick) } else { Controls::from_fractions(0.0, 0.5, 0.3) };
+    assert_eq!(answer(braking, |_| Following::default()), Some("brake"));
+    // Who begins within 0.1 s had begun before he could know.
+    let sooner = |tick: Tick| if tick < 204 { wheel(0.0) } else { Controls::from_fractions(0.0, 0.5, 0.3) };
+    assert_eq!(answer(sooner, |_| Following::default()), None);
 }
 
 #[test]

@@ -8,6 +8,7 @@ use kernel::time::Tick;
 use replay::{Error, Log, Replayer};
 use serde::Serialize;
 
+use super::following::Following;
 use super::log::end_of_driving;
 
 /// An encroachment that is predicted for a shorter time is nobody's to react to.
@@ -19,12 +20,15 @@ const WARM_UP_TICKS: Tick = 3 * LOOK_TICKS;
 const STANDSTILL_MPS: f32 = 0.5;
 
 /// What was the case in a log until the safety driver intervened.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Truth {
     /// The hazards, by ascending tick.
     pub episodes: Vec<Episode>,
     /// Whether the car moved, for each tick after the log's first.
     pub moving: Vec<bool>,
+    /// What following the route asks of the steering wheel, for each tick after the log's first: the driver has seen
+    /// the tick before.
+    pub following: Vec<Following>,
 }
 
 /// A time in which an encroachment is predicted.
@@ -46,7 +50,9 @@ pub fn find(log: &Log, network: &Arc<RoadNetwork>) -> Result<Truth, Error> {
     // Speeds are compared over the time between two looks: each tick has the looks that end at it.
     let mut looks: [Looks; LOOK_TICKS as usize] = Default::default();
     let (mut episodes, mut moving) = (Episodes::starting_at(log.first_tick()), Vec::new());
+    let mut following = Vec::new();
     while replayer.world().tick() < end_of_driving(log) {
+        following.push(Following::of(replayer.world(), &replayer.world().scene().ego));
         replayer.step()?;
         let world = replayer.world();
         let (tick, scene) = (world.tick(), world.scene());
@@ -55,7 +61,7 @@ pub fn find(log: &Log, network: &Arc<RoadNetwork>) -> Result<Truth, Error> {
         episodes.see(tick, predicted_encroachment(world, &scene, looks));
         moving.push(scene.ego.speed_mps.abs() > STANDSTILL_MPS);
     }
-    Ok(Truth { episodes: episodes.finish(), moving })
+    Ok(Truth { episodes: episodes.finish(), moving, following })
 }
 
 /// Joins ticks to episodes.

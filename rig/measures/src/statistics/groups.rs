@@ -1,17 +1,17 @@
 //! Rides by checkpoint.
 
-use base::output::Typed;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use base::failure::{Failed, Failure, Usage};
 use base::library::{self, Found, Kind, Listed};
+use base::output::Typed;
 use base::spread::{in_order, jobs};
 use replay::Recording;
 use serde::Serialize;
 
-use super::{Comparison, Ride, Statistics};
+use super::{Comparison, Ride, Sampling, Statistics};
 
 /// What blind drives go by.
 const BLIND: &str = "blind";
@@ -48,6 +48,8 @@ pub struct Choice<'a> {
     pub reveal: bool,
     /// Recordings read at the same time.
     pub jobs: Option<u16>,
+    /// What decided how much was driven; recordings do not say.
+    pub sampling: Sampling,
 }
 
 /// Statistics, and what they leave out.
@@ -79,9 +81,9 @@ pub fn of_recordings(paths: &[PathBuf], choice: Choice<'_>) -> anyhow::Result<St
     let Some(at) = names.iter().position(|n| *n == name) else {
         return Err(Usage(format!("no recording is of {name:?}; expected one of {}", names.join(", "))).into());
     };
-    let reference = Statistics::of(&groups[at].rides);
+    let reference = Statistics::of(&groups[at].rides, choice.sampling);
     let of = |(i, group): (usize, Group)| {
-        let statistics = Statistics::of(&group.rides);
+        let statistics = Statistics::of(&group.rides, choice.sampling);
         let against_reference = (i != at).then(|| Comparison::of(&reference, &statistics));
         CheckpointStatistics { checkpoint: group.checkpoint, digest: group.digest, statistics, against_reference }
     };

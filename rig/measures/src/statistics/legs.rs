@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::ride::Ride;
 
 /// Legs end at a corner case and go on over rides without one. The last leg, which has no end, counts
-/// in no mean: that is how the paper counts, and why its means are too small.
+/// in no mean: that is how the paper counts, and why its means are too small. Where rides ended with the last
+/// case there is no such leg, and the mean is that of the true distances.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Legs {
     /// Legs that ended.

@@ -4,6 +4,7 @@ mod compare;
 mod groups;
 mod legs;
 mod ride;
+mod sampling;
 mod text;
 
 use std::collections::BTreeMap;
@@ -15,6 +16,7 @@ pub use compare::Comparison;
 pub use groups::{CheckpointStatistics, Choice, StatisticsOfAll, of_recordings};
 pub use legs::Legs;
 pub use ride::Ride;
+pub use sampling::Sampling;
 pub use text::table;
 
 use crate::stats;
@@ -27,6 +29,8 @@ const UNLABELLED: &str = "unlabelled";
 /// What rides came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Statistics {
+    /// What decided how much was driven, on which the exact intervals rest.
+    pub sampling: Sampling,
     /// Number of rides.
     pub rides: usize,
     /// Kilometres driven.
@@ -39,16 +43,17 @@ pub struct Statistics {
     pub cases_by_label: BTreeMap<&'static str, u64>,
     /// Corner cases that true masks avoid.
     pub perception_caused: u64,
-    /// Corner cases a kilometre.
+    /// Corner cases a kilometre: the likeliest rate, however the drives ended. Where they ended with the last of N
+    /// cases its mean is N / (N - 1) times the true one.
     pub cases_per_km: f64,
-    /// Exact 95 % interval of that rate; legs that did not end count as exposure.
+    /// 95 % interval of that rate, exact for `sampling`; legs that did not end count as exposure.
     pub cases_per_km_95: (f64, f64),
     /// 95 % interval of that rate by drawing rides again; absent for a single ride,
     /// or without cases.
     pub cases_per_km_95_of_rides: Option<(f64, f64)>,
     /// Corner cases a minute.
     pub cases_per_min: f64,
-    /// Exact 95 % interval of that rate.
+    /// 95 % interval of that rate, exact for `sampling`.
     pub cases_per_min_95: (f64, f64),
     /// Kilometres and minutes between corner cases, as the paper prints them.
     pub legs: Legs,
@@ -56,7 +61,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Of rides in the order in which they were driven.
-    pub fn of(rides: &[Ride]) -> Self {
+    pub fn of(rides: &[Ride], sampling: Sampling) -> Self {
         let km: f64 = rides.iter().map(|r| r.km).sum();
         let cases = rides.iter().filter(|r| r.is_case);
         let number = cases.clone().count() as u64;
@@ -64,11 +69,12 @@ impl Statistics {
         for case in cases.clone() {
             *by_label.entry(case.label.map_or(UNLABELLED, Label::name)).or_insert(0) += 1;
         }
-        let (low, high) = stats::poisson_interval(number);
+        let (low, high) = sampling.interval(number);
         let minutes: f64 = rides.iter().map(|r| r.minutes).sum();
         let per = |n: f64, exposure: f64| if exposure > 0.0 { n / exposure } else { 0.0 };
         let clusters: Vec<(u64, f64)> = rides.iter().map(|r| (r.is_case.into(), r.km)).collect();
         Self {
+            sampling,
             rides: rides.len(),
             km,
             minutes,
@@ -100,7 +106,7 @@ mod tests {
         #[test]
         fn nothing_that_was_driven_is_lost(rides in prop::collection::vec((0.01f64..9.0, any::<bool>()), 1..40)) {
             let rides: Vec<Ride> = rides.into_iter().map(ride).collect();
-            let s = Statistics::of(&rides);
+            let s = Statistics::of(&rides, Sampling::Length);
             let completed = s.legs.km_mean.map_or(0.0, |mean| mean * s.legs.completed as f64);
             prop_assert!((completed + s.legs.censored_km - s.km).abs() < 1e-9);
             prop_assert_eq!(s.legs.completed as u64, s.cases);
@@ -115,9 +121,42 @@ mod tests {
         fn the_order_of_rides_changes_legs_alone(rides in prop::collection::vec((0.01f64..9.0, any::<bool>()), 1..40)) {
             let rides: Vec<Ride> = rides.into_iter().map(ride).collect();
             let reversed: Vec<Ride> = rides.iter().rev().copied().collect();
-            let (s, r) = (Statistics::of(&rides), Statistics::of(&reversed));
+            let (s, r) = (Statistics::of(&rides, Sampling::Length), Statistics::of(&reversed, Sampling::Length));
             prop_assert_eq!(s.cases, r.cases);
             prop_assert!((s.cases_per_km_95.1 - r.cases_per_km_95.1).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn drives_that_end_with_a_case_have_the_interval_of_inverse_sampling() {
+        let rides: Vec<Ride> = [(2.0, true), (1.0, false), (3.0, true), (4.0, true)].map(ride).to_vec();
+        let of = |sampling| Statistics::of(&rides, sampling);
+        let (low, high) = of(Sampling::Cases).cases_per_km_95;
+        // Chi-squared with 6 degrees of freedom: 1.23734 and 14.4494; over twice 10 km.
+        assert!((low - 0.061_867).abs() < 1e-5 && (high - 0.722_47).abs() < 1e-4, "{low} {high}");
+        let fixed = of(Sampling::Length);
+        // With 8 degrees of freedom: 17.5345.
+        assert!((fixed.cases_per_km_95.1 - 0.876_73).abs() < 1e-4 && (fixed.cases_per_km_95.0 - low).abs() < 1e-9);
+        for assumed in [Sampling::Rides, Sampling::Unknown] {
+            assert_eq!(Statistics { sampling: assumed, ..fixed.clone() }, of(assumed));
+        }
+        let text = |sampling| table([("full", &of(sampling), None)].into_iter());
+        assert!(text(Sampling::Cases).contains("ended with the last corner case"));
+        assert!(text(Sampling::Unknown).contains("assuming that the length was fixed"));
+    }
+
+    #[test]
+    fn rates_are_compared_as_they_were_sampled() {
+        let rides = |kms: &[f64]| kms.iter().map(|km| ride((*km, true))).collect::<Vec<_>>();
+        let against = |first, second| {
+            let reference = Statistics::of(&rides(&[4.0, 5.0, 6.0]), first);
+            Comparison::of(&reference, &Statistics::of(&rides(&[1.0, 2.0, 1.0, 2.0]), second))
+        };
+        let (fixed, inverse) = (against(Sampling::Length, Sampling::Length), against(Sampling::Cases, Sampling::Cases));
+        assert_eq!(inverse.ratio, fixed.ratio);
+        assert_eq!(inverse.p, stats::inverse_same_rate_p((3, 4), (15.0, 6.0)));
+        assert_eq!(inverse.power, stats::inverse_power((3.0, 4.0), (4.0 / 6.0) / (3.0 / 15.0)));
+        assert!(fixed.ratio_95.0 < inverse.ratio_95.0 && inverse.ratio_95.1 < fixed.ratio_95.1);
+        assert_eq!(against(Sampling::Cases, Sampling::Length), fixed);
     }
 }

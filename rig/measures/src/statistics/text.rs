@@ -21,7 +21,11 @@ pub fn table<'a>(columns: impl Iterator<Item = (&'a str, &'a Statistics, Option<
             with_deviation(legs.minutes_mean, legs.minutes_std),
         );
     }
-    text += "\n\nby exposure, unfinished legs included:";
+    let _ = write!(
+        text,
+        "\n\nby exposure, unfinished legs included; 95 % intervals and p {}:",
+        resting_on(columns.clone())
+    );
     for (name, s, comparison) in columns {
         let (low, high) = s.cases_per_km_95;
         let _ = write!(text, "\n{name:width$} {:.3} cases/km [{low:.3}, {high:.3}]", s.cases_per_km);
@@ -40,6 +44,13 @@ pub fn table<'a>(columns: impl Iterator<Item = (&'a str, &'a Statistics, Option<
         }
     }
     text
+}
+
+/// What the intervals rest on; each once.
+fn resting_on<'a>(columns: impl Iterator<Item = (&'a str, &'a Statistics, Option<&'a Comparison>)>) -> String {
+    let mut words: Vec<&str> = columns.map(|(_, statistics, _)| statistics.sampling.words()).collect();
+    words.dedup();
+    words.join(", and ")
 }
 
 fn with_deviation(mean: Option<f64>, deviation: Option<f64>) -> String {

@@ -1,15 +1,17 @@
 //! Rates by exposure, with exact intervals: corner cases are rare.
 
 mod bootstrap;
+mod inverse;
 mod power;
 
 use serde::Serialize;
 use statrs::distribution::{Beta, Binomial, ContinuousCDF, Discrete, Gamma};
 
 pub use bootstrap::{interval, percentile_interval, rate_interval, resample};
+pub use inverse::{inverse_interval, inverse_power, inverse_rate_ratio_interval, inverse_same_rate_p};
 pub use power::{exposure_factor_for, power};
 
-/// Exact 95 % interval of a Poisson mean after `events` (Garwood 1936).
+/// Exact 95 % interval of a Poisson mean after `events` in an exposure that was fixed beforehand (Garwood 1936).
 pub fn poisson_interval(events: u64) -> (f64, f64) {
     let quantile = |shape: u64, p: f64| Gamma::new(shape as f64, 1.0).map_or(f64::NAN, |g| g.inverse_cdf(p));
     let low = if events == 0 { 0.0 } else { quantile(events, 0.025) };

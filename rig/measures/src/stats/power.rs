@@ -8,6 +8,8 @@ const LEVEL: f64 = 0.05;
 const DEVIATIONS: f64 = 8.0;
 /// More expected events than this are not computed: the difference would be found long before.
 const MOST_EVENTS: f64 = 4000.0;
+/// Nobody drives so many times as long.
+const MOST_FACTOR: f64 = 4096.0;
 
 /// Probability that [`super::same_rate_p`] is below 5 %, when so many events are expected on either
 /// side and the exposures are these.
@@ -42,18 +44,19 @@ fn rejected(total: u64, null: f64, truth: f64) -> Option<f64> {
     Some(power)
 }
 
-/// By how much both exposures must grow for that probability to reach `wanted`, if the rates are those
-/// seen; within 1 %. `None` where even [`MOST_EVENTS`] do not suffice.
-pub fn exposure_factor_for(wanted: f64, events: (u64, u64), exposure: (f64, f64)) -> Option<f64> {
-    let expected = (events.0 as f64, events.1 as f64);
-    let at = |factor: f64| power((factor * expected.0, factor * expected.1), exposure);
+/// By how much both exposures must grow for the power, a function of that factor, to reach `wanted`, if the rates are
+/// those seen; within 1 %. `None` where even [`MOST_FACTOR`] does not suffice, or the power is not computed.
+pub fn exposure_factor_for(wanted: f64, power: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let (mut low, mut high) = (0.0, 1.0);
-    while at(high)? < wanted {
+    while power(high)? < wanted {
         (low, high) = (high, 2.0 * high);
+        if high > MOST_FACTOR {
+            return None;
+        }
     }
     while high - low > 0.01 * high {
         let middle = 0.5 * (low + high);
-        if at(middle)? < wanted { low = middle } else { high = middle }
+        if power(middle)? < wanted { low = middle } else { high = middle }
     }
     Some(high)
 }
@@ -69,7 +72,7 @@ mod tests {
         let at = |km: f64| power((km / 9.33, km / 13.94), (km, km)).expect("computable");
         assert!((at(150.0) - 0.13).abs() < 0.03, "{}", at(150.0));
         assert!((at(1000.0) - 0.73).abs() < 0.03, "{}", at(1000.0));
-        let factor = exposure_factor_for(0.73, (16, 11), (150.0, 153.38)).expect("reachable");
+        let factor = exposure_factor_for(0.73, |f| power((16.0 * f, 11.0 * f), (150.0, 153.38))).expect("reachable");
         assert!((5.0..8.0).contains(&factor), "{factor}");
     }
 
@@ -92,6 +95,6 @@ mod tests {
         for expected in [2.0, 10.0, 80.0] {
             assert!(power((expected, expected), (1.0, 1.0)).expect("computable") <= LEVEL);
         }
-        assert_eq!(exposure_factor_for(0.8, (7, 7), (1.0, 1.0)), None);
+        assert_eq!(exposure_factor_for(0.8, |f| power((7.0 * f, 7.0 * f), (1.0, 1.0))), None);
     }
 }

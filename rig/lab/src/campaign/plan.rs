@@ -1,0 +1,62 @@
+//! What a campaign drives.
+
+use std::path::PathBuf;
+
+use base::maps::Map;
+use kernel::Scenario;
+use kernel::rng::{self, Stream};
+
+use super::until::Until;
+
+/// Everything that decides what a campaign's runs are.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Maps, in turn.
+    pub maps: Vec<Map>,
+    /// What every run has in common, if not the default of its map and seed.
+    pub scenario: Option<Scenario>,
+    /// People on foot, if not as many as the scenario says.
+    pub pedestrians: Option<u16>,
+    /// Longest simulated time of a run, seconds.
+    pub run_seconds: u32,
+    /// Seed of the campaign.
+    pub seed: u64,
+    /// When it is over.
+    pub until: Until,
+    /// Where the files go.
+    pub out: PathBuf,
+}
+
+impl Plan {
+    /// Which of the maps a run is on.
+    pub fn map_index(&self, run: u32) -> usize {
+        run as usize % self.maps.len()
+    }
+
+    /// The scenario of a run.
+    pub fn scenario_of(&self, run: u32) -> Scenario {
+        let map = &self.maps[self.map_index(run)];
+        let seed = rng::bits(self.seed, Stream::Scenario, u64::from(run), 0) >> 32;
+        let mut scenario = self.scenario.clone().unwrap_or_else(|| map.scenario(seed));
+        scenario.map = map.network.name.clone();
+        scenario.seed = seed;
+        scenario.rules.max_seconds = self.run_seconds;
+        scenario.traffic.pedestrians = self.pedestrians.unwrap_or(scenario.traffic.pedestrians);
+        scenario
+    }
+
+    /// File of a run's recording.
+    pub fn recording_path(&self, checkpoint: &str, run: u32) -> PathBuf {
+        self.out.join(format!("{checkpoint}-{run:04}.mcap"))
+    }
+
+    /// File of what would have happened without a run's intervention.
+    pub fn counterfactual_path(&self, checkpoint: &str, run: u32) -> PathBuf {
+        self.out.join(format!("{checkpoint}-{run:04}.counterfactual.json"))
+    }
+
+    /// File of a run's corner case.
+    pub fn case_path(&self, checkpoint: &str, run: u32) -> PathBuf {
+        self.out.join(format!("{checkpoint}-{run:04}.case.mcap"))
+    }
+}

@@ -1,0 +1,64 @@
+//! When a campaign is over.
+
+use measures::statistics::Sampling;
+use serde::Serialize;
+
+use super::run_line::RunLine;
+
+/// A campaign that so many runs in a row bring no further would never end.
+pub const STALLED_RUNS: usize = 200;
+/// Metres a run that a car creeps without getting anywhere, at most.
+const CREEP_M: u64 = 5;
+
+/// When a campaign is over; counted for each checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Until {
+    /// So many runs.
+    Runs(u32),
+    /// So many kilometres.
+    Km(f64),
+    /// So many corner cases.
+    Cases(u32),
+    /// So many corner cases with the label `walker`.
+    PedestrianCases(u32),
+}
+
+impl Until {
+    /// What exact intervals of its figures rest on. A run ends with its corner case, so a campaign does that stops by
+    /// their number; one that stops by kilometres goes on to the end of its last run, by less than a run's length.
+    pub fn sampling(self) -> Sampling {
+        match self {
+            Self::Runs(_) => Sampling::Rides,
+            Self::Km(_) => Sampling::Length,
+            Self::Cases(_) | Self::PedestrianCases(_) => Sampling::Cases,
+        }
+    }
+
+    /// Whether these runs, the first of the campaign, are enough.
+    pub fn is_met(&self, runs: &[RunLine]) -> bool {
+        let (done, of) = self.progress(runs);
+        done >= of
+    }
+
+    /// Whether the last of these runs brought it no further.
+    pub fn is_out_of_reach(&self, runs: &[RunLine]) -> bool {
+        let Some(before) = runs.len().checked_sub(STALLED_RUNS) else { return false };
+        let gained = self.progress(runs).0 - self.progress(&runs[..before]).0;
+        match self {
+            Self::Runs(_) => false,
+            Self::Km(_) => gained < CREEP_M * STALLED_RUNS as u64,
+            Self::Cases(_) | Self::PedestrianCases(_) => gained == 0,
+        }
+    }
+
+    /// How much of how much is done; kilometres count in metres.
+    pub fn progress(&self, runs: &[RunLine]) -> (u64, u64) {
+        match *self {
+            Self::Runs(n) => (runs.len() as u64, n.into()),
+            Self::Km(km) => ((1000.0 * runs.iter().map(|r| r.figures.km).sum::<f64>()) as u64, (1000.0 * km) as u64),
+            Self::Cases(n) => (runs.iter().filter(|r| r.case.is_some()).count() as u64, n.into()),
+            Self::PedestrianCases(n) => (runs.iter().filter(|r| r.is_pedestrian_case()).count() as u64, n.into()),
+        }
+    }
+}
