@@ -1,9 +1,9 @@
 //! What a driver did about a hazard, and when.
 //!
-//! As SAE J2944 (2015) has it, a response time ends with the first change of brake, accelerator or steering that can be
-//! told from what the driver did before. Here that is a change beyond all positions of the second before the onset, by a
-//! threshold, and towards avoiding: to brake, to release the accelerator, or to steer otherwise than the route asks.
-//! To which side is left open, as behind somebody who crosses is avoiding as well.
+//! Response times are told apart by their begin and end (SAE J2944, 2015). Here one ends with the first change beyond all
+//! positions of the second before the onset, by a threshold, and towards avoiding: to brake, to release the
+//! accelerator, or to steer otherwise than the route asks. To which side is left open, as behind somebody who crosses is
+//! avoiding as well.
 
 use std::ops::RangeInclusive;
 
