@@ -106,7 +106,7 @@ fn kilometres_a_case_do_not_depend_on_how_many_cases_are_shown() {
     let km = |path: &PathBuf| Recording::open(path).unwrap().log().odometer_mm() as f64 / 1e6;
     let per_case =
         format!("<b>{:.2}</b>km per corner case", [&first, &second, &calm].map(km).iter().sum::<f64>() / 2.0);
-    let page = |cases: &[PathBuf]| report::render(cases, &[CheckpointChoice::Truth], (64, 32)).unwrap();
+    let page = |cases: &[PathBuf]| report::render(cases, &[CheckpointChoice::Truth], Some((64, 32))).unwrap().html;
     let (one, both) = (page(std::slice::from_ref(&case)), page(&[case, another]));
     assert!(one.contains(&per_case) && both.contains(&per_case), "{per_case}");
     assert!(one.contains("<b>1</b>corner cases shown") && one.contains("<b>2</b>corner cases in these runs"));

@@ -31,7 +31,7 @@ impl Driven {
 }
 
 /// Drives runs, one after the other.
-pub struct Driver<'a> {
+pub struct Runner<'a> {
     plan: &'a Plan,
     eye: &'a Eye,
     interrupt: &'a Interrupt,
@@ -39,7 +39,7 @@ pub struct Driver<'a> {
     renderers: HashMap<usize, Renderer>,
 }
 
-impl<'a> Driver<'a> {
+impl<'a> Runner<'a> {
     /// One for a campaign.
     pub fn new(plan: &'a Plan, eye: &'a Eye, interrupt: &'a Interrupt) -> Self {
         Self { plan, eye, interrupt, renderers: HashMap::new() }

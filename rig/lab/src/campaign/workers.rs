@@ -8,13 +8,13 @@ use base::progress::{self, Interrupt};
 use drivers::vision::Eye;
 use indicatif::ProgressBar;
 
-use super::driver::{Driven, Driver};
+use super::driver::{Driven, Runner};
 use super::plan::Plan;
 use super::run_line::RunLine;
 use super::until::{STALLED_RUNS, Until};
 
 /// What the threads share.
-struct Board<'a> {
+struct Pool<'a> {
     plan: &'a Plan,
     eye: &'a Eye,
     interrupt: &'a Interrupt,
@@ -37,7 +37,7 @@ struct State {
 /// Drives the runs of one checkpoint until there are enough, and gives them in order.
 pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> anyhow::Result<Vec<RunLine>> {
     let bar = progress::bar(eye.name(), plan.until.progress(&[]).1);
-    let board = Board { plan, eye, interrupt, bar, state: Mutex::default() };
+    let board = Pool { plan, eye, interrupt, bar, state: Mutex::default() };
     std::thread::scope(|scope| {
         for _ in 0..jobs {
             scope.spawn(|| board.work());
@@ -54,14 +54,14 @@ pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> 
     Ok(runs)
 }
 
-impl Board<'_> {
+impl Pool<'_> {
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
     /// Takes one run after the other until there are enough.
     fn work(&self) {
-        let mut driver = Driver::new(self.plan, self.eye, self.interrupt);
+        let mut driver = Runner::new(self.plan, self.eye, self.interrupt);
         while let Some(run) = self.take() {
             let put = driver.drive(run).and_then(|driven| driven.map(|driven| self.put(run, driven)).transpose());
             match put {

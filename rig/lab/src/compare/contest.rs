@@ -11,7 +11,7 @@ const SEED: u64 = 1;
 /// What became of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum Change {
     /// The hazard is seen in time, and was not by the baseline.
     Fixed,
     /// The hazard is not seen in time, and was by the baseline.
@@ -22,7 +22,7 @@ pub enum Verdict {
     NoHazard,
 }
 
-impl Verdict {
+impl Change {
     /// By how long before the intervention each of the two first saw the hazard.
     pub fn of(baseline_s: Option<f64>, other_s: Option<f64>) -> Self {
         match (baseline_s.map(in_time), other_s.map(in_time)) {
@@ -73,8 +73,7 @@ pub struct Contest {
 impl Contest {
     /// Over the same cases in the same order.
     pub fn of(baseline: &[CaseSums], other: &[CaseSums]) -> Self {
-        let verdicts: Vec<Verdict> =
-            baseline.iter().zip(other).map(|(a, b)| Verdict::of(a.sight_s, b.sight_s)).collect();
+        let verdicts: Vec<Change> = baseline.iter().zip(other).map(|(a, b)| Change::of(a.sight_s, b.sight_s)).collect();
         let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
         let all: Vec<usize> = (0..baseline.len()).collect();
         let difference = |metric: Metric| {
@@ -83,10 +82,10 @@ impl Contest {
             Difference { metric, difference: figure(&all), interval_95 }
         };
         Self {
-            fixed: count(Verdict::Fixed),
-            broken: count(Verdict::Broken),
-            unchanged: count(Verdict::Unchanged),
-            no_hazard: count(Verdict::NoHazard),
+            fixed: count(Change::Fixed),
+            broken: count(Change::Broken),
+            unchanged: count(Change::Unchanged),
+            no_hazard: count(Change::NoHazard),
             differences: Metric::OWN.map(difference).to_vec(),
         }
     }
@@ -98,9 +97,9 @@ mod tests {
 
     #[test]
     fn a_case_is_fixed_or_broken_only_across_the_limit() {
-        let of = |a, b| Verdict::of(Some(a), Some(b));
-        assert_eq!((of(0.9, 1.0), of(1.0, 0.9)), (Verdict::Fixed, Verdict::Broken));
-        assert_eq!((of(1.0, 2.9), of(0.0, 0.9)), (Verdict::Unchanged, Verdict::Unchanged));
-        assert_eq!(Verdict::of(None, None), Verdict::NoHazard);
+        let of = |a, b| Change::of(Some(a), Some(b));
+        assert_eq!((of(0.9, 1.0), of(1.0, 0.9)), (Change::Fixed, Change::Broken));
+        assert_eq!((of(1.0, 2.9), of(0.0, 0.9)), (Change::Unchanged, Change::Unchanged));
+        assert_eq!(Change::of(None, None), Change::NoHazard);
     }
 }

@@ -27,7 +27,7 @@ use self::gate::no_worse;
 use self::looking::{Looked, Looking};
 use self::metrics::CaseSums;
 use self::summary::Speed;
-pub use self::summary::{Compared, Summary};
+pub use self::summary::{Compared, Scoreboard};
 use super::looks::open_eyes;
 use super::pipeline::{Crew, Studios, set_aside};
 use super::store::{Settings, Store};
@@ -96,7 +96,7 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
         }
     }
     let sums = sums(&looked, eyes.len());
-    let mut summary = Summary::new(size, &cases, &eyes, &looked, &sums);
+    let mut summary = Scoreboard::new(size, &cases, &eyes, &looked, &sums);
     summary.failed = failed;
     summary.gates = passages(args, &eyes, &sums, reference);
     let differing = differing::most(&looked);

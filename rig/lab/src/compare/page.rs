@@ -15,10 +15,10 @@ use serde::Serialize;
 use super::super::figures::decimal;
 use super::super::looks::{Studio, look};
 use super::super::report::{Class, STYLE, Seen, legend};
-use super::contest::{Contest, Verdict};
+use super::contest::{Change, Contest};
 use super::differing::Differing;
 use super::metrics::Metric;
-use super::summary::{CaseLine, CheckpointLine, LookLine, Summary};
+use super::summary::{CaseLine, CheckpointLine, LookLine, Scoreboard};
 use super::text::{difference, sight};
 
 const TEMPLATE: &str = include_str!("template.html");
@@ -27,7 +27,7 @@ const TEMPLATE: &str = include_str!("template.html");
 struct Page<'a> {
     style: &'static str,
     version: &'static str,
-    summary: &'a Summary,
+    summary: &'a Scoreboard,
     frames: usize,
     metrics: Vec<Row>,
     classes: Vec<Row>,
@@ -77,7 +77,7 @@ struct Picture {
 
 /// The page, with pictures of these frames.
 pub fn render(
-    summary: &Summary,
+    summary: &Scoreboard,
     cases: &[Entry],
     (eyes, studio): (&mut [Eye], &mut Studio),
     differing: &[Differing],
@@ -106,7 +106,7 @@ pub fn render(
     minijinja::Environment::new().render_named_str("compare.html", TEMPLATE, values).context("comparison template")
 }
 
-fn metric_row(summary: &Summary, metric: Metric) -> Row {
+fn metric_row(summary: &Scoreboard, metric: Metric) -> Row {
     let cells = |checkpoint: &CheckpointLine| {
         let found = |contest: &Contest| contest.differences.iter().find(|each| each.metric == metric).map(difference);
         let own = decimal(checkpoint.own(metric));
@@ -115,11 +115,11 @@ fn metric_row(summary: &Summary, metric: Metric) -> Row {
     Row { name: metric.title(), cells: summary.checkpoints.iter().flat_map(cells).collect() }
 }
 
-fn class_row(summary: &Summary, name: &'static str) -> Row {
+fn class_row(summary: &Scoreboard, name: &'static str) -> Row {
     Row { name, cells: summary.checkpoints.iter().map(|each| decimal(each.figures.iou[name])).collect() }
 }
 
-fn case_rows(summary: &Summary) -> Vec<CaseRow<'_>> {
+fn case_rows(summary: &Scoreboard) -> Vec<CaseRow<'_>> {
     summary.cases.iter().map(case_row).collect()
 }
 
@@ -127,7 +127,7 @@ fn case_row(case: &CaseLine) -> CaseRow<'_> {
     let cell = |look: &LookLine| LookCell {
         sight: sight(look),
         pedestrian_iou: decimal(look.figures.pedestrian_iou),
-        verdict: look.verdict.map_or("", Verdict::words),
+        verdict: look.verdict.map_or("", Change::words),
     };
     CaseRow { file: &case.file, hazard: hazard(case), looks: case.checkpoints.iter().map(cell).collect() }
 }
@@ -137,7 +137,7 @@ fn hazard(case: &CaseLine) -> &str {
 }
 
 fn moment<'a>(
-    summary: &'a Summary,
+    summary: &'a Scoreboard,
     cases: &[Entry],
     eyes: &mut [Eye],
     each: &Differing,

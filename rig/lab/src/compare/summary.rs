@@ -10,14 +10,14 @@ use serde::Serialize;
 
 use super::super::figures::Figures;
 use super::super::pipeline::{Alone, Pace};
-use super::contest::{Contest, Verdict};
+use super::contest::{Change, Contest};
 use super::gate::Passage;
 use super::looking::Looked;
 use super::metrics::{CaseSums, IN_TIME_S, Metric};
 
 /// The content of `compare.json`.
 #[derive(Serialize)]
-pub struct Summary {
+pub struct Scoreboard {
     /// Width and height of the pictures, pixels.
     pub size: (u32, u32),
     /// The graphics adapter that drew them.
@@ -35,7 +35,7 @@ pub struct Summary {
 }
 
 /// `compare.json`, which holds no `speed`.
-impl Typed for Summary {
+impl Typed for Scoreboard {
     const TYPE: &'static str = "aeye.compare";
 }
 
@@ -86,14 +86,14 @@ pub struct LookLine {
     /// How much earlier than through the baseline, seconds.
     pub gain_s: Option<f64>,
     /// Against the baseline; `None` for itself.
-    pub verdict: Option<Verdict>,
+    pub verdict: Option<Change>,
     /// As over all cases.
     pub ped_recall_on_path: Option<f64>,
     #[serde(flatten)]
     pub figures: Figures,
 }
 
-impl Summary {
+impl Scoreboard {
     /// Without gates.
     pub fn new(size: (u32, u32), cases: &[Entry], eyes: &[Eye], looked: &[Looked], sums: &[Vec<CaseSums>]) -> Self {
         let checkpoint = |number: usize| CheckpointLine::new(number, &eyes[number], looked, sums);
@@ -151,7 +151,7 @@ impl CaseLine {
                 first_seen_tick: score.first_seen().map(|frame| facts.ticks[frame]),
                 first_sight_s: sight_s,
                 gain_s: sight_s.zip(baseline_s).map(|(own, baseline)| own - baseline),
-                verdict: (checkpoint > 0).then(|| Verdict::of(baseline_s, sight_s)),
+                verdict: (checkpoint > 0).then(|| Change::of(baseline_s, sight_s)),
                 ped_recall_on_path: score.people_on_path.share(),
                 figures: (&score.matrix).into(),
             }
@@ -199,7 +199,7 @@ impl Speed {
 pub struct Compared {
     /// What `compare.json` holds.
     #[serde(flatten)]
-    pub summary: Summary,
+    pub summary: Scoreboard,
     /// `None` where everything was there already.
     pub speed: Option<Speed>,
 }

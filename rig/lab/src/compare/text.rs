@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use super::super::figures::decimal;
 use super::contest::Difference;
 use super::metrics::Metric;
-use super::summary::{CaseLine, Compared, LookLine, Speed, Summary};
+use super::summary::{CaseLine, Compared, LookLine, Scoreboard, Speed};
 
 /// With fewer cases than these, intervals are not to be trusted.
 const FEW_CASES: usize = 10;
@@ -46,7 +46,7 @@ pub fn difference(difference: &Difference) -> String {
 }
 
 /// A row for each figure.
-fn metrics(summary: &Summary) -> Vec<String> {
+fn metrics(summary: &Scoreboard) -> Vec<String> {
     let mut head = format!("{:<26}", "");
     let mut rows: Vec<String> = Metric::OWN.iter().map(|metric| format!("{:<26}", metric.title())).collect();
     for checkpoint in &summary.checkpoints {
@@ -65,7 +65,7 @@ fn metrics(summary: &Summary) -> Vec<String> {
 }
 
 /// A row for each case.
-fn cases(summary: &Summary) -> Vec<String> {
+fn cases(summary: &Scoreboard) -> Vec<String> {
     let name = summary.cases.iter().map(|case| case.file.len()).max().unwrap_or(0).max("case".len());
     let hazard = summary.cases.iter().map(|case| words(case).len()).max().unwrap_or(0).max("hazard".len());
     let mut head = format!("{:<name$}  {:<hazard$}", "case", "hazard");

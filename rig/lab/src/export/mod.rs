@@ -41,7 +41,7 @@ use sink::Sink;
 
 /// What was written.
 #[derive(Debug, Serialize)]
-pub struct Summary {
+pub struct Exports {
     /// A layout for viewers.
     pub layout: PathBuf,
     /// The files.
@@ -51,7 +51,7 @@ pub struct Summary {
 }
 
 /// What `aeye export` prints.
-impl Typed for Summary {
+impl Typed for Exports {
     const TYPE: &'static str = "aeye.export";
 }
 
@@ -97,7 +97,7 @@ pub struct Options {
     pub out: PathBuf,
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for Exports {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Export { out, from, to, kept, counts, .. } in &self.exports {
             let Counts { frames, poses, events } = counts;
@@ -110,7 +110,7 @@ impl fmt::Display for Summary {
 }
 
 /// Exports what is asked for; what is whole already is kept.
-pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
+pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> {
     let Places { layout, files, mut failed } = places(args)?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
     let studios = Studios::default();
@@ -140,7 +140,7 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> 
     }
     let panels = layout::layout(eyes.iter().map(Eye::name));
     output::write_file(&layout, &serde_json::to_vec_pretty(&panels)?)?;
-    Ok(Summary { layout, exports, failed })
+    Ok(Exports { layout, exports, failed })
 }
 
 /// Where everything goes.

@@ -120,7 +120,7 @@ impl Studios {
 }
 
 /// What the threads share.
-struct Board<'a, W> {
+struct Shared<'a, W> {
     crew: &'a Crew<'a, W>,
     next: AtomicUsize,
     frames: AtomicUsize,
@@ -149,7 +149,7 @@ impl<W: Work> Crew<'_, W> {
     /// Does the work with every file that can be read, and gives those that cannot, by number. After the first
     /// other error nothing new is begun, and that error is returned.
     pub fn run(&self) -> anyhow::Result<(Pace, Vec<Unread>)> {
-        let board = Board {
+        let board = Shared {
             crew: self,
             next: AtomicUsize::new(0),
             frames: AtomicUsize::new(0),
@@ -167,7 +167,7 @@ impl<W: Work> Crew<'_, W> {
     }
 }
 
-impl<W: Work> Board<'_, W> {
+impl<W: Work> Shared<'_, W> {
     fn run(&self) {
         let jobs = self.crew.jobs.max(1);
         let (shots, waiting) = sync_channel(WAITING * jobs);

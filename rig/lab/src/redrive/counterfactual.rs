@@ -17,7 +17,7 @@ use replay::{KERNEL_VERSION, Recording};
 use serde::{Deserialize, Serialize};
 
 use super::fork::{Fork, Harm, Otherwise};
-use super::verdict::Verdict;
+use super::verdict::Need;
 
 /// Raised when verdicts are given otherwise.
 const VERDICTS: u32 = 2;
@@ -26,7 +26,7 @@ const VERDICTS: u32 = 2;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Counterfactual {
     /// Whether the intervention was necessary, early, needless, or in vain.
-    pub verdict: Verdict,
+    pub verdict: Need,
     /// The first thing that goes wrong without it.
     pub harm: Option<Harm>,
     /// From the intervention to the harm, seconds.
@@ -84,7 +84,7 @@ impl Counterfactual {
         let fork = Fork { otherwise, weather: None, after_ticks: FORK_AFTER_TICKS };
         let (course, vision) = fork.drive(recording.log(), network, vision)?;
         let found = Self {
-            verdict: Verdict::of(&course, otherwise, at),
+            verdict: Need::of(&course, otherwise, at),
             harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
             harm: course.harm,
             collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),

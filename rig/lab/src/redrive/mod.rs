@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::counterfactual::Counterfactual;
 use self::fork::{Course, Fork, Harm, Otherwise, from_takeover, takeover};
-use self::verdict::Verdict;
+use self::verdict::Need;
 use super::store::Store;
 use base::failure::{Failed, Failure, Usage};
 use base::library::{self, Kind, Listed};
@@ -57,7 +57,7 @@ pub struct Line {
     /// First tick that may differ from the recorded run.
     fork_tick: Tick,
     /// What it says about the intervention.
-    verdict: Verdict,
+    verdict: Need,
     /// The first thing that went wrong.
     harm: Option<Harm>,
     /// From the recorded intervention to the harm, seconds; negative before it.
@@ -81,7 +81,7 @@ impl Typed for Line {
 
 /// What came of it.
 #[derive(Debug, Serialize)]
-pub struct Summary {
+pub struct Forks {
     /// Folder of the forks.
     pub out: String,
     /// Files that were driven on.
@@ -95,7 +95,7 @@ pub struct Summary {
 }
 
 /// What `aeye redrive` prints.
-impl Typed for Summary {
+impl Typed for Forks {
     const TYPE: &'static str = "aeye.redrive";
 }
 
@@ -146,7 +146,7 @@ struct Key {
 type Kept = (Line, String);
 
 /// Drives every file on; forks that are there already are kept.
-pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
+pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Forks> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "redrive")?;
     let library::Found { files, mut failed } = library::list(&args.files, Kind::Cases).or_failed()?;
@@ -180,7 +180,7 @@ pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary>
     output::write_file(&table, (lines.join("\n") + "\n").as_bytes())?;
     let mut verdicts = BTreeMap::new();
     forks.iter().for_each(|line| *verdicts.entry(line.verdict.name()).or_insert(0) += 1);
-    Ok(Summary { out: args.out.display().to_string(), files: well, forks, verdicts, failed })
+    Ok(Forks { out: args.out.display().to_string(), files: well, forks, verdicts, failed })
 }
 
 /// All forks of a file.
@@ -265,7 +265,7 @@ fn line(
         checkpoint: eye.name().to_owned(),
         intervention_tick: at,
         fork_tick: course.fork_tick,
-        verdict: Verdict::of(&course, otherwise, at),
+        verdict: Need::of(&course, otherwise, at),
         harm_after_s: course.harm.as_ref().map(|harm| harm.seconds_after(at)),
         harm: course.harm,
         collision_after_s: course.collision.as_ref().map(|harm| harm.seconds_after(at)),
@@ -304,7 +304,7 @@ fn variant(args: &Options, log: &Log, network: &Arc<RoadNetwork>, variation: u16
     Fork { otherwise, weather, after_ticks: Tick::from(args.seconds) * Tick::from(TICK_HZ) }
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for Forks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.forks.iter().try_for_each(|line| writeln!(f, "{}", line.words()))?;
         let counts: Vec<_> = self.verdicts.iter().map(|(name, count)| format!("{count} {name}")).collect();
@@ -320,7 +320,7 @@ impl Line {
         let later = words(&self.collision, self.collision_after_s).filter(|_| self.collision != self.harm);
         let harm = harm.map(|harm| harm + &later.map(|later| format!("; {later}")).unwrap_or_default());
         let what = harm.or_else(|| self.near_miss()).unwrap_or_default();
-        let came = self.recorded_harm.as_ref().filter(|_| self.verdict == Verdict::InVain);
+        let came = self.recorded_harm.as_ref().filter(|_| self.verdict == Need::InVain);
         let came =
             came.map(|harm| format!("; with the takeover: {}", harm.words(harm.seconds_after(self.intervention_tick))));
         format!("{}{variation}: {}{what}{}", self.file, self.verdict.name(), came.unwrap_or_default())
@@ -328,7 +328,7 @@ impl Line {
 
     /// How close it came where nothing went wrong and nobody had to take over.
     fn near_miss(&self) -> Option<String> {
-        if !matches!(self.verdict, Verdict::Needless | Verdict::Avoided) {
+        if !matches!(self.verdict, Need::Needless | Need::Avoided) {
             return None;
         }
         let Extreme { value, tick, with } = self.closest.min_ttc_s.as_ref()?;
@@ -341,7 +341,7 @@ impl Line {
 mod tests {
     use super::*;
 
-    fn line(verdict: Verdict, min_ttc_s: f64, tick: Tick) -> Line {
+    fn line(verdict: Need, min_ttc_s: f64, tick: Tick) -> Line {
         let extreme = Extreme { value: min_ttc_s, tick, with: "bicycle 9".into() };
         Line {
             file: "a.case.mcap".into(),
@@ -370,9 +370,9 @@ mod tests {
     fn a_near_miss_is_told_where_nobody_had_to_take_over() {
         let words = |verdict, ttc, tick| line(verdict, ttc, tick).words();
         let near = "a.case.mcap: needless, 0.4 s from a collision with bicycle 9 0.5 s after the takeover";
-        assert_eq!(words(Verdict::Needless, 0.4, 630), near);
-        assert!(words(Verdict::Avoided, 1.5, 540).ends_with("1.0 s before the takeover"));
-        assert_eq!(words(Verdict::Needless, 1.6, 630), "a.case.mcap: needless");
-        assert_eq!(words(Verdict::Again, 0.4, 630), "a.case.mcap: again");
+        assert_eq!(words(Need::Needless, 0.4, 630), near);
+        assert!(words(Need::Avoided, 1.5, 540).ends_with("1.0 s before the takeover"));
+        assert_eq!(words(Need::Needless, 1.6, 630), "a.case.mcap: needless");
+        assert_eq!(words(Need::Again, 0.4, 630), "a.case.mcap: again");
     }
 }

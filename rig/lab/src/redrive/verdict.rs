@@ -8,10 +8,10 @@ use super::fork::{Course, Otherwise};
 /// An intervention is early when harm would have come later than this after it.
 const EARLY_TICKS: Tick = seconds(3);
 
-/// Verdict on an intervention.
+/// Need on an intervention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+pub enum Need {
     /// Harm of the same kind comes without it and came with it.
     #[serde(rename = "in vain")]
     InVain,
@@ -27,7 +27,7 @@ pub enum Verdict {
     Avoided,
 }
 
-impl Verdict {
+impl Need {
     /// Of a fork of a run with an intervention at a tick.
     pub fn of(course: &Course, otherwise: Otherwise, at: Tick) -> Self {
         match otherwise {
@@ -76,11 +76,11 @@ mod tests {
     #[test]
     fn harm_soon_after_makes_an_intervention_necessary() {
         let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
-        let verdict = |harm| Verdict::of(&course(harm, None), otherwise, 1000);
-        assert_eq!(verdict(Some((1000, HarmKind::Collision))), Verdict::Necessary);
-        assert_eq!(verdict(Some((1180, HarmKind::RedLight))), Verdict::Necessary);
-        assert_eq!(verdict(Some((1181, HarmKind::Collision))), Verdict::Early);
-        assert_eq!(verdict(None), Verdict::Needless);
+        let verdict = |harm| Need::of(&course(harm, None), otherwise, 1000);
+        assert_eq!(verdict(Some((1000, HarmKind::Collision))), Need::Necessary);
+        assert_eq!(verdict(Some((1180, HarmKind::RedLight))), Need::Necessary);
+        assert_eq!(verdict(Some((1181, HarmKind::Collision))), Need::Early);
+        assert_eq!(verdict(None), Need::Needless);
     }
 
     #[test]
@@ -88,21 +88,20 @@ mod tests {
         let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
         let verdict = |harm, came| {
             let recorded_harm = course(came, None).harm;
-            Verdict::of(&Course { recorded_harm, ..course(harm, None) }, otherwise, 1000)
+            Need::of(&Course { recorded_harm, ..course(harm, None) }, otherwise, 1000)
         };
         let collision = |tick| Some((tick, HarmKind::Collision));
-        assert_eq!(verdict(collision(1010), collision(1012)), Verdict::InVain);
-        assert_eq!(verdict(collision(1010), Some((1012, HarmKind::OffRoad))), Verdict::Necessary);
-        assert_eq!(verdict(None, collision(1012)), Verdict::Needless);
+        assert_eq!(verdict(collision(1010), collision(1012)), Need::InVain);
+        assert_eq!(verdict(collision(1010), Some((1012, HarmKind::OffRoad))), Need::Necessary);
+        assert_eq!(verdict(None, collision(1012)), Need::Needless);
     }
 
     #[test]
     fn another_eye_avoids_it_only_without_takeover_and_collision() {
-        let verdict =
-            |harm, taken_over| Verdict::of(&course(harm, taken_over), Otherwise::OtherEye { person: 0 }, 1000);
-        assert_eq!(verdict(None, None), Verdict::Avoided);
-        assert_eq!(verdict(Some((900, HarmKind::OffRoad)), None), Verdict::Avoided);
-        assert_eq!(verdict(Some((900, HarmKind::Collision)), None), Verdict::Again);
-        assert_eq!(verdict(None, Some(990)), Verdict::Again);
+        let verdict = |harm, taken_over| Need::of(&course(harm, taken_over), Otherwise::OtherEye { person: 0 }, 1000);
+        assert_eq!(verdict(None, None), Need::Avoided);
+        assert_eq!(verdict(Some((900, HarmKind::OffRoad)), None), Need::Avoided);
+        assert_eq!(verdict(Some((900, HarmKind::Collision)), None), Need::Again);
+        assert_eq!(verdict(None, Some(990)), Need::Again);
     }
 }

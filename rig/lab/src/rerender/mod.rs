@@ -54,7 +54,7 @@ impl Typed for Line<'_> {
 
 /// What came of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct Rerendered {
     /// Folder of the results.
     pub out: String,
     /// Recordings and cases.
@@ -68,7 +68,7 @@ pub struct Summary {
 }
 
 /// What `aeye rerender` prints.
-impl Typed for Summary {
+impl Typed for Rerendered {
     const TYPE: &'static str = "aeye.rerender";
 }
 
@@ -84,7 +84,7 @@ pub struct Seen {
     pub figures: Figures,
 }
 
-impl fmt::Display for Summary {
+impl fmt::Display for Rerendered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { out, files, frames, checkpoints, .. } = self;
         let columns: Vec<_> = checkpoints.iter().map(|c| (c.name.clone(), c.figures.clone())).collect();
@@ -93,7 +93,7 @@ impl fmt::Display for Summary {
 }
 
 /// Draws the windows and looks at them; what an earlier call left whole is kept.
-pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary> {
+pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rerendered> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "rerender")?;
     let library::Found { mut files, mut failed } = library::find(&args.files, Kind::Cases).or_failed()?;
@@ -128,7 +128,7 @@ pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Summary
         figures: matrix.into(),
     };
     let checkpoints = eyes.iter().zip(&overall).map(seen).collect();
-    Ok(Summary { out: args.out.display().to_string(), files: files.len(), frames, checkpoints, failed })
+    Ok(Rerendered { out: args.out.display().to_string(), files: files.len(), frames, checkpoints, failed })
 }
 
 /// The text of `metrics.jsonl`, and each checkpoint's matrix over all; `found` is by file and checkpoint.
