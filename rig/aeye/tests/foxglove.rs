@@ -5,6 +5,7 @@ use std::net::{SocketAddr, TcpStream};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use prost::Message as _;
 use serde_json::{Value, json};
 use tungstenite::client::ClientRequestBuilder;
 use tungstenite::{Message, client};
@@ -12,6 +13,17 @@ use tungstenite::{Message, client};
 const ADDRESS: &str = "Foxglove: ws://";
 /// Nothing takes this long; without it a test that waits in vain would never end.
 const PATIENCE: Duration = Duration::from_secs(240);
+
+/// What the test reads of `/telemetry`.
+#[derive(Clone, PartialEq, prost::Message)]
+struct Telemetry {
+    #[prost(uint64, tag = "1")]
+    tick: u64,
+    #[prost(double, optional, tag = "2")]
+    speed_mps: Option<f64>,
+    #[prost(string, optional, tag = "5")]
+    phase: Option<String>,
+}
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
@@ -47,9 +59,10 @@ fn look_on(address: SocketAddr) -> Vec<u64> {
     let (mut socket, _) = client(request.with_sub_protocol("foxglove.sdk.v1"), stream).expect("a handshake");
     let channel = loop {
         let words: Value = serde_json::from_str(socket.read().expect("words").to_text().expect("text")).expect("JSON");
-        let channels = words["channels"].as_array().into_iter().flatten();
-        if let Some(channel) = channels.filter(|c| c["topic"] == "/telemetry").find_map(|c| c["id"].as_u64()) {
-            break channel;
+        let mut channels = words["channels"].as_array().into_iter().flatten();
+        if let Some(channel) = channels.find(|c| c["topic"] == "/telemetry") {
+            assert_eq!([&channel["encoding"], &channel["schemaName"]], ["protobuf", "telemetry.Telemetry"]);
+            break channel["id"].as_u64().expect("a number");
         }
     };
     let words = json!({ "op": "subscribe", "subscriptions": [{ "id": 1, "channelId": channel }] });
@@ -61,9 +74,9 @@ fn look_on(address: SocketAddr) -> Vec<u64> {
         let time_ns = u64::from_le_bytes(bytes[5..13].try_into().expect("8 bytes"));
         assert!(bytes[..5] == [1, 1, 0, 0, 0] && time_ns > last_ns, "{time_ns} after {last_ns}");
         last_ns = time_ns;
-        let telemetry: Value = serde_json::from_slice(&bytes[13..]).expect("JSON");
-        assert!(telemetry["speed_mps"].is_number() && telemetry["phase"].is_string(), "{telemetry}");
-        ticks.push(telemetry["tick"].as_u64().expect("a tick"));
+        let telemetry = Telemetry::decode(&bytes[13..]).expect("telemetry");
+        assert!(telemetry.speed_mps.is_some_and(f64::is_finite) && telemetry.phase.is_some(), "{telemetry:?}");
+        ticks.push(telemetry.tick);
     }
     ticks
 }

@@ -4,5 +4,6 @@
 pub mod boxes;
 pub mod events;
 pub mod feed;
+pub mod messages;
 pub mod server;
 pub mod telemetry;

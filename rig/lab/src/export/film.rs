@@ -8,17 +8,21 @@ use anyhow::Context;
 use base::png;
 use drivers::vision::Eye;
 use kernel::scene::{EgoScene, SceneSnapshot};
-use kernel::time::{CLIP_STRIDE_TICKS, Tick};
+use kernel::time::{CLIP_STRIDE_TICKS, TICK_HZ, Tick};
 use kernel::{RoadNetwork, World};
 use measures::criticality::{SAMPLE_TICKS, Sampler, WARM_UP_SAMPLES};
-use replay::{Log, Replayer};
+use replay::{Log, Replayer, nanoseconds};
 use serde::Serialize;
+use viewers::messages::actors::actors;
+use viewers::messages::camera::{calibration, image};
+use viewers::messages::ground::ground;
+use viewers::messages::poses::{ego_path, ego_pose, transforms};
+use viewers::messages::telemetry::Telemetry;
 
 use super::criticality::Criticality;
+use super::happenings;
 use super::sink::Sink;
-use super::telemetry::Telemetry;
 use super::topics::Topics;
-use super::{entities, happenings, messages};
 use crate::looks::{Studio, look};
 
 /// What is exported of a log.
@@ -78,8 +82,8 @@ pub fn shoot<W: Write>(
 ) -> anyhow::Result<()> {
     let topics = Topics::declare(sink, camera.eyes.iter().map(Eye::name))?;
     let (first, last) = (*window.ticks.start(), *window.ticks.end());
-    sink.put(&topics.ground, first, &entities::ground(first, network))?;
-    sink.put(&topics.path, first, &messages::ego_path(first, &path(log, network, window)?))?;
+    sink.put(&topics.ground, first, &ground(network, nanoseconds(first)))?;
+    sink.put(&topics.path, first, &ego_path(&path(log, network, window)?, nanoseconds(first)))?;
     let mut happenings = happenings::lines(log, &window.ticks).into_iter().peekable();
     let mut replayer = Replayer::new(log, network.clone())?;
     // Some ticks before the window, so that everyone's change of speed is known in it.
@@ -95,7 +99,7 @@ pub fn shoot<W: Write>(
             }
         }
         if inside {
-            sink.put(&topics.pose, tick, &messages::ego_pose(tick, &scene.ego))?;
+            sink.put(&topics.pose, tick, &ego_pose(&scene.ego, nanoseconds(tick)))?;
             while let Some((_, line)) = happenings.next_if(|(at, _)| *at <= tick) {
                 sink.put(&topics.events, tick, &line)?;
             }
@@ -119,7 +123,9 @@ fn step(replayer: &mut Replayer<'_>) -> anyhow::Result<Telemetry> {
     let log = replayer.log();
     let output = replayer.step()?.context("the log ends within the window")?;
     let input = log.input(output.tick).context("a tick without input")?;
-    Ok(Telemetry::of(replayer.world(), input, &output, log))
+    let milliseconds = |ticks: Tick| 1e3 * ticks as f64 / f64::from(TICK_HZ);
+    let mask_age_ms = log.mask_at(output.tick).map(|mask| milliseconds(mask.age_at(output.tick)));
+    Ok(Telemetry::of_step(replayer.world(), input, &output, mask_age_ms))
 }
 
 /// Ten places of the ego car a second.
@@ -139,16 +145,16 @@ fn picture<W: Write>(
     topics: &Topics,
     sink: &mut Sink<W>,
 ) -> anyhow::Result<()> {
-    let (tick, pinhole) = (scene.tick, *camera.studio.camera());
+    let (tick, time_ns, pinhole) = (scene.tick, nanoseconds(scene.tick), *camera.studio.camera());
     let frame = camera.studio.draw(network, scene)?;
     let size = (frame.width, frame.height);
-    sink.put(&topics.transforms, tick, &messages::transforms(scene, &pinhole))?;
-    sink.put(&topics.actors, tick, &entities::actors(scene))?;
-    sink.put(&topics.calibration, tick, &messages::calibration(tick, &pinhole))?;
-    sink.put(&topics.rgb, tick, &messages::image(tick, png::rgb(size, &frame.rgb)?))?;
-    sink.put(&topics.truth, tick, &messages::image(tick, png::tags(size, &frame.class_ids)?))?;
+    sink.put(&topics.transforms, tick, &transforms(scene, &pinhole, time_ns))?;
+    sink.put(&topics.actors, tick, &actors(scene, time_ns))?;
+    sink.put(&topics.calibration, tick, &calibration(&pinhole, time_ns))?;
+    sink.put(&topics.rgb, tick, &image(png::rgb(size, &frame.rgb)?, time_ns))?;
+    sink.put(&topics.truth, tick, &image(png::tags(size, &frame.class_ids)?, time_ns))?;
     for (topic, mask) in topics.predicted.iter().zip(look(camera.eyes, &frame)?) {
-        sink.put(topic, tick, &messages::image(tick, png::tags(size, &mask.ids)?))?;
+        sink.put(topic, tick, &image(png::tags(size, &mask.ids)?, time_ns))?;
     }
     Ok(())
 }

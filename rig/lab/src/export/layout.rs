@@ -2,8 +2,9 @@
 
 use serde_json::{Map, Value, json};
 use viewers::boxes::EGO;
-
-use super::topics::{ACTORS, CALIBRATION, CRITICALITY, EVENTS, GROUND, PATH, RGB, TELEMETRY, TRUTH, predicted};
+use viewers::messages::topics::{
+    ACTORS, CALIBRATION, CRITICALITY, EVENTS, GROUND, PATH, RGB, TELEMETRY, TRUTH, predicted,
+};
 
 /// The layout for exports with masks of these checkpoints.
 pub fn layout<'a>(checkpoints: impl Iterator<Item = &'a str>) -> Value {

@@ -5,13 +5,10 @@
 //! already is kept: its file says what it was made from.
 
 mod criticality;
-mod entities;
 mod film;
 mod happenings;
 mod layout;
-mod messages;
 mod sink;
-mod telemetry;
 mod topics;
 
 use std::collections::BTreeMap;

@@ -1,42 +1,17 @@
-//! The topics of an export and what each holds.
+//! The topics of an export, and the type of each one's messages.
 
 use std::io::Write;
 
 use foxglove::messages::{
     CameraCalibration, CompressedImage, FrameTransforms, Log, PoseInFrame, PosesInFrame, SceneUpdate,
 };
+use viewers::messages::telemetry::Telemetry;
+use viewers::messages::topics::{
+    ACTORS, CALIBRATION, CRITICALITY, EVENTS, GROUND, PATH, POSE, RGB, TELEMETRY, TRANSFORMS, TRUTH, predicted,
+};
 
 use super::criticality::Criticality;
 use super::sink::{Sink, Topic};
-use super::telemetry::Telemetry;
-
-/// Frames `map`, `ego`, `camera` and each actor's, a message a picture.
-pub const TRANSFORMS: &str = "/tf";
-/// Pose of the ego car's rear axle, every tick.
-pub const POSE: &str = "/ego/pose";
-/// The whole way of the ego car, once.
-pub const PATH: &str = "/ego/path";
-/// Figures to plot, every tick.
-pub const TELEMETRY: &str = "/telemetry";
-/// How critical it is, ten times a second.
-pub const CRITICALITY: &str = "/criticality";
-/// What happened.
-pub const EVENTS: &str = "/events";
-/// Roads, paint and sidewalks, once.
-pub const GROUND: &str = "/map";
-/// Every road user as a box, a message a picture.
-pub const ACTORS: &str = "/actors";
-/// Of the camera, a message a picture.
-pub const CALIBRATION: &str = "/camera/calibration";
-/// The picture.
-pub const RGB: &str = "/camera/rgb";
-/// Ground truth of the picture.
-pub const TRUTH: &str = "/camera/truth";
-
-/// What a checkpoint predicts for the picture.
-pub fn predicted(checkpoint: &str) -> String {
-    format!("/camera/predicted/{checkpoint}")
-}
 
 /// Every topic, ready to be written to. Masks are PNG files with a palette: the values are the tags of
 /// CARLA 0.9.10, the colours are theirs.

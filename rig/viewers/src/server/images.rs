@@ -2,28 +2,28 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use base::clock::SessionClock;
+use foxglove::messages::CompressedImage;
 
 use crate::feed::View;
+use crate::messages::camera::image;
 
 /// The last picture that was encoded.
 #[derive(Debug, Default)]
-pub struct Encoder(Mutex<Option<(Arc<View>, Arc<str>)>>);
+pub struct Encoder(Mutex<Option<(Arc<View>, CompressedImage)>>);
 
 impl Encoder {
-    /// The view as a PNG file in base 64; other clients wait for it meanwhile. `None` when it cannot be
-    /// encoded.
-    pub fn png(&self, view: &Arc<View>) -> Option<Arc<str>> {
+    /// The view as a message; other clients wait for it meanwhile. `None` when it cannot be encoded.
+    pub fn message(&self, view: &Arc<View>, clock: &SessionClock) -> Option<CompressedImage> {
         let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((encoded, text)) = &*last
+        if let Some((encoded, message)) = &*last
             && Arc::ptr_eq(encoded, view)
         {
-            return Some(text.clone());
+            return Some(message.clone());
         }
-        let text: Arc<str> = STANDARD.encode(encode(view).ok()?).into();
-        *last = Some((view.clone(), text.clone()));
-        Some(text)
+        let message = image(encode(view).ok()?, clock.unix_ns(view.captured_us));
+        *last = Some((view.clone(), message.clone()));
+        Some(message)
     }
 }
 

@@ -4,13 +4,14 @@
 //! Each client has a thread of its own that looks at the feed from time to time, so that a slow or
 //! hostile one delays nobody but itself.
 
+mod channels;
 mod client;
 mod images;
+mod listener;
+mod news;
 mod protocol;
-mod server;
 #[cfg(test)]
 mod tests;
-mod topics;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::Arc;
@@ -22,7 +23,7 @@ use kernel::World;
 use crate::events::Events;
 use crate::feed::{Feed, Look};
 use crate::telemetry::Telemetry;
-pub use server::Server;
+pub use listener::Server;
 
 /// `PORT` of this machine alone, or `ADDRESS:PORT`.
 pub fn address(text: &str) -> Result<SocketAddr, String> {

@@ -5,7 +5,7 @@
 use serde::Deserialize;
 use serde_json::json;
 
-use super::topics::Topic;
+use super::channels::Channel;
 
 /// Subprotocols that are spoken: the one of Foxglove's SDK and its predecessor; what is used here is the
 /// same in both.
@@ -25,15 +25,7 @@ pub fn server_info(session: &str) -> String {
 
 /// Names every channel.
 pub fn advertise() -> String {
-    let channels: Vec<_> = Topic::ALL
-        .into_iter()
-        .map(|topic| {
-            json!({
-                "id": topic.channel(), "topic": topic.name(), "encoding": "json",
-                "schemaName": topic.schema_name(), "schema": topic.schema().to_string(), "schemaEncoding": "jsonschema",
-            })
-        })
-        .collect();
+    let channels: Vec<_> = Channel::ALL.into_iter().filter_map(Channel::offer).collect();
     json!({ "op": "advertise", "channels": channels }).to_string()
 }
 
@@ -43,9 +35,8 @@ pub fn warning(words: &str) -> String {
 }
 
 /// A message of a subscription, received at a time, nanoseconds since 1970.
-pub fn message(subscription: u32, time_ns: u64, payload: &str) -> Vec<u8> {
-    let head = [&[MESSAGE_DATA][..], &subscription.to_le_bytes(), &time_ns.to_le_bytes()].concat();
-    [&head, payload.as_bytes()].concat()
+pub fn message(subscription: u32, time_ns: u64, payload: &[u8]) -> Vec<u8> {
+    [&[MESSAGE_DATA][..], &subscription.to_le_bytes(), &time_ns.to_le_bytes(), payload].concat()
 }
 
 /// What a client asks for; other operations are ignored.
@@ -70,9 +61,9 @@ struct Wish {
     channel_id: u32,
 }
 
-/// A client's subscriptions: its own numbers for topics, one a topic.
+/// A client's subscriptions: its own numbers for channels, one a channel.
 #[derive(Debug, Default)]
-pub struct Subscriptions(Vec<(u32, Topic)>);
+pub struct Subscriptions(Vec<(u32, Channel)>);
 
 impl Subscriptions {
     /// Obeys a client; gives what was wrong with its words.
@@ -88,18 +79,18 @@ impl Subscriptions {
     }
 
     fn subscribe(&mut self, wish: &Wish) -> Result<(), String> {
-        let topic = Topic::ALL.into_iter().find(|topic| topic.channel() == wish.channel_id);
-        let topic = topic.ok_or_else(|| format!("there is no channel {}", wish.channel_id))?;
-        if self.0.iter().any(|(id, had)| *id == wish.id || *had == topic) {
-            return Err(format!("subscription {} of {} is there already", wish.id, topic.name()));
+        let channel = Channel::ALL.into_iter().find(|channel| channel.id() == wish.channel_id);
+        let channel = channel.ok_or_else(|| format!("there is no channel {}", wish.channel_id))?;
+        if self.0.iter().any(|(id, had)| *id == wish.id || *had == channel) {
+            return Err(format!("subscription {} of {} is there already", wish.id, channel.topic()));
         }
-        self.0.push((wish.id, topic));
+        self.0.push((wish.id, channel));
         Ok(())
     }
 
-    /// The number under which a topic is subscribed.
-    pub fn of(&self, topic: Topic) -> Option<u32> {
-        self.0.iter().find(|(_, had)| *had == topic).map(|(id, _)| *id)
+    /// The number under which a channel is subscribed.
+    pub fn of(&self, channel: Channel) -> Option<u32> {
+        self.0.iter().find(|(_, had)| *had == channel).map(|(id, _)| *id)
     }
 }
 
@@ -116,14 +107,14 @@ mod tests {
     }
 
     #[test]
-    fn a_topic_is_subscribed_once_and_given_back() {
+    fn a_channel_is_subscribed_once_and_given_back() {
         let mut subscriptions = Subscriptions::default();
         let subscribe = r#"{"op":"subscribe","subscriptions":[{"id":7,"channelId":1},{"id":8,"channelId":2}]}"#;
         assert_eq!(subscriptions.hear(subscribe), Ok(()));
-        assert_eq!(Topic::ALL.map(|topic| subscriptions.of(topic))[..3], [Some(7), Some(8), None]);
+        assert_eq!(Channel::ALL.map(|channel| subscriptions.of(channel))[..3], [Some(7), Some(8), None]);
         assert!(subscriptions.hear(subscribe).is_err_and(|e| e.contains("already")));
         assert_eq!(subscriptions.hear(r#"{"op":"unsubscribe","subscriptionIds":[7,99]}"#), Ok(()));
-        assert_eq!(subscriptions.of(Topic::ALL[0]), None);
+        assert_eq!(subscriptions.of(Channel::ALL[0]), None);
         let unknown = r#"{"op":"subscribe","subscriptions":[{"id":9,"channelId":4000}]}"#;
         assert_eq!(subscriptions.hear(unknown), Err("there is no channel 4000".into()));
         assert_eq!(subscriptions.hear(r#"{"op":"getParameters","parameterNames":[]}"#), Ok(()));
@@ -131,7 +122,7 @@ mod tests {
 
     #[test]
     fn messages_have_the_layout_of_the_specification() {
-        assert_eq!(message(0x0102_0304, 5, "{}"), [1, 4, 3, 2, 1, 5, 0, 0, 0, 0, 0, 0, 0, b'{', b'}']);
+        assert_eq!(message(0x0102_0304, 5, b"{}"), [1, 4, 3, 2, 1, 5, 0, 0, 0, 0, 0, 0, 0, b'{', b'}']);
     }
 
     proptest! {

@@ -7,13 +7,48 @@ use std::time::Duration;
 
 use base::image::Image;
 use base::maps::Map;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use foxglove::messages::{CompressedImage, FrameTransforms, Log, SceneUpdate};
+use foxglove::prost_types::{FileDescriptorProto, FileDescriptorSet};
+use prost::Message as _;
 use serde_json::{Value, json};
 use tungstenite::client::ClientRequestBuilder;
 use tungstenite::{Message, WebSocket, client};
 
-use super::topics::Topic;
+use super::channels::Channel;
 use super::*;
 use crate::feed::View;
+
+/// What the tests read of `/telemetry`.
+#[derive(Clone, PartialEq, prost::Message)]
+struct Telemetry {
+    #[prost(uint64, tag = "1")]
+    tick: u64,
+    #[prost(double, tag = "2")]
+    speed_mps: f64,
+    #[prost(double, tag = "4")]
+    odometer_m: f64,
+    #[prost(string, tag = "5")]
+    phase: String,
+    #[prost(string, tag = "6")]
+    steering_by: String,
+    #[prost(double, tag = "8")]
+    steer: f64,
+}
+
+/// All of `/rig`.
+#[derive(Clone, PartialEq, prost::Message)]
+struct Rig {
+    #[prost(uint32, tag = "1")]
+    run: u32,
+    #[prost(uint64, tag = "2")]
+    tick: u64,
+    #[prost(double, tag = "3")]
+    late_ms: f64,
+    #[prost(double, tag = "4")]
+    slowed_ms: f64,
+}
 
 /// No wait of these tests is longer.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -41,21 +76,21 @@ impl Client {
         serde_json::from_str(self.0.read().unwrap().to_text().unwrap()).unwrap()
     }
 
-    fn subscribe(&mut self, topics: &[Topic]) {
-        let wishes = topics.iter().map(|t| json!({ "id": 10 + t.channel(), "channelId": t.channel() }));
+    fn subscribe(&mut self, channels: &[Channel]) {
+        let wishes = channels.iter().map(|c| json!({ "id": 10 + c.id(), "channelId": c.id() }));
         let words = json!({ "op": "subscribe", "subscriptions": wishes.collect::<Vec<_>>() });
         self.0.send(Message::text(words.to_string())).unwrap();
     }
 
-    /// The next message of a channel: its topic, time and payload.
-    fn message(&mut self) -> (Topic, u64, Value) {
+    /// The next message of a channel: its channel, time and payload.
+    fn message(&mut self) -> (Channel, u64, Vec<u8>) {
         loop {
             let Message::Binary(bytes) = self.0.read().unwrap() else { continue };
             assert_eq!(bytes[0], 1, "message data");
             let subscription = u32::from_le_bytes(bytes[1..5].try_into().unwrap());
             let time_ns = u64::from_le_bytes(bytes[5..13].try_into().unwrap());
-            let topic = Topic::ALL.into_iter().find(|t| 10 + t.channel() == subscription).unwrap();
-            return (topic, time_ns, serde_json::from_slice(&bytes[13..]).unwrap());
+            let channel = Channel::ALL.into_iter().find(|c| 10 + c.id() == subscription).unwrap();
+            return (channel, time_ns, bytes[13..].to_vec());
         }
     }
 }
@@ -91,6 +126,52 @@ impl Drive {
     }
 }
 
+/// The files of a channel's schema.
+fn files_of(offer: &Value) -> Vec<FileDescriptorProto> {
+    assert_eq!((&offer["encoding"], &offer["schemaEncoding"]), (&json!("protobuf"), &json!("protobuf")));
+    let schema = STANDARD.decode(offer["schema"].as_str().unwrap()).unwrap();
+    FileDescriptorSet::decode(schema.as_slice()).unwrap().file
+}
+
+/// Numbers and names of the fields of the message that a channel's schema names.
+fn fields_of(offer: &Value) -> Vec<(i32, String)> {
+    let files = files_of(offer);
+    let (package, name) = offer["schemaName"].as_str().unwrap().split_once('.').unwrap();
+    let mut messages = files.iter().filter(|file| file.package() == package).flat_map(|file| &file.message_type);
+    let message = messages.find(|message| message.name() == name).expect("the schema describes its message");
+    message.field.iter().map(|field| (field.number(), field.name().to_owned())).collect()
+}
+
+/// Whether a message is of its channel's type and tells something.
+fn tells(channel: Channel, payload: &[u8]) -> bool {
+    match channel {
+        Channel::Transforms => {
+            let frames = FrameTransforms::decode(payload).unwrap().transforms;
+            let names: Vec<_> =
+                frames.iter().map(|f| (f.parent_frame_id.as_str(), f.child_frame_id.as_str())).collect();
+            names.starts_with(&[("map", "ego"), ("ego", "camera")]) && names[2..].iter().all(|(of, _)| *of == "map")
+        }
+        Channel::Actors => {
+            let SceneUpdate { deletions, entities } = SceneUpdate::decode(payload).unwrap();
+            deletions.len() == 1 && entities[0].id == "ego" && entities.iter().all(|entity| entity.cubes.len() == 1)
+        }
+        Channel::Telemetry => {
+            let told = Telemetry::decode(payload).unwrap();
+            let known = told.speed_mps.is_finite() && told.odometer_m.is_finite();
+            known && !told.phase.is_empty() && told.steering_by == "semantic" && told.steer.is_nan()
+        }
+        Channel::Rig => {
+            let told = Rig::decode(payload).unwrap();
+            told.run == 1 && told.tick > 0 && (told.late_ms, told.slowed_ms) == (0.0, 0.0)
+        }
+        Channel::Events => Log::decode(payload).unwrap().message.contains(" s  "),
+        Channel::SafetyCamera | Channel::SemanticCamera => {
+            let picture = CompressedImage::decode(payload).unwrap();
+            picture.format == "png" && picture.data.starts_with(b"\x89PNG\r\n\x1a\n")
+        }
+    }
+}
+
 #[test]
 fn every_channel_is_offered_and_gives_messages_whose_time_grows() {
     let mut drive = Drive::start();
@@ -98,30 +179,48 @@ fn every_channel_is_offered_and_gives_messages_whose_time_grows() {
     assert_eq!(client.words()["op"], "serverInfo");
     let offered = client.words();
     let channels = offered["channels"].as_array().unwrap();
-    assert_eq!((offered["op"].as_str(), channels.len()), (Some("advertise"), Topic::ALL.len()));
-    for channel in channels {
-        let schema: Value = serde_json::from_str(channel["schema"].as_str().unwrap()).unwrap();
-        assert_eq!((&channel["encoding"], &schema["type"]), (&json!("json"), &json!("object")));
-    }
-    client.subscribe(&Topic::ALL);
+    assert_eq!((offered["op"].as_str(), channels.len()), (Some("advertise"), Channel::ALL.len()));
+    assert!(channels.iter().all(|channel| !fields_of(channel).is_empty()));
+    client.subscribe(&Channel::ALL);
     drive.show_views();
-    let (mut last_ns, mut ticks, mut topics) = (0, Vec::new(), Vec::new());
-    while ticks.len() < 5 || topics.len() < Topic::ALL.len() {
+    let (mut last_ns, mut ticks, mut seen) = (0, Vec::new(), Vec::new());
+    while ticks.len() < 5 || seen.len() < Channel::ALL.len() {
         (0..40).for_each(|_| drive.tick());
-        let (topic, time_ns, payload) = client.message();
+        let (channel, time_ns, payload) = client.message();
         assert!(time_ns >= last_ns && time_ns > 1_600_000_000_000_000_000, "{time_ns} after {last_ns}");
         last_ns = time_ns;
-        match topic {
-            Topic::Telemetry => ticks.push(payload["tick"].as_u64().unwrap()),
-            Topic::Events => assert!(payload["message"].as_str().unwrap().contains(" s  ")),
-            Topic::SafetyCamera => assert!(payload["data"].as_str().unwrap().starts_with("iVBORw0KGgo")),
-            _ => {}
+        assert!(tells(channel, &payload), "{channel:?}");
+        if channel == Channel::Telemetry {
+            ticks.push(Telemetry::decode(payload.as_slice()).unwrap().tick);
         }
-        if !topics.contains(&topic) {
-            topics.push(topic);
+        if !seen.contains(&channel) {
+            seen.push(channel);
         }
     }
     assert!(ticks.is_sorted_by(|a, b| a < b), "{ticks:?}");
+}
+
+#[test]
+fn channels_have_the_names_of_files_and_schemas_name_what_is_sent() {
+    let offers: Value = serde_json::from_str(&protocol::advertise()).unwrap();
+    let offers = offers["channels"].as_array().unwrap();
+    let named: Vec<_> = offers.iter().map(|o| [&o["topic"], &o["schemaName"]].map(|w| w.as_str().unwrap())).collect();
+    let expected = [
+        ["/tf", "foxglove.FrameTransforms"],
+        ["/actors", "foxglove.SceneUpdate"],
+        ["/telemetry", "telemetry.Telemetry"],
+        ["/rig", "rig.Rig"],
+        ["/events", "foxglove.Log"],
+        ["/camera/safety", "foxglove.CompressedImage"],
+        ["/camera/semantic", "foxglove.CompressedImage"],
+    ];
+    assert_eq!(named, expected);
+    let of = |channel: Channel| fields_of(&offers[channel as usize]);
+    let told = [(1, "tick"), (2, "speed_mps"), (4, "odometer_m"), (5, "phase"), (6, "steering_by"), (8, "steer")];
+    assert!(told.iter().all(|(tag, name)| of(Channel::Telemetry).contains(&(*tag, (*name).into()))));
+    assert_eq!(of(Channel::Telemetry).len(), 17);
+    let rig = [(1, "run"), (2, "tick"), (3, "late_ms"), (4, "slowed_ms")].map(|(tag, name)| (tag, name.to_owned()));
+    assert_eq!(of(Channel::Rig), rig);
 }
 
 #[test]
@@ -129,28 +228,29 @@ fn what_was_unsubscribed_or_said_wrongly_sends_nothing() {
     let mut drive = Drive::start();
     drive.tick();
     let mut client = Client::greeted(drive.at());
-    client.subscribe(&[Topic::Telemetry]);
-    assert_eq!(client.message().0, Topic::Telemetry);
+    client.subscribe(&[Channel::Telemetry]);
+    assert_eq!(client.message().0, Channel::Telemetry);
     client.0.send(Message::text("{]")).unwrap();
     assert_eq!(client.words()["op"], "status");
-    client.0.send(Message::text(r#"{"op":"unsubscribe","subscriptionIds":[13]}"#)).unwrap();
-    client.subscribe(&[Topic::Transform]);
+    let words = json!({ "op": "unsubscribe", "subscriptionIds": [10 + Channel::Telemetry.id()] });
+    client.0.send(Message::text(words.to_string())).unwrap();
+    client.subscribe(&[Channel::Transforms]);
     loop {
         drive.tick();
-        let (topic, ..) = client.message();
-        if topic == Topic::Transform {
+        let (channel, ..) = client.message();
+        if channel == Channel::Transforms {
             break;
         }
     }
     drive.tick();
-    assert_eq!(client.message().0, Topic::Transform);
+    assert_eq!(client.message().0, Channel::Transforms);
 }
 
 #[test]
 fn hostile_clients_are_dropped_and_do_no_harm() {
     let mut drive = Drive::start();
     let mut friend = Client::greeted(drive.at());
-    friend.subscribe(&[Topic::Telemetry]);
+    friend.subscribe(&[Channel::Telemetry]);
 
     let mut noise = TcpStream::connect(drive.at()).unwrap();
     noise.set_read_timeout(Some(PATIENCE)).unwrap();
@@ -172,7 +272,7 @@ fn hostile_clients_are_dropped_and_do_no_harm() {
     let _silent: Vec<TcpStream> = (0..20).map(|_| TcpStream::connect(drive.at()).unwrap()).collect();
     for _ in 0..3 {
         drive.tick();
-        assert_eq!(friend.message().0, Topic::Telemetry);
+        assert_eq!(friend.message().0, Channel::Telemetry);
     }
 }
 

@@ -8,7 +8,8 @@ use std::time::Duration;
 use anyhow::Context;
 use base::clock::SessionClock;
 
-use super::client::{self, Source};
+use super::client;
+use super::news::Source;
 use crate::feed::Feed;
 
 /// More are turned away.

@@ -1,40 +1,22 @@
-//! The scene for 3D views: road users as boxes of their classes' colours, and the ground of the map.
+//! The ground of a map for 3D views: roads, their paint and sidewalks.
 
-use foxglove::messages::{
-    Color, CubePrimitive, Point3, SceneEntity, SceneEntityDeletion, SceneUpdate, TriangleListPrimitive,
-    scene_entity_deletion,
-};
+use foxglove::messages::{Point3, SceneEntity, SceneUpdate, TriangleListPrimitive};
 use glam::{Quat, Vec3};
 use kernel::RoadNetwork;
 use kernel::map::{Surface, SurfaceKind};
-use kernel::scene::SceneSnapshot;
-use kernel::time::Tick;
 use render::SemanticTag;
-use viewers::boxes::{MAP, RoadUser, fractions, road_users};
 
-use super::messages::{pose, stamp, vector};
+use super::parts::{colour, entity, pose};
+use crate::boxes::fractions;
 
-/// Every road user of a tick; those of the tick before are gone.
-pub fn actors(scene: &SceneSnapshot) -> SceneUpdate {
-    let everything = scene_entity_deletion::Type::All as i32;
-    let deletion = SceneEntityDeletion { timestamp: stamp(scene.tick), r#type: everything, id: String::new() };
-    SceneUpdate { deletions: vec![deletion], entities: road_users(scene).map(|user| cube(scene.tick, user)).collect() }
-}
-
-fn cube(tick: Tick, user: RoadUser) -> SceneEntity {
-    let cube =
-        CubePrimitive { pose: pose(user.middle, user.rotation), size: vector(user.size_m), color: colour(user.colour) };
-    SceneEntity { cubes: vec![cube], ..entity(tick, user.name) }
-}
-
-/// Roads, their paint and sidewalks of a map, for a first tick.
-pub fn ground(tick: Tick, network: &RoadNetwork) -> SceneUpdate {
-    let entity = |(number, surface): (usize, &Surface)| {
+/// Roads, their paint and sidewalks of a map, for a first time.
+pub fn ground(network: &RoadNetwork, time_ns: u64) -> SceneUpdate {
+    let mesh = |(number, surface): (usize, &Surface)| {
         let tag = class(surface.kind)?;
         let name = format!("{} {number}", tag.name().to_lowercase());
-        Some(SceneEntity { triangles: vec![triangles(surface, tag)], ..self::entity(tick, name) })
+        Some(SceneEntity { triangles: vec![triangles(surface, tag)], ..entity(time_ns, name) })
     };
-    SceneUpdate { deletions: Vec::new(), entities: network.surfaces.iter().enumerate().filter_map(entity).collect() }
+    SceneUpdate { deletions: Vec::new(), entities: network.surfaces.iter().enumerate().filter_map(mesh).collect() }
 }
 
 /// What is drawn of the ground; grass and soil are left out.
@@ -59,25 +41,18 @@ fn triangles(surface: &Surface, tag: SemanticTag) -> TriangleListPrimitive {
     }
 }
 
-fn entity(tick: Tick, id: String) -> SceneEntity {
-    SceneEntity { timestamp: stamp(tick), frame_id: MAP.into(), id, ..SceneEntity::default() }
-}
-
-fn colour([r, g, b]: [f32; 3]) -> Option<Color> {
-    Some(Color { r: r.into(), g: g.into(), b: b.into(), a: 1.0 })
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeSet;
 
-    use super::*;
     use base::maps::Map;
+
+    use super::*;
 
     #[test]
     fn the_ground_of_every_bundled_map_is_whole() {
         for name in kernel::map::BUNDLED {
-            let update = ground(7, &Map::find(name).expect("bundled").network);
+            let update = ground(&Map::find(name).expect("bundled").network, 7);
             let meshes: Vec<_> = update.entities.iter().flat_map(|entity| &entity.triangles).collect();
             assert!(meshes.len() >= 2, "{name}: roads and paint at least");
             for mesh in meshes {

@@ -1,0 +1,59 @@
+//! What the drivers' camera is, and the pictures that it took.
+
+use foxglove::messages::{CameraCalibration, CompressedImage};
+use glam::Quat;
+use render::Camera;
+
+use super::parts::stamp;
+
+/// Frame of the camera's optical axes: x right, y down, z along the view.
+pub const CAMERA: &str = "camera";
+/// From optical axes to those of [`Camera`]: x along the view, y left, z up.
+pub const OPTICAL: Quat = Quat::from_xyzw(-0.5, 0.5, -0.5, 0.5);
+
+/// What the camera's pixels are: square, and without distortion.
+pub fn calibration(camera: &Camera, time_ns: u64) -> CameraCalibration {
+    let (width, height) = (f64::from(camera.width), f64::from(camera.height));
+    let focal = 0.5 * width / f64::from(kernel::ops::tan(0.5 * camera.fov_x_rad));
+    let (cx, cy) = (0.5 * width, 0.5 * height);
+    CameraCalibration {
+        timestamp: stamp(time_ns),
+        frame_id: CAMERA.into(),
+        width: camera.width,
+        height: camera.height,
+        distortion_model: "plumb_bob".into(),
+        d: vec![0.0; 5],
+        k: vec![focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0],
+        r: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        p: vec![focal, 0.0, cx, 0.0, 0.0, focal, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
+    }
+}
+
+/// A picture that the camera took, a PNG file.
+pub fn image(png: Vec<u8>, time_ns: u64) -> CompressedImage {
+    CompressedImage { timestamp: stamp(time_ns), frame_id: CAMERA.into(), data: png.into(), format: "png".into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn optical_axes_are_right_down_and_ahead() {
+        let near = |axis: Vec3, expected: Vec3| assert!((OPTICAL * axis).distance(expected) < 1e-6);
+        near(Vec3::Z, Vec3::X);
+        near(Vec3::X, Vec3::NEG_Y);
+        near(Vec3::Y, Vec3::NEG_Z);
+    }
+
+    #[test]
+    fn the_calibration_sees_as_wide_as_the_camera() {
+        let camera = Camera::driver(512, 256);
+        let k = calibration(&camera, 0).k;
+        let half_width = (k[2] / k[0]).atan();
+        assert!((2.0 * half_width - f64::from(camera.fov_x_rad)).abs() < 1e-6);
+        assert_eq!((k[0], k[5]), (k[4], 128.0));
+    }
+}
