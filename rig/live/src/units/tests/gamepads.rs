@@ -141,7 +141,7 @@ fn an_unknown_device_with_axes_for_all_is_no_gamepad_and_says_how_to_calibrate_i
     let unknown = DeviceInfo { layout: None, ..with_axes(0) };
     let (mut seats, devices) = seats(&unknown, Vec::new());
     let said = seats.summary()[0].clone();
-    assert!(said.contains(&format!("of no use before aeye wheel calibrate --device {PATH} --calibration")), "{said}");
+    assert!(said.contains(&format!("of no use before aeye wheel calibrate --device {PATH} --out")), "{said}");
     axis(&devices, 0, RIGHT, 1023);
     let polled = seats.poll(CarState::default());
     assert!(!polled.ready() && polled.events.is_empty(), "{polled:?}");
