@@ -9,7 +9,7 @@ use kernel::signals::LightPhase;
 
 use crate::camera::EGO_MIDDLE_M;
 use crate::horizon::Horizon;
-use crate::instances::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
+use crate::instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 use crate::mesh::actor::{actor_model, ego_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::{CODE_BRAKE, CODE_LIT, Finish, Mesh, Vertex, signal};

@@ -12,7 +12,7 @@ mod error;
 mod frame;
 mod gpu;
 mod horizon;
-mod instances;
+mod instance_ids;
 mod light;
 pub mod mesh;
 mod noise;
@@ -26,7 +26,7 @@ pub use adapter::{AdapterChoice, AdapterInfo, adapters};
 pub use camera::{Camera, Mount};
 pub use error::RenderError;
 pub use frame::Frame;
-pub use instances::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
+pub use instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 pub use renderer::{Preset, RenderOptions, Renderer};
 pub use tags::SemanticTag;
 

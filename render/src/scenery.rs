@@ -6,7 +6,7 @@ use glam::Vec3;
 use kernel::map::{Prop, PropKind, RoadNetwork};
 
 use crate::horizon::{Horizon, Occluder};
-use crate::instances::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
+use crate::instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 use crate::mesh::model::Detail;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, surface};
 use crate::view::View;

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io::Write;
 
 use anyhow::Context;
-use base::output::{Typed, json_line};
+use base::json::{Typed, json_line};
 
 /// Prints a result: one line of JSON, or its text.
 pub fn result<T: Typed + Display>(json: bool, value: &T) -> anyhow::Result<()> {

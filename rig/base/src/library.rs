@@ -122,6 +122,11 @@ pub fn case_path(recording: &Path) -> PathBuf {
     recording.with_file_name(format!("{}{CASE_ENDING}", name.strip_suffix(ENDING).unwrap_or(&name)))
 }
 
+/// The name of a fork of what has this name, and of variations of the fork.
+pub fn fork_name(name: &str, variation: u16) -> String {
+    if variation == 0 { format!("{name}.fork{ENDING}") } else { format!("{name}.fork-{variation}{ENDING}") }
+}
+
 /// Whether a file is named as corner cases are.
 pub fn is_case_name(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(CASE_ENDING))

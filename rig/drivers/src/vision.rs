@@ -16,7 +16,8 @@ use crate::checkpoint::CheckpointChoice;
 
 /// Ticks from one frame to the next: 10 frames a second.
 pub const FRAME_TICKS: Tick = CLIP_STRIDE_TICKS;
-/// Ticks from a frame to its mask on the screen: 100 ms for rendering, inference and display.
+/// Ticks from a frame to its mask on the screen: 100 ms for rendering, inference and display. How old the mask is at a
+/// tick says [`MaskShown::age_at`].
 pub const LATENCY_TICKS: Tick = 6;
 /// Size of the pictures for checkpoints that take any, pixels.
 pub const DEFAULT_SIZE: (u32, u32) = (256, 128);

@@ -4,6 +4,7 @@
 //! All of it is provenance in the recording's manifest; nothing of it steers a replay.
 
 mod attached;
+mod blind;
 mod lineup;
 mod pseudonym;
 mod questionnaire;
@@ -14,6 +15,7 @@ use drivers::checkpoint::CheckpointChoice;
 use replay::Provenance;
 
 pub use attached::{answers_of, attached, path_beside};
+pub use blind::{is_blind, tellable};
 pub use lineup::{Cast, Lineup};
 pub use pseudonym::Pseudonym;
 pub use questionnaire::{Answer, Questionnaire};
@@ -24,12 +26,6 @@ const NAMES: [&str; 2] = ["semantic_name", "safety_name"];
 const FAMILIARISATION: &str = "familiarisation";
 /// Whether the operators had swapped seats since the session began, `true` or `false`.
 pub const SWAPPED: &str = "seats_swapped";
-/// The checkpoint was drawn, and nobody was told which it is.
-const BLIND: &str = "blind";
-/// The checkpoints that it was drawn from.
-const CANDIDATES: &str = "blind_candidates";
-/// What a blind drive does not tell unless it is revealed.
-const HIDDEN: [&str; 4] = ["checkpoint", "checkpoint_digest", "inference", CANDIDATES];
 
 /// How a drive is part of a study.
 #[derive(Clone, Debug, Default)]
@@ -87,22 +83,9 @@ pub fn is_familiarisation(provenance: &Provenance) -> bool {
     provenance.contains_key(FAMILIARISATION)
 }
 
-/// Whether nobody was told which checkpoint drove.
-pub fn is_blind(provenance: &Provenance) -> bool {
-    provenance.contains_key(BLIND)
-}
-
-/// What may be told of a drive: without what is blind, unless that is to be revealed, and without the
-/// questionnaire, which has a place of its own.
-pub fn tellable(provenance: &Provenance, reveal: bool) -> Provenance {
-    let hides = is_blind(provenance) && !reveal;
-    let is_hidden = |key: &str| questionnaire::is_answer(key) || (hides && HIDDEN.contains(&key));
-    let told = provenance.iter().filter(|(key, _)| !is_hidden(key));
-    told.map(|(key, value)| (key.clone(), value.clone())).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use super::blind::{BLIND, CANDIDATES};
     use super::*;
 
     fn provenance(entries: &[(&str, &str)]) -> Provenance {

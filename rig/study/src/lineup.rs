@@ -8,7 +8,8 @@ use perception::{Compute, Mask};
 use render::Frame;
 use replay::Provenance;
 
-use super::{BLIND, CANDIDATES, Study};
+use crate::Study;
+use crate::blind::{BLIND, CANDIDATES};
 
 /// The entity of the draw among the random numbers of drivers; bots count theirs from 0.
 const DRAW: u64 = u64::MAX;

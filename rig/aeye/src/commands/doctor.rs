@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use base::clock::seconds_of;
 use base::failure::{Usage, sentence};
+use base::json::Typed;
 use base::maps::Map;
-use base::output::Typed;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{TickInput, World};

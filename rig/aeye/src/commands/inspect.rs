@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::Context;
 use base::failure::{Failed, Failure};
+use base::json::Typed;
 use base::library::{self, Found, Kind};
-use base::output::Typed;
 use base::spread::{in_order, jobs};
 use base::words;
 use kernel::time::{TICK_HZ, Tick};

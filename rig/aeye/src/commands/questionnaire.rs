@@ -1,8 +1,8 @@
 //! Attaches answers that were given after a drive to its recordings.
 
 use anyhow::bail;
+use base::json::Typed;
 use base::output;
-use base::output::Typed;
 use replay::Recording;
 use serde::Serialize;
 use study::{self, Questionnaire, attached};

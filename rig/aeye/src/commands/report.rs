@@ -1,8 +1,8 @@
 //! One self-contained page about corner cases.
 
 use base::failure::{Failed, Failure};
+use base::json::Typed;
 use base::output;
-use base::output::Typed;
 use lab::report::{self, Report};
 use serde::Serialize;
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use base::failure::{Failed, Failure};
+use base::json::Typed;
 use base::library::{self, Found, Kind};
-use base::output::Typed;
 use base::progress;
 use base::spread::{in_order, jobs};
 use replay::{Divergence, Error, Recording, Report};

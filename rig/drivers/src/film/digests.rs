@@ -1,10 +1,10 @@
 //! Makes every mask of a log again and compares its digest with the one that was logged.
 
-use base::output::Typed;
 use std::collections::BTreeMap;
 use std::fmt;
 
 use anyhow::{Context, anyhow, bail};
+use base::json::Typed;
 use base::progress;
 use kernel::time::Tick;
 use render::{Camera, RenderOptions, Renderer};

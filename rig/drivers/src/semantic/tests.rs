@@ -1,12 +1,11 @@
 //! Closed loops on painted roads: no renderer, no world.
 
+use kernel::ego;
 use kernel::events::{Hud, RouteArrow};
 use kernel::map::Turn;
 use kernel::signals::LightPhase;
 use kernel::{Controls, ops};
 use render::{Camera, SemanticTag};
-
-use kernel::ego;
 
 use super::*;
 use crate::MaskView;

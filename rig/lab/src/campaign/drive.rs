@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use base::failure::Usage;
+use base::json;
 use base::maps::{Map, read_scenario};
 use base::output;
 use base::progress::Interrupt;
@@ -58,7 +59,7 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
         runs.extend(drive_all(&plan, eye, jobs, interrupt)?);
     }
     let figures = figures(plan.seed, plan.until, &names, runs);
-    output::write_file(&plan.out.join("campaign.json"), output::json_file(&figures)?.as_bytes())?;
+    output::write_file(&plan.out.join("campaign.json"), json::json_file(&figures)?.as_bytes())?;
     Ok(figures)
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use base::output::Typed;
+use base::json::Typed;
 use measures::statistics::{Comparison, Ride, Statistics};
 use serde::Serialize;
 

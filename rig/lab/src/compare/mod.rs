@@ -32,6 +32,7 @@ use super::looks::open_eyes;
 use super::pipeline::{Crew, Studios, set_aside};
 use super::store::{Settings, Store};
 use base::failure::{Failed, Usage};
+use base::json;
 use base::library;
 use base::output;
 use base::progress::{self, Interrupt};
@@ -103,7 +104,7 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
     let render = |studio: &mut _| page::render(&summary, &cases, (&mut eyes.clone(), studio), &differing, interrupt);
     let page = studios.with(size, render)?;
     output::write_file(&args.out.join("report.html"), page.as_bytes())?;
-    output::write_file(&args.out.join("compare.json"), output::json_file(&summary)?.as_bytes())?;
+    output::write_file(&args.out.join("compare.json"), json::json_file(&summary)?.as_bytes())?;
     Ok(Compared { summary, speed: Speed::of(pace, alone, eyes.len()) })
 }
 

@@ -1,8 +1,8 @@
 //! What `compare.json` holds and the command prints.
 
 use base::failure::Failure;
+use base::json::Typed;
 use base::library::Entry;
-use base::output::Typed;
 use drivers::vision::{self, Eye};
 use kernel::time::Tick;
 use perception::ConfusionMatrix;

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, bail};
+use base::json::{self, Typed};
 use base::output;
-use base::output::Typed;
 use perception::classes::TRAIN_CLASSES;
 use render::RENDERER_VERSION;
 use replay::KERNEL_VERSION;
@@ -101,7 +101,7 @@ impl Manifest {
         let lines = provenance::text(frames)?;
         let manifest = Self::new(recipe, adapter, frames, &lines);
         output::write_file(&folder.join(FRAMES), lines.as_bytes())?;
-        output::write_file(&folder.join(MANIFEST), output::json_file(&manifest)?.as_bytes())?;
+        output::write_file(&folder.join(MANIFEST), json::json_file(&manifest)?.as_bytes())?;
         Ok(manifest)
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use base::output::{Typed, json_line};
+use base::json::{Typed, json_line};
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::time::Tick;

@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use base::json::Typed;
 use base::maps::Map;
 use base::output::PendingFolder;
-use base::output::Typed;
 use base::progress::Interrupt;
 use drivers::vision;
 use render::RENDERER_VERSION;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
-use base::output::Typed;
+use base::json::Typed;
 use perception::ConfusionMatrix;
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use serde::Serialize;

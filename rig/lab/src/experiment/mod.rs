@@ -30,7 +30,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
-use base::output::Typed;
+use base::json::{self, Typed};
 use render::AdapterChoice;
 use serde::Serialize;
 
@@ -81,7 +81,7 @@ pub fn run(recipe: &Recipe, out: &Path, jobs: Option<u16>, interrupt: &Interrupt
     output::create_folder(out)?;
     keep_recipe(recipe, &out.join("recipe.toml"))?;
     let results = Stages { recipe, out, jobs, interrupt: interrupt.clone() }.run()?;
-    output::write_file(&out.join("tables.json"), output::json_file(&results.tables)?.as_bytes())?;
+    output::write_file(&out.join("tables.json"), json::json_file(&results.tables)?.as_bytes())?;
     let report = out.join("report.html");
     output::write_file(&report, page::render(recipe, &results)?.as_bytes())?;
     Ok(Outcome { report, tables: results.tables })

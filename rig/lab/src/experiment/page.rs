@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use base::output;
+use base::json;
 use measures::statistics::CheckpointStatistics;
 use serde::Serialize;
 
@@ -217,7 +217,7 @@ fn made_of(results: &Results) -> anyhow::Result<Vec<(String, String)>> {
     };
     let networks = std::iter::once(&results.driving).chain(&results.networks).map(digest);
     let datasets = results.datasets.iter().map(|(name, manifest)| Ok((name.clone(), manifest.digest.clone())));
-    let tables = output::json_file(&results.tables)?;
+    let tables = json::json_file(&results.tables)?;
     let tables = Ok(("tables.json".to_owned(), blake3::hash(tables.as_bytes()).to_hex().to_string()));
     datasets.chain(networks).chain(std::iter::once(tables)).collect()
 }

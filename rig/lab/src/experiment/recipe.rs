@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
-use base::output::Typed;
+use base::json::Typed;
 use base::toml_text;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::CLIP_FRAMES;

@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use base::failure::{Failed, Failure, Usage};
+use base::json::Typed;
 use base::library::{self, Found, Kind, Listed};
-use base::output::Typed;
 use base::output::{self, PendingFile};
 use base::progress::{self, Interrupt};
 use base::spread::{in_order, jobs};

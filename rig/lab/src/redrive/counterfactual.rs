@@ -5,8 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::Context;
-use base::output;
-use base::output::Typed;
+use base::json::{self, Typed};
 use drivers::simulate::FORK_AFTER_TICKS;
 use drivers::vision::Vision;
 use kernel::RoadNetwork;
@@ -114,6 +113,6 @@ impl Counterfactual {
 
     /// As a file.
     pub fn encode(&self) -> anyhow::Result<Vec<u8>> {
-        Ok(output::json_file(self)?.into_bytes())
+        Ok(json::json_file(self)?.into_bytes())
     }
 }

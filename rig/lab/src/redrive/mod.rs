@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
-use base::output::Typed;
+use base::json::Typed;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, Scenario};
 use render::{AdapterChoice, RENDERER_VERSION, RenderOptions, Renderer};
@@ -27,8 +27,9 @@ use self::fork::{Course, Fork, Harm, Otherwise, from_takeover, takeover};
 use self::verdict::Need;
 use super::store::Store;
 use base::failure::{Failed, Failure, Usage};
+use base::json::json_line;
 use base::library::{self, Kind, Listed};
-use base::output::{self, json_line};
+use base::output;
 use base::progress::{self, Interrupt};
 use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
@@ -202,7 +203,7 @@ fn forks_of(args: &Options, file: &Listed, (store, interrupt): (&Store, &Interru
     let mut lines = Vec::new();
     for variation in 0..=args.vary {
         let (mark, key) = (format!("{name}/{variation}"), key(args, &digest, &eye, variation));
-        let to = if variation == 0 { format!("{name}.fork.mcap") } else { format!("{name}.fork-{variation}.mcap") };
+        let to = library::fork_name(name, variation);
         if let Some(line) = kept(args, store, &mark, &key) {
             lines.push(Line { file: file.path.display().to_string(), recording: to, ..line });
             continue;

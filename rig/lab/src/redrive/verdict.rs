@@ -8,7 +8,7 @@ use super::fork::{Course, Otherwise};
 /// An intervention is early when harm would have come later than this after it.
 const EARLY_TICKS: Tick = seconds(3);
 
-/// Need on an intervention.
+/// Whether an intervention was needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Need {

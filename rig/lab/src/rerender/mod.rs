@@ -13,9 +13,10 @@ use std::{fmt, fs};
 
 use anyhow::{Context, bail};
 use base::failure::{Failed, Failure};
+use base::json::Typed;
+use base::json::json_line;
 use base::library::{self, Kind};
-use base::output::Typed;
-use base::output::{self, json_line};
+use base::output;
 use base::progress::{self, Interrupt};
 use base::spread::jobs;
 use drivers::vision::Eye;

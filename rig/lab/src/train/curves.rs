@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use base::output::Typed;
-use base::output::json_line;
+use base::json::Typed;
+use base::json::json_line;
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 use perception::training::{EpochReport, TrainOptions};
 use serde::Serialize;

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use base::output::Typed;
+use base::json::Typed;
 use indicatif::ProgressBar;
 use perception::Checkpoint;
 use perception::training::{self, Origin, Progress, TrainOptions, Trained};

@@ -1,9 +1,9 @@
 //! What the raw values of a device mean.
 
-use base::output::Typed;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
+use base::json::Typed;
 use base::toml_text;
 use serde::{Deserialize, Serialize};
 

@@ -5,8 +5,8 @@
 //! **The car drives only while both units are armed.** While one of them is not, the semantic
 //! controls are those of braking to a stop with the steering held. The safety controls are neutral
 //! then, so that a lost unit never looks like an intervention; after a takeover they brake and hold
-//! the steering too, since they are what reaches the car. The run should be ended when the safety
-//! driver's unit is lost: nobody watches over it.
+//! the steering too, since they are what reaches the car. `Seating::is_unwatched` of a drive ends the run when the
+//! safety driver's unit is lost: nobody watches over it then.
 
 pub mod calibration;
 pub mod carla;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use base::failure::{Failed, Failure, Usage};
+use base::json::Typed;
 use base::library::{self, Found, Kind, Listed};
-use base::output::Typed;
 use base::spread::{in_order, jobs};
 use replay::Recording;
 use serde::Serialize;

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
 use base::failure::Usage;
+use base::json::Typed;
 use base::output;
-use base::output::Typed;
 use live::units::calibration::{self, Calibration};
 use live::units::hardware::Hardware;
 use live::units::source::DeviceInfo;

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use base::failure::Usage;
-use base::output::Typed;
+use base::json::Typed;
 use base::output::{self, PendingFolder};
 use base::progress::Interrupt;
 use serde::Serialize;

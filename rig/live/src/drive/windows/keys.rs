@@ -58,7 +58,7 @@ fn command(text: &str, place: PhysicalKey) -> Option<char> {
     typed.or_else(|| COMMANDS.iter().find(|(_, code)| place == PhysicalKey::Code(*code))).map(|(command, _)| *command)
 }
 
-/// What the operators' keys ask for, each with its place on a US keyboard.
+/// The operators' keys, each with its place on a US keyboard; what they do, labels among it, is in [`crate::drive::stage`].
 const COMMANDS: [(char, KeyCode); 8] = [
     ('n', KeyCode::KeyN),
     ('x', KeyCode::KeyX),

@@ -6,7 +6,6 @@ mod face;
 mod facts;
 mod keys;
 
-use drivers::film::Film;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::time::Duration;
@@ -14,6 +13,7 @@ use std::time::Duration;
 use anyhow::Context;
 use base::clock::SessionClock;
 use base::newest::Newest;
+use drivers::film::Film;
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
