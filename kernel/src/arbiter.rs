@@ -1,4 +1,4 @@
-//! Who is in control, and what counts as an intervention (DOMAIN: the safety driver always wins).
+//! Who is in control, and what counts as an intervention.
 
 use crate::controls::{Controls, Seat, TickInput};
 use crate::scenario::Rules;

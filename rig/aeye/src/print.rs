@@ -17,3 +17,9 @@ pub fn print<T: Typed>(json: bool, value: &T, text: impl FnOnce() -> String) -> 
     let mut out = std::io::stdout().lock();
     writeln!(out, "{line}").and_then(|()| out.flush()).context("stdout")
 }
+
+/// Prints a text as it is.
+pub fn text(text: &str) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).context("stdout")
+}

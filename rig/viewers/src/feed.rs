@@ -55,6 +55,6 @@ pub struct View {
 pub struct ShownMask {
     /// Tag ids of CARLA 0.9.10, rows from top to bottom.
     pub ids: Vec<u8>,
-    /// [`drivers::vision::digest_of`] them.
+    /// First 8 bytes of their BLAKE3 digest, as recordings hold it.
     pub digest: u64,
 }

@@ -262,7 +262,10 @@ impl Page<'_> {
             }
             _ => {
                 self.waiting.push_back((name.to_owned(), known.file.clone()));
-                format!("[{name}](#{})", title(name, &known.file).to_lowercase().replace([' ', '/', '.', '(', ')'], ""))
+                format!(
+                    "[{name}](#{})",
+                    title(name, &known.file).to_lowercase().replace(' ', "-").replace(['/', '.', '(', ')'], "")
+                )
             }
         }
     }

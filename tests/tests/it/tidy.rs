@@ -36,7 +36,7 @@ const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
 const NAMED_ONCE: [(&str, &[&str]); 11] = [
-    ("rapier3d::", &["kernel/src/physics.rs", "kernel/src/physics/"]),
+    ("rapier3d::", &["kernel/src/physics/"]),
     ("tract_onnx", &["perception/src/onnx.rs"]),
     ("tract_cuda", &["perception/src/onnx.rs"]),
     ("bincode::", &["replay/src/wire.rs"]),

@@ -40,8 +40,8 @@ pub struct InspectArgs {
 /// Arguments of `questionnaire`.
 #[derive(Args, Clone, Debug)]
 pub struct QuestionnaireArgs {
-    /// Recordings.
-    #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
+    /// Recordings; no folders, since answers are of who sat there.
+    #[arg(required = true, value_parser = file(), value_name = "RECORDING")]
     pub files: Vec<PathBuf>,
     /// The drivers' answers.
     #[arg(long, value_name = "FILE.toml")]

@@ -12,7 +12,7 @@ use crate::print;
 pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
     let options = options(args)?;
     if args.print_scenario {
-        print!("{}", plan(&options)?.scenario_of(0).to_toml());
+        print::text(&plan(&options)?.scenario_of(0).to_toml())?;
         return Ok(Verdict::Ok);
     }
     print::result(json, &drive(&options, &Interrupt::listen()?)?)?;

@@ -25,7 +25,7 @@ use viewers::server::Publisher;
 use super::windows;
 use crate::cli::DriveArgs;
 use crate::exit::Verdict;
-use crate::print::print;
+use crate::print::{self, print};
 
 /// Map of a drive when none is named.
 const DEFAULT_MAP: &str = "city";
@@ -60,7 +60,7 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
     rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
     if args.print_scenario {
-        print!("{}", scenario.to_toml());
+        print::text(&scenario.to_toml())?;
         return Ok(Verdict::Ok);
     }
     if args.headless {

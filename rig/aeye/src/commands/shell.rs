@@ -1,19 +1,18 @@
 //! What a shell wants to know of the program: completions and man pages.
 
-use std::io::Write;
-
 use anyhow::Context;
 use base::output;
 
 use crate::cli::{CompletionsArgs, ManArgs};
 use crate::exit::Verdict;
 use crate::help::command;
+use crate::print;
 
 /// Runs `aeye completions`.
 pub fn completions(args: &CompletionsArgs) -> anyhow::Result<Verdict> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command(), "aeye", &mut script);
-    std::io::stdout().lock().write_all(&script).context("stdout")?;
+    print::text(&String::from_utf8_lossy(&script))?;
     Ok(Verdict::Ok)
 }
 

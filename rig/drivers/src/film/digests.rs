@@ -31,7 +31,7 @@ pub struct Digests {
     adapter: String,
     /// What drew them when they were shown; empty when the recording does not say.
     recorded_adapter: String,
-    /// What computes them now, and what did when they were shown.
+    /// What computes them now.
     inference: &'static str,
     /// What computed the masks of the drive.
     recorded_inference: &'static str,
@@ -45,7 +45,7 @@ pub struct Digests {
     different: usize,
     /// Masks of frames from before the file's first tick.
     before_start: usize,
-    /// The first of those.
+    /// The first mask with another digest than the logged one.
     first_difference: Option<Difference>,
 }
 

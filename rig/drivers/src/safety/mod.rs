@@ -7,10 +7,11 @@ mod looks;
 use glam::Vec2;
 use kernel::rng::{self, Stream};
 use kernel::time::{TICK_HZ, Tick, seconds};
-use kernel::{Controls, World, ego, ops};
+use kernel::{Controls, World, ops};
 
 use super::Driver;
 use crate::footprint;
+use crate::single_track;
 pub use hazard::{CRITICAL_S, Hazard, Touched, encroachers, label_of, predicted_encroachment};
 pub use looks::{LOOK_TICKS, Looks};
 
@@ -132,8 +133,7 @@ fn steer_back(world: &World) -> f32 {
     let Some(target) = route.get(STEER_TO_M).or(route.last()) else { return 0.0 };
     let to = target.truncate() - car.position.truncate();
     let left_m = footprint::forward(&car).perp_dot(to);
-    let curvature = 2.0 * left_m / Vec2::length_squared(to).max(1.0);
-    (-ops::atan2(ego::WHEELBASE_M * curvature, 1.0) / ego::MAX_WHEEL_ANGLE_RAD).clamp(-1.0, 1.0)
+    single_track::steering(2.0 * left_m / Vec2::length_squared(to).max(1.0))
 }
 
 #[cfg(test)]

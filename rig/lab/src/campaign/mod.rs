@@ -2,10 +2,10 @@
 //! results do not depend on how many worlds run at the same time, or on interruptions.
 
 mod drive;
-mod driver;
 mod figures;
 mod plan;
 mod run_line;
+mod runner;
 #[cfg(test)]
 mod tests;
 mod until;

@@ -8,9 +8,9 @@ use base::progress::{self, Interrupt};
 use drivers::vision::Eye;
 use indicatif::ProgressBar;
 
-use super::driver::{Driven, Runner};
 use super::plan::Plan;
 use super::run_line::RunLine;
+use super::runner::{Driven, Runner};
 use super::until::{STALLED_RUNS, Until};
 
 /// What the threads share.
@@ -37,14 +37,14 @@ struct State {
 /// Drives the runs of one checkpoint until there are enough, and gives them in order.
 pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> anyhow::Result<Vec<RunLine>> {
     let bar = progress::bar(eye.name(), plan.until.progress(&[]).1);
-    let board = Pool { plan, eye, interrupt, bar, state: Mutex::default() };
+    let pool = Pool { plan, eye, interrupt, bar, state: Mutex::default() };
     std::thread::scope(|scope| {
         for _ in 0..jobs {
-            scope.spawn(|| board.work());
+            scope.spawn(|| pool.work());
         }
     });
-    board.bar.finish_and_clear();
-    let State { runs, failure, .. } = board.state.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    pool.bar.finish_and_clear();
+    let State { runs, failure, .. } = pool.state.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
     if let Some(failure) = failure {
         return Err(failure);
     }
@@ -61,9 +61,9 @@ impl Pool<'_> {
 
     /// Takes one run after the other until there are enough.
     fn work(&self) {
-        let mut driver = Runner::new(self.plan, self.eye, self.interrupt);
+        let mut runner = Runner::new(self.plan, self.eye, self.interrupt);
         while let Some(run) = self.take() {
-            let put = driver.drive(run).and_then(|driven| driven.map(|driven| self.put(run, driven)).transpose());
+            let put = runner.drive(run).and_then(|driven| driven.map(|driven| self.put(run, driven)).transpose());
             match put {
                 Ok(Some(())) => {}
                 Ok(None) => return,

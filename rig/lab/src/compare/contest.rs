@@ -58,13 +58,13 @@ pub struct Difference {
 /// A checkpoint against a baseline.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contest {
-    /// Cases by verdict.
+    /// Cases whose hazard is seen in time, and was not by the baseline.
     pub fixed: usize,
-    /// The same.
+    /// Cases whose hazard is not seen in time, and was by the baseline.
     pub broken: usize,
-    /// The same.
+    /// Cases in which both see it in time, or neither does.
     pub unchanged: usize,
-    /// The same.
+    /// Cases without a hazard to see.
     pub no_hazard: usize,
     /// One for each of [`Metric::OWN`].
     pub differences: Vec<Difference>,

@@ -149,7 +149,7 @@ impl<W: Work> Crew<'_, W> {
     /// Does the work with every file that can be read, and gives those that cannot, by number. After the first
     /// other error nothing new is begun, and that error is returned.
     pub fn run(&self) -> anyhow::Result<(Pace, Vec<Unread>)> {
-        let board = Shared {
+        let shared = Shared {
             crew: self,
             next: AtomicUsize::new(0),
             frames: AtomicUsize::new(0),
@@ -157,13 +157,13 @@ impl<W: Work> Crew<'_, W> {
             failure: Mutex::new(None),
             unread: Mutex::new(Vec::new()),
         };
-        let ((), seconds) = seconds_of(|| board.run());
-        if let Some(error) = lock(&board.failure).take() {
+        let ((), seconds) = seconds_of(|| shared.run());
+        if let Some(error) = lock(&shared.failure).take() {
             return Err(error);
         }
-        let mut unread = std::mem::take(&mut *lock(&board.unread));
+        let mut unread = std::mem::take(&mut *lock(&shared.unread));
         unread.sort_by_key(|(index, _)| *index);
-        Ok((Pace { frames: board.frames.load(Ordering::Relaxed), seconds }, unread))
+        Ok((Pace { frames: shared.frames.load(Ordering::Relaxed), seconds }, unread))
     }
 }
 
