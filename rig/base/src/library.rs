@@ -82,14 +82,34 @@ pub fn list(paths: &[PathBuf], kind: Kind) -> Found<Listed> {
         let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
         match below(path, kind) {
             Ok(files) => {
-                let new = files.into_iter().filter(|file| known.insert(absolute(file)));
-                found.extend(new.map(|file| Way::new(file, folder)));
+                for file in files.into_iter().filter(|file| known.insert(absolute(file))) {
+                    match check(&file, kind) {
+                        Ok(()) => found.push(Way::new(file, folder)),
+                        Err(error) => failed.push(Failure::new(&file, &error)),
+                    }
+                }
             }
             Err(error) => failed.push(Failure::new(path, &error)),
         }
     }
     tell_apart(&mut found);
     Found { files: found.into_iter().map(Way::into_listed).collect(), failed }
+}
+
+/// Refuses what would not end to be read, and names under which results cannot be filed: `...mcap` would be
+/// filed above the results, `.mcap` as all of them, and hidden ones among their books.
+fn check(file: &Path, kind: Kind) -> anyhow::Result<()> {
+    let place = file.display();
+    if file.metadata().is_ok_and(|is| !is.is_file()) {
+        bail!("{place}: is no regular file; expected a recording or case");
+    }
+    let Some(name) = file.file_name().and_then(|name| name.to_str()) else {
+        bail!("{place}: its name is not UTF-8; expected one that is");
+    };
+    if kind == Kind::Cases && (name.starts_with('.') || name == ENDING) {
+        bail!("{place}: its name begins with a dot; expected one under which results can be filed");
+    }
+    Ok(())
 }
 
 /// As [`list`], opened, and each case once.
@@ -287,6 +307,24 @@ mod tests {
         let mut ways: Vec<Way> = given.iter().map(|(path, folder)| Way::new(path.into(), Path::new(folder))).collect();
         tell_apart(&mut ways);
         ways.iter().map(Way::name).collect()
+    }
+
+    #[test]
+    fn names_that_would_file_results_elsewhere_are_refused_and_pipes_are_not_read() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| dir.path().join(name);
+        let names = ["...mcap", "..mcap", ".mcap", ".rerender.mcap"];
+        names.iter().chain(&["a.case.mcap"]).for_each(|name| fs::write(at(name), "").expect("writable"));
+        let given: Vec<_> = names.iter().chain(&["a.case.mcap"]).map(|name| at(name)).collect();
+        let Found { files, failed } = list(&given, Kind::Cases);
+        assert_eq!((files.len(), failed.len()), (1, names.len()));
+        assert_eq!(list(&given, Kind::All).failed.len(), 0, "they can be verified");
+        let pipe = std::process::Command::new("mkfifo").arg(at("pipe.mcap")).status();
+        if pipe.is_ok_and(|status| status.success()) {
+            let Found { files, failed } = list(&[dir.path().to_owned()], Kind::All);
+            assert_eq!((files.len(), failed.len()), (1, 1));
+            assert!(format!("{:?}", failed[0]).contains("is no regular file"));
+        }
     }
 
     #[test]

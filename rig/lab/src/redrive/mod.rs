@@ -158,7 +158,7 @@ pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Forks> {
     }
     let bar = progress::bar("files", files.len() as u64);
     let (mut forks, mut well) = (Vec::new(), 0);
-    let drive = |index: usize| forks_of(args, &files[index], (&store, interrupt));
+    let drive = |index: usize| forks_of(args, (&files[index], stem(&files, index)), (&store, interrupt));
     in_order(jobs(args.jobs), files.len(), drive, |index, lines| {
         let path = &files[index].path;
         let place = || path.display().to_string();
@@ -184,8 +184,19 @@ pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Forks> {
     Ok(Forks { out: args.out.display().to_string(), files: well, forks, verdicts, failed })
 }
 
+/// What the forks of a file are called: without `.case`, unless its recording is among the files.
+fn stem(files: &[Listed], index: usize) -> &str {
+    let name = &files[index].name;
+    let short = name.strip_suffix(".case").unwrap_or(name);
+    if files.iter().enumerate().any(|(other, file)| other != index && file.name == short) { name } else { short }
+}
+
 /// All forks of a file.
-fn forks_of(args: &Options, file: &Listed, (store, interrupt): (&Store, &Interrupt)) -> anyhow::Result<Vec<Line>> {
+fn forks_of(
+    args: &Options,
+    (file, name): (&Listed, &str),
+    (store, interrupt): (&Store, &Interrupt),
+) -> anyhow::Result<Vec<Line>> {
     let recording = Recording::open(&file.path)?;
     let network = recording.network()?;
     let digest = blake3::Hash::from_bytes(recording.digest()).to_hex().to_string();
@@ -198,7 +209,6 @@ fn forks_of(args: &Options, file: &Listed, (store, interrupt): (&Store, &Interru
         return Err(Usage("a blind drive; expected --reveal, which tells its checkpoint".into()).into());
     }
     let eye = eye_of(args, &log)?;
-    let name = file.name.strip_suffix(".case").unwrap_or(&file.name);
     let mut vision = None;
     let mut lines = Vec::new();
     for variation in 0..=args.vary {
@@ -365,6 +375,13 @@ mod tests {
                 pet_s: None,
             },
         }
+    }
+
+    #[test]
+    fn a_recording_and_its_case_have_forks_of_their_own() {
+        let listed = |name: &str| Listed { path: name.into(), name: name.into() };
+        let both = [listed("x"), listed("x.case"), listed("y.case")];
+        assert_eq!([0, 1, 2].map(|index| stem(&both, index)), ["x", "x.case", "y"]);
     }
 
     #[test]
