@@ -12,7 +12,7 @@ const CREEP_M: u64 = 5;
 
 /// When a campaign is over; counted for each checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(tag = "kind", content = "value", rename_all = "snake_case")]
 pub enum Until {
     /// So many runs.
     Runs(u32),
