@@ -14,6 +14,7 @@ pub mod controls;
 pub mod ego;
 pub mod events;
 pub mod geometry;
+mod identity;
 mod light;
 pub mod map;
 mod map_data;
@@ -34,6 +35,7 @@ mod weather;
 pub mod world;
 
 pub use controls::{Controls, Seat, TickInput};
+pub use identity::{ENGINES, identity};
 pub use map::RoadNetwork;
 pub use scenario::Scenario;
 pub use scene::SceneSnapshot;

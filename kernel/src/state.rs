@@ -178,6 +178,19 @@ macro_rules! vectors {
 }
 vectors!(Vec2 { x, y } Vec3 { x, y, z } Quat { x, y, z, w });
 
+impl State for String {
+    fn write(&self, out: &mut Vec<u8>) {
+        (self.len() as u32).write(out);
+        out.extend_from_slice(self.as_bytes());
+    }
+    fn read(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        String::from_utf8(State::read(r)?).map_err(|_| r.error("text in UTF-8"))
+    }
+    fn name(&self, path: &str, out: &mut Vec<NamedValue>) {
+        out.push(NamedValue { path: path.to_owned(), value: format!("{self:?}") });
+    }
+}
+
 impl<T: State> State for Option<T> {
     fn write(&self, out: &mut Vec<u8>) {
         self.is_some().write(out);

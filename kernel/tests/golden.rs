@@ -1,5 +1,6 @@
-//! A scripted drive on every bundled map ends in the state that the golden file says, in every
-//! build. `AEYE_BLESS=1 cargo test -p kernel --release --test golden` writes the file.
+//! A scripted drive on every bundled map goes as the golden timeline says, second by second and part
+//! by part, in every build. `AEYE_BLESS=1 cargo test -p kernel --release --test golden` writes it, and
+//! the kernel has another identity from then on ([`kernel::identity`]).
 #![allow(clippy::disallowed_methods, reason = "tests may read files and the environment")]
 
 mod common;
@@ -12,7 +13,8 @@ use kernel::events::{EventKind, Hud};
 use kernel::map::{self, BUNDLED};
 use kernel::scenario::Scenario;
 use kernel::signals::LightPhase;
-use kernel::time::Tick;
+use kernel::time::{TICK_HZ, Tick};
+use kernel::world::PARTS;
 use kernel::{Seat, World};
 
 const TICKS: Tick = 3600;
@@ -20,7 +22,7 @@ const TICKS: Tick = 3600;
 const SEED: u64 = 101;
 /// Maps on which there are lights to keep and to pass at red.
 const LIT: [&str; 1] = ["city"];
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden_hashes.txt");
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden_timeline.txt");
 
 /// What a drive held, so that its hash cannot come to stand for less.
 struct Held {
@@ -55,33 +57,74 @@ impl Held {
     }
 }
 
-/// One line: map, ticks, bytes of state, hash, and how often each kind of event happened. A size
-/// that differs says the encoding changed, a hash that differs says the values did.
+/// The timeline of a map: one line with the bytes of state and how often each kind of event happened, then one
+/// for each second with the low 32 bits of a hash for each of [`PARTS`]. A size that differs says the encoding
+/// changed, a hash that differs says the values did.
 fn drive(name: &str) -> String {
     let network = map::bundled(name).expect("it is bundled");
     let mut world = World::new(&Scenario::default_for(name, SEED), &network).expect("a default scenario fits");
     let mut held = Held { events: Default::default(), overridden: false, waited: false, light_kept: false };
+    let mut seconds = String::new();
     for _ in 0..TICKS {
         let output = world.step(&script::input(&world));
         output.events.iter().for_each(|event| held.events[event.kind as usize] += 1);
         held.note(world.arbiter().phase, output.applied.pedals, &world.hud());
+        if output.tick.is_multiple_of(Tick::from(TICK_HZ)) {
+            let hashes = world.part_hashes().map(|hash| format!("{:08x}", hash as u32)).join(" ");
+            writeln!(seconds, "{name} {} {hashes}", output.tick / Tick::from(TICK_HZ)).expect("writing to a string");
+        }
     }
-    let mut line = format!("{name} {TICKS} {} {:?}", world.state_bytes(), world.hash());
+    let mut head = format!("{name} bytes={}", world.state_bytes());
     for (kind, count) in EventKind::ALL.iter().zip(held.events) {
-        write!(line, " {kind:?}={count}").expect("writing to a string");
+        write!(head, " {kind:?}={count}").expect("writing to a string");
     }
     let lacks = held.lacks(name);
-    assert!(lacks.is_empty(), "the drive lacks {}: {line}", lacks.join(", "));
-    line
+    assert!(lacks.is_empty(), "the drive lacks {}: {head}", lacks.join(", "));
+    format!("{head}\n{seconds}")
+}
+
+/// What differs first between two timelines: which parts of the state, on which map, in which second.
+fn difference(golden: &str, driven: &str) -> Option<String> {
+    let (mut golden, mut driven) = (golden.lines(), driven.lines());
+    loop {
+        let (expected, got) = match (golden.next(), driven.next()) {
+            (None, None) => return None,
+            (expected, got) => (expected.unwrap_or("nothing"), got.unwrap_or("nothing")),
+        };
+        if expected == got {
+            continue;
+        }
+        let columns = |line: &str| line.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        let (a, b) = (columns(expected), columns(got));
+        let timed = a.len() == PARTS.len() + 2 && a.len() == b.len() && a[..2] == b[..2];
+        let parts = PARTS.iter().zip(a.iter().zip(&b).skip(2)).filter(|(_, (a, b))| a != b).map(|(part, _)| *part);
+        return Some(match timed {
+            true => format!("{}: {} first, at second {}", a[0], parts.collect::<Vec<_>>().join(" and "), a[1]),
+            false => format!("expected {expected}\n     got {got}"),
+        });
+    }
 }
 
 #[test]
 fn every_build_drives_the_same() {
-    let driven: Vec<String> = BUNDLED.iter().map(|name| drive(name)).collect();
-    let driven = driven.join("\n") + "\n";
+    let driven: String = BUNDLED.iter().map(|name| drive(name)).collect();
     if std::env::var("AEYE_BLESS").is_ok_and(|bless| bless == "1") {
         std::fs::write(FILE, &driven).expect("the golden file can be written");
     }
-    let golden = std::fs::read_to_string(FILE).expect("tests/golden_hashes.txt is there (AEYE_BLESS=1 writes it)");
-    assert_eq!(driven, golden, "this build drives differently from the golden file");
+    let golden = std::fs::read_to_string(FILE).expect("tests/golden_timeline.txt is there (AEYE_BLESS=1 writes it)");
+    if let Some(difference) = difference(&golden, &driven) {
+        panic!("this build drives differently from the golden timeline: {difference}");
+    }
+}
+
+#[test]
+fn a_difference_says_which_part_was_first_and_when() {
+    let golden = "city bytes=9 Seen=1\ncity 3 1 2 3 4 5 6 7\ncity 4 1 2 3 4 5 6 7\ncity 5 1 2 3 4 5 6 7\n";
+    assert_eq!(difference(golden, golden), None);
+    let said = |driven: &str| difference(golden, driven).expect("they differ");
+    let driven = golden.replace("city 4 1 2 3", "city 4 1 2 9").replace("city 5 1 2 3 4 5 6", "city 5 1 9 9 9 9 9");
+    assert_eq!(said(&driven), "city: vehicles first, at second 4");
+    assert_eq!(said(&golden.replace("city 4 1 2 3", "city 4 0 2 0")), "city: input and vehicles first, at second 4");
+    assert_eq!(said(&golden.replace("bytes=9", "bytes=8")), "expected city bytes=9 Seen=1\n     got city bytes=8 Seen=1");
+    assert!(said(&golden[..golden.len() - 20]).starts_with("expected city 5"));
 }

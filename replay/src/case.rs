@@ -68,9 +68,13 @@ impl Case {
     }
 }
 
+/// The ticks of a window whose scenes a case keeps.
+pub(crate) fn scene_ticks(window: RangeInclusive<Tick>) -> impl Iterator<Item = Tick> {
+    window.step_by(CLIP_STRIDE_TICKS as usize)
+}
+
 fn scenes(replayer: &mut Replayer<'_>, window: RangeInclusive<Tick>) -> Result<Vec<SceneSnapshot>, Error> {
-    let ticks = window.step_by(CLIP_STRIDE_TICKS as usize);
-    ticks.map(|tick| replayer.run_to(tick).map(|()| replayer.world().scene())).collect()
+    scene_ticks(window).map(|tick| replayer.run_to(tick).map(|()| replayer.world().scene())).collect()
 }
 
 /// The keyframe that a case begins with: from there forks of case and recording are the same.

@@ -2,6 +2,8 @@
 
 use std::io::Write;
 
+use kernel::time::Tick;
+
 use crate::block::{Block, Happenings};
 use crate::container::Container;
 use crate::layout::Channel;
@@ -25,11 +27,22 @@ pub(crate) fn write<W: Write>(
     if block.happenings != Happenings::default() {
         out.put(Channel::Events, last, &wire::happenings_bytes(&block.happenings))?;
     }
-    if !masks.is_empty() {
-        out.put(Channel::Masks, last, &wire::masks_bytes(masks))?;
-    }
-    if !notes.is_empty() {
-        out.put(Channel::Notes, last, &wire::notes_bytes(notes))?;
-    }
+    put_rows(masks, notes, last, out)?;
     out.flush()
+}
+
+/// Writes masks and notes, if there are any, in messages of a length that the reader takes.
+pub(crate) fn put_rows<W: Write>(
+    masks: &[MaskShown],
+    notes: &[Note],
+    tick: Tick,
+    out: &mut Container<W>,
+) -> Result<(), Error> {
+    for some in masks.chunks(wire::MOST_ROWS) {
+        out.put(Channel::Masks, tick, &wire::masks_bytes(some))?;
+    }
+    for some in notes.chunks(wire::MOST_ROWS) {
+        out.put(Channel::Notes, tick, &wire::notes_bytes(some))?;
+    }
+    Ok(())
 }

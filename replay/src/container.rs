@@ -10,12 +10,16 @@ use mcap::{Compression, McapError, WriteOptions, Writer};
 
 use crate::Error;
 use crate::layout::{CHANNELS, Channel, MESSAGE_ENCODING, SCHEMA_ENCODING, nanoseconds};
+use crate::seal::Seal;
+
+/// What writes: the name that stands in a file's header.
+const LIBRARY: &str = concat!("aeye ", env!("CARGO_PKG_VERSION"));
 
 /// Every option is set here, so that neither the machine nor a new default can change a file.
 pub(crate) fn options() -> WriteOptions {
     WriteOptions::new()
         .profile("")
-        .library(concat!("aeye ", env!("CARGO_PKG_VERSION")))
+        .library(LIBRARY)
         .compression(Some(Compression::Zstd))
         .compression_level(9)
         .compression_threads(0)
@@ -32,42 +36,53 @@ pub(crate) fn options() -> WriteOptions {
         .calculate_attachment_crcs(true)
 }
 
-/// An MCAP file being written.
+/// An MCAP file being written, each of whose chunks ends with a seal.
 pub(crate) struct Container<W: Write> {
     writer: Option<Writer<NoSeek<W>>>,
     messages: u32,
+    seal: Seal,
+    /// Of the last message.
+    tick: Tick,
 }
 
 impl<W: Write> Container<W> {
     /// Starts the file and declares all channels.
     pub fn new(out: W) -> Result<Self, Error> {
         let mut writer = Writer::with_options(NoSeek::new(out), options()).map_err(io_error)?;
+        let mut seal = Seal::default();
+        seal.header(LIBRARY);
         for layout in &CHANNELS {
-            let id = layout.channel as u16;
+            let (id, schema) = (layout.channel as u16, layout.schema());
             writer
-                .add_schema_with_id(id, layout.schema, SCHEMA_ENCODING, layout.text.as_bytes())
+                .add_schema_with_id(id, &schema, SCHEMA_ENCODING, layout.text.as_bytes())
                 .and_then(|s| writer.add_channel_with_id(id, s, layout.topic, MESSAGE_ENCODING, &BTreeMap::new()))
                 .map_err(io_error)?;
+            seal.schema(id, &schema, SCHEMA_ENCODING, layout.text);
+            seal.channel(id, layout.topic, MESSAGE_ENCODING);
         }
-        Ok(Self { writer: Some(writer), messages: 0 })
+        Ok(Self { writer: Some(writer), messages: 0, seal, tick: 0 })
     }
 
     /// Appends a message that was complete at `tick`; it is in the file after the next flush.
     pub fn put(&mut self, channel: Channel, tick: Tick, payload: &[u8]) -> Result<(), Error> {
-        let time = nanoseconds(tick);
-        let header =
-            MessageHeader { channel_id: channel as u16, sequence: self.messages, log_time: time, publish_time: time };
+        let (channel_id, sequence, time) = (channel as u16, self.messages, nanoseconds(tick));
+        let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
         self.messages = self.messages.wrapping_add(1);
+        self.tick = tick;
+        self.seal.message(channel_id, sequence, time, payload);
         self.writer()?.write_to_known_channel(&header, payload).map_err(io_error)
     }
 
-    /// Ends the chunk and hands everything to the operating system.
+    /// Seals and ends the chunk, and hands everything to the operating system.
     pub fn flush(&mut self) -> Result<(), Error> {
+        let seal = self.seal.value();
+        self.put(Channel::Seal, self.tick, &seal)?;
         self.writer()?.flush().map_err(io_error)
     }
 
-    /// Writes index and footer.
+    /// Ends the last chunk, and writes index and footer.
     pub fn finish(mut self) -> Result<W, Error> {
+        self.flush()?;
         self.writer()?.finish().map_err(io_error)?;
         let writer = self.writer.take().ok_or_else(closed)?;
         Ok(writer.into_inner().into_inner())

@@ -21,6 +21,10 @@ impl<W: Write> LogFile<W> {
     pub fn new(out: W, manifest: &Manifest, start: &Keyframe) -> Result<Self, Error> {
         let mut file = Container::new(out)?;
         file.put(Channel::Manifest, start.tick, &wire::manifest_bytes(manifest))?;
+        if let Some(map) = manifest.foreign_map.as_ref().filter(|map| map.embedded) {
+            let text = map.text.as_ref().ok_or_else(|| manifest.no_map())?;
+            file.put(Channel::Map, start.tick, text.as_bytes())?;
+        }
         file.put(Channel::Keyframe, start.tick, &wire::keyframe_bytes(start, &[]))?;
         file.flush()?;
         Ok(Self { file, state: start.bytes.clone() })
@@ -38,12 +42,7 @@ impl<W: Write> LogFile<W> {
         annotation: Option<&Annotation>,
         summary: Option<&RunSummary>,
     ) -> Result<W, Error> {
-        if !masks.is_empty() {
-            self.file.put(Channel::Masks, tick, &wire::masks_bytes(masks))?;
-        }
-        if !notes.is_empty() {
-            self.file.put(Channel::Notes, tick, &wire::notes_bytes(notes))?;
-        }
+        chunk::put_rows(masks, notes, tick, &mut self.file)?;
         self.file.put(Channel::End, tick, &wire::end_bytes(annotation, summary))?;
         self.file.finish()
     }

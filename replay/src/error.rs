@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::layout::{FORMAT_VERSION, OLDEST_VERSION};
+
 /// Why a log could not be written, read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -24,6 +26,28 @@ pub enum Error {
     /// A valid file of a kind that this version cannot read, or that is not what was asked for.
     #[error("{0}")]
     Unsuited(String),
+    /// A log of a layout that this version does not know.
+    #[error("layout version {version}; this program reads versions {OLDEST_VERSION} to {FORMAT_VERSION}")]
+    Layout {
+        /// Version of the file.
+        version: u16,
+    },
+    /// Only the kernel that made a log can drive it again.
+    #[error("made by kernel {made}, this is {this}; only the kernel that made a log can drive it again")]
+    Kernel {
+        /// [`kernel::identity`] of the writer.
+        made: String,
+        /// [`kernel::identity`] of this program.
+        this: String,
+    },
+    /// The foreign map of the log is not at hand.
+    #[error("its map {map} is not in it, and {file} is not beside it")]
+    NoMap {
+        /// Name of the map.
+        map: String,
+        /// Name that the map's file would have.
+        file: String,
+    },
     /// The log asks for another map than the one at hand.
     #[error("map {map}: the log was made on the map with digest {expected:032x}, this one has {got:032x}")]
     Map {

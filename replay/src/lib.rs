@@ -17,14 +17,17 @@ mod divergence;
 mod encode;
 mod error;
 mod export;
+mod index;
 mod layout;
 mod log;
 mod mark;
 mod notes;
 mod recorder;
+mod records;
 mod recording;
 mod replayer;
 mod scan;
+mod seal;
 #[cfg(test)]
 mod testing;
 mod verify;
@@ -34,10 +37,9 @@ pub use case::Case;
 pub use divergence::Divergence;
 pub use error::Error;
 pub use export::{ExportChannel, Exported, Exporter, Schema, exported};
-pub use layout::nanoseconds;
+pub use layout::{FORMAT_VERSION, nanoseconds};
 pub use log::{
-    Annotation, CaseInfo, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, MaskShown, Provenance,
-    RunSummary,
+    Annotation, CaseInfo, ForeignMap, Label, LiveTimes, Log, Manifest, MaskShown, Provenance, RunSummary,
 };
 pub use mark::Mark;
 pub use notes::{Note, NoteKind};

@@ -3,18 +3,14 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use kernel::arbiter::{Intervention, Outcome};
 use kernel::events::Event;
 use kernel::time::Tick;
 use kernel::{Keyframe, RoadNetwork, Scenario, SceneSnapshot, TickInput};
 
-use crate::{Error, Mark, Note};
-
-/// Version of the file layout; other versions are refused.
-pub const FORMAT_VERSION: u16 = 1;
-/// Version of the kernel; only the version that made a log can drive it again.
-pub const KERNEL_VERSION: &str = env!("CARGO_PKG_VERSION");
+use crate::{Error, FORMAT_VERSION, Mark, Note};
 
 /// Where a run came from, as names and values: seat drivers, checkpoint with its digest, camera,
 /// latency. Nothing here steers a replay.
@@ -23,16 +19,18 @@ pub type Provenance = BTreeMap<String, String>;
 /// What a run started from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Manifest {
-    /// [`FORMAT_VERSION`] of the writer.
+    /// [`FORMAT_VERSION`](crate::FORMAT_VERSION) of the writer.
     pub format: u16,
-    /// [`KERNEL_VERSION`] of the writer.
+    /// [`kernel::identity`] of the writer; only that kernel can drive the log again.
     pub kernel: String,
+    /// [`kernel::ENGINES`] of the writer.
+    pub engines: String,
     /// The scenario, with the map's name.
     pub scenario: Scenario,
     /// [`RoadNetwork::digest`].
     pub map_digest: u128,
-    /// Text of the OpenDRIVE file, when the map is not a bundled one.
-    pub foreign_map: Option<String>,
+    /// The map's file, when it is not a bundled one.
+    pub foreign_map: Option<ForeignMap>,
     /// Where the run came from.
     pub provenance: Provenance,
     /// What was cut, when this is a corner case.
@@ -40,22 +38,48 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// The manifest of a new run. `foreign_map` is the text of the map's file when it is not bundled.
+    /// The manifest of a new run. `foreign_map` is the map's file when it is not bundled.
     pub fn new(
         scenario: &Scenario,
         network: &RoadNetwork,
-        foreign_map: Option<String>,
+        foreign_map: Option<ForeignMap>,
         provenance: Provenance,
     ) -> Self {
         Self {
             format: FORMAT_VERSION,
-            kernel: KERNEL_VERSION.to_owned(),
+            kernel: kernel::identity(),
+            engines: kernel::ENGINES.to_owned(),
             scenario: scenario.clone(),
             map_digest: network.digest,
             foreign_map,
             provenance,
             case: None,
         }
+    }
+}
+
+/// The OpenDRIVE file of a map that is not bundled.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ForeignMap {
+    /// blake3 of its text.
+    pub digest: [u8; 32],
+    /// Its text; `None` where it should be beside a log's file and is not.
+    pub text: Option<Arc<str>>,
+    /// Whether it stands in the log's own file, and not beside it as [`ForeignMap::file_name`].
+    pub embedded: bool,
+}
+
+impl ForeignMap {
+    /// A map of this text.
+    pub fn new(text: impl Into<Arc<str>>, embedded: bool) -> Self {
+        let text = text.into();
+        Self { digest: *blake3::hash(text.as_bytes()).as_bytes(), text: Some(text), embedded }
+    }
+
+    /// The name of its file beside the recordings that were made on it, as in `map-0123456789abcdef.xodr`.
+    pub fn file_name(&self) -> String {
+        let digest = &blake3::Hash::from_bytes(self.digest).to_hex()[..16];
+        format!("map-{digest}.xodr")
     }
 }
 

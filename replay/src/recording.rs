@@ -1,5 +1,7 @@
 //! A log read back from its file.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -8,9 +10,9 @@ use kernel::time::Tick;
 use kernel::{Keyframe, RoadNetwork};
 
 use crate::block::Block;
-use crate::layout::Channel;
-use crate::scan::{Message, scan};
-use crate::{Error, KERNEL_VERSION, Log, Manifest, wire};
+use crate::layout::{Channel, nanoseconds};
+use crate::scan::{Message, Scan, scan};
+use crate::{Error, ForeignMap, Log, Manifest, wire};
 
 /// A recording or case whose bytes have all been checked.
 #[derive(Clone, Debug)]
@@ -20,18 +22,30 @@ pub struct Recording {
     digest: [u8; 32],
 }
 
+/// Most bytes of a file: days of driving.
+const MAX_FILE: u64 = 192 << 20;
+
 impl Recording {
-    /// Reads a file. Any changed byte is an error that says where; a file whose writer was stopped is
-    /// read up to its last whole block ([`Recording::finished`] tells).
+    /// Reads a file, and the file of a foreign map beside it. Any changed byte is an error that says where; a
+    /// recording whose writer was stopped is read up to its last whole block ([`Recording::finished`] tells).
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let read = std::fs::read(path).map_err(Error::from);
-        read.and_then(|bytes| Self::from_bytes(&bytes)).map_err(|e| e.within(path))
+        let read = || {
+            let mut recording = Self::from_bytes(&read_at_most(path, MAX_FILE)?)?;
+            if let Some(map) = recording.log.manifest.foreign_map.as_mut().filter(|map| !map.embedded) {
+                map.look_beside(path)?;
+            }
+            Ok(recording)
+        };
+        read().map_err(|e: Error| e.within(path))
     }
 
-    /// As [`Recording::open`], from memory.
+    /// As [`Recording::open`], from memory; of a foreign map that is not in it, the text is missing.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let scan = scan(bytes)?;
-        let log = assemble(&scan.messages, scan.finished)?;
+        let log = assemble(&scan)?;
+        if log.manifest.case.is_some() && !scan.finished {
+            return Err(Error::damaged("the end of the file", "it was cut off; a corner case is written as a whole"));
+        }
         Ok(Self { log, finished: scan.finished, digest: *blake3::hash(bytes).as_bytes() })
     }
 
@@ -66,12 +80,37 @@ impl Recording {
     }
 }
 
+fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(Error::Unsuited(format!("more than {most} bytes, which no recording has")));
+    }
+    Ok(bytes)
+}
+
+impl ForeignMap {
+    /// Reads the map's file in the folder of a recording, if it is there.
+    fn look_beside(&mut self, recording: &Path) -> Result<(), Error> {
+        let path = recording.with_file_name(self.file_name());
+        if !path.is_file() {
+            return Ok(());
+        }
+        let text = read_at_most(&path, MAX_FILE).map_err(|e| e.within(&path))?;
+        let digest = *blake3::hash(&text).as_bytes();
+        let text = String::from_utf8(text).ok().filter(|_| digest == self.digest);
+        let changed = || Error::Unsuited("not the map of the recording: it was changed".into()).within(&path);
+        self.text = Some(text.ok_or_else(changed)?.into());
+        Ok(())
+    }
+}
+
 impl Manifest {
-    /// The map of the run: a bundled one, or the embedded one; its digest is checked.
+    /// The map of the run: a bundled one, or the foreign one; its digest is checked.
     pub fn network(&self) -> Result<Arc<RoadNetwork>, Error> {
         let name = &self.scenario.map;
         let network = match &self.foreign_map {
-            Some(text) => Arc::new(bake(name, text)?),
+            Some(map) => Arc::new(bake(name, map.text.as_ref().ok_or_else(|| self.no_map())?)?),
             None => {
                 bundled(name).ok_or_else(|| Error::Unsuited(format!("map {name} is neither bundled nor in the log")))?
             }
@@ -80,14 +119,16 @@ impl Manifest {
         Ok(network)
     }
 
+    /// Refuses a kernel that is not the run's.
+    pub fn check_kernel(&self) -> Result<(), Error> {
+        let (made, this) = (self.kernel.clone(), kernel::identity());
+        if made == this { Ok(()) } else { Err(Error::Kernel { made, this }) }
+    }
+
     /// Refuses a kernel or map that is not the run's.
     pub(crate) fn check(&self, network: &RoadNetwork) -> Result<(), Error> {
-        if self.kernel == KERNEL_VERSION {
-            return self.check_map(network);
-        }
-        let made = &self.kernel;
-        let reason = format!("made by kernel {made}; only that version can drive it again, this is {KERNEL_VERSION}");
-        Err(Error::Unsuited(reason))
+        self.check_kernel()?;
+        self.check_map(network)
     }
 
     /// Refuses a map that is not the run's.
@@ -96,22 +137,38 @@ impl Manifest {
         let map = self.scenario.map.clone();
         if expected == got { Ok(()) } else { Err(Error::Map { map, expected, got }) }
     }
+
+    pub(crate) fn no_map(&self) -> Error {
+        let file = self.foreign_map.as_ref().map(ForeignMap::file_name).unwrap_or_default();
+        Error::NoMap { map: self.scenario.map.clone(), file }
+    }
 }
 
 /// Ticks beyond this are damage: it is six hundred years.
 const MAX_TICK: Tick = 1 << 40;
 
+/// Most bytes of all keyframes.
+const MAX_KEYFRAMES: usize = 256 << 20;
+
 /// Puts the messages of a file together, in the only order in which a writer gives them.
-fn assemble(messages: &[Message], finished: bool) -> Result<Log, Error> {
-    let [first, start, rest @ ..] = messages else {
-        return Err(Error::damaged("the end of the file", "it holds no manifest and start"));
-    };
-    let start_at = start.parse(Channel::Keyframe, |bytes| wire::keyframe(bytes, &[]))?;
+fn assemble(scan: &Scan) -> Result<Log, Error> {
+    let missing = || Error::damaged("the end of the file", "it holds no manifest and start");
+    let (first, mut rest) = scan.messages.split_first().ok_or_else(missing)?;
+    let mut manifest = first.parse(Channel::Manifest, |payload| wire::manifest(payload, scan.format))?;
+    let map = rest.split_first().filter(|(message, _)| message.channel == Channel::Map);
+    if let Some((message, after)) = map {
+        message.map_of(&mut manifest)?;
+        rest = after;
+    }
+    let (start, rest) = rest.split_first().ok_or_else(missing)?;
+    let start_at = start.parse(Channel::Keyframe, |payload| wire::keyframe(payload, &[], scan.format))?;
     if start_at.tick > MAX_TICK {
         return Err(start.damaged(format!("tick {}, expected at most {MAX_TICK}", start_at.tick)));
     }
+    let before = map.into_iter().map(|(message, _)| message).chain([first, start]);
+    before.into_iter().try_for_each(|message| message.at(start_at.tick))?;
     let mut log = Log {
-        manifest: first.parse(Channel::Manifest, wire::manifest)?,
+        manifest,
         keyframes: vec![start_at],
         inputs: Vec::new(),
         hashes: Vec::new(),
@@ -124,15 +181,15 @@ fn assemble(messages: &[Message], finished: bool) -> Result<Log, Error> {
         summary: None,
         scenes: Vec::new(),
     };
-    let mut ended = false;
+    let (mut ended, mut room) = (false, MAX_KEYFRAMES);
     for message in rest {
         if ended {
             return Err(message.damaged("expected nothing after the end"));
         }
         ended = message.channel == Channel::End;
-        log.add(message)?;
+        log.add(message, &mut room)?;
     }
-    if finished && !ended {
+    if scan.finished && !ended {
         return Err(Error::damaged("the end of the data", "expected the message that ends the log"));
     }
     Ok(log)
@@ -146,22 +203,37 @@ impl Message {
         read(&self.payload).map_err(|reason| self.damaged(reason))
     }
 
+    /// Refuses a time that is not that of the tick at which the message was complete.
+    fn at(&self, tick: Tick) -> Result<(), Error> {
+        let (expected, got) = (nanoseconds(tick), self.time_ns);
+        if got == expected { Ok(()) } else { Err(self.damaged(format!("its time is {got} ns, expected {expected}"))) }
+    }
+
+    /// Takes the text of a foreign map.
+    fn map_of(&self, manifest: &mut Manifest) -> Result<(), Error> {
+        let named = manifest.foreign_map.as_ref().map(|map| map.digest);
+        let text = String::from_utf8(self.payload.clone()).map_err(|_| self.damaged("expected text in UTF-8"))?;
+        let map = ForeignMap::new(text, true);
+        if named != Some(map.digest) {
+            return Err(self.damaged("it is not the map that the manifest names"));
+        }
+        manifest.foreign_map = Some(map);
+        Ok(())
+    }
+
     fn damaged(&self, reason: impl Into<String>) -> Error {
         Error::damaged(self.place.clone(), reason)
     }
 }
 
 impl Log {
-    fn add(&mut self, message: &Message) -> Result<(), Error> {
+    /// Takes the next message; `room` is how many bytes further keyframes may have.
+    fn add(&mut self, message: &Message, room: &mut usize) -> Result<(), Error> {
         match message.channel {
-            Channel::Manifest => return Err(message.damaged("expected one manifest only")),
+            Channel::Manifest | Channel::Map => return Err(message.damaged("expected it at the beginning only")),
+            Channel::Seal => return Err(message.damaged("expected it at the end of a chunk only")),
             Channel::Block => self.add_block(message.parse(Channel::Block, wire::block)?, message)?,
-            Channel::Keyframe => {
-                let Keyframe { tick, bytes } = &self.keyframes[self.keyframes.len() - 1];
-                let keyframe = message.parse(Channel::Keyframe, |payload| wire::keyframe(payload, bytes))?;
-                self.within_last_block(keyframe.tick, tick + 1, message)?;
-                self.keyframes.push(keyframe);
-            }
+            Channel::Keyframe => return self.add_keyframe(message, room),
             Channel::Events => {
                 let happenings = message.parse(Channel::Events, wire::happenings)?;
                 for (tick, event) in happenings.events {
@@ -171,12 +243,52 @@ impl Log {
                 }
                 self.intervention = self.intervention.or(happenings.intervention);
             }
-            Channel::Masks => self.masks.extend(message.parse(Channel::Masks, wire::masks)?),
-            Channel::Notes => self.notes.extend(message.parse(Channel::Notes, wire::notes)?),
+            Channel::Masks => {
+                let before = self.masks.len();
+                self.masks.extend(message.parse(Channel::Masks, wire::masks)?);
+                self.in_order(self.masks.iter().map(|mask| mask.tick_shown), before, message)?;
+            }
+            Channel::Notes => {
+                let before = self.notes.len();
+                self.notes.extend(message.parse(Channel::Notes, wire::notes)?);
+                self.in_order(self.notes.iter().map(|note| note.tick), before, message)?;
+            }
             Channel::Scenes => self.scenes = message.parse(Channel::Scenes, wire::scenes)?,
-            Channel::End => (self.annotation, self.summary) = message.parse(Channel::End, wire::end)?,
+            Channel::End => {
+                (self.annotation, self.summary) = message.parse(Channel::End, wire::end)?;
+                if self.summary.is_none() {
+                    return Err(message.damaged("expected how the run went"));
+                }
+            }
         }
+        message.at(self.last_tick())
+    }
+
+    fn add_keyframe(&mut self, message: &Message, room: &mut usize) -> Result<(), Error> {
+        let Keyframe { tick, bytes } = &self.keyframes[self.keyframes.len() - 1];
+        let format = self.manifest.format;
+        let keyframe = message.parse(Channel::Keyframe, |payload| wire::keyframe(payload, bytes, format))?;
+        self.within_last_block(keyframe.tick, tick + 1, message)?;
+        let left = room.checked_sub(keyframe.bytes.len());
+        *room = left.ok_or_else(|| message.damaged(format!("the keyframes have more than {MAX_KEYFRAMES} bytes")))?;
+        message.at(keyframe.tick)?;
+        self.keyframes.push(keyframe);
         Ok(())
+    }
+
+    /// Masks and notes ascend, those after the first `before` too, and are not more than can happen in so many ticks.
+    fn in_order(
+        &self,
+        ticks: impl ExactSizeIterator<Item = Tick>,
+        before: usize,
+        message: &Message,
+    ) -> Result<(), Error> {
+        let (rows, most) = (ticks.len(), wire::MOST_A_TICK * (self.inputs.len() + 1));
+        if rows > most {
+            return Err(message.damaged(format!("{rows} so far, expected at most {most}")));
+        }
+        let ascend = ticks.skip(before.saturating_sub(1)).is_sorted();
+        if ascend { Ok(()) } else { Err(message.damaged("its ticks do not ascend")) }
     }
 
     fn add_block(&mut self, block: Block, message: &Message) -> Result<(), Error> {
@@ -222,10 +334,12 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_from_before_there_were_notes_opens() {
+    fn a_recording_of_the_first_layout_opens() {
         let old = read(include_bytes!("../tests/without_notes.mcap")).unwrap();
         assert!(old.finished() && old.log().notes.is_empty());
-        assert_eq!(old.log(), &Log { notes: Vec::new(), ..sample(61) });
+        let now = sample(61);
+        let manifest = Manifest { format: 1, kernel: "0.1.0".into(), engines: String::new(), ..now.manifest.clone() };
+        assert_eq!(old.log(), &Log { manifest, notes: Vec::new(), ..now });
     }
 
     #[test]
@@ -343,11 +457,11 @@ mod tests {
     proptest! {
         #[test]
         fn messages_in_another_order_are_no_panic(order in prop::collection::vec(any::<prop::sample::Index>(), 0..30)) {
-            let messages = scan(&sample(200).encode().unwrap()).unwrap().messages;
-            let copy = |m: &Message| Message { channel: m.channel, payload: m.payload.clone(), place: m.place.clone() };
-            let picked: Vec<Message> =
-                messages[..2].iter().chain(order.iter().map(|i| i.get(&messages))).map(copy).collect();
-            if let Ok(log) = assemble(&picked, false) {
+            let Scan { messages, format, .. } = scan(&sample(200).encode().unwrap()).unwrap();
+            let copy = |m: &Message| Message { payload: m.payload.clone(), place: m.place.clone(), ..*m };
+            let messages: Vec<Message> =
+                messages[..3].iter().chain(order.iter().map(|i| i.get(&messages))).map(copy).collect();
+            if let Ok(log) = assemble(&Scan { messages, format, finished: false }) {
                 prop_assert_eq!(log.inputs.len(), log.hashes.len());
                 prop_assert!(log.keyframes.is_sorted_by_key(|k| k.tick));
             }

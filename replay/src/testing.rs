@@ -7,7 +7,7 @@ use kernel::world::PARTS;
 use kernel::{Controls, Keyframe, Scenario, Seat, StateHash, TickInput};
 
 use crate::{
-    Annotation, FORMAT_VERSION, KERNEL_VERSION, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Note, NoteKind,
+    Annotation, FORMAT_VERSION, ForeignMap, Label, LiveTimes, Log, Manifest, Mark, MaskShown, Note, NoteKind,
     RunSummary,
 };
 
@@ -58,10 +58,11 @@ pub(crate) fn sample(ticks: Tick) -> Log {
 fn manifest() -> Manifest {
     Manifest {
         format: FORMAT_VERSION,
-        kernel: KERNEL_VERSION.to_owned(),
+        kernel: kernel::identity(),
+        engines: kernel::ENGINES.to_owned(),
         scenario: Scenario::default_for("nowhere", 3),
         map_digest: 0x1234_5678_9abc_def0_1234_5678_9abc_def0,
-        foreign_map: Some("<OpenDRIVE/>".into()),
+        foreign_map: Some(ForeignMap::new("<OpenDRIVE/>", true)),
         provenance: [("checkpoint", "early"), ("camera", "driver 256x128")].map(|(k, v)| (k.into(), v.into())).into(),
         case: None,
     }

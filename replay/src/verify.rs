@@ -6,7 +6,7 @@ use kernel::state::{State, first_difference};
 use kernel::time::Tick;
 use kernel::{RoadNetwork, TickOutput, World};
 
-use crate::{Divergence, Error, Log, Replayer, RunSummary};
+use crate::{CaseInfo, Divergence, Error, Log, Replayer, RunSummary, case};
 
 /// What a check found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -19,12 +19,14 @@ pub struct Report {
     pub divergence: Option<Divergence>,
 }
 
-/// Simulates every tick from the start and compares all that is derived: the hash each tick, the
-/// parts each second, the bytes of each keyframe, events, intervention and summary, and the scenes
-/// of a case. Masks, annotation and provenance do not follow from the run.
+/// Simulates every tick from the start and compares all that is derived: the hash each tick (which covers scenario,
+/// map and inputs), the parts each second, the bytes of each keyframe, events, intervention and summary, and the
+/// scenes of a case, which must be those of its window. Masks, notes, annotation and provenance do not follow from
+/// the run: reading the file has found that its seals vouch for them.
 pub fn verify(log: &Log, network: &Arc<RoadNetwork>) -> Result<Report, Error> {
     log.manifest.check(network)?;
-    let mut report = Report { keyframes: 1, divergence: compare_start(log, network)?, ..Report::default() };
+    let start = compare_start(log, network)?.or_else(|| compare_window(log));
+    let mut report = Report { keyframes: 1, divergence: start, ..Report::default() };
     if report.divergence.is_some() {
         return Ok(report);
     }
@@ -49,6 +51,19 @@ fn compare_start(log: &Log, network: &Arc<RoadNetwork>) -> Result<Option<Diverge
     let Some(recorded) = log.keyframes.first().filter(|k| k.tick == 0) else { return Ok(None) };
     let computed = World::new(&log.manifest.scenario, network)?.initial_keyframe();
     Ok(recorded.difference(&computed)?.map(|field| Divergence::of_field(0, field, 0)))
+}
+
+/// A case has the scenes of its window, and a recording has none.
+fn compare_window(log: &Log) -> Option<Divergence> {
+    let recorded: Vec<Tick> = log.scenes.iter().map(|scene| scene.tick).collect();
+    let Some(CaseInfo { from, to, .. }) = log.manifest.case else {
+        return difference("scenes", log.first_tick(), &recorded, &Vec::new());
+    };
+    if !(log.first_tick() <= from && from <= to && to <= log.last_tick()) {
+        let (window, ticks) = (format!("{from} to {to}"), format!("{} to {}", log.first_tick(), log.last_tick()));
+        return Some(Divergence::at(from, "output", "window", &window, &format!("a log of ticks {ticks}")));
+    }
+    difference("scenes", from, &recorded, &case::scene_ticks(from..=to).collect())
 }
 
 fn compare_scene(replayer: &Replayer<'_>) -> Option<Divergence> {

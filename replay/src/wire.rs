@@ -13,15 +13,20 @@ use kernel::{Keyframe, Scenario, SceneSnapshot, Seat, StateHash, TickInput};
 
 use crate::block::{BLOCK_TICKS, Block, Happenings};
 use crate::columns::{self, ControlColumns};
+use crate::layout::OLDEST_VERSION;
 use crate::{
-    Annotation, CaseInfo, FORMAT_VERSION, Label, LiveTimes, Manifest, Mark, MaskShown, Note, NoteKind, RunSummary,
+    Annotation, CaseInfo, ForeignMap, Label, LiveTimes, Manifest, Mark, MaskShown, Note, NoteKind, RunSummary,
 };
 
 /// Most bytes that a payload may claim; keeps damaged lengths from asking for memory.
-const LIMIT: usize = 256 << 20;
+const LIMIT: usize = 16 << 20;
+/// Most masks, and most notes, of a tick.
+pub(crate) const MOST_A_TICK: usize = 16;
+/// Most masks, and most notes, of a message.
+pub(crate) const MOST_ROWS: usize = MOST_A_TICK * BLOCK_TICKS as usize;
 
 /// Most bytes that a keyframe may unpack to; one with 150 actors has about 4 kB.
-const MAX_KEYFRAME: usize = 16 << 20;
+const MAX_KEYFRAME: usize = 1 << 20;
 /// Level of zstd; keyframes are rare, so it may take its time.
 const KEYFRAME_LEVEL: i32 = 19;
 
@@ -49,6 +54,19 @@ fn state<T: State>(what: &str, bytes: &[u8]) -> Result<T, Wrong> {
 struct ManifestWire {
     format: u16,
     kernel: String,
+    engines: String,
+    scenario: String,
+    map_digest: [u8; 16],
+    foreign_map: Option<[u8; 32]>,
+    provenance: BTreeMap<String, String>,
+    case: Option<([u8; 32], Tick, Tick)>,
+}
+
+/// As version 1 of the layout had it.
+#[derive(Encode, Decode)]
+struct ManifestWire1 {
+    format: u16,
+    kernel: String,
     scenario: String,
     map_digest: [u8; 16],
     foreign_map: Option<String>,
@@ -60,29 +78,56 @@ pub(crate) fn manifest_bytes(manifest: &Manifest) -> Vec<u8> {
     encode(ManifestWire {
         format: manifest.format,
         kernel: manifest.kernel.clone(),
+        engines: manifest.engines.clone(),
         scenario: manifest.scenario.to_toml(),
         map_digest: manifest.map_digest.to_le_bytes(),
-        foreign_map: manifest.foreign_map.clone(),
+        foreign_map: manifest.foreign_map.as_ref().map(|map| map.digest),
         provenance: manifest.provenance.clone(),
         case: manifest.case.as_ref().map(|c| (c.source, c.from, c.to)),
     })
 }
 
-pub(crate) fn manifest(bytes: &[u8]) -> Result<Manifest, Wrong> {
-    let (format, _) = bincode::decode_from_slice::<u16, _>(bytes, config()).map_err(|e| e.to_string())?;
-    if format != FORMAT_VERSION {
-        return Err(format!("layout version {format}; this program reads version {FORMAT_VERSION}"));
+/// The manifest of a file of layout `format`; the text of a foreign map is not yet known.
+pub(crate) fn manifest(bytes: &[u8], format: u16) -> Result<Manifest, Wrong> {
+    let (claimed, _) = bincode::decode_from_slice::<u16, _>(bytes, config()).map_err(|e| e.to_string())?;
+    if claimed != format {
+        return Err(format!("layout version {claimed}; its schemas are of version {format}"));
+    }
+    if format == OLDEST_VERSION {
+        return manifest_1(decode(bytes)?);
     }
     let wire: ManifestWire = decode(bytes)?;
+    let scenario = scenario(&wire.scenario)?;
+    if scenario.to_toml() != wire.scenario {
+        return Err("its scenario is not written as this program writes it".to_owned());
+    }
     Ok(Manifest {
         format,
         kernel: wire.kernel,
-        scenario: Scenario::from_toml(&wire.scenario).map_err(|e| format!("scenario: {e}"))?,
+        engines: wire.engines,
+        scenario,
         map_digest: u128::from_le_bytes(wire.map_digest),
-        foreign_map: wire.foreign_map,
+        foreign_map: wire.foreign_map.map(|digest| ForeignMap { digest, text: None, embedded: false }),
         provenance: wire.provenance,
         case: wire.case.map(|(source, from, to)| CaseInfo { source, from, to }),
     })
+}
+
+fn manifest_1(wire: ManifestWire1) -> Result<Manifest, Wrong> {
+    Ok(Manifest {
+        format: wire.format,
+        kernel: wire.kernel,
+        engines: String::new(),
+        scenario: scenario(&wire.scenario)?,
+        map_digest: u128::from_le_bytes(wire.map_digest),
+        foreign_map: wire.foreign_map.map(|text| ForeignMap::new(text, true)),
+        provenance: wire.provenance,
+        case: wire.case.map(|(source, from, to)| CaseInfo { source, from, to }),
+    })
+}
+
+fn scenario(toml: &str) -> Result<Scenario, Wrong> {
+    Scenario::from_toml(toml).map_err(|e| format!("scenario: {e}"))
 }
 
 /// A keyframe repeats much of the one before it, which therefore serves as zstd's dictionary.
@@ -90,11 +135,22 @@ pub(crate) fn keyframe_bytes(keyframe: &Keyframe, before: &[u8]) -> Vec<u8> {
     let packed = zstd::bulk::Compressor::with_dictionary(KEYFRAME_LEVEL, before)
         .and_then(|mut packer| packer.compress(&keyframe.bytes))
         .expect("bytes in memory can be compressed");
-    encode((keyframe.tick, keyframe.bytes.len(), packed))
+    encode((keyframe.tick, keyframe.bytes.len(), packed, keyframe.hash().0.to_le_bytes()))
 }
 
-pub(crate) fn keyframe(bytes: &[u8], before: &[u8]) -> Result<Keyframe, Wrong> {
-    let (tick, length, packed): (Tick, usize, Vec<u8>) = decode(bytes)?;
+/// The keyframe of a file of layout `format`, the state before which is `before`.
+pub(crate) fn keyframe(bytes: &[u8], before: &[u8], format: u16) -> Result<Keyframe, Wrong> {
+    if format == OLDEST_VERSION {
+        let (tick, length, packed) = decode(bytes)?;
+        return unpacked(tick, length, packed, before);
+    }
+    let (tick, length, packed, hash): (_, _, _, [u8; 16]) = decode(bytes)?;
+    let keyframe = unpacked(tick, length, packed, before)?;
+    let (expected, got) = (StateHash(u128::from_le_bytes(hash)), keyframe.hash());
+    if got == expected { Ok(keyframe) } else { Err(format!("the hash of its state is {got:?}, expected {expected:?}")) }
+}
+
+fn unpacked(tick: Tick, length: usize, packed: Vec<u8>, before: &[u8]) -> Result<Keyframe, Wrong> {
     if length > MAX_KEYFRAME {
         return Err(format!("it claims {length} bytes, more than {MAX_KEYFRAME}"));
     }
@@ -185,6 +241,10 @@ pub(crate) fn happenings(bytes: &[u8]) -> Result<Happenings, Wrong> {
     })
 }
 
+fn at_most(rows: usize, what: &str) -> Result<usize, Wrong> {
+    if rows <= MOST_ROWS { Ok(rows) } else { Err(format!("{rows} {what}, expected at most {MOST_ROWS}")) }
+}
+
 #[derive(Encode, Decode)]
 struct MasksWire {
     shown: Vec<i64>,
@@ -213,7 +273,7 @@ pub(crate) fn masks_bytes(masks: &[MaskShown]) -> Vec<u8> {
 
 pub(crate) fn masks(bytes: &[u8]) -> Result<Vec<MaskShown>, Wrong> {
     let wire: MasksWire = decode(bytes)?;
-    let rows = wire.shown.len();
+    let rows = at_most(wire.shown.len(), "masks")?;
     if [wire.age.len(), wire.camera.len(), wire.digests.len(), wire.times.len()].iter().any(|n| *n != rows) {
         return Err(format!("columns of different lengths for {rows} masks"));
     }
@@ -252,7 +312,7 @@ pub(crate) fn notes_bytes(notes: &[Note]) -> Vec<u8> {
 
 pub(crate) fn notes(bytes: &[u8]) -> Result<Vec<Note>, Wrong> {
     let wire: NotesWire = decode(bytes)?;
-    let rows = wire.ticks.len();
+    let rows = at_most(wire.ticks.len(), "notes")?;
     if [wire.kinds.len(), wire.seats.len()].iter().any(|n| *n != rows) {
         return Err(format!("columns of different lengths for {rows} notes"));
     }
@@ -306,6 +366,7 @@ pub(crate) fn scenes(bytes: &[u8]) -> Result<Vec<SceneSnapshot>, Wrong> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::FORMAT_VERSION;
     use proptest::prelude::*;
 
     fn mask() -> impl Strategy<Value = MaskShown> {
@@ -344,7 +405,10 @@ mod tests {
                 // Small numbers pass for lengths and get further.
                 bytes.iter_mut().for_each(|b| *b &= 7);
             }
-            let _ = (manifest(&bytes), keyframe(&bytes, b"before"), block(&bytes), happenings(&bytes));
+            for format in [OLDEST_VERSION, FORMAT_VERSION] {
+                let _ = (manifest(&bytes, format), keyframe(&bytes, b"before", format));
+            }
+            let _ = (block(&bytes), happenings(&bytes));
             let _ = (masks(&bytes), end(&bytes), scenes(&bytes), notes(&bytes));
         }
     }
@@ -362,9 +426,9 @@ mod tests {
     #[test]
     fn bytes_left_over_are_an_error() {
         let mut bytes = keyframe_bytes(&Keyframe { tick: 3, bytes: vec![1, 2] }, &[]);
-        assert!(keyframe(&bytes, &[]).is_ok());
+        assert!(keyframe(&bytes, &[], FORMAT_VERSION).is_ok());
         bytes.push(0);
-        assert_eq!(keyframe(&bytes, &[]), Err("1 bytes are left over".to_owned()));
+        assert_eq!(keyframe(&bytes, &[], FORMAT_VERSION), Err("1 bytes are left over".to_owned()));
     }
 
     #[test]
@@ -373,16 +437,16 @@ mod tests {
         let again = Keyframe { tick: 600, bytes: state.clone() };
         assert!(keyframe_bytes(&again, &[]).len() > 3900);
         let bytes = keyframe_bytes(&again, &state);
-        assert!(bytes.len() < 40, "{} bytes", bytes.len());
-        assert_eq!(keyframe(&bytes, &state), Ok(again));
-        assert!(keyframe(&bytes, &[]).is_err());
+        assert!(bytes.len() < 56, "{} bytes", bytes.len());
+        assert_eq!(keyframe(&bytes, &state, FORMAT_VERSION), Ok(again));
+        assert!(keyframe(&bytes, &[], FORMAT_VERSION).is_err());
     }
 
     #[test]
     fn another_version_of_the_layout_is_refused_by_number() {
         let mut log = crate::testing::sample(1);
         log.manifest.format = FORMAT_VERSION + 1;
-        let said = manifest(&manifest_bytes(&log.manifest)).expect_err("another version");
-        assert!(said.contains("layout version 2"), "{said}");
+        let said = manifest(&manifest_bytes(&log.manifest), FORMAT_VERSION).expect_err("another version");
+        assert_eq!(said, "layout version 3; its schemas are of version 2");
     }
 }

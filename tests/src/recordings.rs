@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use kernel::arbiter::{Outcome, Phase};
 use kernel::time::Tick;
-use kernel::{Controls, TickInput, World};
-use replay::{Annotation, Case, Label, Manifest, MaskShown, Provenance, Recorder, Recording};
+use kernel::{Controls, Seat, TickInput, World};
+use replay::{Annotation, Case, Label, Manifest, MaskShown, Note, NoteKind, Provenance, Recorder, Recording};
 
 use crate::scenes::{Scene, busy_city, follow_route};
 
@@ -22,13 +22,30 @@ pub const WITH_TAKEOVER: Script = |world| {
     TickInput { safety: Controls::from_fractions(0.0, 0.0, f32::from(u8::from(braking))), ..follow_route(world) }
 };
 
+/// As [`WITH_TAKEOVER`], soon after the run is armed.
+pub const WITH_TAKEOVER_SOON: Script = |world| {
+    let braking = world.tick() >= 200;
+    TickInput { safety: Controls::from_fractions(0.0, 0.0, f32::from(u8::from(braking))), ..follow_route(world) }
+};
+
 /// The tick of the intervention in [`WITH_TAKEOVER`].
 pub const TAKEOVER: Tick = 950;
 
 /// The file of a run of `ticks` ticks, or of fewer if it ends before.
 pub fn record(scene: &Scene, ticks: Tick, script: Script) -> Vec<u8> {
+    write(scene, ticks, script, &[])
+}
+
+/// As [`record`], with notes as well: a file with something of everything.
+pub fn record_all(scene: &Scene, ticks: Tick, script: Script) -> Vec<u8> {
+    let note = |tick, kind| Note { tick, kind, seat: Seat::Safety };
+    write(scene, ticks, script, &[note(1, NoteKind::UnitBound), note(40, NoteKind::UnitArmed)])
+}
+
+fn write(scene: &Scene, ticks: Tick, script: Script, notes: &[Note]) -> Vec<u8> {
     let mut world = scene.world();
     let mut recorder = Recorder::new(Vec::new(), &manifest(scene), &world.initial_keyframe()).expect("a new log");
+    notes.iter().for_each(|note| recorder.note(*note));
     while world.tick() < ticks && world.arbiter().phase != Phase::Done {
         recorder.mask_shown(mask_at(world.tick() + 1));
         let input = script(&world);

@@ -33,21 +33,23 @@ state! {
     }
 }
 
-/// A validated scenario.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Scenario {
-    /// Name of a bundled map, or of the foreign map that goes with it.
-    pub map: String,
-    /// Seed of every random number of the run.
-    pub seed: u64,
-    /// Other road users.
-    pub traffic: TrafficCounts,
-    /// Weather.
-    pub weather: Weather,
-    /// Start of the ego car.
-    pub ego: EgoStart,
-    /// Rules.
-    pub rules: Rules,
+state! {
+    /// A validated scenario.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Scenario {
+        /// Name of a bundled map, or of the foreign map that goes with it.
+        pub map: String,
+        /// Seed of every random number of the run.
+        pub seed: u64,
+        /// Other road users.
+        pub traffic: TrafficCounts,
+        /// Weather.
+        pub weather: Weather,
+        /// Start of the ego car.
+        pub ego: EgoStart,
+        /// Rules.
+        pub rules: Rules,
+    }
 }
 
 /// Why a text is not a valid scenario; says line and key.

@@ -2,9 +2,11 @@
 
 use std::fmt;
 
+use xxhash_rust::xxh3::xxh3_128;
+
 use crate::map::RoadNetwork;
 use crate::motion::Motion;
-use crate::state::{State, first_difference};
+use crate::state::{State, StateHash, first_difference};
 use crate::time::Tick;
 use crate::traffic::TrafficState;
 
@@ -46,6 +48,11 @@ impl fmt::Display for FieldDifference {
 }
 
 impl Keyframe {
+    /// Hash of its tick.
+    pub fn hash(&self) -> StateHash {
+        StateHash(xxh3_128(&self.bytes))
+    }
+
     /// The first field in which this keyframe (as recorded) and another (as computed) differ.
     pub fn difference(&self, computed: &Keyframe) -> Result<Option<FieldDifference>, WorldError> {
         let (left, left_traffic) = self.read()?;

@@ -3,11 +3,15 @@
 //! A tick's hash is taken over exactly the bytes that a keyframe holds, so nothing can be hashed but
 //! not saved, or saved but not hashed.
 
+use xxhash_rust::xxh3::xxh3_128;
+
 use crate::arbiter::{Applied, Arbiter, Intervention};
 use crate::controls::{Controls, Seat, TickInput};
 use crate::ego::Ego;
 use crate::events::Event;
+use crate::map::RoadNetwork;
 use crate::route::Route;
+use crate::scenario::Scenario;
 use crate::state;
 use crate::state::{DecodeError, Reader, State};
 use crate::time::Tick;
@@ -21,9 +25,11 @@ use super::bodies::Bodies;
 pub const PARTS: [&str; 7] = ["input", "ego", "vehicles", "pedestrians", "bodies", "arbiter", "output"];
 
 state! {
-    /// The tick and what entered in it.
+    /// What entered: the scenario once, controls at every tick.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct InputPart {
+        /// Digest of scenario and map ([`origin`]), so that every hash says what its run started from.
+        pub origin: u128,
         /// The tick that was reached.
         pub tick: Tick,
         /// The controls that led there.
@@ -66,6 +72,13 @@ state! {
         /// Events of this tick.
         pub events: Vec<Event>,
     }
+}
+
+/// xxh3-128 over the canonical bytes of a scenario and the digest of its map.
+pub(super) fn origin(scenario: &Scenario, network: &RoadNetwork) -> u128 {
+    let mut bytes = scenario.to_bytes();
+    network.digest.write(&mut bytes);
+    xxh3_128(&bytes)
 }
 
 impl Default for OutputPart {

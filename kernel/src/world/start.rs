@@ -17,7 +17,7 @@ use glam::Vec3;
 
 use super::bodies::Bodies;
 use super::error::WorldError;
-use super::snapshot::{EgoPart, InputPart, OutputPart, Parts, RunPart};
+use super::snapshot::{EgoPart, InputPart, OutputPart, Parts, RunPart, origin};
 
 /// Shortest lane on which a car starts when the scenario names none, metres.
 const LEAST_LANE_M: f32 = 20.0;
@@ -39,7 +39,7 @@ pub(super) fn begin(scenario: &Scenario, network: &Arc<RoadNetwork>) -> Result<(
     let traffic = Traffic::spawn(&scenario.traffic, scenario.seed, network.ways(), car.middle());
     let route = Route::from(network, scenario.seed, lane, s_m);
     let parts = Parts {
-        input: InputPart { tick: 0, controls: TickInput::default() },
+        input: InputPart { origin: origin(scenario, network), tick: 0, controls: TickInput::default() },
         ego: EgoPart { car, route },
         bodies: Bodies::default(),
         run: RunPart { arbiter: Arbiter::new(), watch: Watch::default(), keyframe_at: 0 },

@@ -20,7 +20,7 @@ use crate::watch::{self, Log};
 use super::error::WorldError;
 use super::keyframe::{self, Keyframe};
 use super::output::TickOutput;
-use super::snapshot::{PARTS, Parts};
+use super::snapshot::{PARTS, Parts, origin};
 use super::{bodies, start};
 
 /// How long a keyframe that is due waits while the ego car touches an actor.
@@ -54,10 +54,23 @@ impl World {
         Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
     }
 
-    /// The world as it was at a keyframe, bit for bit. Refuses another map as [`World::new`] does.
+    /// The world as it was at a keyframe, bit for bit. Refuses another map as [`World::new`] does, and a
+    /// keyframe of a run with another scenario.
     pub fn resume(scenario: &Scenario, network: &Arc<RoadNetwork>, keyframe: &Keyframe) -> Result<Self, WorldError> {
+        let world = Self::fork(scenario, network, keyframe)?;
+        if world.parts.input.origin == keyframe.read()?.0.input.origin {
+            return Ok(world);
+        }
+        let reason = "its run has another scenario, or another map".to_owned();
+        Err(WorldError::State { tick: keyframe.tick, reason })
+    }
+
+    /// The world as it was at a keyframe, to go on under another scenario of the same map: a run of its own,
+    /// whose log begins with [`World::initial_keyframe`].
+    pub fn fork(scenario: &Scenario, network: &Arc<RoadNetwork>, keyframe: &Keyframe) -> Result<Self, WorldError> {
         start::check_map(scenario, network)?;
-        let (parts, traffic) = keyframe.read()?;
+        let (mut parts, traffic) = keyframe.read()?;
+        parts.input.origin = origin(scenario, network);
         let wrong = |reason| WorldError::State { tick: keyframe.tick, reason };
         keyframe::check(&parts, network).map_err(wrong)?;
         let counts = &scenario.traffic;

@@ -18,7 +18,7 @@ use super::snapshot::PARTS;
 use super::tick::World;
 
 impl World {
-    /// The keyframe of tick 0; only valid before the first step.
+    /// The keyframe that a run begins with; only valid before the first step.
     pub fn initial_keyframe(&self) -> Keyframe {
         Keyframe { tick: self.tick(), bytes: self.bytes.clone() }
     }

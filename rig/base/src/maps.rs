@@ -7,16 +7,18 @@ use std::sync::Arc;
 use anyhow::{Context, anyhow};
 use kernel::map::{BUNDLED, bake, bundled};
 use kernel::{RoadNetwork, Scenario};
+use replay::ForeignMap;
 
 use crate::failure::Usage;
+use crate::output;
 
 /// A map to drive on.
 #[derive(Clone, Debug)]
 pub struct Map {
     /// Its roads.
     pub network: Arc<RoadNetwork>,
-    /// Text of its OpenDRIVE file, when it is not a bundled one.
-    pub foreign: Option<String>,
+    /// Its OpenDRIVE file, when it is not a bundled one.
+    pub foreign: Option<ForeignMap>,
 }
 
 impl Map {
@@ -32,7 +34,7 @@ impl Map {
         let text = fs::read_to_string(name).with_context(|| name.to_owned())?;
         let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let network = bake(&stem, &text).with_context(|| name.to_owned())?;
-        Ok(Self { network: Arc::new(network), foreign: Some(text) })
+        Ok(Self { network: Arc::new(network), foreign: Some(ForeignMap::new(text, false)) })
     }
 
     /// Several maps; `all` are the bundled ones.
@@ -42,9 +44,25 @@ impl Map {
         names.map(|name| Self::find(&name)).collect()
     }
 
+    /// The map, whose file is to stand in recordings instead of beside them, if it is a foreign one.
+    pub fn embedded(mut self) -> Self {
+        self.foreign.iter_mut().for_each(|map| map.embedded = true);
+        self
+    }
+
     /// The default scenario of the map for a seed.
     pub fn scenario(&self, seed: u64) -> Scenario {
         Scenario::default_for(&self.network.name, seed)
+    }
+}
+
+/// Writes the file of a foreign map beside a recording, unless it is there, or in the recording itself.
+pub fn put_beside(map: Option<&ForeignMap>, recording: &Path) -> anyhow::Result<()> {
+    let Some(map) = map.filter(|map| !map.embedded) else { return Ok(()) };
+    let path = recording.with_file_name(map.file_name());
+    match &map.text {
+        Some(text) if !path.exists() => output::write_file(&path, text.as_bytes()),
+        _ => Ok(()),
     }
 }
 

@@ -106,7 +106,7 @@ fn needed_with_truth(
     let early = |k: &&Keyframe| k.tick + before <= at;
     let Some(start) = keyframes.iter().rev().find(early) else { return Ok((true, vision)) };
     let end = at + FORK_AFTER_TICKS;
-    let mut fork = World::resume(&lasting(world.scenario().clone(), end), world.network(), start)?;
+    let mut fork = World::fork(&lasting(world.scenario().clone(), end), world.network(), start)?;
     let mut crew = Crew::new(vision.with_eye(Eye::Truth));
     while fork.tick() < end && matches!(fork.arbiter().phase, Phase::Arming | Phase::Driving) {
         let (input, _) = crew.act(&fork)?;
@@ -119,7 +119,7 @@ fn needed_with_truth(
     Ok((needed, crew.into_vision()))
 }
 
-/// A scenario whose limit of time does not end a fork before that tick. Rules are not part of the world's state.
+/// A scenario whose limit of time does not end a fork before that tick.
 pub fn lasting(mut scenario: Scenario, until: Tick) -> Scenario {
     let limit_s = &mut scenario.rules.max_seconds;
     *limit_s = (*limit_s).max((until / Tick::from(TICK_HZ)) as u32 + 1);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, SceneSnapshot, World};
-use replay::{Case, Divergence, Error, KERNEL_VERSION, Log, Recording, Replayer};
+use replay::{Case, Divergence, Error, Log, Recording, Replayer};
 
 /// A window of a run, ready to be drawn.
 pub struct Footage {
@@ -70,9 +70,9 @@ fn scenes(
     mut see: impl FnMut(&World, &SceneSnapshot),
 ) -> anyhow::Result<Vec<SceneSnapshot>> {
     let stored = |tick: Tick| log.scenes.iter().find(|scene| scene.tick == tick);
-    if log.manifest.kernel != KERNEL_VERSION {
+    if log.manifest.kernel != kernel::identity() {
         let all: Option<Vec<_>> = ticks.iter().map(|tick| stored(*tick).cloned()).collect();
-        let (made_by, this) = (&log.manifest.kernel, KERNEL_VERSION);
+        let (made_by, this) = (&log.manifest.kernel, kernel::identity());
         return all.with_context(|| {
             format!("made by kernel {made_by}; this one, {this}, can draw no more than the stored scenes of a case")
         });

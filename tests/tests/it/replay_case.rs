@@ -1,13 +1,14 @@
 //! A corner case is a small file that stands on its own.
 
-use std::sync::LazyLock;
+use std::fs;
+use std::sync::{Arc, LazyLock};
 
 use kernel::Scenario;
 use kernel::map::bake;
 use kernel::time::{CLIP_FRAMES, CLIP_STRIDE_TICKS};
-use replay::{Case, Error, Log, Recording, resumes, rewind, verify};
+use replay::{Case, Error, ForeignMap, Log, Recording, resumes, rewind, verify};
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
-use tests::scenes::{Scene, busy_city};
+use tests::scenes::{Scene, busy_city, scene};
 
 static CITY: LazyLock<Scene> = LazyLock::new(busy_city);
 static RECORDING: LazyLock<Recording> =
@@ -98,10 +99,53 @@ fn a_cut_that_ends_long_before_the_intervention_knows_nothing_of_it() {
     assert_eq!((report.divergence, case.scenes().len()), (None, 17));
 }
 
+/// A recording on a map that is not bundled: the rural one under another name.
+fn on_a_foreign_map(embedded: bool) -> (Log, ForeignMap) {
+    let text = include_str!("../../../kernel/maps/rural.xodr");
+    let network = Arc::new(bake("elsewhere", text).expect("a map"));
+    let scenario = Scenario { map: "elsewhere".into(), ..scene("map = \"rural\"\nseed = 3\n").scenario };
+    let recording = Recording::from_bytes(&record(&Scene { scenario, network }, 20, ALONE)).expect("a recording");
+    let map = ForeignMap::new(text, embedded);
+    let mut log = recording.into_log();
+    log.manifest.foreign_map = Some(map.clone());
+    (log, map)
+}
+
 #[test]
-fn a_foreign_map_travels_in_the_log() {
+fn a_foreign_map_travels_in_the_log_or_beside_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("drive.mcap");
+    let written = |embedded| {
+        let (log, map) = on_a_foreign_map(embedded);
+        fs::write(&path, log.encode().expect("a log")).expect("written");
+        map
+    };
+    let open = || Recording::open(&path).expect("a recording");
+
+    let map = written(true);
+    let bytes = fs::metadata(&path).expect("a file").len();
+    assert_eq!(open().network().expect("its map").name, "elsewhere");
+
+    written(false);
+    assert!(fs::metadata(&path).expect("a file").len() + 4000 < bytes, "the map is not in it");
+    let said = open().network().expect_err("its map is absent").to_string();
+    assert_eq!(said, format!("its map elsewhere is not in it, and {} is not beside it", map.file_name()));
+
+    let beside = folder.path().join(map.file_name());
+    fs::write(&beside, map.text.as_deref().expect("a text")).expect("written");
+    let recording = open();
+    let report = verify(recording.log(), &recording.network().expect("its map")).expect("a log");
+    assert_eq!((report.divergence, report.ticks), (None, 20));
+
+    fs::write(&beside, "<OpenDRIVE/>").expect("written");
+    let said = Recording::open(&path).expect_err("another map").to_string();
+    assert!(said.ends_with("not the map of the recording: it was changed"), "{said}");
+}
+
+#[test]
+fn a_map_that_is_no_map_or_unknown_is_an_error() {
     let mut log = RECORDING.log().clone();
-    log.manifest.foreign_map = Some("<OpenDRIVE>".to_owned());
+    log.manifest.foreign_map = Some(ForeignMap::new("<OpenDRIVE>", true));
     let broken = Recording::from_bytes(&log.encode().expect("a valid log")).expect("a valid file");
     assert!(matches!(broken.network(), Err(Error::Bake(_))));
     log.manifest.foreign_map = None;

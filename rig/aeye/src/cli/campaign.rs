@@ -20,6 +20,9 @@ pub struct CampaignArgs {
     /// map, or all).
     #[arg(long, value_delimiter = ',', value_name = MAPS)]
     pub maps: Vec<String>,
+    /// Put the files of maps that are not bundled into the recordings, instead of once beside them.
+    #[arg(long)]
+    pub embed_map: bool,
     /// A scenario file; its seed and length are replaced for each run.
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,

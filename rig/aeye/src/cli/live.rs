@@ -39,6 +39,9 @@ pub struct DriveArgs {
     /// A bundled map or an OpenDRIVE file.
     #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
     pub map: Option<String>,
+    /// Put the file of a map that is not bundled into the recording, instead of beside it.
+    #[arg(long)]
+    pub embed_map: bool,
     /// A scenario file.
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,

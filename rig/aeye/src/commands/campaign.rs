@@ -24,8 +24,8 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
         return Err(Usage("--pedestrian-cases without people on foot; expected --pedestrians above 0".into()).into());
     }
     let until = until(args)?;
-    let CampaignArgs { checkpoint, maps, scenario, pedestrians, run_seconds, seed, jobs, out, .. } = args.clone();
-    Ok(Options { checkpoint, maps, scenario, until, pedestrians, run_seconds, seed, jobs, out })
+    let CampaignArgs { checkpoint, maps, embed_map, scenario, pedestrians, run_seconds, seed, jobs, out, .. } = args.clone();
+    Ok(Options { checkpoint, maps, embed_map, scenario, until, pedestrians, run_seconds, seed, jobs, out })
 }
 
 fn until(args: &CampaignArgs) -> anyhow::Result<Until> {

@@ -79,6 +79,7 @@ fn campaign_options(args: &DemoArgs, checkpoint: CheckpointChoice, out: &Path) -
     campaign::Options {
         checkpoint: vec![checkpoint],
         maps: vec!["all".into()],
+        embed_map: false,
         scenario: None,
         until: Until::Cases(CASES),
         pedestrians: None,

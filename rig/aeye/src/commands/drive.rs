@@ -9,7 +9,7 @@ use base::failure::Usage;
 use base::json::Typed;
 use base::library;
 use base::library::case_path;
-use base::maps::{Map, read_scenario};
+use base::maps::{self, Map, read_scenario};
 use base::progress::Interrupt;
 use drivers::simulate;
 use drivers::vision::Vision;
@@ -54,6 +54,7 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
             (map.scenario(args.seed.unwrap_or(1)), map)
         }
     };
+    let map = if args.embed_map { map.embedded() } else { map };
     scenario.seed = args.seed.unwrap_or(scenario.seed);
     let rules = &mut scenario.rules;
     rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
@@ -112,6 +113,7 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     if path.is_file() {
         bail!("{}: exists already; expected a new file", path.display());
     }
+    maps::put_beside(map.foreign.as_ref(), path)?;
     let file = File::create(path).with_context(|| path.display().to_string())?;
     let interrupt = Interrupt::listen()?;
     let mut second = EverySecond::new();

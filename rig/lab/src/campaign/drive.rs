@@ -27,6 +27,8 @@ pub struct Options {
     pub checkpoint: Vec<CheckpointChoice>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones. None: the scenario's map, or all.
     pub maps: Vec<String>,
+    /// Whether the files of foreign maps stand in the recordings, instead of once beside them.
+    pub embed_map: bool,
     /// A scenario file; its seed and length are replaced for each run.
     pub scenario: Option<PathBuf>,
     /// When each checkpoint has driven enough.
@@ -71,6 +73,7 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         _ if options.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
         _ => Map::find_all(&options.maps)?,
     };
+    let maps = if options.embed_map { maps.into_iter().map(Map::embedded).collect() } else { maps };
     let scenario = scenario.map(|(scenario, _)| scenario);
     let Options { until, pedestrians, run_seconds, seed, .. } = *options;
     Ok(Plan { maps, scenario, pedestrians, run_seconds, seed, until, out: options.out.clone() })

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
-use base::output;
 use base::progress::Interrupt;
+use base::{maps, output};
 use drivers::simulate::{self, manifest};
 use drivers::vision::{Eye, Vision};
 use kernel::World;
@@ -71,6 +71,7 @@ impl<'a> Runner<'a> {
         let vision = self.vision(index)?;
         let keep_on = |_: &World| !self.interrupt.is_raised();
         let (scenario, map) = (self.plan.scenario_of(run), &self.plan.maps[index]);
+        maps::put_beside(map.foreign.as_ref(), &self.plan.recording_path(self.eye.name(), run))?;
         let (bytes, vision) = simulate::drive(&scenario, map, vision, Vec::new(), keep_on)?;
         self.renderers.insert(index, vision.into_renderer());
         Ok((!self.interrupt.is_raised()).then_some(bytes))
@@ -97,7 +98,8 @@ impl<'a> Runner<'a> {
         let path = self.plan.case_path(self.eye.name(), run);
         let is_cut = |case: &Case| case.info().source == recording.digest() && case.info().to == *window.end();
         if !Case::open(&path).is_ok_and(|case| is_cut(&case)) {
-            let case = Case::cut(recording, &recording.network()?, window)?;
+            let network = &self.plan.maps[self.plan.map_index(run)].network;
+            let case = Case::cut(recording, network, window)?;
             files.push((path.clone(), case.encode()?));
         }
         Ok(Some(path))

@@ -8,7 +8,7 @@ use kernel::scene::{ActorKind, ActorScene};
 use kernel::time::Tick;
 use kernel::{SceneSnapshot, World};
 use render::FIRST_PARKED_INSTANCE;
-use replay::{KERNEL_VERSION, Label, Log};
+use replay::{Label, Log};
 use serde::{Deserialize, Serialize};
 
 /// What is true of a case, whoever looks.
@@ -63,7 +63,7 @@ impl Witness {
         people_on_path.dedup();
         let hazard = self.collision(log).or_else(|| self.last_encroacher(log));
         let hazard = hazard.map(|touched| Hazard { instance: instance(touched), what: what(touched) });
-        let other_kernel = (kernel != KERNEL_VERSION).then(|| kernel.clone());
+        let other_kernel = (*kernel != kernel::identity()).then(|| kernel.clone());
         Facts { ticks, hazard, people_on_path, other_kernel }
     }
 

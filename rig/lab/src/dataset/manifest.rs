@@ -8,7 +8,7 @@ use base::json::{self, Typed};
 use base::output;
 use perception::classes::TRAIN_CLASSES;
 use render::RENDERER_VERSION;
-use replay::KERNEL_VERSION;
+
 use serde::{Deserialize, Serialize};
 
 use super::provenance::{self, FrameLine};
@@ -76,7 +76,7 @@ impl Manifest {
             bail!("{place}: holds a complete dataset of another recipe; expected a new folder, or the same recipe");
         }
         let made_by = |kernel: &str, renderer: &str| format!("kernel {kernel} and renderer {renderer}");
-        let (then, now) = (made_by(&manifest.kernel, &manifest.renderer), made_by(KERNEL_VERSION, RENDERER_VERSION));
+        let (then, now) = (made_by(&manifest.kernel, &manifest.renderer), made_by(&kernel::identity(), RENDERER_VERSION));
         if then != now {
             bail!("{}: holds this dataset as made by {then}; expected a new folder for {now}", folder.display());
         }
@@ -115,7 +115,7 @@ impl Manifest {
         });
         Self {
             recipe,
-            kernel: KERNEL_VERSION.to_owned(),
+            kernel: kernel::identity(),
             renderer: RENDERER_VERSION.to_owned(),
             adapter,
             train_frames,

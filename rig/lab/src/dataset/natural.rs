@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use base::failure::Usage;
-use base::maps::Map;
+use base::maps::{self, Map};
 use base::output;
 use base::progress::{self, Interrupt};
 use base::spread::{jobs, spread};
@@ -19,7 +19,7 @@ use indicatif::ProgressBar;
 use kernel::World;
 use perception::cityscapes::Place;
 use render::{Camera, RENDERER_VERSION, RenderOptions, Renderer};
-use replay::KERNEL_VERSION;
+
 use serde::{Deserialize, Serialize};
 
 use super::drive::ExpertDrive;
@@ -126,7 +126,7 @@ fn prepare(out: &Path, recipe: &NaturalRecipe, adapter: &str) -> anyhow::Result<
     output::create_folder(&parts)?;
     let now = Begun {
         recipe: recipe.clone(),
-        kernel: KERNEL_VERSION.to_owned(),
+        kernel: kernel::identity(),
         renderer: RENDERER_VERSION.to_owned(),
         adapter: adapter.to_owned(),
     };
@@ -143,8 +143,9 @@ fn prepare(out: &Path, recipe: &NaturalRecipe, adapter: &str) -> anyhow::Result<
         let Begun { adapter: first, kernel, renderer, .. } = begun;
         bail!(
             "{}: was begun with kernel {kernel} and renderer {renderer} on {first}; expected the same to complete it, \
-             not {KERNEL_VERSION}, {RENDERER_VERSION} and {adapter}",
-            out.display()
+             not {}, {RENDERER_VERSION} and {adapter}",
+            out.display(),
+            now.kernel
         );
     }
     Ok(parts)
@@ -245,7 +246,7 @@ impl Studio<'_> {
                 lines.push(self.keep(scene, drive.world(), lines.len() as u32)?);
             }
             if lines.len() > before {
-                let recording = self.record(scene, leg, &drive.into_recording()?)?;
+                let recording = self.record(scene, leg, map, &drive.into_recording()?)?;
                 lines[before..].iter_mut().for_each(|line| line.recording.clone_from(&recording));
             } else if leg > scene.frames + 20 {
                 bail!("map {}: no drive lasts a second from where it starts", map.network.name);
@@ -271,12 +272,13 @@ impl Studio<'_> {
     }
 
     /// Writes the recording of a drive; gives its digest.
-    fn record(&self, scene: &Scene, leg: u32, recording: &[u8]) -> anyhow::Result<String> {
-        let map = &self.recipe.maps[scene.map].name;
+    fn record(&self, scene: &Scene, leg: u32, map: &Map, recording: &[u8]) -> anyhow::Result<String> {
+        let city = &self.recipe.maps[scene.map].name;
         let folder = self.out.join("drives").join(scene.split);
         fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-        let name = format!("{map}_{:06}_{leg}.mcap", scene.number);
-        output::write_file(&folder.join(name), recording)?;
+        let path = folder.join(format!("{city}_{:06}_{leg}.mcap", scene.number));
+        maps::put_beside(map.foreign.as_ref(), &path)?;
+        output::write_file(&path, recording)?;
         Ok(blake3::hash(recording).to_hex().to_string())
     }
 }

@@ -10,7 +10,7 @@ use base::output::PendingFolder;
 use base::progress::Interrupt;
 use drivers::vision;
 use render::RENDERER_VERSION;
-use replay::KERNEL_VERSION;
+
 use serde::Serialize;
 
 use super::cases;
@@ -87,10 +87,11 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rebuilt> {
 /// What draws now that did not draw the first time.
 fn difference(first: &Manifest) -> anyhow::Result<Option<String>> {
     let adapter = vision::find_adapter()?;
+    let this_kernel = kernel::identity();
     let compared = [
         ("graphics adapter", first.adapter.as_str(), adapter.as_str()),
         ("renderer", &first.renderer, RENDERER_VERSION),
-        ("kernel", &first.kernel, KERNEL_VERSION),
+        ("kernel", &first.kernel, &this_kernel),
     ];
     let other = compared.into_iter().find(|(_, then, now)| then != now);
     Ok(other.map(|(what, then, now)| format!("was made with {what} {then}, this one is {now}")))

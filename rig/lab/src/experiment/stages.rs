@@ -188,6 +188,7 @@ impl Stages<'_> {
         campaign::Options {
             checkpoint: checkpoints.into_iter().map(CheckpointChoice::File).collect(),
             maps: self.recipe.maps.clone(),
+            embed_map: false,
             scenario: None,
             until,
             pedestrians,

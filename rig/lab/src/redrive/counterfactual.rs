@@ -12,7 +12,7 @@ use kernel::RoadNetwork;
 use kernel::time::Tick;
 use measures::criticality::Extremes;
 use render::RENDERER_VERSION;
-use replay::{KERNEL_VERSION, Recording};
+use replay::Recording;
 use serde::{Deserialize, Serialize};
 
 use super::fork::{Fork, Harm, Otherwise};
@@ -67,7 +67,7 @@ impl Key {
         let digest = blake3::Hash::from_bytes(recording.digest()).to_hex();
         Self {
             recording: digest.to_string(),
-            kernel: KERNEL_VERSION.to_owned(),
+            kernel: kernel::identity(),
             renderer: RENDERER_VERSION.to_owned(),
             after_ticks: FORK_AFTER_TICKS,
             verdicts: VERDICTS,

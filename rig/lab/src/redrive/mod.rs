@@ -19,7 +19,7 @@ use base::json::Typed;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, Scenario};
 use render::{AdapterChoice, RENDERER_VERSION, RenderOptions, Renderer};
-use replay::{KERNEL_VERSION, Log, Recording};
+use replay::{Log, Recording};
 use serde::{Deserialize, Serialize};
 
 pub use self::counterfactual::Counterfactual;
@@ -29,7 +29,7 @@ use super::store::Store;
 use base::failure::{Failed, Failure, Usage};
 use base::json::json_line;
 use base::library::{self, Kind, Listed};
-use base::output;
+use base::{maps, output};
 use base::progress::{self, Interrupt};
 use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
@@ -229,6 +229,7 @@ fn forks_of(
         vision = Some(after.with_eye(eye.clone()));
         let path = args.out.join(&to);
         output::create_folder(path.parent().unwrap_or(&args.out))?;
+        maps::put_beside(log.manifest.foreign_map.as_ref(), &path)?;
         output::write_file(&path, &course.recording)?;
         let recorded = blake3::hash(&course.recording).to_hex().to_string();
         let line = line(file, (variation, to), &eye, at, course, args);
@@ -245,7 +246,7 @@ fn key(args: &Options, log: &str, eye: &Eye, variation: u16) -> Key {
         checkpoint: eye.digest(),
         variation,
         seconds: args.seconds,
-        kernel: KERNEL_VERSION.to_owned(),
+        kernel: kernel::identity(),
         program: env!("CARGO_PKG_VERSION").to_owned(),
         renderer: RENDERER_VERSION.to_owned(),
         adapter: vision::adapter(),

@@ -4,7 +4,7 @@ use glam::Vec2;
 use kernel::arbiter::Outcome;
 use kernel::time::{TICK_HZ, Tick};
 use measures::footage::Footage;
-use replay::{KERNEL_VERSION, Log, Replayer};
+use replay::{Log, Replayer};
 
 use super::drive::Drive;
 use super::fact::Fact;
@@ -42,7 +42,7 @@ impl Story {
 /// Places of the ego car from the log's start to a tick, seen from above, and the way driven,
 /// millimetres.
 fn route(log: &Log, footage: &Footage, to: Tick) -> anyhow::Result<(Vec<Vec2>, Option<u64>)> {
-    if log.manifest.kernel != KERNEL_VERSION {
+    if log.manifest.kernel != kernel::identity() {
         return Ok((footage.scenes.iter().map(|scene| scene.ego.position.truncate()).collect(), None));
     }
     let mut replayer = Replayer::new(log, footage.network.clone())?;

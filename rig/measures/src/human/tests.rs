@@ -3,7 +3,7 @@
 use kernel::arbiter::Intervention;
 use kernel::{Controls, Keyframe, Scenario, StateHash, TickInput};
 use proptest::prelude::*;
-use replay::{FORMAT_VERSION, KERNEL_VERSION, LiveTimes, Manifest, MaskShown, Provenance};
+use replay::{FORMAT_VERSION, LiveTimes, Manifest, MaskShown, Provenance};
 
 use super::*;
 
@@ -13,7 +13,7 @@ const TICKS: Tick = 600;
 fn log() -> Log {
     let manifest = Manifest {
         format: FORMAT_VERSION,
-        kernel: KERNEL_VERSION.into(),
+        kernel: kernel::identity(),
         scenario: Scenario::default_for("city", 1),
         map_digest: 0,
         foreign_map: None,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use base::clock::SessionClock;
+use base::maps;
 use kernel::Seat;
 use kernel::time::{TICK_HZ, Tick};
 use replay::Annotation;
@@ -109,6 +110,7 @@ impl Session {
         let Some(world) = self.runs.take_next() else { return Ok(()) };
         let number = self.runs.number();
         let manifest = recording::manifest(&self.plan, &self.seating, number, &world);
+        maps::put_beside(self.plan.map.foreign.as_ref(), &self.plan.record)?;
         let (path, file) = recording::create(&self.plan.record, number, self.outbox.clone())?;
         self.voice.say(format_args!("run {number}: recording {}", path.display()));
         self.runs.start(Run::start(world, &manifest, self.seating.bots(), path, file)?);
