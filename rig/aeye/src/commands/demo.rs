@@ -8,6 +8,7 @@ use anyhow::Context;
 use base::json::Typed;
 use base::output;
 use base::progress::Interrupt;
+use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use lab::campaign::{self, CampaignFigures, Until};
@@ -48,20 +49,20 @@ pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
     AdapterChoice::default().find()?;
     let (early, full) = (CheckpointChoice::Bundled("early"), CheckpointChoice::Bundled("full"));
     let drives = args.out.join("drives");
-    eprintln!("1/4 driving through the early checkpoint until {CASES} corner cases have happened");
-    let figures = campaign::drive(&campaign_options(args, early.clone(), &drives), &Interrupt::listen()?)?;
-    eprintln!("2/4 verifying every recording");
+    say(format_args!("1/4 driving through the early checkpoint until {CASES} corner cases have happened"));
+    let figures = campaign::drive(&campaign_options(args, early.clone(), &drives), &Interrupt::listen())?;
+    say("2/4 verifying every recording");
     let files = files(&drives, &figures);
     if verify::run(&VerifyArgs { files: files.all, rewind: None, against: None, jobs: None }, json)? != Verdict::Ok {
         return Ok(Verdict::CheckFailed);
     }
-    eprintln!("3/4 drawing the corner cases again through both checkpoints");
+    say("3/4 drawing the corner cases again through both checkpoints");
     let both = vec![early, full];
     let rerendered = rerender_args(args, &files.cases, &both)?;
     if rerender::run(&rerendered, json)? != Verdict::Ok {
         return Ok(Verdict::CheckFailed);
     }
-    eprintln!("4/4 writing the report");
+    say("4/4 writing the report");
     let path = args.out.join("report.html");
     output::write_file(&path, report::render(&files.cases, &both, None)?.html.as_bytes())?;
     let path = fs::canonicalize(&path).with_context(|| path.display().to_string())?;

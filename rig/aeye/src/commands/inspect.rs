@@ -7,6 +7,7 @@ use anyhow::Context;
 use base::failure::{Failed, Failure};
 use base::json::Typed;
 use base::library::{self, Found, Kind};
+use base::say::printable;
 use base::spread::{in_order, jobs};
 use base::words;
 use kernel::time::{TICK_HZ, Tick};
@@ -250,8 +251,9 @@ fn read(
 }
 
 /// Names and values as lines.
-fn paragraph(lines: Vec<(impl AsRef<str>, String)>) -> String {
-    let lines: Vec<String> = lines.iter().map(|(name, value)| format!("{:<12} {value}", name.as_ref())).collect();
+fn paragraph<N: AsRef<str>>(lines: Vec<(N, String)>) -> String {
+    let line = |(name, value): &(N, String)| format!("{:<12} {}", printable(name.as_ref()), printable(value));
+    let lines: Vec<String> = lines.iter().map(line).collect();
     lines.join("\n")
 }
 
@@ -264,7 +266,12 @@ fn text(c: &Contents) -> String {
     line("seed", c.figures.seed.to_string());
     line("ticks", format!("{} to {}{}", c.first_tick, c.last_tick, if c.finished { "" } else { " (cut off)" }));
     line("driven", format!("{:.3} km, {:.2} min, {}", c.figures.km, c.figures.minutes, c.figures.outcome));
-    line("holds", format!("{} keyframes, {} masks, {} events", c.keyframes, c.masks, c.events.len()));
+    line(
+        "holds",
+        [(c.keyframes, "keyframe"), (c.masks, "mask"), (c.events.len(), "event")]
+            .map(|(n, what)| words::count(n, what))
+            .join(", "),
+    );
     for (name, value) in &c.provenance {
         line(name, value.clone());
     }
@@ -286,7 +293,7 @@ fn text(c: &Contents) -> String {
         line("label", format!("{label}: {comment}{by}"));
     }
     if let Some(w) = &c.window {
-        line("window", format!("ticks {} to {}, {} scenes", w.from, w.to, w.scenes));
+        line("window", format!("ticks {} to {}, {}", w.from, w.to, words::count(w.scenes, "scene")));
     }
     for e in &c.events {
         line("event", format!("{}: {}", at(e.tick), e.words));

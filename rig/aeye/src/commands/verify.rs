@@ -6,7 +6,9 @@ use base::failure::{Failed, Failure};
 use base::json::Typed;
 use base::library::{self, Found, Kind};
 use base::progress;
+use base::say::printable;
 use base::spread::{in_order, jobs};
+use base::words::count;
 use replay::{Divergence, Error, Recording, Report};
 use serde::Serialize;
 
@@ -149,9 +151,9 @@ fn diverged(error: Error) -> Result<Report, Error> {
 }
 
 fn text(checked: &Checked) -> String {
-    let Checked { file, ticks, .. } = checked;
+    let (file, ticks) = (printable(&checked.file), count(checked.ticks, "tick"));
     match (&checked.divergence, &checked.error) {
-        (_, Some(error)) => format!("{file}: not checked: {error}"),
+        (_, Some(error)) => format!("{}; not checked", printable(error)),
         (Some(d), None) => {
             let actor = d.actor.map(|a| format!(" of actor {a}")).unwrap_or_default();
             let seen = if d.seen_at == d.tick { String::new() } else { format!(" (read at tick {})", d.seen_at) };
@@ -160,7 +162,7 @@ fn text(checked: &Checked) -> String {
         }
         (None, None) => {
             let cut = if checked.finished == Some(false) { "; its writer was stopped before the end" } else { "" };
-            format!("{file}: {ticks} ticks identical{cut}")
+            format!("{file}: {ticks} identical{cut}")
         }
     }
 }

@@ -1,9 +1,9 @@
 //! What each checkpoint makes of each case: found again from an earlier call, or made.
 
 use base::library::Entry;
+use base::progress::Bar;
 use drivers::safety::LOOK_TICKS;
 use drivers::vision::Eye;
-use indicatif::ProgressBar;
 use kernel::time::{CLIP_FPS, CLIP_FRAMES, CLIP_TICKS, TICK_HZ, Tick};
 use measures::footage::Footage;
 use render::Frame;
@@ -21,7 +21,7 @@ pub struct Looking<'a> {
     pub eyes: &'a [Eye],
     pub store: &'a Store,
     pub settings: Settings,
-    pub bar: &'a ProgressBar,
+    pub bar: &'a Bar,
 }
 
 /// A case and what each checkpoint made of it.

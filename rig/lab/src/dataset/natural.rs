@@ -12,10 +12,9 @@ use anyhow::{Context, bail};
 use base::failure::Usage;
 use base::maps::Map;
 use base::output;
-use base::progress::{self, Interrupt};
+use base::progress::{self, Bar, Interrupt};
 use base::spread::{jobs, spread};
 use drivers::vision;
-use indicatif::ProgressBar;
 use kernel::World;
 use perception::cityscapes::Place;
 use render::{Camera, RENDERER_VERSION, RenderOptions, Renderer};
@@ -228,7 +227,7 @@ struct Studio<'a> {
     adapter: &'a str,
     renderer: &'a mut Renderer,
     interrupt: &'a Interrupt,
-    bar: &'a ProgressBar,
+    bar: &'a Bar,
 }
 
 impl Studio<'_> {

@@ -26,6 +26,7 @@ use base::output::PendingFolder;
 use base::png;
 use base::progress::{self, Interrupt};
 use base::spread::{jobs, spread};
+use base::words::count;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 
@@ -160,7 +161,7 @@ fn look(
     predictions: Option<&Path>,
     jobs: usize,
 ) -> anyhow::Result<Evaluation> {
-    let interrupt = Interrupt::listen()?;
+    let interrupt = Interrupt::listen();
     check_whole(dataset)?;
     let images = split::images(dataset, split)?;
     let (first, _) = png::read(&images[0], 3)?;
@@ -240,8 +241,10 @@ fn text(summary: &Summary<'_>) -> String {
     let Summary { scenes, frames, split, pedestrians, .. } = summary;
     let a_scene = summary.pixels_per_scene.get(TRAIN_CLASSES[PEDESTRIAN].name).copied();
     let mut text = format!(
-        "{}\n{frames} frames of {scenes} scenes of {split}; {:.1} pixels of pedestrians a scene\n\n{:<14} {:>12} {:>12} {:>12} {:>12}",
+        "{}\n{} of {} of {split}; {:.1} pixels of pedestrians a scene\n\n{:<14} {:>12} {:>12} {:>12} {:>12}",
         table(&[(summary.checkpoint.to_owned(), summary.figures.clone())]),
+        count(*frames, "frame"),
+        count(*scenes, "scene"),
         a_scene.unwrap_or_default(),
         "pedestrians",
         "people",

@@ -19,6 +19,7 @@ use base::library::{self, Kind};
 use base::output;
 use base::progress::{self, Interrupt};
 use base::spread::jobs;
+use base::words::count;
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::ConfusionMatrix;
@@ -89,7 +90,8 @@ impl fmt::Display for Rerendered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { out, files, frames, checkpoints, .. } = self;
         let columns: Vec<_> = checkpoints.iter().map(|c| (c.name.clone(), c.figures.clone())).collect();
-        write!(f, "{}\n{frames} frames of {files} files in {out}", table(&columns))
+        let (frames, files) = (count(*frames, "frame"), count(*files, "file"));
+        write!(f, "{}\n{frames} of {files} in {out}", table(&columns))
     }
 }
 

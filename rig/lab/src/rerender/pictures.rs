@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use base::library::Entry;
 use base::png;
+use base::progress::Bar;
 use drivers::vision::Eye;
-use indicatif::ProgressBar;
 use kernel::time::Tick;
 use measures::footage::Footage;
 use perception::ConfusionMatrix;
@@ -27,7 +27,7 @@ pub struct Pictures<'a> {
     pub files: &'a [Entry],
     pub eyes: &'a [Eye],
     pub store: &'a Store,
-    pub bar: &'a ProgressBar,
+    pub bar: &'a Bar,
     pub settings: Settings,
 }
 
