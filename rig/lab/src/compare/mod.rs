@@ -29,7 +29,7 @@ use self::metrics::CaseSums;
 use self::summary::Speed;
 pub use self::summary::{Compared, Scoreboard};
 use super::looks::open_eyes;
-use super::pipeline::{Crew, Studios, set_aside};
+use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
 use base::failure::{Failed, Usage};
 use base::json;
@@ -78,10 +78,10 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
     let left = work.left();
     bar.set_length(left.len() as u64 * u64::from(CLIP_FRAMES));
     let (jobs, studios) = (jobs(args.jobs), Studios::default());
-    let crew = Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
-    let alone = crew.alone()?;
-    let (pace, unread) = crew.run()?;
-    let studios = crew.studios;
+    let pipeline = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
+    let alone = pipeline.alone()?;
+    let (pace, unread) = pipeline.run()?;
+    let studios = pipeline.studios;
     bar.finish_and_clear();
     failed.extend(set_aside(&mut cases, unread));
     if cases.is_empty() {

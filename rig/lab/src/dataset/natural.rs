@@ -13,7 +13,7 @@ use base::failure::Usage;
 use base::maps::Map;
 use base::output;
 use base::progress::{self, Bar, Interrupt};
-use base::spread::{jobs, spread};
+use base::spread::{jobs, on_threads};
 use drivers::vision;
 use kernel::World;
 use perception::cityscapes::Place;
@@ -78,7 +78,7 @@ pub(super) fn build(
     let scenes = recipe.scenes();
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
     let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
-    spread(jobs(threads), scenes.len(), fresh, |renderers, index| {
+    on_threads(jobs(threads), scenes.len(), fresh, |renderers, index| {
         let scene = &scenes[index];
         let part = parts.join(scene.part());
         if part.is_file() {

@@ -25,7 +25,7 @@ use super::figures::{Confusion, Figures, decimal, pixels_per, table};
 use base::output::PendingFolder;
 use base::png;
 use base::progress::{self, Interrupt};
-use base::spread::{jobs, spread};
+use base::spread::{jobs, on_threads};
 use base::words::count;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
@@ -168,7 +168,7 @@ fn look(
     let eye = Eye::open_at(checkpoint, first)?;
     let seen: Vec<OnceLock<Seen>> = images.iter().map(|_| OnceLock::new()).collect();
     let bar = progress::bar("frames", images.len() as u64);
-    spread(
+    on_threads(
         jobs,
         images.len(),
         || eye.clone(),

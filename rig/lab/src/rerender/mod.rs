@@ -29,7 +29,7 @@ use serde::Serialize;
 use self::pictures::{Matrices, Pictures};
 use super::figures::{Figures, table};
 use super::looks::open_eyes;
-use super::pipeline::{Crew, Studios, set_aside};
+use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
 
 /// A line of `metrics.jsonl`.
@@ -112,7 +112,7 @@ pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rerende
     let left = work.left();
     bar.set_length(work.expected() * left.len() as u64);
     let (jobs, studios) = (jobs(args.jobs), Studios::default());
-    let (_, unread) = Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
+    let (_, unread) = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
     bar.finish_and_clear();
     failed.extend(set_aside(&mut files, unread));
     if files.is_empty() {
