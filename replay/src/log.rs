@@ -29,7 +29,7 @@ pub struct Manifest {
     pub kernel: String,
     /// The scenario, with the map's name.
     pub scenario: Scenario,
-    /// [`RoadNetwork::digest`].
+    /// `RoadNetwork::digest`.
     pub map_digest: u128,
     /// Text of the OpenDRIVE file, when the map is not a bundled one.
     pub foreign_map: Option<String>,

@@ -345,7 +345,7 @@ mod tests {
             let said = said(&CheckpointChoice::Truth, "val");
             assert!(said.contains(words), "{said}");
         };
-        assert!(said(&CheckpointChoice::Truth, "test").contains("leftImg8bit/test: is not there"));
+        assert!(said(&CheckpointChoice::Truth, "test").contains("has no split test; expected --split val"));
         let gone = dir.path().join("gone.onnx");
         assert!(said(&CheckpointChoice::File(gone.clone()), "val").contains("gone.onnx: no such checkpoint"));
         fs::write(&gone, "not a network").expect("writable");
