@@ -5,7 +5,7 @@ mod common;
 use common::{RING_M, on_ring, ring, script};
 use kernel::events::{Event, EventKind};
 use kernel::map::Turn;
-use kernel::scenario::Scenario;
+use kernel::scenario::{Scenario, driving_lanes};
 use kernel::signals::{self, LightPhase};
 use kernel::{Controls, TickInput, World};
 
@@ -204,8 +204,25 @@ fn a_scenario_that_does_not_fit_is_refused_in_one_sentence() {
         (scenario.ego.lane, scenario.ego.s_m) = (Some(lane), s_m);
         World::new(&scenario, &ring()).err().expect("it is refused").to_string()
     };
-    assert_eq!(refused(99, 0.0), "scenario does not fit map ring: ego.lane is 99, expected a driving lane out of 16");
+    let lane = refused(99, 0.0);
+    let expected = "scenario does not fit map ring: ego.lane is 99, expected a driving lane of ring: ";
+    assert_eq!(lane, format!("{expected}{}", driving_lanes(&ring()).join(", ")));
     assert!(refused(0, 500.0).starts_with("scenario does not fit map ring: ego.s_m is 500, expected at most 64"));
+}
+
+#[test]
+fn the_lanes_that_a_refusal_names_are_those_on_which_a_car_starts() {
+    let network = ring();
+    let named = driving_lanes(&network).into_iter().flat_map(|range| {
+        let ends: Vec<u32> = range.split(" to ").map(|lane| lane.parse().expect("a number")).collect();
+        ends[0]..=ends[ends.len() - 1]
+    });
+    let starts = (0..network.lanes.len() as u32).filter(|lane| {
+        let mut scenario = alone();
+        scenario.ego.lane = Some(*lane);
+        World::new(&scenario, &network).is_ok()
+    });
+    assert_eq!(named.collect::<Vec<_>>(), starts.collect::<Vec<_>>());
 }
 
 #[test]

@@ -49,7 +49,7 @@ impl<W: Write> LogFile<W> {
 }
 
 impl Log {
-    /// The file with this content, byte for byte what a [`Recorder`] writes. Nothing of the content
+    /// The file with this content, byte for byte what a [`Recorder`](crate::Recorder) writes. Nothing of the content
     /// is checked against a simulation: that is what verifying is for.
     pub fn encode(&self) -> Result<Vec<u8>, Error> {
         let start =

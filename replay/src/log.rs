@@ -27,7 +27,7 @@ pub struct Manifest {
     pub engines: String,
     /// The scenario, with the map's name.
     pub scenario: Scenario,
-    /// [`RoadNetwork::digest`].
+    /// `RoadNetwork::digest`.
     pub map_digest: u128,
     /// The map's file, when it is not a bundled one.
     pub foreign_map: Option<ForeignMap>,

@@ -71,7 +71,6 @@ fn it_drives_straight_ahead() {
     let mut drive = Drive::at(0.0);
     drive.hold(seconds(20), |_| Controls::from_fractions(0.0, 0.7, 0.0));
     let ego = &drive.ego;
-    println!("{} m/s at {}", ego.speed_mps(), ego.motion.position);
     assert!(ego.motion.position.x > 200.0, "{}", ego.motion.position);
     assert!(ego.motion.position.y.abs() < 0.1, "{}", ego.motion.position);
     assert!(ego.motion.position.z.abs() < 0.05, "{}", ego.motion.position);
@@ -105,8 +104,7 @@ fn steering_to_the_right_turns_right_at_half_a_g_without_rolling() {
         let before = drive.ego.motion.velocity_mps;
         drive.hold(6, |car| cruise(car, speed_mps, steer));
         let g = (drive.ego.motion.velocity_mps - before).length() / (6.0 * TICK_S) / 9.81;
-        println!("{g} g at {speed_mps} m/s, {} upright", drive.upright());
-        assert!((0.4..0.7).contains(&g), "{g} g");
+        assert!((0.4..0.7).contains(&g), "{g} g at {speed_mps} m/s");
         assert!(drive.ego.heading_rad() < -0.2);
         assert!(drive.upright() > 0.99, "{}", drive.upright());
     }

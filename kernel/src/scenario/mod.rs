@@ -2,7 +2,9 @@
 
 mod default;
 mod fields;
+mod start;
 mod text;
 
 pub use crate::traffic::TrafficCounts;
 pub use fields::{EgoStart, MOST_OF_A_KIND, Rules, Scenario, ScenarioError};
+pub use start::{StartError, driving_lanes};

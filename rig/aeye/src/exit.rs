@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use base::failure::{Usage, is_divergence};
+use base::progress::interrupted;
 
 /// What a command that ran to its end says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +32,7 @@ pub fn number(result: &anyhow::Result<Verdict>) -> u8 {
     }
 }
 
-/// The exit code for the system.
+/// The exit code for the system; of a command that a signal interrupted 128 and the signal's number.
 pub fn code(result: &anyhow::Result<Verdict>) -> ExitCode {
-    ExitCode::from(number(result))
+    ExitCode::from(interrupted().unwrap_or_else(|| number(result)))
 }

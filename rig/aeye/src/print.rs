@@ -5,6 +5,7 @@ use std::io::Write;
 
 use anyhow::Context;
 use base::json::{Typed, json_line};
+use base::say::printable_lines;
 
 /// Prints a result: one line of JSON, or its text.
 pub fn result<T: Typed + Display>(json: bool, value: &T) -> anyhow::Result<()> {
@@ -13,7 +14,7 @@ pub fn result<T: Typed + Display>(json: bool, value: &T) -> anyhow::Result<()> {
 
 /// Prints a value: one line of JSON, or this text.
 pub fn print<T: Typed>(json: bool, value: &T, text: impl FnOnce() -> String) -> anyhow::Result<()> {
-    let line = if json { json_line(value)? } else { text() };
+    let line = if json { json_line(value)? } else { printable_lines(&text()) };
     let mut out = std::io::stdout().lock();
     writeln!(out, "{line}").and_then(|()| out.flush()).context("stdout")
 }

@@ -88,3 +88,33 @@ fn what_is_not_a_command_is_usage_and_the_version_is_told() {
     let (code, out, said) = run(&mut aeye(dir.path(), "--version"));
     assert_eq!((code, out.as_str(), said.as_str()), (Some(0), concat!("aeye ", env!("CARGO_PKG_VERSION"), "\n"), ""));
 }
+
+#[test]
+fn bash_is_offered_the_names_of_checkpoints_and_files() {
+    let dir = tempfile::tempdir().expect("a folder");
+    fs::write(dir.path().join("mine.onnx"), "").expect("writable");
+    let (_, script, _) = run(&mut aeye(dir.path(), "completions bash"));
+    fs::write(dir.path().join("aeye.bash"), script).expect("writable");
+    let offered = |typed: &str| {
+        let asked = format!(
+            "source aeye.bash; COMP_WORDS=(aeye compare x.mcap --checkpoint '{typed}'); COMP_CWORD=4; COMPREPLY=(); \
+             _aeye aeye '{typed}' --checkpoint; printf '%s\\n' \"${{COMPREPLY[@]}}\"; complete -p aeye"
+        );
+        run(Command::new("bash").current_dir(dir.path()).args(["-c", &asked])).1
+    };
+    assert!(offered("").starts_with("early\nfull\ntruth\n"), "{}", offered(""));
+    let other = offered("mi");
+    assert!(other.starts_with('\n') && other.contains("-o default"), "bash falls back to names of files: {other}");
+}
+
+#[test]
+fn a_printed_scenario_names_the_place_that_is_driven_and_the_lanes_to_choose_from() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let (code, printed, _) = run(&mut aeye(dir.path(), "drive --map rural --seed 5 --print-scenario"));
+    assert_eq!(code, Some(0));
+    let scenario = kernel::Scenario::from_toml(&printed).expect("a scenario");
+    let map = Map::find("rural").expect("bundled");
+    let drawn = map.scenario(5).start_on(&map.network).expect("a start");
+    assert_eq!((scenario.ego.lane, scenario.ego.s_m), (Some(drawn.0), drawn.1));
+    assert!(printed.contains("# Driving lanes of rural, for ego.lane:\n# "), "{printed}");
+}

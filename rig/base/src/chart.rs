@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3Swizzles};
 use kernel::RoadNetwork;
+use kernel::geometry::direction;
 use kernel::map::{LaneKind, LanePoint, Prop, PropKind};
-use kernel::ops;
 
 /// Room around the roads, metres.
 const MARGIN_M: f32 = 15.0;
@@ -57,8 +57,8 @@ fn bounds<'a>(points: impl Iterator<Item = &'a Vec2>) -> (Vec2, Vec2) {
 }
 
 fn corners(prop: &Prop) -> [Vec2; 4] {
-    let forward = Vec2::new(ops::cos(prop.heading_rad), ops::sin(prop.heading_rad)) * (0.5 * prop.size.x);
-    let left = Vec2::new(-ops::sin(prop.heading_rad), ops::cos(prop.heading_rad)) * (0.5 * prop.size.y);
+    let forward = direction(prop.heading_rad);
+    let (forward, left) = (forward * (0.5 * prop.size.x), forward.perp() * (0.5 * prop.size.y));
     [forward + left, left - forward, -forward - left, forward - left].map(|corner| prop.position.xy() + corner)
 }
 

@@ -2,32 +2,32 @@
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Says once a second of wall time that a second has passed.
+/// Says now and then, by wall time, that it is time again.
 #[derive(Debug)]
-pub struct EverySecond {
+pub struct Every {
+    period: Duration,
     next: Instant,
 }
 
-impl EverySecond {
-    /// Due for the first time at once.
-    pub fn new() -> Self {
-        Self { next: Instant::now() }
+impl Every {
+    /// Due at once, and then once a second.
+    pub fn second() -> Self {
+        Self { period: Duration::from_secs(1), next: Instant::now() }
     }
 
-    /// Whether a second has passed since it was last due.
+    /// Due when the period has passed, and then once in each.
+    pub fn next(period: Duration) -> Self {
+        Self { period, next: Instant::now() + period }
+    }
+
+    /// Whether it is time.
     pub fn is_due(&mut self) -> bool {
         let now = Instant::now();
         let due = now >= self.next;
         if due {
-            self.next = now + Duration::from_secs(1);
+            self.next = now + self.period;
         }
         due
-    }
-}
-
-impl Default for EverySecond {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -33,10 +33,17 @@ impl Failure {
     /// That of a file.
     pub fn new(path: &Path, error: &anyhow::Error) -> Self {
         let (file, mut text) = (path.display().to_string(), sentence(error));
-        if !text.contains(&file) {
-            text = format!("{file}: {text}");
+        let name = one_line(&file);
+        if !text.contains(&name) {
+            text = format!("{name}: {text}");
         }
         Self { file, error: text, is_divergence: is_divergence(error) }
+    }
+
+    /// That of a file whose replay is not the run that was recorded.
+    pub fn diverged(path: &Path) -> Self {
+        let file = path.display().to_string();
+        Self { error: format!("{file}: its replay is not the run that was recorded"), file, is_divergence: true }
     }
 }
 
@@ -88,15 +95,29 @@ pub fn is_divergence(error: &anyhow::Error) -> bool {
     error.chain().any(|e| e.downcast_ref::<replay::Error>().is_some_and(diverged))
 }
 
-/// An error with its causes as one line; causes that the text tells already are left out.
+/// An error with its causes as one line; what the text tells already of a cause is left out.
 pub fn sentence(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1).map(ToString::to_string) {
         if !text.contains(&cause) {
-            text = format!("{text}: {cause}");
+            let news = beyond(&text, &cause);
+            text = format!("{text}: {news}");
         }
     }
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    one_line(&text)
+}
+
+fn one_line(text: &str) -> String {
+    text.lines().map(str::trim).collect::<Vec<_>>().join(" ")
+}
+
+/// What a cause says after the names that a text has said before it: of `a: damaged` after `a`, `damaged`.
+fn beyond<'a>(text: &str, cause: &'a str) -> &'a str {
+    let has_said = |name: &str| text.split(": ").any(|said| said == name);
+    match cause.split_once(": ") {
+        Some((name, rest)) if has_said(name) => beyond(text, rest),
+        _ => cause,
+    }
 }
 
 #[cfg(test)]
@@ -117,9 +138,21 @@ mod tests {
     }
 
     #[test]
+    fn a_failure_names_its_file_once_whatever_it_is_called() {
+        for name in ["a.mcap", "a  b.mcap", "a\nb.mcap", "a: b.mcap"] {
+            let failure = Failure::new(Path::new(name), &anyhow::anyhow!("{name}: no room"));
+            assert_eq!(failure.error, format!("{}: no room", name.replace('\n', " ")));
+        }
+    }
+
+    #[test]
     fn a_sentence_says_each_cause_once() {
         let cause: anyhow::Error = anyhow::anyhow!("no\n room");
         let error = Err::<(), _>(cause).context("b: no\n room").context("a").expect_err("one");
         assert_eq!(sentence(&error), "a: b: no room");
+        let damaged = anyhow::anyhow!("a/x.mcap: damaged: chunk 3");
+        assert_eq!(sentence(&damaged.context("a/x.mcap")), "a/x.mcap: damaged: chunk 3");
+        let other = anyhow::anyhow!("a/x.mcap: damaged");
+        assert_eq!(sentence(&other.context("b").context("a/x.mcap")), "a/x.mcap: b: damaged");
     }
 }

@@ -1,5 +1,6 @@
 //! What every part of the rig stands on: recordings and maps found by name, results that appear whole or not
-//! at all, progress and Ctrl-C, the clock, work spread over threads, pictures as files, and the words for it all.
+//! at all, progress and Ctrl-C, the clock, work spread over threads, pictures as files, what is said,
+//! and the words for it all.
 
 pub mod chart;
 pub mod clock;
@@ -12,6 +13,7 @@ pub mod newest;
 pub mod output;
 pub mod png;
 pub mod progress;
+pub mod say;
 pub mod spread;
 pub mod toml_text;
 pub mod words;

@@ -10,7 +10,7 @@ use kernel::{RoadNetwork, Scenario};
 use replay::ForeignMap;
 
 use crate::failure::Usage;
-use crate::output;
+use crate::{output, toml_text};
 
 /// A map to drive on.
 #[derive(Clone, Debug)]
@@ -66,15 +66,37 @@ pub fn put_beside(map: Option<&ForeignMap>, recording: &Path) -> anyhow::Result<
     }
 }
 
-/// A scenario file and its map; a map file is looked for beside it.
-pub fn read_scenario(path: &Path) -> anyhow::Result<(Scenario, Map)> {
-    let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    let mut scenario = Scenario::from_toml(&text).map_err(|e| usage_in(path, &e.to_string()))?;
-    let beside: PathBuf = path.parent().unwrap_or(Path::new("")).join(&scenario.map);
-    let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { scenario.map.clone() };
-    let map = Map::find(&name).map_err(|e| if e.is::<Usage>() { usage_in(path, &e.to_string()) } else { e })?;
-    scenario.map = map.network.name.clone();
-    Ok((scenario, map))
+/// A scenario that was read from a file, and its map.
+#[derive(Clone, Debug)]
+pub struct ScenarioFile {
+    /// What it holds.
+    pub scenario: Scenario,
+    /// The map that it names.
+    pub map: Map,
+    path: PathBuf,
+    text: String,
+}
+
+impl ScenarioFile {
+    /// Reads one; a map file is looked for beside it.
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        let mut scenario = Scenario::from_toml(&text).map_err(|e| usage_in(path, &e.to_string()))?;
+        let beside: PathBuf = path.parent().unwrap_or(Path::new("")).join(&scenario.map);
+        let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { scenario.map.clone() };
+        let map = Map::find(&name).map_err(|e| if e.is::<Usage>() { usage_in(path, &e.to_string()) } else { e })?;
+        scenario.map = map.network.name.clone();
+        Ok(Self { scenario, map, path: path.to_owned(), text })
+    }
+
+    /// Refuses a map on which the ego car cannot start where the file says.
+    pub fn check_start(&self, map: &Map) -> anyhow::Result<()> {
+        self.scenario.start_on(&map.network).map(drop).map_err(|error| {
+            let line = error.key.and_then(|key| toml_text::line_of(&self.text, key));
+            let reason = line.map_or(error.reason.clone(), |line| format!("line {line}: {}", error.reason));
+            usage_in(&self.path, &reason)
+        })
+    }
 }
 
 fn usage_in(path: &Path, reason: &str) -> anyhow::Error {

@@ -8,7 +8,7 @@ use std::thread;
 
 /// Calls `work` once for each index below `count` on `jobs` threads, each with a state of its own.
 /// After the first error no further index is started; that error is returned.
-pub fn spread<S>(
+pub fn on_threads<S>(
     jobs: usize,
     count: usize,
     state: impl Fn() -> S + Sync,
@@ -107,11 +107,11 @@ mod tests {
             seen.lock().expect("no panic").push(i);
             Ok(())
         };
-        spread(3, 20, || (), note).expect("no error");
+        on_threads(3, 20, || (), note).expect("no error");
         let mut all = seen.into_inner().expect("no panic");
         all.sort_unstable();
         assert_eq!(all, (0..20).collect::<Vec<_>>());
         let failing = |_: &mut (), i: usize| if i == 5 { anyhow::bail!("five") } else { Ok(()) };
-        assert_eq!(spread(2, 1000, || (), failing).expect_err("fails").to_string(), "five");
+        assert_eq!(on_threads(2, 1000, || (), failing).expect_err("fails").to_string(), "five");
     }
 }

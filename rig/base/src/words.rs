@@ -1,5 +1,7 @@
 //! Seats, road users and events in the words that people read.
 
+use std::fmt::Display;
+
 use kernel::Seat;
 use kernel::events::{Event, EventKind};
 use kernel::scene::{ActorKind, ActorScene};
@@ -10,6 +12,12 @@ pub const SEATS: [&str; 2] = ["semantic", "safety"];
 /// What people and files call a seat.
 pub fn seat(seat: Seat) -> &'static str {
     SEATS[seat as usize]
+}
+
+/// A number of things, as in `1 frame` and `2 frames`.
+pub fn count<N: Display + PartialEq + From<u8>>(number: N, thing: &str) -> String {
+    let ending = if number == N::from(1) { "" } else { "s" };
+    format!("{number} {thing}{ending}")
 }
 
 /// What kind of road user it is.
@@ -56,4 +64,17 @@ pub fn event(event: &Event) -> String {
 pub fn event_at(tick: u64, event: &Event) -> String {
     let seconds = tick as f64 / f64::from(kernel::time::TICK_HZ);
     format!("{seconds:7.2} s  {}", self::event(event))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_is_not_many() {
+        assert_eq!(
+            [count(0usize, "frame"), count(1u32, "frame"), count(2u64, "frame")],
+            ["0 frames", "1 frame", "2 frames"]
+        );
+    }
 }

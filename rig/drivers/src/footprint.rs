@@ -1,9 +1,10 @@
 //! What a road user covers of the ground.
 
 use glam::Vec2;
+use kernel::ego;
+use kernel::geometry::direction;
 use kernel::map::Prop;
 use kernel::scene::{ActorScene, EgoScene};
-use kernel::{ego, ops};
 
 /// A rectangle on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,8 +49,11 @@ impl Footprint {
 
     /// That of a parked car.
     pub fn of_prop(prop: &Prop) -> Self {
-        let forward = Vec2::new(ops::cos(prop.heading_rad), ops::sin(prop.heading_rad));
-        Self { centre: prop.position.truncate(), forward, half: 0.5 * prop.size.truncate() }
+        Self {
+            centre: prop.position.truncate(),
+            forward: direction(prop.heading_rad),
+            half: 0.5 * prop.size.truncate(),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod checkpoint;
 pub mod crew;
+pub mod expert;
 pub mod film;
 pub mod footprint;
 pub mod pictures;

@@ -1,10 +1,9 @@
 //! Scenes drawn and looked at through several checkpoints.
 
+use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, BTreeSet};
 
-use base::failure::Usage;
-use drivers::checkpoint::CheckpointChoice;
+use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{RoadNetwork, SceneSnapshot};
 use perception::Mask;
@@ -13,15 +12,12 @@ use render::{Camera, Frame, RenderOptions, Renderer};
 /// The eyes that a command line asks for, and the size of the pictures that they all look at: the one that is
 /// asked for, else that which the first network takes. Others see those pictures resampled.
 pub fn open_eyes(choices: &[CheckpointChoice], size: Option<Size>) -> anyhow::Result<(Vec<Eye>, Size)> {
+    check_names(choices)?;
     let size = match size {
         Some(size) => size,
         None => own_size(choices)?,
     };
     let eyes = choices.iter().map(|choice| Eye::open_at(choice, size)).collect::<anyhow::Result<Vec<_>>>()?;
-    let names: BTreeSet<&str> = eyes.iter().map(Eye::name).collect();
-    if names.len() < eyes.len() {
-        return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
-    }
     Ok((eyes, size))
 }
 

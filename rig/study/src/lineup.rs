@@ -1,7 +1,7 @@
 //! Which checkpoint drives which run, where that is not to be known.
 
 use anyhow::anyhow;
-use drivers::checkpoint::CheckpointChoice;
+use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::{self, DEFAULT_SIZE, Eye};
 use kernel::rng::{self, Stream};
 use perception::{Compute, Mask};
@@ -65,6 +65,7 @@ impl Lineup {
         compute: Compute,
         seed: u64,
     ) -> anyhow::Result<Self> {
+        check_names(&study.blind)?;
         let (first, others) = study.blind.split_first().unwrap_or((checkpoint, &[]));
         // Ground truth can be drawn at any size, and is drawn at this one where nothing asks for another.
         let has_truth = std::iter::once(first).chain(others).any(|choice| *choice == CheckpointChoice::Truth);

@@ -7,7 +7,7 @@ use base::newest::Newest;
 use kernel::SceneSnapshot;
 use kernel::time::Tick;
 
-use crate::telemetry::Telemetry;
+use crate::figures::TickFigures;
 
 /// The newest of everything that onlookers see.
 #[derive(Debug, Default)]
@@ -19,7 +19,7 @@ pub struct Feed {
     /// What the safety driver is to see next.
     pub safety: Newest<View>,
     /// The figures of the tick.
-    pub telemetry: Newest<Telemetry>,
+    pub figures: Newest<TickFigures>,
 }
 
 /// A scene to draw.

@@ -4,6 +4,6 @@
 pub mod boxes;
 pub mod events;
 pub mod feed;
+pub mod figures;
 pub mod messages;
 pub mod server;
-pub mod telemetry;

@@ -62,6 +62,39 @@ fn maps_and_scenarios_are_refused_by_name_and_place() {
 }
 
 #[test]
+fn a_start_that_does_not_fit_the_map_is_refused_by_line_also_where_it_is_only_printed() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("start.toml");
+    let scenario = path.to_str().expect("UTF-8");
+    for (ego, words) in [
+        ("lane = 99999", &["start.toml: line 4: ego.lane is 99999, expected a driving lane of city: "][..]),
+        ("s_m = 1e5\nlane = LANE", &["start.toml: line 4: ego.s_m is 100000, expected at most ", " of city)"]),
+    ] {
+        let lane = driving_lane();
+        fs::write(&path, format!("map = \"city\"\nseed = 3\n[ego]\n{}\n", ego.replace("LANE", &lane)))
+            .expect("writable");
+        refused(dir.path(), &["--scenario", scenario], 2, words);
+        refused(dir.path(), &["--scenario", scenario, "--print-scenario"], 2, words);
+        let (code, said) = aeye(&["campaign", "--scenario", scenario, "--print-scenario"]);
+        assert!(code == 2 && words.iter().all(|word| said.contains(word)), "{said}");
+    }
+}
+
+/// The number of a driving lane of the city.
+fn driving_lane() -> String {
+    let network = kernel::map::bundled("city").expect("bundled");
+    let first = kernel::scenario::driving_lanes(&network).swap_remove(0);
+    first.split(' ').next().expect("a number").to_owned()
+}
+
+#[test]
+fn a_scenario_is_printed_without_a_place_for_results() {
+    for command in [&["drive", "--print-scenario"][..], &["campaign", "--print-scenario"]] {
+        assert_eq!(aeye(command), (0, String::new()), "{command:?}");
+    }
+}
+
+#[test]
 fn checkpoints_are_refused_by_name() {
     let dir = tempfile::tempdir().expect("a folder");
     let noise = dir.path().join("noise.onnx");
@@ -109,6 +142,11 @@ fn nonsense_on_the_command_line_is_usage() {
     let campaign = ["campaign", "--checkpoint", "truth", "--km=-1", "--out", out.to_str().expect("UTF-8")];
     let (code, sentence) = aeye(&campaign);
     assert!(code == 2 && sentence.contains("--km"), "{sentence}");
+    for (checkpoint, words) in [("early", "expected two or more"), ("early,early", "given twice; expected each once")] {
+        let out = out.to_str().expect("UTF-8");
+        let (code, sentence) = aeye(&["compare", "missing.case.mcap", "--checkpoint", checkpoint, "--out", out]);
+        assert!(code == 2 && sentence.contains(words), "before any file is looked for: {sentence}");
+    }
     assert!(names(dir.path()).is_empty());
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use base::progress::Interrupt;
 use drivers::vision::Eye;
-use lab::pipeline::{Crew, Film, Studios, Work};
+use lab::pipeline::{OpenFile, Pipeline, Studios, Work};
 use measures::footage::Footage;
 use render::Frame;
 use tests::recordings::recorded;
@@ -26,12 +26,12 @@ impl Work for Broken {
         Ok((Footage::read(&self.case, 180, 10)?, ()))
     }
 
-    fn see(&self, film: &Film<Self>, frame: &Frame, _: &mut [Eye]) -> anyhow::Result<()> {
-        assert!(self.at.is_some_and(|at| film.footage.scenes[at].tick != frame.tick), "as a network might");
+    fn see(&self, file: &OpenFile<Self>, frame: &Frame, _: &mut [Eye]) -> anyhow::Result<()> {
+        assert!(self.at.is_some_and(|at| file.footage.scenes[at].tick != frame.tick), "as a network might");
         Ok(())
     }
 
-    fn finish(&self, _: &Film<Self>, _: Vec<()>) -> anyhow::Result<()> {
+    fn finish(&self, _: &OpenFile<Self>, _: Vec<()>) -> anyhow::Result<()> {
         Ok(())
     }
 }
@@ -40,8 +40,8 @@ impl Work for Broken {
 fn panics(work: &Broken, jobs: usize) -> bool {
     let interrupt = Interrupt::default();
     let (size, studios) = ((16, 8), Studios::default());
-    let crew = Crew { work, files: &[0], size, eyes: &[], jobs, interrupt: &interrupt, studios };
-    thread::scope(|scope| scope.spawn(|| crew.run()).join().is_err())
+    let pipeline = Pipeline { work, files: &[0], size, eyes: &[], jobs, interrupt: &interrupt, studios };
+    thread::scope(|scope| scope.spawn(|| pipeline.run()).join().is_err())
 }
 
 #[test]

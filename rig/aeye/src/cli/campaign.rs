@@ -10,11 +10,12 @@ use super::values::{CHECKPOINTS, MAPS, jobs, people, preset, seconds};
 
 /// Arguments of `campaign`.
 #[derive(Args, Clone, Debug)]
-#[command(group = clap::ArgGroup::new("until").required(true).args(["runs", "km", "cases", "pedestrian_cases"]))]
+#[command(group = clap::ArgGroup::new("until").args(["runs", "km", "cases", "pedestrian_cases"]))]
+#[command(group = clap::ArgGroup::new("end").required(true).multiple(true).args(["until", "print_scenario"]))]
 pub struct CampaignArgs {
     /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
     /// the same runs.
-    #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
+    #[arg(long, required_unless_present = "print_scenario", value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones (default: the scenario's
     /// map, or all).
@@ -54,8 +55,8 @@ pub struct CampaignArgs {
     #[arg(long)]
     pub print_scenario: bool,
     /// Folder of the results; a campaign that was interrupted goes on there.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "print_scenario")]
+    pub out: Option<PathBuf>,
 }
 
 /// Arguments of `demo`.

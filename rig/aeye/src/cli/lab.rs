@@ -7,7 +7,7 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, Tick};
 use lab::compare::Gate;
 
-use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, seconds, size};
+use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, one_checkpoint, seconds, size};
 
 /// Arguments of `rerender`.
 #[derive(Args, Clone, Debug)]
@@ -87,7 +87,7 @@ pub struct CompareArgs {
     /// A condition on every checkpoint but the baseline, as in `ped_iou>=0.5`. Metrics: ped_iou, miou,
     /// ped_recall_on_path, hazards_seen (share of the hazards seen 1 s or more before the intervention),
     /// first_sight_s (mean), and against the baseline the numbers of cases fixed and broken.
-    #[arg(long, value_delimiter = ',', value_name = "METRIC>=NUMBER,...")]
+    #[arg(long, value_delimiter = ',', value_name = "CONDITION,...")]
     pub gate: Vec<Gate>,
     /// A checkpoint than which no other may be worse: of no metric may the paired 95 % interval of the
     /// difference lie below 0 as a whole.
@@ -120,7 +120,7 @@ pub struct RedriveArgs {
     pub without_intervention: bool,
     /// Bots drive from the first tick at hand, at least 3 s before the intervention, the semantic one
     /// looking through this checkpoint. Is there an intervention again?
-    #[arg(long, value_name = CHECKPOINT)]
+    #[arg(long, value_parser = one_checkpoint, value_name = CHECKPOINT)]
     pub checkpoint: Option<CheckpointChoice>,
     /// Where the recorded checkpoint may be found, if it does not come with the program.
     #[arg(long = "recorded-checkpoint", value_delimiter = ',', value_name = "FILE.onnx,...")]

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use drivers::checkpoint::CheckpointChoice;
 use replay::Label;
 
-use super::values::{CHECKPOINT, MAPS, file, jobs, people, rate, size};
+use super::values::{CHECKPOINT, MAPS, file, jobs, one_checkpoint, people, rate, size};
 
 /// The datasets that can be made.
 #[derive(Debug, Subcommand)]
@@ -163,7 +163,7 @@ pub struct TrainArgs {
 #[derive(Args, Clone, Debug)]
 pub struct EvalArgs {
     /// Checkpoint.
-    #[arg(long, value_name = CHECKPOINT)]
+    #[arg(long, value_parser = one_checkpoint, value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// Dataset folder.
     #[arg(long, value_name = "DIR")]

@@ -1,7 +1,7 @@
 //! Arguments of the rig itself: drives, their viewer, the machine and its devices.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use drivers::checkpoint::CheckpointChoice;
@@ -11,7 +11,7 @@ use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server;
 
-use super::values::{CHECKPOINT, CHECKPOINTS, file, force, screens, seconds, size, threshold};
+use super::values::{CHECKPOINT, CHECKPOINTS, file, force, one_checkpoint, screens, seconds, size, threshold};
 
 /// Arguments of `drive`.
 #[derive(Args, Clone, Debug)]
@@ -46,7 +46,7 @@ pub struct DriveArgs {
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,
     /// What the semantic driver sees: a bundled checkpoint, ground truth, or an ONNX file.
-    #[arg(long, default_value = "truth", value_name = CHECKPOINT)]
+    #[arg(long, default_value = "truth", value_parser = one_checkpoint, value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// Seed of everything random; replaces the scenario's.
     #[arg(long)]
@@ -69,17 +69,18 @@ pub struct DriveArgs {
     #[arg(long)]
     pub print_scenario: bool,
     /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
-    #[arg(
-        long,
-        value_name = "FILE.mcap",
-        required_unless_present = "print_scenario",
-        default_value_if("print_scenario", "true", "none.mcap"),
-        hide_default_value = true
-    )]
-    pub record: PathBuf,
+    #[arg(long, value_name = "FILE.mcap", required_unless_present = "print_scenario")]
+    record: Option<PathBuf>,
     /// What makes it part of a study with people.
     #[command(flatten, next_help_heading = "Study")]
     pub study: StudyArgs,
+}
+
+impl DriveArgs {
+    /// Where the recording goes; nowhere where the scenario is only printed.
+    pub fn record(&self) -> &Path {
+        self.record.as_deref().unwrap_or(Path::new(""))
+    }
 }
 
 /// How the live rig makes its pictures.
@@ -155,7 +156,7 @@ pub struct DoctorArgs {
     #[arg(long = "max-time", default_value = "20s", value_parser = seconds(0..=86_400), value_name = "DURATION")]
     pub seconds: u32,
     /// What the semantic driver sees there.
-    #[arg(long, default_value = "full", value_name = CHECKPOINT)]
+    #[arg(long, default_value = "full", value_parser = one_checkpoint, value_name = CHECKPOINT)]
     pub checkpoint: CheckpointChoice,
     /// The pictures there.
     #[command(flatten)]

@@ -12,7 +12,7 @@ pub struct VerifyArgs {
     /// Recordings or cases, or folders with such files anywhere below.
     #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
-    /// Also go back this many ticks again and again and compare (rollback self-check).
+    /// Also go back this many ticks again and again and compare, 1 to 600 of them, 60 a second (rollback self-check).
     #[arg(long, value_name = "TICKS", value_parser = clap::value_parser!(u16).range(1..=600))]
     pub rewind: Option<u16>,
     /// Compare with this recording tick by tick, and name the field that differs first.

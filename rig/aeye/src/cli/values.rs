@@ -32,6 +32,14 @@ fn is_checkpoint(path: &Path) -> bool {
     (is_named && !path.exists()) || path.extension().is_some_and(|ending| ending == "onnx")
 }
 
+/// One checkpoint. A list is refused as what it is, unless a file is called so.
+pub fn one_checkpoint(text: &str) -> Result<CheckpointChoice, String> {
+    if text.contains(',') && !Path::new(text).exists() {
+        return Err("is a list; expected one checkpoint, as in early".into());
+    }
+    text.parse()
+}
+
 /// An experiment with a name.
 pub fn preset() -> impl TypedValueParser<Value = Preset> {
     let named = |name: String| Preset::ALL.into_iter().find(|preset| preset.name() == name);
@@ -43,12 +51,16 @@ pub fn screens() -> impl TypedValueParser<Value = Screens> {
     PossibleValuesParser::new(["1", "3"]).map(|number| if number == "3" { Screens::Three } else { Screens::One })
 }
 
+/// Pixels of the greatest picture, 4096x4096: what every adapter draws and reads back in one piece.
+const MOST_PIXELS: u32 = 1 << 24;
+
 /// `WxH`, as in `512x256`.
 pub fn size(text: &str) -> Result<(u32, u32), String> {
     let side = |s: &str| s.parse::<u32>().ok().filter(|n| (8..=8192).contains(n));
-    text.split_once('x')
-        .and_then(|(w, h)| Some((side(w)?, side(h)?)))
-        .ok_or_else(|| "expected WIDTHxHEIGHT with sides of 8 to 8192 pixels, as in 512x256".into())
+    let sides = text.split_once('x').and_then(|(w, h)| Some((side(w)?, side(h)?)));
+    sides.filter(|(w, h)| w * h <= MOST_PIXELS).ok_or_else(|| {
+        format!("expected WIDTHxHEIGHT with sides of 8 to 8192 and at most {MOST_PIXELS} pixels, as in 512x256")
+    })
 }
 
 /// A time such as `3s`, `0.5s`, `2m` or `1h`, as ticks. A number alone is seconds.
@@ -128,8 +140,16 @@ mod tests {
     }
 
     #[test]
+    fn a_list_is_no_checkpoint() {
+        assert_eq!(one_checkpoint("early"), Ok(CheckpointChoice::Bundled("early")));
+        assert_eq!(one_checkpoint("early,full"), Err("is a list; expected one checkpoint, as in early".into()));
+    }
+
+    #[test]
     fn values_are_read_and_nonsense_is_refused() {
         assert_eq!(size("512x256"), Ok((512, 256)));
+        assert_eq!((size("4096x4096"), size("8192x2048")), (Ok((4096, 4096)), Ok((8192, 2048))));
+        assert!(size("8192x8192").unwrap_err().contains("at most 16777216 pixels"));
         assert!(size("512").is_err() && size("0x9").is_err() && size("12x99999999").is_err());
         assert_eq!(duration("3s"), Ok(180));
         assert_eq!(duration("0.5"), Ok(30));

@@ -15,7 +15,7 @@ pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
         print::text(&plan(&options)?.scenario_of(0).to_toml())?;
         return Ok(Verdict::Ok);
     }
-    print::result(json, &drive(&options, &Interrupt::listen()?)?)?;
+    print::result(json, &drive(&options, &Interrupt::listen())?)?;
     Ok(Verdict::Ok)
 }
 
@@ -25,6 +25,8 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
     }
     let until = until(args)?;
     let CampaignArgs { checkpoint, maps, embed_map, scenario, pedestrians, run_seconds, seed, jobs, out, .. } = args.clone();
+    // Nothing goes anywhere where the scenario is only printed.
+    let out = out.unwrap_or_default();
     Ok(Options { checkpoint, maps, embed_map, scenario, until, pedestrians, run_seconds, seed, jobs, out })
 }
 
@@ -34,6 +36,7 @@ fn until(args: &CampaignArgs) -> anyhow::Result<Until> {
         (None, Some(km), None, None) if km > 0.0 && km.is_finite() => Ok(Until::Km(km)),
         (None, None, Some(cases), None) => Ok(Until::Cases(cases)),
         (None, None, None, Some(cases)) => Ok(Until::PedestrianCases(cases)),
+        (None, None, None, None) if args.print_scenario => Ok(Until::Runs(1)),
         _ => Err(Usage("expected one of --runs, --km (more than 0), --cases and --pedestrian-cases".into()).into()),
     }
 }

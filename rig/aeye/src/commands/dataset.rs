@@ -24,7 +24,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         jobs,
         out,
     };
-    let manifest = natural::make(&options, &Interrupt::listen()?)?;
+    let manifest = natural::make(&options, &Interrupt::listen())?;
     print(json, &manifest, || manifest.sentence(&options.out))?;
     Ok(Verdict::Ok)
 }
@@ -33,7 +33,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
 pub fn cases(args: &CasesArgs, json: bool) -> anyhow::Result<Verdict> {
     let CasesArgs { files, label, split, size, out } = args.clone();
     let options = cases::Options { files, label, split, size, out };
-    let manifest = cases::make(&options, &Interrupt::listen()?)?;
+    let manifest = cases::make(&options, &Interrupt::listen())?;
     print(json, &manifest, || manifest.sentence(&options.out))?;
     Ok(Verdict::Ok)
 }
@@ -42,7 +42,7 @@ pub fn cases(args: &CasesArgs, json: bool) -> anyhow::Result<Verdict> {
 pub fn mix(args: &MixArgs, json: bool) -> anyhow::Result<Verdict> {
     let MixArgs { natural, pool, cases, replace, seed, out } = args.clone();
     let options = mix::Options { natural, pool, cases, replace, seed, out };
-    print::result(json, &mix::make(&options, &Interrupt::listen()?)?)?;
+    print::result(json, &mix::make(&options, &Interrupt::listen())?)?;
     Ok(Verdict::Ok)
 }
 
@@ -50,7 +50,7 @@ pub fn mix(args: &MixArgs, json: bool) -> anyhow::Result<Verdict> {
 pub fn rebuild(args: &RebuildArgs, json: bool) -> anyhow::Result<Verdict> {
     let RebuildArgs { recipe, cases, maps, jobs, out } = args.clone();
     let options = rebuild::Options { recipe, cases, maps, jobs, out };
-    let rebuilt = rebuild::make(&options, &Interrupt::listen()?)?;
+    let rebuilt = rebuild::make(&options, &Interrupt::listen())?;
     print(json, &rebuilt, || rebuilt.sentence(&options.out))?;
     Ok(Verdict::of_check(rebuilt.is_as_promised()))
 }

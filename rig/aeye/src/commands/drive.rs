@@ -4,15 +4,17 @@ use std::fs::File;
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use base::clock::EverySecond;
+use base::clock::Every;
 use base::failure::Usage;
 use base::json::Typed;
 use base::library;
 use base::library::case_path;
-use base::maps::{self, Map, read_scenario};
+use base::maps::{self, Map, ScenarioFile};
 use base::progress::Interrupt;
+use base::say::say;
 use drivers::simulate;
 use drivers::vision::Vision;
+use kernel::scenario::{EgoStart, driving_lanes};
 use kernel::{Scenario, World};
 use measures::RunFigures;
 use perception::Compute;
@@ -29,6 +31,8 @@ use crate::print::{self, print};
 
 /// Map of a drive when none is named.
 const DEFAULT_MAP: &str = "city";
+/// Lanes, or ranges of them, in a line of the comment that lists them.
+const LANES_A_LINE: usize = 12;
 
 /// Runs `aeye drive`.
 pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
@@ -42,13 +46,32 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
             Usage("--blind draws one of several; expected two or more checkpoints, as in early,full".into()).into()
         );
     }
-    if library::is_case_name(&args.record) {
+    if library::is_case_name(args.record()) {
         return Err(
-            Usage(format!("{}: is named as a corner case; expected another name", args.record.display())).into()
+            Usage(format!("{}: is named as a corner case; expected another name", args.record().display())).into()
         );
     }
+    let (scenario, map) = scenario(args)?;
+    if args.print_scenario {
+        print::text(&as_driven(scenario, &map)?)?;
+        return Ok(Verdict::Ok);
+    }
+    if args.headless {
+        headless(args, &scenario, &map, json)?;
+    } else {
+        windows::drive(args, scenario, map, move |path, figures| tell(path, figures, json))?;
+    }
+    Ok(Verdict::Ok)
+}
+
+/// What the run starts from, and where.
+fn scenario(args: &DriveArgs) -> anyhow::Result<(Scenario, Map)> {
     let (mut scenario, map) = match &args.scenario {
-        Some(path) => read_scenario(path)?,
+        Some(path) => {
+            let file = ScenarioFile::read(path)?;
+            file.check_start(&file.map)?;
+            (file.scenario, file.map)
+        }
         None => {
             let map = Map::find(args.map.as_deref().unwrap_or(DEFAULT_MAP))?;
             (map.scenario(args.seed.unwrap_or(1)), map)
@@ -60,16 +83,16 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
     rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
     rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
-    if args.print_scenario {
-        print::text(&scenario.to_toml())?;
-        return Ok(Verdict::Ok);
-    }
-    if args.headless {
-        headless(args, &scenario, &map, json)?;
-    } else {
-        windows::drive(args, scenario, map, move |path, figures| tell(path, figures, json))?;
-    }
-    Ok(Verdict::Ok)
+    Ok((scenario, map))
+}
+
+/// The text of a scenario with the place where its seed puts the car, and the lanes that there are to choose from.
+fn as_driven(mut scenario: Scenario, map: &Map) -> anyhow::Result<String> {
+    let (lane, s_m) = scenario.start_on(&map.network)?;
+    scenario.ego = EgoStart { lane: Some(lane), s_m };
+    let lanes = driving_lanes(&map.network);
+    let comment: String = lanes.chunks(LANES_A_LINE).map(|lanes| format!("# {}\n", lanes.join(", "))).collect();
+    Ok(format!("{}\n# Driving lanes of {}, for ego.lane:\n{comment}", scenario.to_toml(), scenario.map))
 }
 
 /// What is printed of a run.
@@ -109,18 +132,18 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     World::new(scenario, &map.network)?;
 
     let mut publisher = args.foxglove.map(Publisher::bind).transpose()?;
-    let path = &args.record;
+    let path = args.record();
     if path.is_file() {
         bail!("{}: exists already; expected a new file", path.display());
     }
     maps::put_beside(map.foreign.as_ref(), path)?;
     let file = File::create(path).with_context(|| path.display().to_string())?;
-    let interrupt = Interrupt::listen()?;
-    let mut second = EverySecond::new();
+    let interrupt = Interrupt::listen();
+    let mut second = Every::second();
     let keep_on = |world: &World| {
         publisher.iter_mut().for_each(|publisher| publisher.show(world));
         if second.is_due() {
-            eprintln!("tick {}", world.tick());
+            say(format_args!("tick {}", world.tick()));
         }
         !interrupt.is_raised()
     };

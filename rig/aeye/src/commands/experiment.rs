@@ -17,7 +17,7 @@ pub fn run(args: &ExperimentArgs, json: bool) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Ok);
     }
     let Some(out) = &args.out else { return Err(Usage("expected --out DIR or --print-recipe".into()).into()) };
-    print::result(json, &experiment::run(&recipe, out, args.jobs, &Interrupt::listen()?)?)?;
+    print::result(json, &experiment::run(&recipe, out, args.jobs, &Interrupt::listen())?)?;
     Ok(Verdict::Ok)
 }
 

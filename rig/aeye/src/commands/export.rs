@@ -12,7 +12,7 @@ use crate::print;
 pub fn run(args: &ExportArgs, json: bool) -> anyhow::Result<Verdict> {
     let ExportArgs { files, checkpoint, last, from, to, fps, size, jobs, out } = args.clone();
     let options = Options { files, checkpoint, last, from, to, fps, size, jobs, out };
-    let summary = export(&options, &Interrupt::listen()?)?;
+    let summary = export(&options, &Interrupt::listen())?;
     print::result(json, &summary)?;
     Failed::check(&summary.failed, summary.exports.len())?;
     Ok(Verdict::Ok)

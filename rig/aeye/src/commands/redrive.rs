@@ -13,7 +13,7 @@ pub fn run(args: &RedriveArgs, json: bool) -> anyhow::Result<Verdict> {
     let RedriveArgs { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, jobs, out } =
         args.clone();
     let options = Options { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, jobs, out };
-    let summary = redrive(&options, &Interrupt::listen()?)?;
+    let summary = redrive(&options, &Interrupt::listen())?;
     print::result(json, &summary)?;
     Failed::check(&summary.failed, summary.files)?;
     Ok(Verdict::Ok)

@@ -12,7 +12,7 @@ use crate::print;
 pub fn run(args: &RerenderArgs, json: bool) -> anyhow::Result<Verdict> {
     let RerenderArgs { files, checkpoint, last, fps, size, jobs, out } = args.clone();
     let options = Options { files, checkpoint, last, fps, size, jobs, out };
-    let summary = rerender(&options, &Interrupt::listen()?)?;
+    let summary = rerender(&options, &Interrupt::listen())?;
     print::result(json, &summary)?;
     Failed::check(&summary.failed, summary.files)?;
     Ok(Verdict::Ok)

@@ -2,6 +2,11 @@
 
 use anyhow::Context;
 use base::output;
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, Command};
+use clap_complete::Shell;
+use drivers::checkpoint::TRUTH;
+use perception::BUNDLED;
 
 use crate::cli::{CompletionsArgs, ManArgs};
 use crate::exit::Verdict;
@@ -11,9 +16,23 @@ use crate::print;
 /// Runs `aeye completions`.
 pub fn completions(args: &CompletionsArgs) -> anyhow::Result<Verdict> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut command(), "aeye", &mut script);
+    let mut command = match args.shell {
+        // What it is offered it offers before files, the other shells instead of them.
+        Shell::Bash => with_checkpoints(command()),
+        _ => command(),
+    };
+    clap_complete::generate(args.shell, &mut command, "aeye", &mut script);
     print::text(&String::from_utf8_lossy(&script))?;
     Ok(Verdict::Ok)
+}
+
+/// Every option that takes checkpoints with the names of those that come with the program.
+fn with_checkpoints(command: Command) -> Command {
+    let names = || PossibleValuesParser::new(BUNDLED.into_iter().chain([TRUTH]));
+    let takes_them = |arg: &Arg| matches!(arg.get_id().as_str(), "checkpoint" | "blind");
+    command
+        .mut_args(|arg| if takes_them(&arg) { arg.value_parser(names()) } else { arg })
+        .mut_subcommands(with_checkpoints)
 }
 
 /// Runs `aeye man`.

@@ -1,6 +1,7 @@
 //! A checkpoint trained from a dataset folder.
 
 use base::progress::Interrupt;
+use base::say::say;
 use lab::train::{Epoch, Options, train};
 
 use crate::cli::TrainArgs;
@@ -12,9 +13,9 @@ pub fn run(args: &TrainArgs, json: bool) -> anyhow::Result<Verdict> {
     let TrainArgs { dataset, out, epochs, seed, size, horizon, patience, batch, replicas, rate } = args.clone();
     let options = Options { dataset, out, epochs, seed, size, horizon, patience, batch, replicas, rate };
     let show = &mut |epoch: &Epoch| print::result(json, epoch);
-    let summary = train(&options, &Interrupt::listen()?, show)?;
+    let summary = train(&options, &Interrupt::listen(), show)?;
     if summary.was_there {
-        eprintln!("{}: is trained already, with these options on this dataset", summary.checkpoint.display());
+        say(format_args!("{}: is trained already, with these options on this dataset", summary.checkpoint.display()));
     }
     print::print(json, &summary, || format!("{}: digest {}", summary.checkpoint.display(), summary.digest))?;
     Ok(Verdict::Ok)

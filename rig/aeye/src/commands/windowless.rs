@@ -53,11 +53,13 @@ pub fn none_found() -> String {
     "not looked for".into()
 }
 
-/// What a drive in windows came to; there never is one.
+/// In the place of what a drive in windows came to; there never is one.
 #[derive(Debug, Serialize)]
-pub enum LiveFigures {}
+pub enum Never {}
 
-impl fmt::Display for LiveFigures {
+pub use Never as LiveFigures;
+
+impl fmt::Display for Never {
     fn fmt(&self, _: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {}
     }

@@ -6,6 +6,8 @@ use std::fmt;
 use anyhow::{Context, anyhow, bail};
 use base::json::Typed;
 use base::progress;
+use base::say::printable;
+use base::words::count;
 use kernel::time::Tick;
 use render::{Camera, RenderOptions, Renderer};
 use replay::MaskShown;
@@ -161,8 +163,8 @@ impl fmt::Display for Digests {
 
 fn text(digests: &Digests) -> String {
     let Digests { file, checkpoint, masks, frames, equal, different, before_start, .. } = digests;
-    let mut text =
-        format!("{file}: {masks} masks of {frames} frames through {checkpoint}: {equal} equal, {different} different");
+    let (file, masks, frames) = (printable(file), count(*masks, "mask"), count(*frames, "frame"));
+    let mut text = format!("{file}: {masks} of {frames} through {checkpoint}: {equal} equal, {different} different");
     if *before_start > 0 {
         text += &format!(", {before_start} of frames from before the file's first tick");
     }

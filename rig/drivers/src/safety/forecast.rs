@@ -1,6 +1,7 @@
 //! Where everyone will be in the next seconds if nobody changes his mind.
 
 use glam::Vec2;
+use kernel::geometry::direction;
 use kernel::map::{LaneKind, RoadNetwork};
 use kernel::scene::{ActorKind, ActorScene, EgoScene};
 use kernel::{World, ego, ops};
@@ -83,7 +84,7 @@ fn along_lane(network: &RoadNetwork, lane: u32, s_m: f32, lateral_m: f32, now: F
     }
     let beyond_m = (s_m - network.lanes[lane as usize].length_m).max(0.0);
     let point = network.lane_point(lane, s_m);
-    let forward = Vec2::new(ops::cos(point.heading_rad), ops::sin(point.heading_rad));
+    let forward = direction(point.heading_rad);
     Footprint { centre: point.position.truncate() + beyond_m * forward + lateral_m * forward.perp(), forward, ..now }
 }
 

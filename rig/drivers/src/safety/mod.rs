@@ -4,7 +4,6 @@ mod forecast;
 mod hazard;
 mod looks;
 
-use glam::Vec2;
 use kernel::rng::{self, Stream};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Controls, World, ops};
@@ -131,9 +130,7 @@ fn steer_back(world: &World) -> f32 {
     let car = world.scene().ego;
     let route = world.route_ahead(STEER_TO_M as f32 + 1.0);
     let Some(target) = route.get(STEER_TO_M).or(route.last()) else { return 0.0 };
-    let to = target.truncate() - car.position.truncate();
-    let left_m = footprint::forward(&car).perp_dot(to);
-    single_track::steering(2.0 * left_m / Vec2::length_squared(to).max(1.0))
+    single_track::pursuit(car.position.truncate(), footprint::forward(&car), target.truncate())
 }
 
 #[cfg(test)]

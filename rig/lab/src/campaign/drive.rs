@@ -1,16 +1,14 @@
 //! Simulated drives in parallel, resumable, and their figures.
 
-use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
 
-use base::failure::Usage;
 use base::json;
-use base::maps::{Map, read_scenario};
+use base::maps::{Map, ScenarioFile};
 use base::output;
 use base::progress::Interrupt;
 use base::spread::jobs;
-use drivers::checkpoint::CheckpointChoice;
+use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::Eye;
 use measures::statistics::table;
 use render::AdapterChoice;
@@ -47,12 +45,10 @@ pub struct Options {
 
 /// Drives a campaign, writes its files, and gives its figures.
 pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<CampaignFigures> {
+    check_names(&options.checkpoint)?;
     let plan = plan(options)?;
     let eyes = options.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;
     let names: Vec<String> = eyes.iter().map(|eye| eye.name().to_owned()).collect();
-    if names.iter().collect::<BTreeSet<_>>().len() < names.len() {
-        return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
-    }
     AdapterChoice::default().find()?;
     output::create_folder(&plan.out)?;
     let jobs = jobs(options.jobs);
@@ -67,14 +63,17 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
 
 /// What the options come to.
 pub fn plan(options: &Options) -> anyhow::Result<Plan> {
-    let scenario = options.scenario.as_deref().map(read_scenario).transpose()?;
-    let maps = match &scenario {
-        Some((_, map)) if options.maps.is_empty() => vec![map.clone()],
+    let file = options.scenario.as_deref().map(ScenarioFile::read).transpose()?;
+    let maps = match &file {
+        Some(file) if options.maps.is_empty() => vec![file.map.clone()],
         _ if options.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
         _ => Map::find_all(&options.maps)?,
     };
     let maps = if options.embed_map { maps.into_iter().map(Map::embedded).collect() } else { maps };
-    let scenario = scenario.map(|(scenario, _)| scenario);
+    if let Some(file) = &file {
+        maps.iter().try_for_each(|map| file.check_start(map))?;
+    }
+    let scenario = file.map(|file| file.scenario);
     let Options { until, pedestrians, run_seconds, seed, .. } = *options;
     Ok(Plan { maps, scenario, pedestrians, run_seconds, seed, until, out: options.out.clone() })
 }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard};
 
 use anyhow::bail;
-use base::progress::{self, Interrupt};
+use base::progress::{self, Bar, Interrupt};
+use base::words;
 use drivers::vision::Eye;
-use indicatif::ProgressBar;
 
 use super::plan::Plan;
 use super::run_line::RunLine;
@@ -18,7 +18,7 @@ struct Pool<'a> {
     plan: &'a Plan,
     eye: &'a Eye,
     interrupt: &'a Interrupt,
-    bar: ProgressBar,
+    bar: Bar,
     state: Mutex<State>,
 }
 
@@ -49,7 +49,7 @@ pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> 
         return Err(failure);
     }
     if !plan.until.is_met(&runs) {
-        bail!("interrupted after {} runs; the same command goes on from there", runs.len());
+        bail!("interrupted after {}; the same command goes on from there", words::count(runs.len(), "run"));
     }
     Ok(runs)
 }

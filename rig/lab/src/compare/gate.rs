@@ -44,7 +44,8 @@ impl FromStr for Gate {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let split = |(sign, relation)| text.split_once(sign).map(|(name, limit)| (name, relation, limit));
-        let found = Relation::ALL.into_iter().find_map(split);
+        // A sign that there is not, such as => or ==, leaves a part of it in the name or the number.
+        let found = Relation::ALL.into_iter().find_map(split).filter(|(name, ..)| !name.contains(['=', '<', '>']));
         let expected = || "expected a metric, one of >= <= > <, and a number, as in ped_iou>=0.5".to_owned();
         let (name, relation, limit) = found.ok_or_else(expected)?;
         let limit = limit.trim().parse::<f64>().ok().filter(|limit| limit.is_finite()).ok_or_else(expected)?;
@@ -127,6 +128,10 @@ mod tests {
         assert!(passes("ped_iou>=0.5") && passes("ped_iou <= 0.5") && passes("fixed>1") && passes("broken<2"));
         assert!(!passes("ped_iou>0.5") && !passes("ped_iou<0.5") && !passes("broken>=2"));
         assert!(!passes("miou>=0") && !passes("miou<=1"), "a figure that there is not passes nothing");
+        for unknown_sign in ["ped_iou=>0.5", "ped_iou==0.5", "ped_iou>>0.5", "ped_iou=<0.5"] {
+            let said = unknown_sign.parse::<Gate>().unwrap_err();
+            assert!(said.starts_with("expected a metric, one of >= <= > <, and a number"), "{unknown_sign}: {said}");
+        }
         for nonsense in ["ped_iou", "ped_iou=0.5", "ped_iou>=much", "ped_iou>=nan", "speed>=3", ">=1"] {
             assert!(nonsense.parse::<Gate>().is_err(), "{nonsense}");
         }

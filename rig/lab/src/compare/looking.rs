@@ -1,14 +1,14 @@
 //! What each checkpoint makes of each case: found again from an earlier call, or made.
 
 use base::library::Entry;
+use base::progress::Bar;
 use drivers::safety::LOOK_TICKS;
 use drivers::vision::Eye;
-use indicatif::ProgressBar;
 use kernel::time::{CLIP_FPS, CLIP_FRAMES, CLIP_TICKS, TICK_HZ, Tick};
 use measures::footage::Footage;
 use render::Frame;
 
-use super::super::pipeline::{Film, Work};
+use super::super::pipeline::{OpenFile, Work};
 use super::super::store::{Settings, Store};
 use super::score::CaseScore;
 use super::witness::{Facts, Witness};
@@ -21,7 +21,7 @@ pub struct Looking<'a> {
     pub eyes: &'a [Eye],
     pub store: &'a Store,
     pub settings: Settings,
-    pub bar: &'a ProgressBar,
+    pub bar: &'a Bar,
 }
 
 /// A case and what each checkpoint made of it.
@@ -51,14 +51,14 @@ impl Work for Looking<'_> {
         Ok((footage, Notes { facts, eyes: self.missing(case) }))
     }
 
-    fn see(&self, film: &Film<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Vec<CaseScore>> {
-        let Notes { facts, eyes: missing } = &film.notes;
+    fn see(&self, file: &OpenFile<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Vec<CaseScore>> {
+        let Notes { facts, eyes: missing } = &file.notes;
         let look = |eye: &usize| Ok(CaseScore::of_frame(frame, &eyes[*eye].see(frame.clone())?, facts));
         missing.iter().map(look).collect()
     }
 
-    fn finish(&self, film: &Film<Self>, seen: Vec<Vec<CaseScore>>) -> anyhow::Result<()> {
-        let (case, Notes { facts, eyes }) = (&self.cases[film.index], &film.notes);
+    fn finish(&self, file: &OpenFile<Self>, seen: Vec<Vec<CaseScore>>) -> anyhow::Result<()> {
+        let (case, Notes { facts, eyes }) = (&self.cases[file.index], &file.notes);
         for (i, eye) in eyes.iter().map(|eye| &self.eyes[*eye]).enumerate() {
             let mut score = CaseScore::default();
             seen.iter().for_each(|frame| score.add(&frame[i]));

@@ -17,7 +17,7 @@ mod witness;
 use std::path::PathBuf;
 
 use anyhow::bail;
-use drivers::checkpoint::CheckpointChoice;
+use drivers::checkpoint::{CheckpointChoice, check_names};
 use kernel::time::{CLIP_FPS, CLIP_FRAMES, CLIP_TICKS};
 use render::AdapterChoice;
 
@@ -29,13 +29,14 @@ use self::metrics::CaseSums;
 use self::summary::Speed;
 pub use self::summary::{Compared, Scoreboard};
 use super::looks::open_eyes;
-use super::pipeline::{Crew, Studios, set_aside};
+use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
 use base::failure::{Failed, Usage};
 use base::json;
 use base::library;
 use base::output;
 use base::progress::{self, Interrupt};
+use base::say::say;
 use base::spread::jobs;
 use drivers::vision::Eye;
 
@@ -66,21 +67,21 @@ pub struct Options {
 
 /// Draws every case, looks at it through each checkpoint, and writes `compare.json` and `report.html`.
 pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared> {
+    let reference = reference(args)?;
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "compare")?;
     let library::Found { files: mut cases, mut failed } = library::find_cases(&args.files).or_failed()?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
-    let reference = reference(args, &eyes)?;
     let settings = Settings::new(CLIP_TICKS, CLIP_FPS, size);
     let bar = progress::bar("frames", 0);
     let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings: settings.clone(), bar: &bar };
     let left = work.left();
     bar.set_length(left.len() as u64 * u64::from(CLIP_FRAMES));
     let (jobs, studios) = (jobs(args.jobs), Studios::default());
-    let crew = Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
-    let alone = crew.alone()?;
-    let (pace, unread) = crew.run()?;
-    let studios = crew.studios;
+    let pipeline = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
+    let alone = pipeline.alone()?;
+    let (pace, unread) = pipeline.run()?;
+    let studios = pipeline.studios;
     bar.finish_and_clear();
     failed.extend(set_aside(&mut cases, unread));
     if cases.is_empty() {
@@ -93,7 +94,7 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
     for (case, looked) in cases.iter().zip(&looked) {
         if let Some(kernel) = &looked.facts.other_kernel {
             let path = case.path.display();
-            eprintln!("{path}: made by kernel {kernel}; its pictures count, who was in the way is not known");
+            say(format_args!("{path}: made by kernel {kernel}; its pictures count, who was in the way is not known"));
         }
     }
     let sums = sums(&looked, eyes.len());
@@ -109,15 +110,16 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
 }
 
 /// Number of the checkpoint that none of the others may be worse than.
-fn reference(args: &Options, eyes: &[Eye]) -> anyhow::Result<Option<usize>> {
-    if eyes.len() < 2 {
-        return Err(Usage("expected two or more checkpoints, the first of which is the baseline".into()).into());
+fn reference(args: &Options) -> Result<Option<usize>, Usage> {
+    if args.checkpoint.len() < 2 {
+        return Err(Usage("expected two or more checkpoints, the first of which is the baseline".into()));
     }
+    check_names(&args.checkpoint)?;
     let Some(name) = &args.no_worse_than else { return Ok(None) };
-    let found = eyes.iter().position(|eye| eye.name() == name);
-    let names = || eyes.iter().map(Eye::name).collect::<Vec<_>>().join(", ");
+    let found = args.checkpoint.iter().position(|choice| choice.name() == *name);
+    let names = || args.checkpoint.iter().map(CheckpointChoice::name).collect::<Vec<_>>().join(", ");
     let sentence = || format!("--no-worse-than {name}: no such checkpoint; expected one of {}", names());
-    Ok(Some(found.ok_or_else(|| Usage(sentence()))?))
+    found.map(Some).ok_or_else(|| Usage(sentence()))
 }
 
 /// What counts, by checkpoint and case.

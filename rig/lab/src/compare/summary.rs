@@ -200,7 +200,7 @@ pub struct Compared {
     /// What `compare.json` holds.
     #[serde(flatten)]
     pub summary: Scoreboard,
-    /// `None` where everything was there already.
+    /// Not in `compare.json`; null where everything was there already.
     pub speed: Option<Speed>,
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use base::words::count;
+
 use super::super::figures::decimal;
 use super::contest::Difference;
 use super::metrics::Metric;
@@ -30,9 +32,9 @@ fn all(compared: &Compared) -> String {
         Some(format!("{name} against {baseline}: {fixed} fixed, {broken} broken, {unchanged} unchanged, {none} without a hazard to see"))
     }));
     let few = summary.cases.len() < FEW_CASES;
-    lines.extend(
-        few.then(|| format!("{} cases are few: intervals from drawing them again are too narrow", summary.cases.len())),
-    );
+    lines.extend(few.then(|| {
+        format!("{}: too few, intervals from drawing them again are too narrow", count(summary.cases.len(), "case"))
+    }));
     lines.extend(summary.gates.iter().map(|passage| passage.sentence.clone()));
     lines.extend(compared.speed.as_ref().map(speed));
     lines.join("\n")
@@ -98,8 +100,8 @@ pub fn sight(look: &LookLine) -> String {
 
 fn speed(speed: &Speed) -> String {
     let Speed { frames, checkpoints, seconds, frames_per_s, alone, share_of_slower } = speed;
-    let together =
-        format!("{frames} frames through {checkpoints} checkpoints in {seconds:.1} s: {frames_per_s:.1} frames/s");
+    let (frames, checkpoints) = (count(*frames, "frame"), count(*checkpoints, "checkpoint"));
+    let together = format!("{frames} through {checkpoints} in {seconds:.1} s: {frames_per_s:.1} frames/s");
     match alone.zip(*share_of_slower) {
         Some((alone, share)) => format!(
             "{together}; alone, rendering {:.1} and inference {:.1} frames/s, of the slower of which that is {:.0} %",

@@ -2,14 +2,13 @@
 
 use base::maps::Map;
 use drivers::Driver;
+use drivers::expert::Expert;
 use drivers::session::Session;
 use kernel::arbiter::Phase;
 use kernel::events::EventKind;
 use kernel::time::{DATASET_STRIDE_TICKS, Tick, seconds};
 use kernel::{Scenario, TickInput, World};
 use replay::{Manifest, Provenance};
-
-use super::expert::Expert;
 
 /// Frames in a row that may show the car standing; further ones are left out.
 const STANDING_FRAMES: u32 = 4;

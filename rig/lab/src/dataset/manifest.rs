@@ -6,6 +6,7 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use base::json::{self, Typed};
 use base::output;
+use base::words::count;
 use perception::classes::TRAIN_CLASSES;
 use render::RENDERER_VERSION;
 
@@ -86,9 +87,9 @@ impl Manifest {
     /// What a command says of it.
     pub fn sentence(&self, folder: &Path) -> String {
         let splits = [(self.train_frames, "training"), (self.val_frames, "validation"), (self.test_frames, "test")];
-        let counts = splits.iter().filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} {name}"));
+        let counts = splits.iter().filter(|(n, _)| *n > 0).map(|(n, name)| count(*n, &format!("{name} frame")));
         let counts = counts.collect::<Vec<_>>().join(", ");
-        format!("{}: {counts} frames, digest {}", folder.display(), self.digest)
+        format!("{}: {counts}, digest {}", folder.display(), self.digest)
     }
 
     /// Completes a dataset whose pictures are there: writes the frames' lines, and itself last.

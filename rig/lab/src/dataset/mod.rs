@@ -2,7 +2,7 @@
 //!
 //! | kind | frames | module |
 //! |---|---|---|
-//! | natural | simulated drives, one frame a second | [`natural`], driven by [`expert`] in [`drive`] |
+//! | natural | simulated drives, one frame a second | [`natural`], driven by [`drivers::expert`] in `drive` |
 //! | cases | the 3 s up to each takeover, ten frames a second | [`cases`] |
 //! | mix | natural ones, some replaced by others | [`mix`] |
 //!
@@ -12,7 +12,6 @@
 
 pub mod cases;
 mod drive;
-mod expert;
 mod manifest;
 pub mod mix;
 pub mod natural;

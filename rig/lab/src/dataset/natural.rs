@@ -12,10 +12,9 @@ use anyhow::{Context, bail};
 use base::failure::Usage;
 use base::maps::{self, Map};
 use base::output;
-use base::progress::{self, Interrupt};
-use base::spread::{jobs, spread};
+use base::progress::{self, Bar, Interrupt};
+use base::spread::{jobs, on_threads};
 use drivers::vision;
-use indicatif::ProgressBar;
 use kernel::World;
 use perception::cityscapes::Place;
 use render::{Camera, RENDERER_VERSION, RenderOptions, Renderer};
@@ -79,7 +78,7 @@ pub(super) fn build(
     let scenes = recipe.scenes();
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
     let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
-    spread(jobs(threads), scenes.len(), fresh, |renderers, index| {
+    on_threads(jobs(threads), scenes.len(), fresh, |renderers, index| {
         let scene = &scenes[index];
         let part = parts.join(scene.part());
         if part.is_file() {
@@ -229,7 +228,7 @@ struct Studio<'a> {
     adapter: &'a str,
     renderer: &'a mut Renderer,
     interrupt: &'a Interrupt,
-    bar: &'a ProgressBar,
+    bar: &'a Bar,
 }
 
 impl Studio<'_> {

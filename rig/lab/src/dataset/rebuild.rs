@@ -8,6 +8,7 @@ use base::json::Typed;
 use base::maps::Map;
 use base::output::PendingFolder;
 use base::progress::Interrupt;
+use base::say::say;
 use drivers::vision;
 use render::RENDERER_VERSION;
 
@@ -76,7 +77,7 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rebuilt> {
     let first = if args.recipe.is_dir() { Manifest::read(&args.recipe) } else { Manifest::read_file(&args.recipe) }?;
     let made_otherwise = difference(&first)?;
     if let Some(difference) = &made_otherwise {
-        eprintln!("{}: {difference}; colours may differ", args.recipe.display());
+        say(format_args!("{}: {difference}; colours may differ", args.recipe.display()));
     }
     let sources = Sources::find(args)?;
     let manifest = sources.build(&first.recipe, &args.out, interrupt)?;

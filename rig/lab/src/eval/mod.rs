@@ -25,7 +25,8 @@ use super::figures::{Confusion, Figures, decimal, pixels_per, table};
 use base::output::PendingFolder;
 use base::png;
 use base::progress::{self, Interrupt};
-use base::spread::{jobs, spread};
+use base::spread::{jobs, on_threads};
+use base::words::count;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 
@@ -160,14 +161,14 @@ fn look(
     predictions: Option<&Path>,
     jobs: usize,
 ) -> anyhow::Result<Evaluation> {
-    let interrupt = Interrupt::listen()?;
+    let interrupt = Interrupt::listen();
     check_whole(dataset)?;
     let images = split::images(dataset, split)?;
     let (first, _) = png::read(&images[0], 3)?;
     let eye = Eye::open_at(checkpoint, first)?;
     let seen: Vec<OnceLock<Seen>> = images.iter().map(|_| OnceLock::new()).collect();
     let bar = progress::bar("frames", images.len() as u64);
-    spread(
+    on_threads(
         jobs,
         images.len(),
         || eye.clone(),
@@ -240,8 +241,10 @@ fn text(summary: &Summary<'_>) -> String {
     let Summary { scenes, frames, split, pedestrians, .. } = summary;
     let a_scene = summary.pixels_per_scene.get(TRAIN_CLASSES[PEDESTRIAN].name).copied();
     let mut text = format!(
-        "{}\n{frames} frames of {scenes} scenes of {split}; {:.1} pixels of pedestrians a scene\n\n{:<14} {:>12} {:>12} {:>12} {:>12}",
+        "{}\n{} of {} of {split}; {:.1} pixels of pedestrians a scene\n\n{:<14} {:>12} {:>12} {:>12} {:>12}",
         table(&[(summary.checkpoint.to_owned(), summary.figures.clone())]),
+        count(*frames, "frame"),
+        count(*scenes, "scene"),
         a_scene.unwrap_or_default(),
         "pedestrians",
         "people",
@@ -342,7 +345,7 @@ mod tests {
             let said = said(&CheckpointChoice::Truth, "val");
             assert!(said.contains(words), "{said}");
         };
-        assert!(said(&CheckpointChoice::Truth, "test").contains("leftImg8bit/test: is not there"));
+        assert!(said(&CheckpointChoice::Truth, "test").contains("has no split test; expected --split val"));
         let gone = dir.path().join("gone.onnx");
         assert!(said(&CheckpointChoice::File(gone.clone()), "val").contains("gone.onnx: no such checkpoint"));
         fs::write(&gone, "not a network").expect("writable");

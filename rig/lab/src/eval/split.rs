@@ -1,5 +1,6 @@
 //! The frames of a split, read from a dataset folder.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
@@ -19,11 +20,24 @@ pub(super) struct Labelled {
 
 /// All pictures of a split, sorted.
 pub(super) fn images(dataset: &Path, split: &str) -> anyhow::Result<Vec<PathBuf>> {
-    let top = dataset.join("leftImg8bit").join(split);
-    if !top.is_dir() {
-        bail!("{}: is not there; expected a dataset in the layout of Cityscapes with the split {split}", top.display());
+    let top = dataset.join("leftImg8bit");
+    let folder = top.join(split);
+    if folder.is_dir() {
+        return Ok(image_paths(&folder)?);
     }
-    Ok(image_paths(&top)?)
+    match splits(&top).as_slice() {
+        [] => bail!("{}: holds no split; expected a dataset in the layout of Cityscapes", top.display()),
+        there => bail!("{}: has no split {split}; expected --split {}", dataset.display(), there.join(" or ")),
+    }
+}
+
+/// Names of the folders below, sorted.
+fn splits(top: &Path) -> Vec<String> {
+    let entries = fs::read_dir(top).into_iter().flatten().flatten();
+    let folders = entries.filter(|entry| entry.path().is_dir());
+    let mut names: Vec<String> = folders.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
 }
 
 /// City and sequence of a picture, as its name tells: what stands before the number of the frame.
@@ -61,4 +75,20 @@ fn truth(image: &Path, kind: Kind, size: (u32, u32), samples: usize) -> anyhow::
         bail!("{}: {width}x{height} pixels; expected {w}x{h} like its picture", path.display());
     }
     Ok((path, bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_split_that_is_not_there_is_refused_with_those_that_are() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let said = || images(dir.path(), "val").expect_err("no such split").to_string();
+        assert!(said().ends_with("holds no split; expected a dataset in the layout of Cityscapes"), "{}", said());
+        ["train", "test"].iter().for_each(|split| {
+            fs::create_dir_all(dir.path().join("leftImg8bit").join(split)).expect("writable");
+        });
+        assert!(said().ends_with("has no split val; expected --split test or train"), "{}", said());
+    }
 }

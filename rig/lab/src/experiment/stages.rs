@@ -6,6 +6,7 @@ use anyhow::{Context, bail};
 use base::failure::Failed;
 use base::output;
 use base::progress::Interrupt;
+use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
 use measures::statistics;
 use perception::training::TrainOptions;
@@ -64,20 +65,20 @@ pub struct Stages<'a> {
 impl Stages<'_> {
     /// All of them.
     pub fn run(&self) -> anyhow::Result<Results> {
-        say(1, "drawing the natural data and a pool of scenes with more pedestrians");
+        begin(1, "drawing the natural data and a pool of scenes with more pedestrians");
         self.draw()?;
-        say(2, "training the network that drives, and stopping it early");
+        begin(2, "training the network that drives, and stopping it early");
         let driving = self.train_driving()?;
-        say(3, "driving with it until there are enough corner cases with pedestrians");
+        begin(3, "driving with it until there are enough corner cases with pedestrians");
         let first_campaign = self.first_campaign(&driving)?;
         let (training_cases, test_cases) = self.share_out(&first_campaign)?;
-        say(4, "making three training sets of equal size");
+        begin(4, "making three training sets of equal size");
         self.mix(&training_cases, &test_cases)?;
-        say(5, "training on each of them");
+        begin(5, "training on each of them");
         let networks = self.train_all()?;
-        say(6, "measuring every network on safety-critical and on natural frames");
+        begin(6, "measuring every network on safety-critical and on natural frames");
         let table_1 = self.measure(&networks)?;
-        say(7, "driving with a network of each set");
+        begin(7, "driving with a network of each set");
         let firsts: Vec<PathBuf> = networks.iter().filter_map(|of_set| of_set.first().cloned()).collect();
         let second_campaign = self.second_campaign(&firsts)?;
         let folder = self.out.join(SECOND_CAMPAIGN);
@@ -86,7 +87,7 @@ impl Stages<'_> {
         let of_all = statistics::of_recordings(&recordings, choice)?;
         Failed::check(&of_all.failed, recordings.len())?;
         let table_2 = of_all.checkpoints;
-        say(8, "writing tables and report");
+        begin(8, "writing tables and report");
         let tables = Tables { table_1, table_2 };
         let (networks, datasets) = (firsts, self.datasets()?);
         Ok(Results { tables, first_campaign, training_cases, test_cases, driving, networks, second_campaign, datasets })
@@ -157,7 +158,7 @@ impl Stages<'_> {
             rate: standard.rate,
         };
         train::train(&args, &self.interrupt, &mut |epoch| {
-            eprintln!("{name}: {}", epoch);
+            say(format_args!("{name}: {epoch}"));
             Ok(())
         })?;
         Ok(out)
@@ -284,6 +285,6 @@ impl Stages<'_> {
     }
 }
 
-fn say(stage: u32, what: &str) {
-    eprintln!("{stage}/8 {what}");
+fn begin(stage: u32, what: &str) {
+    say(format_args!("{stage}/8 {what}"));
 }

@@ -9,7 +9,7 @@ use base::clock::seconds_of;
 use render::Frame;
 use serde::Serialize;
 
-use super::{Crew, Film, Work, lock};
+use super::{OpenFile, Pipeline, Work, lock};
 
 /// Files whose frames are drawn and looked at, each stage for itself.
 const SAMPLE: usize = 2;
@@ -25,39 +25,40 @@ pub struct Alone {
     pub inference_fps: f64,
 }
 
-/// A frame and its film.
-type Drawn<'f, W> = (&'f Film<W>, Frame);
+/// A frame and its file.
+type Drawn<'f, W> = (&'f OpenFile<W>, Frame);
 
-impl<W: Work> Crew<'_, W> {
-    /// Measures both stages on the first files, with the threads that they have in [`Crew::run`]; what they
+impl<W: Work> Pipeline<'_, W> {
+    /// Measures both stages on the first files, with the threads that they have in [`Pipeline::run`]; what they
     /// find is dropped. `None` where too few files are left for it to be worth it, or none of the first is whole.
     pub fn alone(&self) -> anyhow::Result<Option<Alone>> {
         if self.files.len() < LEAST || self.interrupt.is_raised() {
             return Ok(None);
         }
-        let films = self.files.iter().take(SAMPLE).filter_map(|index| Film::read(self.work, *index).ok());
-        let films: Vec<_> = films.collect();
-        if films.is_empty() {
+        let opened = self.files.iter().take(SAMPLE).filter_map(|index| OpenFile::read(self.work, *index).ok());
+        let opened: Vec<_> = opened.collect();
+        if opened.is_empty() {
             return Ok(None);
         }
-        let (drawn, draw_s) = self.draw_alone(&films)?;
+        let (drawn, draw_s) = self.draw_alone(&opened)?;
         let look_s = self.look_alone(&drawn)?;
         let frames = drawn.len() as f64;
         Ok(Some(Alone { render_fps: frames / draw_s, inference_fps: frames / look_s }))
     }
 
-    fn draw_alone<'f>(&self, films: &'f [Film<W>]) -> anyhow::Result<(Vec<Drawn<'f, W>>, f64)> {
-        let scenes: Vec<_> = films.iter().flat_map(|film| film.footage.scenes.iter().map(move |s| (film, s))).collect();
+    fn draw_alone<'f>(&self, opened: &'f [OpenFile<W>]) -> anyhow::Result<(Vec<Drawn<'f, W>>, f64)> {
+        let scenes: Vec<_> =
+            opened.iter().flat_map(|file| file.footage.scenes.iter().map(move |s| (file, s))).collect();
         let (next, drawn) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
         let seconds = together(self.drawing(), |start| {
             self.studios.with(self.size, |studio| {
-                let mut each = films.iter().map(|film| &film.footage);
+                let mut each = opened.iter().map(|file| &file.footage);
                 let ready = each.try_for_each(|f| studio.draw(&f.network, &f.scenes[0]).map(drop));
                 start.wait();
                 ready?;
-                while let Some((film, scene)) = scenes.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let frame = studio.draw(&film.footage.network, scene)?;
-                    lock(&drawn).push((*film, frame));
+                while let Some((file, scene)) = scenes.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let frame = studio.draw(&file.footage.network, scene)?;
+                    lock(&drawn).push((*file, frame));
                 }
                 Ok(())
             })
@@ -69,12 +70,12 @@ impl<W: Work> Crew<'_, W> {
         let next = AtomicUsize::new(0);
         together(self.jobs.max(1), |start| {
             let mut eyes = self.eyes.to_vec();
-            let (film, frame) = &drawn[0];
-            let ready = self.work.see(film, frame, &mut eyes);
+            let (file, frame) = &drawn[0];
+            let ready = self.work.see(file, frame, &mut eyes);
             start.wait();
             ready?;
-            while let Some((film, frame)) = drawn.get(next.fetch_add(1, Ordering::Relaxed)) {
-                self.work.see(film, frame, &mut eyes)?;
+            while let Some((file, frame)) = drawn.get(next.fetch_add(1, Ordering::Relaxed)) {
+                self.work.see(file, frame, &mut eyes)?;
             }
             Ok(())
         })

@@ -37,14 +37,14 @@ pub trait Work: Sync {
     fn read(&self, index: usize) -> anyhow::Result<(Footage, Self::Notes)>;
 
     /// Looks at a frame.
-    fn see(&self, film: &Film<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Self::Seen>;
+    fn see(&self, file: &OpenFile<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Self::Seen>;
 
     /// Called when all frames of a file have been seen; what was found out comes in their order.
-    fn finish(&self, film: &Film<Self>, seen: Vec<Self::Seen>) -> anyhow::Result<()>;
+    fn finish(&self, file: &OpenFile<Self>, seen: Vec<Self::Seen>) -> anyhow::Result<()>;
 }
 
 /// A file under work.
-pub struct Film<W: Work + ?Sized> {
+pub struct OpenFile<W: Work + ?Sized> {
     /// Number of the file.
     pub index: usize,
     /// Its scenes.
@@ -56,7 +56,7 @@ pub struct Film<W: Work + ?Sized> {
 
 /// A frame on its way from the thread that drew it to one that looks.
 struct Shot<W: Work> {
-    film: Arc<Film<W>>,
+    file: Arc<OpenFile<W>>,
     number: usize,
     frame: Frame,
 }
@@ -86,8 +86,8 @@ pub fn set_aside(files: &mut Vec<Entry>, unread: Vec<Unread>) -> Vec<Failure> {
     failed
 }
 
-/// The crew and its work.
-pub struct Crew<'a, W> {
+/// Work, and who does it with what.
+pub struct Pipeline<'a, W> {
     /// What is done.
     pub work: &'a W,
     /// Numbers of the files that it is done with.
@@ -121,7 +121,7 @@ impl Studios {
 
 /// What the threads share.
 struct Shared<'a, W> {
-    crew: &'a Crew<'a, W>,
+    pipeline: &'a Pipeline<'a, W>,
     next: AtomicUsize,
     frames: AtomicUsize,
     has_failed: AtomicBool,
@@ -132,7 +132,7 @@ struct Shared<'a, W> {
 /// The number of a file that could not be read, and why.
 pub type Unread = (usize, anyhow::Error);
 
-impl<W: Work> Film<W> {
+impl<W: Work> OpenFile<W> {
     fn read(work: &W, index: usize) -> anyhow::Result<Self> {
         let (footage, notes) = work.read(index)?;
         let seen = Mutex::new(footage.scenes.iter().map(|_| None).collect());
@@ -140,7 +140,7 @@ impl<W: Work> Film<W> {
     }
 }
 
-impl<W: Work> Crew<'_, W> {
+impl<W: Work> Pipeline<'_, W> {
     /// Number of drawing threads.
     fn drawing(&self) -> usize {
         self.jobs.div_ceil(LOOKING_A_DRAWING).max(1)
@@ -150,7 +150,7 @@ impl<W: Work> Crew<'_, W> {
     /// other error nothing new is begun, and that error is returned.
     pub fn run(&self) -> anyhow::Result<(Pace, Vec<Unread>)> {
         let shared = Shared {
-            crew: self,
+            pipeline: self,
             next: AtomicUsize::new(0),
             frames: AtomicUsize::new(0),
             has_failed: AtomicBool::new(false),
@@ -169,11 +169,11 @@ impl<W: Work> Crew<'_, W> {
 
 impl<W: Work> Shared<'_, W> {
     fn run(&self) {
-        let jobs = self.crew.jobs.max(1);
+        let jobs = self.pipeline.jobs.max(1);
         let (shots, waiting) = sync_channel(WAITING * jobs);
         let waiting = Arc::new(Mutex::new(waiting));
         thread::scope(|scope| {
-            for _ in 0..self.crew.drawing() {
+            for _ in 0..self.pipeline.drawing() {
                 let shots = shots.clone();
                 scope.spawn(move || self.draw_all(&shots));
             }
@@ -189,29 +189,29 @@ impl<W: Work> Shared<'_, W> {
 
     fn draw_all(&self, shots: &SyncSender<Shot<W>>) {
         let _alarm = Alarm(&self.has_failed);
-        self.crew.studios.with(self.crew.size, |studio| {
+        self.pipeline.studios.with(self.pipeline.size, |studio| {
             while !self.is_over() {
                 let next = self.next.fetch_add(1, Ordering::Relaxed);
-                let Some(index) = self.crew.files.get(next) else { return };
+                let Some(index) = self.pipeline.files.get(next) else { return };
                 self.note(self.draw(*index, studio, shots));
             }
         });
     }
 
     fn draw(&self, index: usize, studio: &mut Studio, shots: &SyncSender<Shot<W>>) -> anyhow::Result<()> {
-        let film = match Film::read(self.crew.work, index) {
-            Ok(film) => Arc::new(film),
+        let file = match OpenFile::read(self.pipeline.work, index) {
+            Ok(file) => Arc::new(file),
             Err(error) => {
                 lock(&self.unread).push((index, error));
                 return Ok(());
             }
         };
-        for (number, scene) in film.footage.scenes.iter().enumerate() {
+        for (number, scene) in file.footage.scenes.iter().enumerate() {
             if self.is_over() {
                 break;
             }
-            let frame = studio.draw(&film.footage.network, scene)?;
-            if shots.send(Shot { film: film.clone(), number, frame }).is_err() {
+            let frame = studio.draw(&file.footage.network, scene)?;
+            if shots.send(Shot { file: file.clone(), number, frame }).is_err() {
                 break;
             }
         }
@@ -220,7 +220,7 @@ impl<W: Work> Shared<'_, W> {
 
     fn look_at_all(&self, waiting: &Mutex<Receiver<Shot<W>>>) {
         let _alarm = Alarm(&self.has_failed);
-        let mut eyes = self.crew.eyes.to_vec();
+        let mut eyes = self.pipeline.eyes.to_vec();
         loop {
             let Ok(shot) = lock(waiting).recv() else { return };
             if !self.is_over() {
@@ -230,15 +230,15 @@ impl<W: Work> Shared<'_, W> {
     }
 
     fn look(&self, shot: &Shot<W>, eyes: &mut [Eye]) -> anyhow::Result<()> {
-        let seen = self.crew.work.see(&shot.film, &shot.frame, eyes)?;
+        let seen = self.pipeline.work.see(&shot.file, &shot.frame, eyes)?;
         self.frames.fetch_add(1, Ordering::Relaxed);
-        let mut all = lock(&shot.film.seen);
+        let mut all = lock(&shot.file.seen);
         all[shot.number] = Some(seen);
         if !all.iter().all(Option::is_some) {
             return Ok(());
         }
         let all = std::mem::take(&mut *all).into_iter().flatten().collect();
-        self.crew.work.finish(&shot.film, all)
+        self.pipeline.work.finish(&shot.file, all)
     }
 
     fn note(&self, result: anyhow::Result<()>) {
@@ -249,7 +249,7 @@ impl<W: Work> Shared<'_, W> {
     }
 
     fn is_over(&self) -> bool {
-        self.has_failed.load(Ordering::Relaxed) || self.crew.interrupt.is_raised()
+        self.has_failed.load(Ordering::Relaxed) || self.pipeline.interrupt.is_raised()
     }
 }
 

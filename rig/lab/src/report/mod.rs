@@ -16,6 +16,7 @@ use anyhow::anyhow;
 use base::failure::{Failed, Failure};
 use base::library::{self, Found, Kind, Listed};
 use base::progress;
+use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
@@ -69,7 +70,9 @@ pub fn render(places: &[PathBuf], choices: &[CheckpointChoice], size: Option<Siz
                 cases.push(part);
                 drives.push(drive);
             }
-            Ok(Told::Uncounted) => eprintln!("{}: left out, a drive to get used to the rig", file.path.display()),
+            Ok(Told::Uncounted) => {
+                say(format_args!("{}: left out, a drive to get used to the rig", file.path.display()))
+            }
             Err(error) => failed.push(Failure::new(&file.path, &error)),
         }
         bar.inc(1);

@@ -19,6 +19,7 @@ use base::library::{self, Kind};
 use base::output;
 use base::progress::{self, Interrupt};
 use base::spread::jobs;
+use base::words::count;
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::ConfusionMatrix;
@@ -28,7 +29,7 @@ use serde::Serialize;
 use self::pictures::{Matrices, Pictures};
 use super::figures::{Figures, table};
 use super::looks::open_eyes;
-use super::pipeline::{Crew, Studios, set_aside};
+use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
 
 /// A line of `metrics.jsonl`.
@@ -89,7 +90,8 @@ impl fmt::Display for Rerendered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { out, files, frames, checkpoints, .. } = self;
         let columns: Vec<_> = checkpoints.iter().map(|c| (c.name.clone(), c.figures.clone())).collect();
-        write!(f, "{}\n{frames} frames of {files} files in {out}", table(&columns))
+        let (frames, files) = (count(*frames, "frame"), count(*files, "file"));
+        write!(f, "{}\n{frames} of {files} in {out}", table(&columns))
     }
 }
 
@@ -110,7 +112,7 @@ pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rerende
     let left = work.left();
     bar.set_length(work.expected() * left.len() as u64);
     let (jobs, studios) = (jobs(args.jobs), Studios::default());
-    let (_, unread) = Crew { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
+    let (_, unread) = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
     bar.finish_and_clear();
     failed.extend(set_aside(&mut files, unread));
     if files.is_empty() {

@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use base::library::Entry;
 use base::png;
+use base::progress::Bar;
 use drivers::vision::Eye;
-use indicatif::ProgressBar;
 use kernel::time::Tick;
 use measures::footage::Footage;
 use perception::ConfusionMatrix;
 use render::Frame;
 use tempfile::TempDir;
 
-use super::super::pipeline::{Film, Work};
+use super::super::pipeline::{OpenFile, Work};
 use super::super::store::{Settings, Store, remove_folder};
 use super::options::Options;
 
@@ -27,7 +27,7 @@ pub struct Pictures<'a> {
     pub files: &'a [Entry],
     pub eyes: &'a [Eye],
     pub store: &'a Store,
-    pub bar: &'a ProgressBar,
+    pub bar: &'a Bar,
     pub settings: Settings,
 }
 
@@ -57,18 +57,18 @@ impl Work for Pictures<'_> {
         Ok((footage, making))
     }
 
-    fn see(&self, film: &Film<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Self::Seen> {
+    fn see(&self, file: &OpenFile<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Self::Seen> {
         let size = (frame.width, frame.height);
         let write = |folder: &Path, bytes: Vec<u8>| {
-            let path = film.notes.folder.path().join(folder).join(file_name(frame.tick));
+            let path = file.notes.folder.path().join(folder).join(file_name(frame.tick));
             fs::write(&path, bytes).with_context(|| path.display().to_string())
         };
-        if film.notes.frames {
+        if file.notes.frames {
             write(Path::new(RGB), png::rgb(size, &frame.rgb)?)?;
             write(Path::new(LABELS), png::tags(size, &frame.class_ids)?)?;
         }
         let mut matrices = Vec::new();
-        for eye in &film.notes.eyes {
+        for eye in &file.notes.eyes {
             let eye = &mut eyes[*eye];
             let mask = eye.see(frame.clone())?;
             let mut matrix = ConfusionMatrix::default();
@@ -79,8 +79,8 @@ impl Work for Pictures<'_> {
         Ok((frame.tick, matrices))
     }
 
-    fn finish(&self, film: &Film<Self>, seen: Vec<Self::Seen>) -> anyhow::Result<()> {
-        let (file, making) = (&self.files[film.index], &film.notes);
+    fn finish(&self, file: &OpenFile<Self>, seen: Vec<Self::Seen>) -> anyhow::Result<()> {
+        let (file, making) = (&self.files[file.index], &file.notes);
         let home = self.args.out.join(&file.name);
         if making.frames {
             // What was made from other frames goes.

@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use base::json::Typed;
-use indicatif::ProgressBar;
 use perception::Checkpoint;
 use perception::training::{self, Origin, Progress, TrainOptions, Trained};
 use serde::Serialize;
@@ -22,6 +21,8 @@ pub use options::Options;
 use crate::dataset::check_whole;
 use base::output;
 use base::progress::{self, Interrupt};
+use base::say::say;
+use base::words::count;
 
 /// A checkpoint that is trained.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -75,7 +76,8 @@ pub fn train(
         }
     }
     check_beside(args, &unfinished)?;
-    let mut screen = Screen { bar: ProgressBar::hidden(), options: &options, epochs: args.epochs, show, failed: None };
+    let mut screen =
+        Screen { bar: progress::Bar::hidden(), options: &options, epochs: args.epochs, show, failed: None };
     let watch = &mut |progress: Progress<'_>| {
         screen.watch(progress);
         if interrupt.is_raised() || screen.failed.is_some() {
@@ -146,7 +148,7 @@ fn beside(out: &Path, ending: &str) -> PathBuf {
 
 /// What is seen of a training: a bar an epoch on stderr, and what the caller makes of it.
 struct Screen<'a> {
-    bar: ProgressBar,
+    bar: progress::Bar,
     options: &'a TrainOptions,
     epochs: u32,
     show: &'a mut dyn FnMut(&Epoch) -> anyhow::Result<()>,
@@ -158,7 +160,8 @@ impl Screen<'_> {
     fn watch(&mut self, progress: Progress<'_>) {
         match progress {
             Progress::Loaded { train, val, epochs, steps } => {
-                eprintln!("{train} frames to learn from, {val} to measure on; {epochs} epochs are done");
+                let (train, done) = (count(train, "frame"), count(epochs, "epoch"));
+                say(format_args!("{train} to learn from, {val} to measure on; {done} done"));
                 let left = u64::from(self.epochs.saturating_sub(epochs)) * steps as u64;
                 self.bar = progress::bar("train", left);
             }

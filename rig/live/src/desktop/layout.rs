@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use base::output;
+use base::say::say;
 use serde::{Deserialize, Serialize};
 
 /// Places of windows by their titles.
@@ -28,7 +29,7 @@ impl Layout {
     pub fn of_user() -> Self {
         let read = user_file().map_or_else(|| Ok(Self::default()), |path| Self::read(&path));
         read.unwrap_or_else(|error| {
-            eprintln!("{error:#}; the windows open where they would at first");
+            say(format_args!("{error:#}; the windows open where they would at first"));
             Self::default()
         })
     }
@@ -36,7 +37,7 @@ impl Layout {
     /// Writes the user's file; that it cannot be written is said.
     pub fn keep(&self) {
         if let Some(Err(error)) = user_file().map(|path| self.write(&path)) {
-            eprintln!("{error:#}; the windows' places are not kept");
+            say(format_args!("{error:#}; the windows' places are not kept"));
         }
     }
 

@@ -11,7 +11,7 @@ use kernel::{Seat, TickInput, World};
 use replay::Log;
 use viewers::events::Events;
 use viewers::feed::{Feed, View};
-use viewers::telemetry::Telemetry;
+use viewers::figures::TickFigures;
 
 use super::stage::{Press, Stage};
 use super::strip::Strip;
@@ -116,8 +116,8 @@ pub struct Status {
 
 impl Status {
     /// What onlookers are told.
-    pub fn telemetry(&self) -> Telemetry {
-        Telemetry {
+    pub fn figures(&self) -> TickFigures {
+        TickFigures {
             run: self.run,
             tick: self.tick,
             phase: self.phase,

@@ -34,6 +34,7 @@ use base::clock::SessionClock;
 use base::maps::Map;
 use base::output;
 use base::progress::Interrupt;
+use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::{Pictures, Screens};
 use drivers::seat::SeatChoice;
@@ -98,8 +99,8 @@ pub fn drive(options: Options) -> anyhow::Result<()> {
     let seating = Seating::new(seats, &calibration, &plan.scenario.rules)?;
     let timings = session(plan, seating, lineup, &pictures)?;
     if let Some(figures) = timings.figures() {
-        eprintln!("{figures}");
-        figures.shortfalls().iter().for_each(|said| eprintln!("{said}"));
+        say(&figures);
+        figures.shortfalls().iter().for_each(say);
     }
     Ok(())
 }
@@ -145,7 +146,7 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) ->
         outbox: outbox.clone(),
         wake: Box::new(move |what| wake.wake(what)),
         clock,
-        interrupt: Interrupt::listen()?,
+        interrupt: Interrupt::listen(),
     };
     let simulation = Simulation::new(plan, seating, links)?;
 

@@ -4,12 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use base::image::Image;
-use kernel::time::{TICK_HZ, Tick};
+use kernel::time::CLIP_TICKS;
 use measures::footage::Footage;
 use render::{Camera, RenderOptions, Renderer};
 
-/// Length, ticks: that of a corner case.
-const WINDOW_TICKS: Tick = 3 * TICK_HZ as Tick;
+/// Frames a second.
 const FPS: u32 = 2;
 /// Size of a frame, pixels.
 const SIZE: (u32, u32) = (192, 108);
@@ -26,7 +25,7 @@ pub struct Strip {
 impl Strip {
     /// That of a case.
     pub fn of(case: &Path) -> anyhow::Result<Self> {
-        let footage = Footage::read(case, WINDOW_TICKS, FPS)?;
+        let footage = Footage::read(case, CLIP_TICKS, FPS)?;
         let mut renderer = Renderer::new(&footage.network, &RenderOptions::default())?;
         let camera = Camera::driver(SIZE.0, SIZE.1);
         let (mut images, mut classes) = (Vec::new(), Vec::new());

@@ -1,7 +1,6 @@
 //! What a session says on stderr, from a thread of its own: a terminal that is stopped or gone delays
 //! no tick and ends no run.
 
-use std::io::Write;
 use std::sync::mpsc::{self, Sender};
 use std::thread::JoinHandle;
 
@@ -20,7 +19,7 @@ impl Terminal {
         let (lines, inbox) = mpsc::channel::<String>();
         let writer = std::thread::spawn(move || {
             // Who does not listen any more misses nothing that is not in the recording.
-            inbox.iter().for_each(|line| drop(writeln!(std::io::stderr(), "{line}")));
+            inbox.iter().for_each(|line| base::say::say(line));
         });
         Self { lines: Some(lines), writer: Some(writer) }
     }

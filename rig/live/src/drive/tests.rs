@@ -88,7 +88,7 @@ impl Bench {
             outbox: outbox.clone(),
             wake: Box::new(|_| {}),
             clock: SessionClock::starting_now(),
-            interrupt: Interrupt::listen().unwrap(),
+            interrupt: Interrupt::listen(),
         };
         let simulation = Simulation::new(plan, Seating::of(seats, choices), links).unwrap();
         let driving = std::thread::spawn(move || simulation.drive().map(drop));

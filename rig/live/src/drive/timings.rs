@@ -63,7 +63,7 @@ impl Timings {
 
     /// What it comes to; `None` before the first run has ended.
     pub fn figures(&self) -> Option<LiveFigures> {
-        let lateness_ms = spread(&self.lateness_us)?;
+        let lateness_ms = spread_ms(&self.lateness_us)?;
         let seconds = self.driven_us as f64 / 1e6;
         let a_second = |count: usize| count as f64 / seconds;
         let [semantic, safety] = &self.age_us;
@@ -75,14 +75,14 @@ impl Timings {
             slowed_s: self.slowed_us as f64 / 1e6,
             semantic_fps: a_second(semantic.len()),
             safety_fps: a_second(safety.len()),
-            mask_age_ms: spread(semantic),
-            image_age_ms: spread(safety),
+            mask_age_ms: spread_ms(semantic),
+            image_age_ms: spread_ms(safety),
         })
     }
 }
 
 /// Of times in microseconds, milliseconds.
-fn spread(times_us: &[u32]) -> Option<Spread> {
+fn spread_ms(times_us: &[u32]) -> Option<Spread> {
     Spread::of(times_us.iter().map(|us| f64::from(*us) / 1e3).collect())
 }
 

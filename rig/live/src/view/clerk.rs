@@ -10,6 +10,7 @@ use base::failure::sentence;
 use base::image::Image;
 use base::output;
 use base::png;
+use base::say;
 use drivers::film::Film;
 use kernel::time::Tick;
 use replay::Case;
@@ -34,12 +35,12 @@ pub fn work(film: &Film, errands: &Receiver<Errand>, say: impl Fn(String)) {
         };
         match kept {
             Ok(path) => {
-                eprintln!("{what} {}", path.display());
+                say::say(format_args!("{what} {}", path.display()));
                 say(format!("{what} {}", path.file_name().unwrap_or_default().to_string_lossy()));
             }
             Err(error) => {
                 let said = format!("error: {}", sentence(&error));
-                eprintln!("{said}");
+                say::say(&said);
                 say(said);
             }
         }

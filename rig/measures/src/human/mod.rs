@@ -48,6 +48,8 @@ pub struct Measures {
     pub mask_age: Option<ScreenAge>,
     /// Steering-wheel reversals a minute of each driver, up to the intervention or the end.
     pub steering_reversals_per_min: Seats<f64>,
+    /// Time over which they were counted, seconds: of a case only what it holds of its recording.
+    pub steering_s: f64,
 }
 
 /// A hazard and the times from its onset, milliseconds.
@@ -103,6 +105,7 @@ impl Measures {
             seen: presses(log),
             mask_age: screen::age(log, &moving),
             steering_reversals_per_min: Seats { semantic: rate(Seat::Semantic), safety: rate(Seat::Safety) },
+            steering_s: steering::driven_ticks(log) as f64 / f64::from(TICK_HZ),
         }
     }
 

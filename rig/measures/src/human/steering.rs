@@ -25,9 +25,14 @@ pub fn wheel_deg(controls: &Controls) -> f32 {
     FULL_DEG * controls.steer_fraction()
 }
 
+/// Ticks of a log until the safety driver intervenes: those over which reversals are counted.
+pub fn driven_ticks(log: &Log) -> usize {
+    log.inputs.len().min((end_of_driving(log) - log.first_tick()) as usize)
+}
+
 /// Reversals a minute of one of the drivers until the safety driver intervenes; 0 in an empty log.
 pub fn reversals_per_min(log: &Log, seat: Seat) -> f64 {
-    let driven = log.inputs.len().min((end_of_driving(log) - log.first_tick()) as usize);
+    let driven = driven_ticks(log);
     let angles_deg: Vec<f64> =
         log.inputs[..driven].iter().map(|input| f64::from(wheel_deg(controls(input, seat)))).collect();
     let minutes = driven as f64 / f64::from(60 * TICK_HZ);

@@ -14,6 +14,7 @@ fn log() -> Log {
     let manifest = Manifest {
         format: FORMAT_VERSION,
         kernel: kernel::identity(),
+        engines: kernel::ENGINES.to_owned(),
         scenario: Scenario::default_for("city", 1),
         map_digest: 0,
         foreign_map: None,
@@ -236,5 +237,5 @@ fn the_words_name_hazard_reaction_and_takeover() {
     let lines = lines(&measures);
     let hazard = "tick 200 (3.33 s), pedestrian 3: safety driver's brake after 1000 ms, takeover after 1000 ms";
     assert_eq!(lines[0], ("hazard", hazard.into()));
-    assert_eq!(lines[1], ("reversals", "semantic driver 0.0, safety driver 0.0 a minute".into()));
+    assert_eq!(lines[1], ("reversals", "semantic driver 0.0, safety driver 0.0 a minute, over 4.3 s".into()));
 }

@@ -10,8 +10,11 @@ pub fn lines(measures: &Measures) -> Vec<(&'static str, String)> {
     let hazards = measures.hazards.iter().map(|hazard| ("hazard", hazard.words()));
     let seen = measures.seen.iter().map(|press| ("seen", format!("{}: {} driver", at(press.tick), press.seat)));
     let age = measures.mask_age.as_ref().map(|age| ("mask age", age.words()));
-    let rates = &measures.steering_reversals_per_min;
-    let reversals = format!("semantic driver {:.1}, safety driver {:.1} a minute", rates.semantic, rates.safety);
+    let (rates, seconds) = (&measures.steering_reversals_per_min, measures.steering_s);
+    let reversals = format!(
+        "semantic driver {:.1}, safety driver {:.1} a minute, over {seconds:.1} s",
+        rates.semantic, rates.safety
+    );
     hazards.chain(seen).chain(age).chain([("reversals", reversals)]).collect()
 }
 

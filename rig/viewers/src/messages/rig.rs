@@ -3,7 +3,7 @@
 
 use foxglove::Encode;
 
-use crate::telemetry::Telemetry as Figures;
+use crate::figures::TickFigures;
 
 /// Which run it is, and how late.
 #[derive(Clone, Debug, PartialEq, Encode)]
@@ -20,7 +20,7 @@ pub struct Rig {
 
 impl Rig {
     /// What a drive tells as it goes.
-    pub fn of(figures: &Figures) -> Self {
+    pub fn of(figures: &TickFigures) -> Self {
         let milliseconds = |us: u64| us as f64 / 1e3;
         Self {
             run: figures.run,

@@ -5,7 +5,7 @@ use foxglove::Encode;
 use kernel::arbiter::{Applied, Phase};
 use kernel::{Controls, TickInput, TickOutput, World};
 
-use crate::telemetry::Telemetry as Figures;
+use crate::figures::TickFigures;
 
 /// What the car does, both drivers' controls, and who is in control. Pedals are fractions, [0, 1];
 /// steering is a fraction, [-1, 1], positive to the right; what is not known is NaN.
@@ -49,7 +49,7 @@ pub struct Telemetry {
 
 impl Telemetry {
     /// What a drive tells as it goes. The controls that reach the car are not among it.
-    pub fn of(figures: &Figures) -> Self {
+    pub fn of(figures: &TickFigures) -> Self {
         let [semantic_steer, semantic_throttle, semantic_brake] = fractions(figures.input.map(|input| input.semantic));
         let [safety_steer, safety_throttle, safety_brake] = fractions(figures.input.map(|input| input.safety));
         let [steer, throttle, brake] = fractions(None);
@@ -77,7 +77,7 @@ impl Telemetry {
     /// Of the tick that a world has just reached with an input, with a mask of this age.
     pub fn of_step(world: &World, input: &TickInput, output: &TickOutput, mask_age_ms: Option<f64>) -> Self {
         let Applied { controls, steering, pedals } = output.applied;
-        let figures = Figures { input: Some(*input), steering, pedals, ..Figures::of_world(world, 1) };
+        let figures = TickFigures { input: Some(*input), steering, pedals, ..TickFigures::of_world(world, 1) };
         let [steer, throttle, brake] = fractions(Some(controls));
         let mask_age_ms = mask_age_ms.unwrap_or(f64::NAN);
         Self { steer, throttle, brake, mask_age_ms, ..Self::of(&figures) }
@@ -111,7 +111,7 @@ mod tests {
         let mut world = World::new(&map.scenario(1), &map.network).expect("a world");
         let input = TickInput { semantic: Controls::from_fractions(0.5, 0.25, 0.0), safety: Controls::default() };
         let output = world.step(&input);
-        let told = Telemetry::of(&Figures { input: Some(input), ..Figures::of_world(&world, 3) });
+        let told = Telemetry::of(&TickFigures { input: Some(input), ..TickFigures::of_world(&world, 3) });
         assert!([told.steer, told.throttle, told.brake, told.mask_age_ms].iter().all(|figure| figure.is_nan()));
         let stepped = Telemetry::of_step(&world, &input, &output, Some(100.0));
         assert_eq!((stepped.tick, stepped.mask_age_ms, stepped.phase.as_str()), (1, 100.0, "arming"));

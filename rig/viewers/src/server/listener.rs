@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use base::clock::SessionClock;
+use base::say::say;
 
 use super::client;
 use super::news::Source;
@@ -48,7 +49,7 @@ impl Server {
         let is_over = Arc::new(AtomicBool::new(false));
         let source = Arc::new(Source { feed, clock, images: Default::default(), is_over: is_over.clone() });
         std::thread::spawn(move || accept(&listener, &source));
-        eprintln!("Foxglove: ws://{address}");
+        say(format_args!("Foxglove: ws://{address}"));
         Ok(Self { address, is_over })
     }
 

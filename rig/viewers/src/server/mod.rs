@@ -22,7 +22,7 @@ use kernel::World;
 
 use crate::events::Events;
 use crate::feed::{Feed, Look};
-use crate::telemetry::Telemetry;
+use crate::figures::TickFigures;
 pub use listener::Server;
 
 /// `PORT` of this machine alone, or `ADDRESS:PORT`.
@@ -53,6 +53,6 @@ impl Publisher {
     pub fn show(&mut self, world: &World) {
         world.last_events().iter().for_each(|event| self.events.push(words::event_at(world.tick(), event)));
         self.feed.scene.put(Look { run: 1, scene: world.scene(), captured_us: self.clock.now_us() });
-        self.feed.telemetry.put(Telemetry { events: self.events.clone(), ..Telemetry::of_world(world, 1) });
+        self.feed.figures.put(TickFigures { events: self.events.clone(), ..TickFigures::of_world(world, 1) });
     }
 }

@@ -11,12 +11,12 @@ use super::channels::Channel;
 use super::images::Images;
 use super::protocol::Subscriptions;
 use crate::feed::{Feed, Look, View};
+use crate::figures::TickFigures;
 use crate::messages::actors::actors;
 use crate::messages::poses::transforms;
 use crate::messages::report;
 use crate::messages::rig::Rig;
 use crate::messages::telemetry::Telemetry;
-use crate::telemetry::Telemetry as Figures;
 
 /// Pictures are sent at most so often, microseconds.
 const PICTURE_PERIOD_US: u64 = 200_000;
@@ -45,7 +45,7 @@ impl Source {
 pub struct Sent {
     pictures_at_us: u64,
     look: Option<Arc<Look>>,
-    figures: Option<Arc<Figures>>,
+    figures: Option<Arc<TickFigures>>,
     events: u64,
     views: [Option<Arc<View>>; 2],
 }
@@ -95,7 +95,7 @@ fn scene(Source { feed, clock, .. }: &Source, sent: &mut Sent, news: &mut News<'
 
 fn figures(Source { feed, .. }: &Source, sent: &mut Sent, time_ns: u64, news: &mut News<'_>) {
     let wanted = [Channel::Telemetry, Channel::Rig, Channel::Events];
-    let figures = feed.telemetry.get().filter(|_| news.wants(&wanted));
+    let figures = feed.figures.get().filter(|_| news.wants(&wanted));
     let Some(figures) = newer(figures, &mut sent.figures) else { return };
     news.add(Channel::Telemetry, || Telemetry::of(&figures));
     news.add(Channel::Rig, || Rig::of(&figures));

@@ -40,7 +40,7 @@ fn options(args: &DriveArgs, scenario: Scenario, map: Map, tell: Tell) -> Option
         checkpoint: args.checkpoint.clone(),
         pictures: (&args.pictures).into(),
         study: (&args.study).into(),
-        record: args.record.clone(),
+        record: args.record().to_owned(),
         tell,
     }
 }

@@ -9,6 +9,7 @@ use anyhow::{Context, anyhow, bail};
 use base::failure::Usage;
 use base::json::Typed;
 use base::output;
+use base::say::say;
 use live::units::calibration::{self, Calibration};
 use live::units::hardware::Hardware;
 use live::units::source::DeviceInfo;
@@ -106,7 +107,7 @@ fn by_asking(args: &WheelCalibrateArgs, json: bool) -> anyhow::Result<()> {
     output::check_file(&args.out)?;
     let mut hardware = Hardware::open()?;
     let device = pick(&hardware.devices(), args.device.as_deref())?;
-    eprintln!("{} at {}", device.name, device.path);
+    say(format_args!("{} at {}", device.name, device.path));
     let calibration = calibrate(&mut hardware, &device, &mut Terminal::new())?;
     write(&calibration, &args.out, json)
 }

@@ -12,6 +12,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::time::Duration;
 
 use base::newest::Newest;
+use base::say;
 use kernel::events::Event;
 
 use super::board::Message;
@@ -51,7 +52,7 @@ impl Force {
         let hand = || {
             let outbox = outbox.clone();
             let say = move |text: String| {
-                eprintln!("{text}");
+                say::say(&text);
                 // When nobody listens any more the session is over.
                 let _ = outbox.send(Message::Note(text));
             };

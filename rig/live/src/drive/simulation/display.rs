@@ -64,7 +64,7 @@ impl Display {
     /// Puts how the session is on the board, and has windows drawn anew.
     pub fn show_status(&self, status: Option<Status>, wake: Option<Wake>) {
         if let Some(status) = status {
-            self.board.feed.telemetry.put(status.telemetry());
+            self.board.feed.figures.put(status.figures());
             self.board.status.put(status);
         }
         if let Some(wake) = wake {

@@ -1,13 +1,14 @@
 //! A driver who knows everything: it makes the drives of datasets.
 //!
-//! Steering is pure pursuit (Coulter 1992) on the route, speed the intelligent driver model
+//! Steering is pure pursuit on the route, speed the intelligent driver model
 //! (Treiber et al. 2000) behind whatever stands on the route, is about to, or a light asks for.
 
-use drivers::{Driver, single_track};
 use glam::{Vec2, Vec3};
 use kernel::scene::{ActorScene, EgoScene};
 use kernel::signals::LightPhase;
 use kernel::{Controls, World, ego, ops};
+
+use crate::{Driver, single_track};
 
 /// How far the route is looked at, metres.
 const SIGHT_M: f32 = 60.0;
@@ -75,9 +76,7 @@ impl Route {
         let distance_m = PURSUIT_M.max(PURSUIT_S * ego.speed_mps);
         let at = (distance_m - ego::CENTRE_M.x).max(1.0) as usize;
         let Some(aim) = self.points.get(at).or(self.points.last()) else { return 0.0 };
-        let to = *aim - ego.position.truncate();
-        let left_m = (ego.rotation * Vec3::X).truncate().perp_dot(to);
-        single_track::steering(2.0 * left_m / to.length_squared().max(1.0))
+        single_track::pursuit(ego.position.truncate(), (ego.rotation * Vec3::X).truncate(), *aim)
     }
 
     /// Highest speed now that lets every bend ahead be taken in comfort.

@@ -8,7 +8,7 @@ use crate::events::Events;
 
 /// What a remote control centre shows.
 #[derive(Clone, Debug)]
-pub struct Telemetry {
+pub struct TickFigures {
     /// Number of the run, from 1.
     pub run: u32,
     /// The world's tick.
@@ -37,7 +37,7 @@ pub struct Telemetry {
     pub events: Events,
 }
 
-impl Telemetry {
+impl TickFigures {
     /// Of a world that is driven by bots; its events are left to the caller.
     pub fn of_world(world: &World, run: u32) -> Self {
         let (hud, arbiter) = (world.hud(), world.arbiter());
