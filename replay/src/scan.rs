@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use mcap::MAGIC;
 use mcap::records::{ChunkHeader, MessageIndexEntry, Record, op};
 
-use crate::Error;
 use crate::layout::{CHANNELS, Channel, MESSAGE_ENCODING, SCHEMA_ENCODING};
+use crate::{Error, export};
 
 /// Most bytes that a chunk may unfold to.
 const MAX_CHUNK: u64 = 256 << 20;
@@ -165,6 +165,7 @@ impl<'a> Walk<'a> {
                     check_data_end(&record, &self.bytes[..record.at])?;
                     break;
                 }
+                op::METADATA if is_of_export(&record) => return Err(Error::Export),
                 _ => return Err(record.damaged("expected a chunk and its message indexes")),
             }
         }
@@ -209,6 +210,10 @@ fn check_header(record: &Raw<'_>) -> Result<(), Error> {
         Ok(_) => Err(record.damaged("expected an empty profile and the name of a library")),
         Err(e) => Err(record.damaged(e)),
     }
+}
+
+fn is_of_export(record: &Raw<'_>) -> bool {
+    mcap::parse_record(record.op, record.body).is_ok_and(|record| export::about(&record).is_some())
 }
 
 fn check_data_end(record: &Raw<'_>, data: &[u8]) -> Result<(), Error> {

@@ -29,10 +29,15 @@ impl Interrupt {
             return Ok(interrupt.clone());
         }
         let interrupt = Self::default();
-        let flag = Arc::clone(&interrupt.0);
-        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).context("listening to Ctrl-C")?;
+        let raised = interrupt.clone();
+        ctrlc::set_handler(move || raised.raise()).context("listening to Ctrl-C")?;
         *shared = Some(interrupt.clone());
         Ok(interrupt)
+    }
+
+    /// Asks everyone who shares the flag to stop.
+    pub fn raise(&self) {
+        self.0.store(true, Ordering::Relaxed);
     }
 
     /// Whether Ctrl-C was pressed.

@@ -189,7 +189,7 @@ fn a_report_reveals_and_leaves_familiarisation_out() {
     let practice = labelled(dir.path(), 2, Label::Walker, &[("familiarisation", "true")]);
     let render = |files: &[&String]| {
         let files: Vec<_> = files.iter().map(|file| file.as_str().into()).collect();
-        report::render(&files, &[CheckpointChoice::Truth], Some((64, 32)))
+        report::render(&files, &[CheckpointChoice::Truth], Some((64, 32)), None)
     };
     let html = render(&[&counts, &practice]).expect("a page").html;
     for words in ["network-x, and the drivers did not know it", "P07", "1 of 1", "takeovers out of boredom", "Mask age"]

@@ -11,7 +11,7 @@ use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server;
 
-use super::values::{CHECKPOINT, CHECKPOINTS, file, force, screens, seconds, size, threshold};
+use super::values::{CHECKPOINT, CHECKPOINTS, file, force, new_recording, screens, seconds, size, threshold};
 
 /// Arguments of `drive`.
 #[derive(Args, Clone, Debug)]
@@ -69,6 +69,7 @@ pub struct DriveArgs {
     #[arg(
         long,
         value_name = "FILE.mcap",
+        value_parser = new_recording(),
         required_unless_present = "print_scenario",
         default_value_if("print_scenario", "true", "none.mcap"),
         hide_default_value = true

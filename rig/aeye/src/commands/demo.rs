@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use base::json::Typed;
-use base::output;
+use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
@@ -46,13 +46,15 @@ impl Typed for Summary {
 /// Runs `aeye demo`.
 pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
     AdapterChoice::default().find()?;
+    let _folder = OutputFolder::open(&args.out)?;
     let (early, full) = (CheckpointChoice::Bundled("early"), CheckpointChoice::Bundled("full"));
     let drives = args.out.join("drives");
     eprintln!("1/4 driving through the early checkpoint until {CASES} corner cases have happened");
     let figures = campaign::drive(&campaign_options(args, early.clone(), &drives), &Interrupt::listen()?)?;
     eprintln!("2/4 verifying every recording");
     let files = files(&drives, &figures);
-    if verify::run(&VerifyArgs { files: files.all, rewind: None, against: None, jobs: None }, json)? != Verdict::Ok {
+    if verify::run(&VerifyArgs { files: files.all, rewind: None, against: None, jobs: args.jobs }, json)? != Verdict::Ok
+    {
         return Ok(Verdict::CheckFailed);
     }
     eprintln!("3/4 drawing the corner cases again through both checkpoints");
@@ -63,7 +65,7 @@ pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
     }
     eprintln!("4/4 writing the report");
     let path = args.out.join("report.html");
-    output::write_file(&path, report::render(&files.cases, &both, None)?.html.as_bytes())?;
+    output::write_file(&path, report::render(&files.cases, &both, None, args.jobs)?.html.as_bytes())?;
     let path = fs::canonicalize(&path).with_context(|| path.display().to_string())?;
     let summary = Summary {
         report: path.display().to_string(),
@@ -84,7 +86,7 @@ fn campaign_options(args: &DemoArgs, checkpoint: CheckpointChoice, out: &Path) -
         pedestrians: None,
         run_seconds: RUN_SECONDS,
         seed: args.seed,
-        jobs: None,
+        jobs: args.jobs,
         out: out.to_owned(),
     }
 }
@@ -93,7 +95,15 @@ fn campaign_options(args: &DemoArgs, checkpoint: CheckpointChoice, out: &Path) -
 fn rerender_args(args: &DemoArgs, cases: &[PathBuf], checkpoint: &[CheckpointChoice]) -> anyhow::Result<RerenderArgs> {
     let out = args.out.join("rerendered");
     let (last, fps) = (CLIP_TICKS, CLIP_FPS);
-    Ok(RerenderArgs { files: cases.to_vec(), checkpoint: checkpoint.to_vec(), last, fps, size: None, jobs: None, out })
+    Ok(RerenderArgs {
+        files: cases.to_vec(),
+        checkpoint: checkpoint.to_vec(),
+        last,
+        fps,
+        size: None,
+        jobs: args.jobs,
+        out,
+    })
 }
 
 /// The files of a campaign.

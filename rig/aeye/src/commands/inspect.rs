@@ -84,6 +84,8 @@ struct Overall {
     files: usize,
     #[serde(flatten)]
     tally: Tally,
+    /// Files that were left out, and why.
+    failed: Vec<Failure>,
 }
 
 /// The last line of `aeye inspect` of several files.
@@ -152,7 +154,7 @@ impl NoteLine {
 /// Runs `aeye inspect`.
 pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
     let (mut seen, mut verdict) = (Vec::new(), Verdict::Ok);
-    let Found { files, mut failed } = library::list(&args.files, Kind::All);
+    let Found { files, mut failed } = library::find(&args.files, Kind::All);
     in_order(
         jobs(args.jobs),
         files.len(),
@@ -171,9 +173,10 @@ pub fn run(args: &InspectArgs, json: bool) -> anyhow::Result<Verdict> {
             Ok(())
         },
     )?;
-    if seen.len() > 1 {
+    // A text about several of which one is left would say the same twice.
+    if seen.len() > 1 || json && seen.len() + failed.len() > 1 {
         let tally = Tally::of(seen.iter().map(|(recording, measures)| (recording, measures.as_ref())));
-        let overall = Overall { kind: "overall", files: seen.len(), tally };
+        let overall = Overall { kind: "overall", files: seen.len(), tally, failed: failed.clone() };
         print(json, &overall, || paragraph(overall.tally.lines()))?;
     }
     Failed::check(&failed, seen.len())?;

@@ -77,7 +77,7 @@ impl From<Divergence> for Where {
 
 /// Runs `aeye verify`.
 pub fn run(args: &VerifyArgs, json: bool) -> anyhow::Result<Verdict> {
-    let Found { files, mut failed } = library::list(&args.files, Kind::All);
+    let Found { files, mut failed } = library::find(&args.files, Kind::All);
     let bar = progress::bar("verify", files.len() as u64);
     let (mut diverged, mut well) = (false, 0);
     let show = |checked: &Checked| bar.suspend(|| print(json, checked, || text(checked)));

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use base::failure::Usage;
 use base::json;
 use base::maps::{Map, read_scenario};
-use base::output;
+use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
 use base::spread::jobs;
 use drivers::checkpoint::CheckpointChoice;
@@ -52,7 +52,7 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
         return Err(Usage("two checkpoints have the same file name; expected names that differ".into()).into());
     }
     AdapterChoice::default().find()?;
-    output::create_folder(&plan.out)?;
+    let _folder = OutputFolder::open(&plan.out)?;
     let jobs = jobs(options.jobs);
     let mut runs = Vec::new();
     for eye in &eyes {
