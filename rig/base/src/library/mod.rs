@@ -140,6 +140,7 @@ fn check(file: &Path) -> anyhow::Result<()> {
 pub fn drives_in(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     collect(folder, Kind::Drives, false, &mut files)?;
+    files.retain(|file| !is_export(file));
     files.sort_by_cached_key(|path| turn(path));
     Ok(files)
 }
@@ -151,6 +152,9 @@ fn below(path: &Path, kind: Kind) -> anyhow::Result<Vec<PathBuf>> {
     }
     let mut files = Vec::new();
     collect(path, kind, true, &mut files)?;
+    for export in files.extract_if(.., |file| is_export(file)) {
+        eprintln!("{}: left out, an export of aeye for viewers", export.display());
+    }
     if files.is_empty() {
         let (what, ending) = kind.expected();
         bail!("{}: holds no {what}; expected at least one *{ending}", path.display());
@@ -172,7 +176,7 @@ fn collect(folder: &Path, kind: Kind, deep: bool, files: &mut Vec<PathBuf>) -> a
             if deep {
                 collect(&entry.path(), kind, deep, files)?;
             }
-        } else if kind.takes(&name) && !is_export(&entry.path()) {
+        } else if kind.takes(&name) {
             files.push(entry.path());
         }
     }
@@ -189,14 +193,10 @@ fn turn(path: &Path) -> (PathBuf, String, u64) {
     (folder, format!("{stem}.{ending}"), number)
 }
 
-/// Whether a file that was found is an export of aeye for viewers, which is told.
+/// Whether a file is an export of aeye for viewers.
 fn is_export(file: &Path) -> bool {
     // What is no regular file may never end to be read.
-    let is_export = file.is_file() && replay::exported(file).is_some();
-    if is_export {
-        eprintln!("{}: left out, an export of aeye for viewers", file.display());
-    }
-    is_export
+    file.is_file() && replay::exported(file).is_some()
 }
 
 #[cfg(test)]

@@ -42,9 +42,10 @@ impl Way {
     /// Refuses names under which results cannot be filed: `...mcap` would be filed above the results, `.mcap` as all
     /// of them, and hidden ones among their books.
     pub fn check(&self) -> anyhow::Result<()> {
-        if self.name().split('/').any(|part| part.is_empty() || part.starts_with('.')) {
+        let name = self.name();
+        if name.split('/').any(|part| part.is_empty() || part.starts_with('.')) {
             let place = self.path.display();
-            bail!("{place}: its name begins with a dot; expected one under which results can be filed");
+            bail!("{place}: its results would be hidden under {name:?}; expected a name that begins with no dot");
         }
         Ok(())
     }

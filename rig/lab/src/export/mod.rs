@@ -164,6 +164,9 @@ fn places(args: &Options) -> anyhow::Result<Places> {
         let sentence = format!("{}: is one file; expected a folder for several", args.out.display());
         return Err(Usage(sentence).into());
     }
+    if args.out.to_str().is_none() {
+        bail!("{}: its name is not UTF-8; expected one that is", args.out.display());
+    }
     if is_file {
         output::check_file(&args.out)?;
     }
