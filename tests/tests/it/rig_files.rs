@@ -141,7 +141,7 @@ fn an_export_that_is_interrupted_leaves_no_empty_folder() {
     };
     let interrupt = Interrupt::default();
     interrupt.raise();
-    let said = sentence(&export::export(&options, &interrupt).err().expect("interrupted"));
+    let said = sentence(&export::export(&options, &interrupt).expect_err("interrupted"));
     assert!(said.contains("interrupted; nothing of its export is kept"), "{said}");
     assert!(!dir.path().join("new").exists());
 }

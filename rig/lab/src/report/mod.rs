@@ -89,7 +89,7 @@ pub fn render(
     bar.finish_and_clear();
     if cases.is_empty() {
         let why = Failed::check(&failed, 0).err();
-        return Err(why.unwrap_or_else(|| anyhow!("no corner case is left; expected one of a drive that counts")));
+        return Err(why.unwrap_or_else(|| anyhow!("no case is left: expected one of a drive that counts")));
     }
     let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
     let number = cases.len();
