@@ -21,7 +21,10 @@ mod tests {
     #[test]
     fn the_engines_have_exact_versions() {
         let named: Vec<_> = ENGINES.split(", ").filter_map(|engine| engine.split_once(' ')).collect();
-        assert_eq!(named.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["glam", "libm", "parry3d", "rapier3d", "xodr"]);
+        assert_eq!(
+            named.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+            ["glam", "libm", "parry3d", "rapier3d", "xodr"]
+        );
         for (name, version) in named {
             assert_eq!(version.split('.').filter(|part| part.parse::<u32>().is_ok()).count(), 3, "{name} {version}");
         }

@@ -125,6 +125,9 @@ fn a_difference_says_which_part_was_first_and_when() {
     let driven = golden.replace("city 4 1 2 3", "city 4 1 2 9").replace("city 5 1 2 3 4 5 6", "city 5 1 9 9 9 9 9");
     assert_eq!(said(&driven), "city: vehicles first, at second 4");
     assert_eq!(said(&golden.replace("city 4 1 2 3", "city 4 0 2 0")), "city: input and vehicles first, at second 4");
-    assert_eq!(said(&golden.replace("bytes=9", "bytes=8")), "expected city bytes=9 Seen=1\n     got city bytes=8 Seen=1");
+    assert_eq!(
+        said(&golden.replace("bytes=9", "bytes=8")),
+        "expected city bytes=9 Seen=1\n     got city bytes=8 Seen=1"
+    );
     assert!(said(&golden[..golden.len() - 20]).starts_with("expected city 5"));
 }

@@ -48,6 +48,9 @@ pub enum Error {
         /// Name that the map's file would have.
         file: String,
     },
+    /// What [`crate::Exporter`] wrote for viewers.
+    #[error("is an export of aeye for viewers, not a recording")]
+    Export,
     /// The log asks for another map than the one at hand.
     #[error("map {map}: the log was made on the map with digest {expected:032x}, this one has {got:032x}")]
     Map {

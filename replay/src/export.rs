@@ -99,11 +99,16 @@ pub fn exported(path: &Path) -> Option<Exported> {
     let mut file = File::open(path).ok()?;
     (&file).take(HEAD_BYTES).read_to_end(&mut head).ok()?;
     let records = mcap::read::LinearReader::sans_magic(head.strip_prefix(MAGIC)?);
-    let about = records.take(2).find_map(|record| match record {
-        Ok(Record::Metadata(Metadata { name, metadata })) if name == METADATA => Some(metadata),
-        _ => None,
-    })?;
+    let about = records.take(2).find_map(|record| about(&record.ok()?))?;
     Some(Exported { about, is_whole: ends_as_mcap(&mut file) })
+}
+
+/// What an export was made from, if this is the record that says so.
+pub(crate) fn about(record: &Record<'_>) -> Option<BTreeMap<String, String>> {
+    match record {
+        Record::Metadata(Metadata { name, metadata }) if name == METADATA => Some(metadata.clone()),
+        _ => None,
+    }
 }
 
 fn ends_as_mcap(file: &mut File) -> bool {
@@ -162,5 +167,14 @@ mod tests {
         assert!(exporter.channel("/events", &LOG).is_err());
         exporter.channel("/other", &LOG).expect("another topic");
         exporter.finish().expect("ends");
+    }
+
+    #[test]
+    fn an_export_is_told_from_a_recording_whole_or_cut() {
+        let mut bytes = Vec::new();
+        write(&mut bytes).expect("there is room");
+        for part in [&bytes[..], &bytes[..bytes.len() / 2]] {
+            assert!(matches!(crate::Recording::from_bytes(part), Err(Error::Export)));
+        }
     }
 }

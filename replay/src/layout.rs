@@ -46,13 +46,7 @@ pub(crate) struct Layout {
 pub(crate) const MESSAGE_ENCODING: &str = "bincode2";
 pub(crate) const SCHEMA_ENCODING: &str = "text";
 
-const fn layout(
-    channel: Channel,
-    since: u16,
-    topic: &'static str,
-    name: &'static str,
-    text: &'static str,
-) -> Layout {
+const fn layout(channel: Channel, since: u16, topic: &'static str, name: &'static str, text: &'static str) -> Layout {
     Layout { channel, since, topic, name, text }
 }
 

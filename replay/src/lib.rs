@@ -23,8 +23,8 @@ mod log;
 mod mark;
 mod notes;
 mod recorder;
-mod records;
 mod recording;
+mod records;
 mod replayer;
 mod scan;
 mod seal;
@@ -38,9 +38,7 @@ pub use divergence::Divergence;
 pub use error::Error;
 pub use export::{ExportChannel, Exported, Exporter, Schema, exported};
 pub use layout::{FORMAT_VERSION, nanoseconds};
-pub use log::{
-    Annotation, CaseInfo, ForeignMap, Label, LiveTimes, Log, Manifest, MaskShown, Provenance, RunSummary,
-};
+pub use log::{Annotation, CaseInfo, ForeignMap, Label, LiveTimes, Log, Manifest, MaskShown, Provenance, RunSummary};
 pub use mark::Mark;
 pub use notes::{Note, NoteKind};
 pub use recorder::Recorder;

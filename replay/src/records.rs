@@ -90,4 +90,3 @@ fn may_be_cut(record: &Raw<'_>, length: Option<u64>) -> bool {
         _ => length < MAX_RECORD,
     }
 }
-

@@ -12,11 +12,11 @@ use std::collections::BTreeMap;
 use mcap::MAGIC;
 use mcap::records::{ChunkHeader, MessageHeader, MessageIndexEntry, Record, op};
 
-use crate::Error;
 use crate::index::Index;
 use crate::layout::{CHANNELS, Channel, FORMAT_VERSION, MESSAGE_ENCODING, OLDEST_VERSION, SCHEMA_ENCODING, version_of};
 use crate::records::{HEAD, MAX_RECORD, Raw, Walk, number};
 use crate::seal::Seal;
+use crate::{Error, export};
 
 /// Most bytes that all chunks may unfold to: days of driving.
 const MAX_UNFOLDED: u64 = 192 << 20;
@@ -144,6 +144,7 @@ impl Data {
                     check_data_end(&record, &walk.bytes[..record.at])?;
                     break;
                 }
+                op::METADATA if is_of_export(&record) => return Err(Error::Export),
                 _ => return Err(record.damaged("expected a chunk and its message indexes")),
             }
         }
@@ -304,6 +305,10 @@ impl Data {
         }
         Ok(())
     }
+}
+
+fn is_of_export(record: &Raw<'_>) -> bool {
+    mcap::parse_record(record.op, record.body).is_ok_and(|record| export::about(&record).is_some())
 }
 
 fn check_data_end(record: &Raw<'_>, data: &[u8]) -> Result<(), Error> {

@@ -1,53 +1,20 @@
 //! The program as people start it: what it says, how it ends, and what it leaves behind.
 
+mod common;
+
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use base::maps::Map;
-use kernel::{TickInput, World};
-use replay::{Manifest, Provenance, Recorder};
+use common::{aeye, blind_drive, names, run};
 
 /// Tells old and new Vulkan loaders that the driver is where nothing is.
 const NO_DRIVER: [(&str, &str); 2] = [("VK_ICD_FILENAMES", "/nonexistent"), ("VK_DRIVER_FILES", "/nonexistent")];
 
-fn aeye(folder: &Path, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_aeye"));
-    command.current_dir(folder).args(arguments.split_whitespace());
-    command
-}
-
-fn run(command: &mut Command) -> (Option<i32>, String, String) {
-    let Output { status, stdout, stderr } = command.output().expect("the program starts");
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    (status.code(), text(stdout), text(stderr))
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a readable folder").map(|e| e.expect("an entry"));
-    let mut names: Vec<String> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
-}
-
-/// A second of a drive that nobody had to see.
-fn blind_drive(path: &Path) {
-    let map = Map::find("rural").expect("bundled");
-    let scenario = map.scenario(1);
-    let manifest = Manifest::new(&scenario, &map.network, None, Provenance::default());
-    let mut world = World::new(&scenario, &map.network).expect("a world");
-    let mut recorder = Recorder::new(Vec::new(), &manifest, &world.initial_keyframe()).expect("a recording");
-    for _ in 0..60 {
-        let output = world.step(&TickInput::default());
-        recorder.tick(&TickInput::default(), &output, &world.part_hashes()).expect("a tick");
-    }
-    fs::write(path, recorder.finish(None).expect("its end")).expect("writable");
-}
-
 #[test]
 fn without_a_graphics_driver_each_command_says_what_to_install_and_leaves_nothing() {
     let dir = tempfile::tempdir().expect("a folder");
-    blind_drive(&dir.path().join("run.mcap"));
+    blind_drive(&dir.path().join("run.mcap"), 1);
     for command in [
         "drive --headless --max-time 4s --record new.mcap",
         "campaign --checkpoint truth --runs 1 --out new",

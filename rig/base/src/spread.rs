@@ -77,6 +77,18 @@ pub fn in_order<T: Send>(
     })
 }
 
+/// What `work` gives for each index below `count`, in their order, found on `jobs` threads.
+pub fn collect_in_order<T: Send>(jobs: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let mut all = Vec::with_capacity(count);
+    let take = |_, value| {
+        all.push(value);
+        Ok(())
+    };
+    // Taking never fails, hence nothing does.
+    let _ = in_order(jobs, count, work, take);
+    all
+}
+
 /// The number of threads to use: what was asked for, or one a core.
 pub fn jobs(asked: Option<u16>) -> usize {
     asked.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from)

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use base::failure::{Failed, Failure};
 use base::json::Typed;
-use base::output;
+use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
 use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
@@ -31,6 +31,8 @@ const RUN_SECONDS: u32 = 180;
 pub struct Options {
     /// Seed of the campaign.
     pub seed: u64,
+    /// Drives, files and frames worked on at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
     /// Folder of the results; a demo that was interrupted goes on there.
     pub out: PathBuf,
 }
@@ -70,13 +72,14 @@ impl fmt::Display for Demo {
 /// Drives, verifies, draws and reports; what is there already is kept. A recording that does not replay is an error.
 pub fn demo(options: &Options, onlooker: &mut impl Onlooker, interrupt: &Interrupt) -> anyhow::Result<Demo> {
     AdapterChoice::default().find()?;
+    let _folder = OutputFolder::open(&options.out)?;
     let (early, full) = (CheckpointChoice::Bundled("early"), CheckpointChoice::Bundled("full"));
     let drives = options.out.join("drives");
     say(format_args!("1/4 driving through the early checkpoint until {CASES} corner cases have happened"));
     let figures = campaign::drive(&campaign_options(options, early.clone(), &drives), interrupt)?;
     let (recordings, cases) = files(&drives, &figures);
     say("2/4 verifying every recording");
-    verify_all([recordings, cases.clone()].concat(), onlooker)?;
+    verify_all([recordings, cases.clone()].concat(), options.jobs, onlooker)?;
     say("3/4 drawing the corner cases again through both checkpoints");
     let both = vec![early, full];
     let rerendered = rerender(&rerender_options(options, &cases, &both), interrupt)?;
@@ -84,14 +87,14 @@ pub fn demo(options: &Options, onlooker: &mut impl Onlooker, interrupt: &Interru
     Failed::check(&rerendered.failed, rerendered.files)?;
     say("4/4 writing the report");
     let path = options.out.join("report.html");
-    output::write_file(&path, report::render(&cases, &both, None)?.html.as_bytes())?;
+    output::write_file(&path, report::render(&cases, &both, None, options.jobs)?.html.as_bytes())?;
     let path = fs::canonicalize(&path).with_context(|| path.display().to_string())?;
     let report = path.display().to_string();
     Ok(Demo { report, runs: figures.runs.len(), cases: cases.len(), km: figures.km })
 }
 
-fn verify_all(files: Vec<PathBuf>, onlooker: &mut impl Onlooker) -> anyhow::Result<()> {
-    let options = verify::Options { files, ..verify::Options::default() };
+fn verify_all(files: Vec<PathBuf>, jobs: Option<u16>, onlooker: &mut impl Onlooker) -> anyhow::Result<()> {
+    let options = verify::Options { files, jobs, ..verify::Options::default() };
     let verified = verify(&options, |checked| onlooker.checked(checked))?;
     Failed::check(&verified.failed, verified.checked)?;
     let differs = |path: &PathBuf| Failure::diverged(path);
@@ -111,7 +114,7 @@ fn campaign_options(options: &Options, checkpoint: CheckpointChoice, out: &Path)
         pedestrians: None,
         run_seconds: RUN_SECONDS,
         seed: options.seed,
-        jobs: None,
+        jobs: options.jobs,
         out: out.to_owned(),
     }
 }
@@ -121,7 +124,7 @@ fn rerender_options(options: &Options, cases: &[PathBuf], checkpoint: &[Checkpoi
     let out = options.out.join("rerendered");
     let (last, fps) = (CLIP_TICKS, CLIP_FPS);
     let (files, checkpoint) = (cases.to_vec(), checkpoint.to_vec());
-    rerender::Options { files, checkpoint, last, fps, size: None, jobs: None, out }
+    rerender::Options { files, checkpoint, last, fps, size: None, jobs: options.jobs, out }
 }
 
 /// Recordings and cases of a campaign.

@@ -1,15 +1,15 @@
 //! Results that a command finds again when it is called again, each with what it depends on.
 
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use base::library::Entry;
-use base::output;
+use base::output::{self, OutputFolder};
 use drivers::vision::{self, Eye};
 use kernel::time::Tick;
 use render::RENDERER_VERSION;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
@@ -70,13 +70,19 @@ struct Kept<K, T> {
     value: T,
 }
 
+/// Of a key, the file that a result is about.
+#[derive(Deserialize)]
+struct About {
+    /// BLAKE3 of the recording or case.
+    log: String,
+}
+
 /// `OUT/.KIND`: a file for each result, written when everything that belongs to it is in its place.
-/// Dropped, it takes with it what was begun, and `OUT` if nothing else is in it.
+/// Dropped, it takes with it what was begun, and `OUT` if it was made for it and nothing is in it.
 pub struct Store {
     out: PathBuf,
     folder: PathBuf,
-    /// Locked as long as its process works here; none where the file system knows no locks.
-    _claim: Option<File>,
+    home: OutputFolder,
 }
 
 impl Store {
@@ -88,14 +94,35 @@ impl Store {
             let out = out.display();
             bail!("{out}: exists already; expected a new or an empty folder, or one that aeye {kind} began");
         }
-        output::create_folder(&folder)?;
-        let claim = File::open(&folder).ok();
-        if let Some(Err(TryLockError::WouldBlock)) = claim.as_ref().map(File::try_lock) {
-            bail!("{}: another aeye {kind} is at work there; expected another folder, or to wait", out.display());
-        }
-        let store = Self { out: out.to_owned(), folder, _claim: claim };
+        let home = OutputFolder::open(out)?;
+        home.make(&folder)?;
+        let store = Self { out: out.to_owned(), folder, home };
         store.sweep()?;
         Ok(store)
+    }
+
+    /// Holds results of these options from now on, and refuses others: a file that is there must not be one or the
+    /// other's.
+    pub fn hold(&self, options: &[String]) -> anyhow::Result<()> {
+        let path = self.folder.join(OPTIONS);
+        let Ok(text) = fs::read(&path) else {
+            return output::write_file(&path, &serde_json::to_vec(options)?);
+        };
+        let held: Vec<String> = serde_json::from_slice(&text).with_context(|| path.display().to_string())?;
+        let beyond = |these: &[String], those: &[String]| {
+            these.iter().filter(|option| !those.contains(option)).cloned().collect::<Vec<_>>().join(" ")
+        };
+        let (others, ours) = (beyond(&held, options), beyond(options, &held));
+        if !(others.is_empty() && ours.is_empty()) {
+            let out = self.out.display();
+            bail!("{out}: holds results of {others}; expected the same, or another folder for {ours}");
+        }
+        Ok(())
+    }
+
+    /// Makes a folder among the results.
+    pub fn make(&self, folder: &Path) -> anyhow::Result<()> {
+        self.home.make(folder)
     }
 
     /// Removes what killed processes had begun.
@@ -121,6 +148,19 @@ impl Store {
         let bytes = fs::read(self.file(name)).ok()?;
         let kept: Kept<K, T> = serde_json::from_slice(&bytes).ok()?;
         (kept.key == *key).then_some(kept.value)
+    }
+
+    /// Refuses a name under which there is a result about another file.
+    pub fn check(&self, name: &str, file: &Entry) -> anyhow::Result<()> {
+        let kept = fs::read(self.file(name)).ok();
+        let kept = kept.and_then(|bytes| serde_json::from_slice::<Kept<About, IgnoredAny>>(&bytes).ok());
+        match kept {
+            Some(Kept { key: About { log }, .. }) if log != file.digest.to_hex().as_str() => {
+                let (path, out, name) = (file.path.display(), self.out.display(), &file.name);
+                bail!("{path}: {out} holds results of another file as {name}; expected another folder")
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Keeps a result.
@@ -150,11 +190,16 @@ impl Store {
 }
 
 const PENDING: &str = ".aeye-";
+/// No result has a name that begins with a dot.
+const OPTIONS: &str = ".options.json";
 
 impl Drop for Store {
     fn drop(&mut self) {
-        // A folder with anything in it stays.
-        let _ = fs::remove_dir(&self.folder).and_then(|()| fs::remove_dir(&self.out));
+        // Where nothing was kept, nothing is held.
+        let mut kept = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        if kept.all(|entry| entry.file_name() == OPTIONS) {
+            let _ = fs::remove_file(self.folder.join(OPTIONS));
+        }
     }
 }
 
@@ -201,9 +246,33 @@ mod tests {
         let store = Store::open(&out, "test").expect("of the same kind");
         assert!(!begun.exists());
         let said = Store::open(&out, "test").err().expect("in use").to_string();
-        assert!(said.contains("another aeye test is at work there"), "{said}");
+        assert!(said.contains("another aeye is at work there"), "{said}");
         store.keep("a", key("x"), 1).expect("writable");
         let said = Store::open(&out, "other").err().expect("of another kind").to_string();
         assert!(said.contains("expected a new or an empty folder, or one that aeye other began"), "{said}");
+    }
+
+    #[test]
+    fn results_of_other_options_and_of_other_files_are_refused() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let out = dir.path().join("out");
+        let options = |size: &str| ["--fps 10".to_owned(), format!("--size {size}")];
+        Store::open(&out, "test").expect("free").hold(&options("64x32")).expect("the first");
+        assert!(!out.exists(), "nothing was kept");
+        let store = Store::open(&out, "test").expect("free");
+        store.hold(&options("128x64")).expect("the first");
+        let digest = blake3::hash(b"x");
+        store.keep("a", key(&digest.to_hex()), 1).expect("writable");
+        drop(store);
+        let store = Store::open(&out, "test").expect("of the same kind");
+        store.hold(&options("128x64")).expect("the same");
+        let said = store.hold(&options("64x32")).expect_err("others").to_string();
+        let words = "out: holds results of --size 128x64; expected the same, or another folder for --size 64x32";
+        assert!(said.ends_with(words), "{said}");
+        let entry = |digest| Entry { is_case: true, path: "a.case.mcap".into(), name: "a".into(), digest };
+        store.check("a", &entry(digest)).expect("the same");
+        store.check("b", &entry(digest)).expect("none yet");
+        let said = store.check("a", &entry(blake3::hash(b"y"))).expect_err("another").to_string();
+        assert!(said.starts_with("a.case.mcap: ") && said.contains("holds results of another file as a"), "{said}");
     }
 }

@@ -100,7 +100,7 @@ impl From<Divergence> for Where {
 
 /// Checks every file, and shows what was found of each, in their order.
 pub fn verify(options: &Options, mut show: impl FnMut(&Checked) -> anyhow::Result<()>) -> anyhow::Result<Verified> {
-    let Found { files, failed } = library::list(&options.files, Kind::All);
+    let Found { files, failed } = library::find(&options.files, Kind::All);
     let bar = progress::bar("verify", files.len() as u64);
     failed.iter().try_for_each(|failure| show(&unchecked(failure)))?;
     let mut verified = Verified { failed, ..Verified::default() };

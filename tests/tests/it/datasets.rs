@@ -13,7 +13,8 @@ use lab::dataset::{FrameLine, Manifest, Part, Recipe, cases, mix, natural, rebui
 use perception::training::Split;
 use replay::{Annotation, Case, Label, Recording};
 use tests::files::contents;
-use tests::recordings::{TAKEOVER, recorded};
+use tests::recordings::{TAKEOVER, recorded, recorded_in};
+use tests::scenes::{busy_city, country_road};
 
 fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
     natural::Options {
@@ -33,7 +34,7 @@ fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
 
 fn cases_args(files: &[&Path], out: PathBuf) -> cases::Options {
     let files = files.iter().map(|file| file.to_path_buf()).collect();
-    cases::Options { files, label: Vec::new(), split: "train".into(), size: (64, 32), out }
+    cases::Options { files, label: Vec::new(), split: "train".into(), size: (64, 32), jobs: None, out }
 }
 
 fn lines(folder: &Path) -> Vec<FrameLine> {
@@ -161,6 +162,22 @@ fn cases_become_a_dataset_whose_labels_are_the_truth() {
     let said = cases::make(&walkers, &Interrupt::default()).unwrap_err().to_string();
     assert_eq!(said, "none of the corner cases is labelled walker");
     assert!(make(&[&case, &copy], "first").is_err() && contents(&out("first")) == first);
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_dataset_of_cases_does_not_depend_on_the_number_of_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    let cases =
+        [("a", busy_city()), ("b", country_road())].map(|(name, scene)| recorded_in(&scene, dir.path(), name).1);
+    let files: Vec<&Path> = cases.iter().map(PathBuf::as_path).collect();
+    let make = |jobs: u16| {
+        let out = dir.path().join(jobs.to_string());
+        cases::make(&cases::Options { jobs: Some(jobs), ..cases_args(&files, out.clone()) }, &Interrupt::default())
+            .unwrap();
+        contents(&out)
+    };
+    assert!(make(1) == make(3));
 }
 
 /// A case as another kernel would have cut it.

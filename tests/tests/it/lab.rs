@@ -81,7 +81,7 @@ fn a_divergent_or_damaged_recording_leaves_no_pictures() {
 fn a_report_stands_alone_and_escapes_what_people_wrote() {
     let dir = tempfile::tempdir().unwrap();
     let (_, case) = recorded(dir.path());
-    let html = report::render(&[case], &[CheckpointChoice::Truth], Some((64, 32))).unwrap().html;
+    let html = report::render(&[case], &[CheckpointChoice::Truth], Some((64, 32)), None).unwrap().html;
     assert_eq!(html.matches("data:image/png;base64,").count(), 90);
     assert!(html.contains("a &lt;test&gt;") && !html.contains("<test>"));
     assert!(html.contains("<svg") && html.contains("<circle") && html.contains("15.8 s"));
@@ -106,9 +106,39 @@ fn kilometres_a_case_do_not_depend_on_how_many_cases_are_shown() {
     let km = |path: &PathBuf| Recording::open(path).unwrap().log().odometer_mm() as f64 / 1e6;
     let per_case =
         format!("<b>{:.2}</b>km per corner case", [&first, &second, &calm].map(km).iter().sum::<f64>() / 2.0);
-    let page = |cases: &[PathBuf]| report::render(cases, &[CheckpointChoice::Truth], Some((64, 32))).unwrap().html;
+    let page =
+        |cases: &[PathBuf]| report::render(cases, &[CheckpointChoice::Truth], Some((64, 32)), None).unwrap().html;
     let (one, both) = (page(std::slice::from_ref(&case)), page(&[case, another]));
     assert!(one.contains(&per_case) && both.contains(&per_case), "{per_case}");
     assert!(one.contains("<b>1</b>corner cases shown") && one.contains("<b>2</b>corner cases in these runs"));
+    let alone = report::render(&[dir.path().to_owned()], &[CheckpointChoice::Truth], Some((64, 32)), Some(1));
+    let three = report::render(&[dir.path().to_owned()], &[CheckpointChoice::Truth], Some((64, 32)), Some(3));
+    assert!(alone.unwrap().html == three.unwrap().html, "the page does not depend on the number of threads");
     assert!(one.contains("a selection of them") && !both.contains("a selection of them"));
+}
+
+/// Rides through two checkpoints, of which one had the case.
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn kilometres_a_case_are_those_of_each_checkpoint() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = |name: &str| dir.path().join(name);
+    [folder("early"), folder("full")].iter().for_each(|folder| fs::create_dir(folder).unwrap());
+    let (ridden, _) = recorded(&folder("early"));
+    let mut log = Recording::from_bytes(&record(&busy_city(), 600, ALONE)).unwrap().into_log();
+    log.manifest.provenance.insert("checkpoint".into(), "full".into());
+    fs::write(folder("full").join("a.mcap"), log.encode().unwrap()).unwrap();
+    let report = |places: &[PathBuf]| report::render(places, &[CheckpointChoice::Truth], Some((64, 32)), None);
+    let page = report(&[folder("full"), folder("early")]).unwrap();
+    assert_eq!((page.cases, page.failed), (1, vec![]), "a folder without cases has kilometres");
+    let km = Recording::open(&ridden).unwrap().log().odometer_mm() as f64 / 1e6;
+    for tile in [format!("<b>{km:.2}</b>km per corner case of these runs (unknown)<"), {
+        "<b>-</b>km per corner case of these runs (full)<".to_owned()
+    }] {
+        assert!(page.html.contains(&tile), "{tile}");
+    }
+    let (one, none) = (report(&[folder("early"), ridden]), report(&[folder("full")]));
+    assert_eq!(one.unwrap().cases, 1, "a recording is no case");
+    let said = none.err().expect("nothing to show").to_string();
+    assert_eq!(said, "none of the files and folders holds a corner case; expected at least one *.case.mcap");
 }

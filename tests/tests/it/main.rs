@@ -22,6 +22,7 @@ mod rig_compare;
 mod rig_criticality;
 mod rig_experiment;
 mod rig_export;
+mod rig_files;
 mod rig_learning;
 mod rig_pages;
 mod rig_pipeline;

@@ -46,7 +46,8 @@ fn none_is_said_to_diverge() {
         let error = verify(recording.log(), &network).expect_err("another kernel made it");
         assert!(matches!(error, Error::Kernel { .. }), "{name}: {error}");
         let (made, this) = (&recording.log().manifest.kernel, kernel::identity());
-        let sentence = format!("made by kernel {made}, this is {this}; only the kernel that made a log can drive it again");
+        let sentence =
+            format!("made by kernel {made}, this is {this}; only the kernel that made a log can drive it again");
         assert_eq!(error.to_string(), sentence);
     }
 }

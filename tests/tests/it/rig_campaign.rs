@@ -77,6 +77,20 @@ fn recordings_of_another_campaign_are_not_taken_for_this_one() {
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_run_that_is_cut_off_is_told_and_driven_again_when_it_is_gone() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let whole = drive(dir.path(), 1);
+    let path = dir.path().join(&whole[0].file);
+    let bytes = fs::read(&path).expect("a recording");
+    fs::write(&path, &bytes[..bytes.len() - 9]).expect("writable");
+    let error = drive_all(&plan(dir.path()), &Eye::Truth, 1, &Interrupt::default()).expect_err("cut off").to_string();
+    assert!(error.starts_with(path.to_str().expect("UTF-8")) && error.contains("is cut off"), "{error}");
+    fs::remove_file(&path).expect("there");
+    assert_eq!(drive(dir.path(), 1), whole);
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn at_any_moment_the_file_holds_all_but_the_last_second() {
     let dir = tempfile::tempdir().expect("a folder");
     let path = dir.path().join("run.mcap");

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use aeye::cli::{Cli, Command, RedriveArgs};
 use aeye::commands::redrive;
+use base::failure::sentence;
+use base::progress::Interrupt;
 use clap::Parser;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::simulate::FORK_AFTER_TICKS;
@@ -16,6 +18,7 @@ use measures::Criticality;
 use render::{RenderOptions, Renderer};
 use replay::{Case, Recording, verify};
 use serde_json::Value;
+use tests::files::contents;
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
 
@@ -152,4 +155,61 @@ fn a_counterfactual_is_kept_for_its_recording_alone() {
     assert_eq!(Counterfactual::read(&path, &another).unwrap(), None);
     fs::write(&path, "{").unwrap();
     assert_eq!(Counterfactual::read(&path, &case).unwrap(), None);
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn forks_that_were_interrupted_go_on_and_are_never_those_of_other_options() {
+    let dir = tempfile::tempdir().unwrap();
+    let (path, out, whole) = (case(dir.path()), dir.path().join("out"), dir.path().join("whole"));
+    let options = |out: &Path| lab::redrive::Options {
+        files: vec![path.clone()],
+        without_intervention: true,
+        checkpoint: None,
+        recorded: vec![],
+        reveal: false,
+        vary: 3,
+        seconds: 1,
+        jobs: None,
+        out: out.to_owned(),
+    };
+    let interrupt = Interrupt::default();
+    let first = out.join("a.fork.mcap");
+    let interrupted = std::thread::scope(|scope| {
+        let driving = scope.spawn(|| lab::redrive::redrive(&options(&out), &interrupt));
+        while !first.exists() && !driving.is_finished() {
+            std::thread::yield_now();
+        }
+        interrupt.raise();
+        driving.join().unwrap()
+    });
+    let said = sentence(&interrupted.expect_err("three forks are left"));
+    assert!(said.contains("interrupted; the same command goes on from there"), "{said}");
+    assert!(!out.join("a.fork-3.mcap").exists() && !out.join("redrive.jsonl").exists());
+    let driven = fs::metadata(&first).unwrap().modified().unwrap();
+    lab::redrive::redrive(&options(&out), &Interrupt::default()).unwrap();
+    lab::redrive::redrive(&options(&whole), &Interrupt::default()).unwrap();
+    assert_eq!(fs::metadata(&first).unwrap().modified().unwrap(), driven, "what is whole is kept");
+    let visible = |folder: &Path| {
+        let mut files = contents(folder);
+        files.retain(|path, _| !path.starts_with(".redrive"));
+        files
+    };
+    let kept = contents(&out);
+    assert!(visible(&out).len() == 5 && visible(&out) == visible(&whole));
+
+    let other = lab::redrive::Options { vary: 1, ..options(&out) };
+    let through = lab::redrive::Options {
+        checkpoint: Some(CheckpointChoice::Truth),
+        without_intervention: false,
+        ..options(&out)
+    };
+    for (options, held, asked) in [
+        (other, "holds results of --vary 3; expected", "another folder for --vary 1"),
+        (through, "holds results of --without-intervention; expected", "another folder for --checkpoint truth"),
+    ] {
+        let said = sentence(&lab::redrive::redrive(&options, &Interrupt::default()).unwrap_err());
+        assert!(said.contains(held) && said.contains(asked), "{said}");
+    }
+    assert!(contents(&out) == kept, "what is there stays");
 }

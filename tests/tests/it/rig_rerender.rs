@@ -48,11 +48,16 @@ fn work_that_is_cut_in_pieces_gives_the_same_and_is_done_once() {
     let names: Vec<_> = ["b.case", "below/a.case"].map(|name| format!("{name}/predictions/early/00000950.png")).into();
     assert!(names.iter().all(|name| expected.contains_key(Path::new(name))), "{:?}", expected.keys());
 
-    // One file through one checkpoint, at another size and then at the right one; then a picture is lost,
-    // another is changed, and a process is killed.
+    // One file through one checkpoint, and in vain at another size; then a picture is lost, another is changed, and a
+    // process is killed.
     let one = library.join("b.case.mcap");
-    rerendered(&RerenderArgs { size: Some((64, 32)), ..args(&[&one], &both, 2, &out) });
-    rerendered(&args(&[&one], &both[..1], 2, &out));
+    let first = rerendered(&args(&[&one], &both[..1], 2, &out));
+    let other = RerenderArgs { size: Some((64, 32)), last: 90, ..args(&[&one], &both, 2, &out) };
+    let said = sentence(&rerender::run(&other, true).unwrap_err());
+    let words =
+        "holds results of --last 1s --size 128x64; expected the same, or another folder for --last 1.5s --size 64x32";
+    assert!(said.ends_with(words), "{said}");
+    assert!(contents(&out) == first, "what is there stays");
     fs::remove_file(out.join("b.case/predictions/truth/00000950.png")).unwrap();
     let kept = out.join("b.case/rgb/00000950.png");
     let mark = [fs::read(&kept).unwrap(), b"kept".to_vec()].concat();

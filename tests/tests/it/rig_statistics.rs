@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use measures::statistics::{Choice, of_recordings};
+use measures::statistics::{Choice, Library, of_recordings};
 use replay::{Case, Recording};
 use tests::recordings::{ALONE, TAKEOVER, WITH_TAKEOVER, record};
 use tests::scenes::busy_city;
@@ -63,7 +63,10 @@ fn every_ride_counts_once_for_its_checkpoint() {
     fs::copy(&again, &copy).unwrap();
     let both = of_recordings(&[again, dir.path().to_owned()], Choice::default()).unwrap();
     assert_eq!(both.checkpoints[0].statistics.rides, 2, "a file that is given twice counts once, and so does a copy");
-    assert!(both.failed.iter().all(|failure| failure.error.contains("given before")) && both.failed.len() == 1);
+    assert!(
+        both.failed.iter().all(|failure| failure.error.contains("holds the same recording as"))
+            && both.failed.len() == 1
+    );
     fs::remove_file(copy).unwrap();
     assert!(refused(&[dir.path().to_owned()], Some("newest")).contains("expected one of old, new"));
     assert!(refused(&[dir.path().join("3.mcap")], None).contains("no recording counts"));
@@ -83,4 +86,32 @@ fn blind_drives_are_one_until_they_are_revealed() {
         of.into_iter().map(|c| c.checkpoint).collect::<Vec<_>>()
     };
     assert_eq!((names(false), names(true)), (vec!["blind".to_owned()], vec!["old".into(), "new".into()]));
+}
+
+#[test]
+fn behind_cases_stand_the_rides_of_their_folders_by_checkpoint() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    ["runs/below", "calm", "elsewhere"].iter().for_each(|name| fs::create_dir_all(at(name)).unwrap());
+    let (old, new) = ([("checkpoint", "old")], [("checkpoint", "new")]);
+    let ridden = recording(true, &old);
+    write(dir.path(), "runs/a.mcap", &ridden);
+    let calm = write(dir.path(), "calm/b.mcap", &recording(false, &old));
+    write(dir.path(), "runs/below/c.mcap", &recording(false, &new));
+    write(dir.path(), "runs/a.fork.mcap", &recording(false, &[old[0], ("fork", "without the intervention")]));
+    let case = Case::cut(&ridden, &ridden.network().unwrap(), Case::window(ridden.log()).unwrap()).unwrap();
+    for name in ["runs/a.case.mcap", "elsewhere/a.case.mcap"] {
+        fs::write(at(name), case.encode().unwrap()).unwrap();
+    }
+    let of = |places: &[PathBuf]| {
+        let Library { cases, rides, failed } = Library::of(places);
+        assert_eq!(failed, []);
+        (cases.len(), rides.into_iter().map(|group| (group.checkpoint, group.rides.len())).collect::<Vec<_>>())
+    };
+    let (old, new) = (|rides| ("old".to_owned(), rides), ("new".to_owned(), 1));
+    assert_eq!(of(&[at("runs")]), (1, vec![old(1), new.clone()]), "anywhere below a folder");
+    assert_eq!(of(&[at("calm"), at("runs")]), (1, vec![old(2), new]), "a folder without a case was driven, too");
+    assert_eq!(of(&[at("runs/a.case.mcap")]), (1, vec![old(1)]), "beside a file, and nowhere else");
+    assert_eq!(of(&[at("elsewhere/a.case.mcap"), calm]), (1, vec![old(1)]), "a recording stands for itself");
+    assert_eq!(of(&[at("elsewhere")]), (1, vec![]));
 }

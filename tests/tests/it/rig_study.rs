@@ -1,7 +1,7 @@
 //! Drives as a study: what recordings say about people, and measures that follow from the log alone.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use aeye::cli::Cli;
 use aeye::exit;
@@ -187,9 +187,18 @@ fn a_report_reveals_and_leaves_familiarisation_out() {
     let blind = [("blind", "one of 2 checkpoints"), ("checkpoint", "network-x"), ("semantic_name", "P07")];
     let counts = labelled(dir.path(), 1, Label::Boredom, &blind);
     let practice = labelled(dir.path(), 2, Label::Walker, &[("familiarisation", "true")]);
-    let render = |files: &[&String]| {
-        let files: Vec<_> = files.iter().map(|file| file.as_str().into()).collect();
-        report::render(&files, &[CheckpointChoice::Truth], Some((64, 32)))
+    let case = |file: &String| {
+        let recording = Recording::open(file.as_ref()).expect("a recording");
+        let window = Case::window(recording.log()).expect("an intervention");
+        let case = Case::cut(&recording, &recording.network().expect("bundled"), window).expect("a case");
+        let path = base::library::case_path(file.as_ref());
+        fs::write(&path, case.encode().expect("a log")).expect("writable");
+        path
+    };
+    let (counts, practice) = (case(&counts), case(&practice));
+    let render = |files: &[&PathBuf]| {
+        let files: Vec<_> = files.iter().map(|file| file.to_path_buf()).collect();
+        report::render(&files, &[CheckpointChoice::Truth], Some((64, 32)), None)
     };
     let html = render(&[&counts, &practice]).expect("a page").html;
     for words in ["network-x, and the drivers did not know it", "P07", "1 of 1", "takeovers out of boredom", "Mask age"]

@@ -65,6 +65,9 @@ pub struct DemoArgs {
     /// Seed of the campaign.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Drives, files and frames worked on at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
     /// Folder of the results; a demo that was interrupted goes on there.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

@@ -32,8 +32,8 @@ pub struct RerenderArgs {
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
-    /// Folder of the results. One that this command began is completed: what is whole and follows from
-    /// the same files, checkpoints and options is kept.
+    /// Folder of the results. One that this command began with the same options is completed: what is whole and
+    /// follows from the same files and checkpoints is kept.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -139,8 +139,8 @@ pub struct RedriveArgs {
     /// Files driven on at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
-    /// Folder of the forks' recordings and of `redrive.jsonl`. One that this command began is completed: forks
-    /// that are there and follow from the same file, checkpoint and options are kept.
+    /// Folder of the forks' recordings and of `redrive.jsonl`. One that this command began with the same options is
+    /// completed: forks that are there and follow from the same file are kept.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -149,7 +149,8 @@ pub struct RedriveArgs {
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = "aeye report <FILE|DIR>... --checkpoint <C,...> --out <FILE.html> [OPTIONS]")]
 pub struct ReportArgs {
-    /// Corner cases, or folders with cases anywhere below; the recordings beside them give route and kilometres.
+    /// Corner cases, or folders with cases anywhere below. Kilometres are those of all recordings anywhere below the
+    /// folders, in the folders of the cases that are named, and that are named themselves.
     #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// Checkpoints to look through.
@@ -159,6 +160,9 @@ pub struct ReportArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
+    /// Cases drawn at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
     /// Where the page goes.
     #[arg(long, value_name = "FILE.html")]
     pub out: PathBuf,

@@ -36,6 +36,9 @@ pub struct CasesArgs {
     /// Size of the pictures.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
+    /// Cases drawn at the same time (default: one a core); the results do not depend on it.
+    #[arg(long, value_parser = jobs, value_name = "N")]
+    pub jobs: Option<u16>,
     /// Folder of the dataset; must not exist, be empty, or hold this dataset already.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

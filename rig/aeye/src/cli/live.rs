@@ -11,7 +11,9 @@ use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server;
 
-use super::values::{CHECKPOINT, CHECKPOINTS, file, force, one_checkpoint, screens, seconds, size, threshold};
+use super::values::{
+    CHECKPOINT, CHECKPOINTS, file, force, new_recording, one_checkpoint, screens, seconds, size, threshold,
+};
 
 /// Arguments of `drive`.
 #[derive(Args, Clone, Debug)]
@@ -69,7 +71,12 @@ pub struct DriveArgs {
     #[arg(long)]
     pub print_scenario: bool,
     /// Where the recording goes; further live runs go to FILE-2.mcap, FILE-3.mcap and so on.
-    #[arg(long, value_name = "FILE.mcap", required_unless_present = "print_scenario")]
+    #[arg(
+        long,
+        value_name = "FILE.mcap",
+        value_parser = new_recording(),
+        required_unless_present = "print_scenario"
+    )]
     record: Option<PathBuf>,
     /// What makes it part of a study with people.
     #[command(flatten, next_help_heading = "Study")]

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
+use base::library;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::Screens;
@@ -38,6 +39,13 @@ pub fn one_checkpoint(text: &str) -> Result<CheckpointChoice, String> {
         return Err("is a list; expected one checkpoint, as in early".into());
     }
     text.parse()
+}
+
+/// A recording that will be made, and found again by its name.
+pub fn new_recording() -> impl TypedValueParser<Value = PathBuf> {
+    let expected = "expected the name of a recording, as in drive.mcap, not of a case, of a fork, or of a hidden file";
+    clap::builder::PathBufValueParser::new()
+        .try_map(move |path| if library::is_drive_name(&path) { Ok(path) } else { Err(expected) })
 }
 
 /// An experiment with a name.

@@ -26,8 +26,8 @@ impl Onlooker for Printer {
 
 /// Runs `aeye demo`.
 pub fn run(args: &DemoArgs, json: bool) -> anyhow::Result<Verdict> {
-    let DemoArgs { seed, out } = args.clone();
-    let made = demo(&Options { seed, out }, &mut Printer { json }, &Interrupt::listen())?;
+    let DemoArgs { seed, jobs, out } = args.clone();
+    let made = demo(&Options { seed, jobs, out }, &mut Printer { json }, &Interrupt::listen())?;
     print::result(json, &made)?;
     Ok(Verdict::Ok)
 }

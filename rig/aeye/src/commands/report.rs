@@ -31,7 +31,7 @@ impl Typed for Summary {
 /// Runs `aeye report`.
 pub fn run(args: &ReportArgs, json: bool) -> anyhow::Result<Verdict> {
     output::check_file(&args.out)?;
-    let Report { html, cases, failed } = report::render(&args.files, &args.checkpoint, args.size)?;
+    let Report { html, cases, failed } = report::render(&args.files, &args.checkpoint, args.size, args.jobs)?;
     output::write_file(&args.out, html.as_bytes())?;
     let summary = Summary { report: args.out.display().to_string(), cases, bytes: html.len(), failed };
     print(json, &summary, || summary.report.clone())?;

@@ -1,5 +1,6 @@
 //! Files that appear only when they are whole.
 
+mod folder;
 mod pending;
 
 use std::fs;
@@ -8,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
+pub use folder::OutputFolder;
 pub use pending::{PendingFile, PendingFolder};
 
 /// Writes a file in one step: under a temporary name beside it, then renamed.

@@ -24,6 +24,11 @@ impl Interrupt {
         SHARED.get_or_init(Self::default).clone()
     }
 
+    /// Asks everyone who shares the flag to stop.
+    pub fn raise(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
     /// Whether the work is to end.
     pub fn is_raised(&self) -> bool {
         self.0.load(Ordering::Relaxed)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use base::json;
 use base::maps::{Map, ScenarioFile};
-use base::output;
+use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
 use base::spread::jobs;
 use drivers::checkpoint::{CheckpointChoice, check_names};
@@ -50,7 +50,7 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
     let eyes = options.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;
     let names: Vec<String> = eyes.iter().map(|eye| eye.name().to_owned()).collect();
     AdapterChoice::default().find()?;
-    output::create_folder(&plan.out)?;
+    let _folder = OutputFolder::open(&plan.out)?;
     let jobs = jobs(options.jobs);
     let mut runs = Vec::new();
     for eye in &eyes {

@@ -81,7 +81,10 @@ impl<'a> Runner<'a> {
     fn check(&self, run: u32, path: &Path, recording: &Recording) -> anyhow::Result<()> {
         let map = &self.plan.maps[self.plan.map_index(run)];
         let expected = manifest(&self.plan.scenario_of(run), map, self.eye);
-        if recording.log().manifest != expected || !recording.finished() {
+        if !recording.finished() {
+            bail!("{}: is cut off; expected a whole run, or none, which would be driven again", path.display());
+        }
+        if recording.log().manifest != expected {
             bail!("{}: belongs to another campaign; expected an empty folder or this campaign's", path.display());
         }
         Ok(())

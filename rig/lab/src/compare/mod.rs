@@ -33,7 +33,7 @@ use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
 use base::failure::{Failed, Usage};
 use base::json;
-use base::library;
+use base::library::{self, Kind};
 use base::output;
 use base::progress::{self, Interrupt};
 use base::say::say;
@@ -70,7 +70,8 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
     let reference = reference(args)?;
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "compare")?;
-    let library::Found { files: mut cases, mut failed } = library::find_cases(&args.files).or_failed()?;
+    let library::Found { files: mut cases, mut failed } =
+        library::find(&args.files, Kind::Cases).only_cases().or_failed()?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
     let settings = Settings::new(CLIP_TICKS, CLIP_FPS, size);
     let bar = progress::bar("frames", 0);

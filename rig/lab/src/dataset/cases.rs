@@ -8,6 +8,7 @@ use base::failure::Failed;
 use base::library::{self, Entry, Kind};
 use base::output::PendingFolder;
 use base::progress::{self, Interrupt};
+use base::spread::{in_order, jobs};
 use drivers::vision;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::footage::Footage;
@@ -19,6 +20,7 @@ use super::provenance::{Drive, FrameLine};
 use super::recipe::{CaseUsed, CasesRecipe, Recipe, city};
 use crate::cityscapes;
 use crate::looks::Studio;
+use crate::pipeline::Studios;
 
 /// Which corner cases become a dataset.
 #[derive(Clone, Debug)]
@@ -31,6 +33,8 @@ pub struct Options {
     pub split: String,
     /// Size of the pictures.
     pub size: (u32, u32),
+    /// Cases drawn at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
     /// Folder of the dataset; must not exist, be empty, or hold this dataset already.
     pub out: PathBuf,
 }
@@ -47,13 +51,13 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
         bail!("none of the corner cases is labelled {}", labels.join(" or "));
     }
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    build(&CasesRecipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, interrupt)
+    build(&CasesRecipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, args.jobs, interrupt)
 }
 
 /// The corner cases among files and folders, each once. One that cannot be read is an error: a dataset is whole.
 pub(super) fn cases_in(places: &[PathBuf]) -> anyhow::Result<Vec<(PathBuf, CaseUsed)>> {
     let read = |entry: Entry| Ok((entry.path.clone(), CaseUsed::read(&entry)?));
-    let found = library::find(places, Kind::Cases);
+    let found = library::find(places, Kind::Cases).only_cases();
     if !found.failed.is_empty() {
         return Err(Failed::new(found.failed).into());
     }
@@ -64,7 +68,7 @@ impl CaseUsed {
     fn read(entry: &Entry) -> anyhow::Result<Self> {
         let log = Recording::open(&entry.path)?.into_log();
         let info = log.manifest.case.as_ref();
-        let info = info.with_context(|| format!("{}: is a recording, expected a corner case", entry.path.display()))?;
+        let info = info.with_context(|| format!("{}: is no corner case any more", entry.path.display()))?;
         Ok(Self {
             name: entry.name.clone(),
             digest: entry.digest.to_hex().to_string(),
@@ -82,6 +86,7 @@ pub(super) fn build(
     recipe: &CasesRecipe,
     files: &[PathBuf],
     out: &Path,
+    threads: Option<u16>,
     interrupt: &Interrupt,
 ) -> anyhow::Result<Manifest> {
     let whole = Recipe::Cases(recipe.clone());
@@ -89,27 +94,52 @@ pub(super) fn build(
         return Ok(finished);
     }
     let adapter = vision::find_adapter()?;
-    let mut studio = Studio::new(recipe.size);
-    let pending = PendingFolder::new(out)?;
-    let mut lines = Vec::new();
+    let (pending, studios) = (PendingFolder::new(out)?, Studios::default());
     let bar = progress::bar("cases", files.len() as u64);
-    for (scene, (path, case)) in (0..).zip(files.iter().zip(&recipe.cases)) {
-        let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
-        let drive = Drive { recording: case.recording.clone(), seed: case.seed, label: case.label.as_deref() };
-        for (number, snapshot) in (0..).zip(&footage.scenes) {
-            if interrupt.is_raised() {
-                bail!("{}: interrupted; nothing of it is kept", out.display());
-            }
-            let frame = studio.draw(&footage.network, snapshot)?;
-            let place = Place { split: &recipe.split, city: &case.map, scene, frame: number };
-            cityscapes::write(pending.path(), &place, &frame)?;
-            let state_hash = footage.log.hash(frame.tick);
-            lines.push(FrameLine::new(&place, &frame, (snapshot, state_hash), &drive, &adapter));
-        }
+    let draw = |scene: usize| {
+        studios.with(recipe.size, |studio| {
+            let mut shoot = Shoot { recipe, adapter: &adapter, folder: pending.path(), studio, interrupt };
+            shoot.case(scene, &files[scene])
+        })
+    };
+    let mut lines = Vec::new();
+    in_order(jobs(threads), files.len(), draw, |_, drawn| {
+        lines.extend(drawn?.with_context(|| format!("{}: interrupted; nothing of it is kept", out.display()))?);
         bar.inc(1);
-    }
+        Ok(())
+    })?;
     bar.finish_and_clear();
     let manifest = Manifest::complete(pending.path(), whole, adapter, &lines)?;
     pending.finish()?;
     Ok(manifest)
+}
+
+/// Draws cases, one after the other.
+struct Shoot<'a> {
+    recipe: &'a CasesRecipe,
+    adapter: &'a str,
+    folder: &'a Path,
+    studio: &'a mut Studio,
+    interrupt: &'a Interrupt,
+}
+
+impl Shoot<'_> {
+    /// Writes the frames of a case, which is the scene of that number; `None` when interrupted.
+    fn case(&mut self, scene: usize, path: &Path) -> anyhow::Result<Option<Vec<FrameLine>>> {
+        let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;
+        let case = &self.recipe.cases[scene];
+        let drive = Drive { recording: case.recording.clone(), seed: case.seed, label: case.label.as_deref() };
+        let mut lines = Vec::new();
+        for (number, snapshot) in (0..).zip(&footage.scenes) {
+            if self.interrupt.is_raised() {
+                return Ok(None);
+            }
+            let frame = self.studio.draw(&footage.network, snapshot)?;
+            let place = Place { split: &self.recipe.split, city: &case.map, scene: scene as u32, frame: number };
+            cityscapes::write(self.folder, &place, &frame)?;
+            let state_hash = footage.log.hash(frame.tick);
+            lines.push(FrameLine::new(&place, &frame, (snapshot, state_hash), &drive, self.adapter));
+        }
+        Ok(Some(lines))
+    }
 }

@@ -77,7 +77,8 @@ impl Manifest {
             bail!("{place}: holds a complete dataset of another recipe; expected a new folder, or the same recipe");
         }
         let made_by = |kernel: &str, renderer: &str| format!("kernel {kernel} and renderer {renderer}");
-        let (then, now) = (made_by(&manifest.kernel, &manifest.renderer), made_by(&kernel::identity(), RENDERER_VERSION));
+        let (then, now) =
+            (made_by(&manifest.kernel, &manifest.renderer), made_by(&kernel::identity(), RENDERER_VERSION));
         if then != now {
             bail!("{}: holds this dataset as made by {then}; expected a new folder for {now}", folder.display());
         }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use base::failure::Usage;
 use base::maps::{self, Map};
-use base::output;
+use base::output::{self, OutputFolder};
 use base::progress::{self, Bar, Interrupt};
 use base::spread::{jobs, on_threads};
 use drivers::vision;
@@ -74,6 +74,7 @@ pub(super) fn build(
     }
     let options = RenderOptions::default();
     let adapter = vision::find_adapter()?;
+    let _folder = OutputFolder::open(out)?;
     let parts = prepare(out, recipe, &adapter)?;
     let scenes = recipe.scenes();
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());

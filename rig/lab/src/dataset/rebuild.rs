@@ -66,7 +66,7 @@ pub struct Options {
     pub cases: Vec<PathBuf>,
     /// OpenDRIVE files of maps that are not bundled.
     pub maps: Vec<String>,
-    /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
+    /// Scenes simulated, or cases drawn, at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the dataset; one that was interrupted is completed.
     pub out: PathBuf,
@@ -119,7 +119,7 @@ impl Sources {
             }
             Recipe::Cases(recipe) => {
                 let files = recipe.cases.iter().map(|used| self.case(used)).collect::<anyhow::Result<Vec<_>>>()?;
-                cases::build(recipe, &files, out, interrupt)
+                cases::build(recipe, &files, out, self.jobs, interrupt)
             }
             Recipe::Mix(mix) => self.build_mix(mix, out, interrupt),
         }

@@ -39,7 +39,7 @@ pub use set::Set;
 pub use tables::Tables;
 
 use self::stages::Stages;
-use base::output;
+use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
 
 /// `tables.json` of `aeye experiment`.
@@ -78,7 +78,7 @@ impl fmt::Display for Outcome {
 /// Does what a recipe says in a folder, or what is left of it there; `jobs` drives at the same time.
 pub fn run(recipe: &Recipe, out: &Path, jobs: Option<u16>, interrupt: &Interrupt) -> anyhow::Result<Outcome> {
     AdapterChoice::default().find()?;
-    output::create_folder(out)?;
+    let _folder = OutputFolder::open(out)?;
     keep_recipe(recipe, &out.join("recipe.toml"))?;
     let results = Stages { recipe, out, jobs, interrupt: interrupt.clone() }.run()?;
     output::write_file(&out.join("tables.json"), json::json_file(&results.tables)?.as_bytes())?;

@@ -220,6 +220,7 @@ impl Stages<'_> {
                 label: Vec::new(),
                 split: split.into(),
                 size: self.recipe.size,
+                jobs: self.jobs,
                 out: self.dataset(name),
             };
             cases::make(&args, &self.interrupt)?;

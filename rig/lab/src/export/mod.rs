@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use base::failure::{Failed, Failure, Usage};
 use base::json::Typed;
-use base::library::{self, Found, Kind, Listed};
-use base::output::{self, PendingFile};
+use base::library::{self, Entry, Found, Kind};
+use base::output::{self, OutputFolder, PendingFile};
 use base::progress::{self, Interrupt};
 use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
@@ -35,6 +35,9 @@ use super::pipeline::Studios;
 pub use film::Counts;
 use film::{Camera, Window};
 use sink::Sink;
+
+/// The layout for viewers, in a folder of several exports.
+const LAYOUT: &str = "layout.json";
 
 /// What was written.
 #[derive(Debug, Serialize)]
@@ -108,7 +111,7 @@ impl fmt::Display for Exports {
 
 /// Exports what is asked for; what is whole already is kept.
 pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> {
-    let Places { layout, files, mut failed } = places(args)?;
+    let Places { layout, files, mut failed, folder } = places(args)?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
     let studios = Studios::default();
     let bar = progress::bar("files", files.len() as u64);
@@ -117,6 +120,9 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
         studios.with(size, |studio| {
             let mut camera = Camera { studio, eyes: &mut eyes.clone() };
             let recording = Recording::open(file)?;
+            if let (Some(folder), Some(below)) = (&folder, out.parent()) {
+                folder.make(below)?;
+            }
             export_one((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
         })
     };
@@ -146,23 +152,29 @@ struct Places {
     /// What is exported, and to where.
     files: Vec<(PathBuf, PathBuf)>,
     failed: Vec<Failure>,
+    /// The folder, where they go into one.
+    folder: Option<OutputFolder>,
 }
 
 /// One file goes to `OUT.mcap`, or into a folder as several do.
 fn places(args: &Options) -> anyhow::Result<Places> {
-    let Found { files: given, failed } = library::list(&args.files, Kind::Cases).or_failed()?;
+    let Found { files: given, failed } = library::find(&args.files, Kind::Cases).apart_from(LAYOUT).or_failed()?;
     let is_file = args.out.extension().is_some_and(|ending| ending == "mcap") && !args.out.is_dir();
     if is_file && given.len() > 1 {
         let sentence = format!("{}: is one file; expected a folder for several", args.out.display());
         return Err(Usage(sentence).into());
     }
+    if args.out.to_str().is_none() {
+        bail!("{}: its name is not UTF-8; expected one that is", args.out.display());
+    }
     if is_file {
         output::check_file(&args.out)?;
     }
-    let to = |file: &Listed| if is_file { args.out.clone() } else { args.out.join(format!("{}.mcap", file.name)) };
-    let layout = if is_file { args.out.with_extension("layout.json") } else { args.out.join("layout.json") };
+    let to = |file: &Entry| if is_file { args.out.clone() } else { args.out.join(format!("{}.mcap", file.name)) };
+    let layout = if is_file { args.out.with_extension("layout.json") } else { args.out.join(LAYOUT) };
     let files = given.into_iter().map(|file| (file.path.clone(), to(&file))).collect();
-    Ok(Places { layout, files, failed })
+    let folder = if is_file { None } else { Some(OutputFolder::open(&args.out)?) };
+    Ok(Places { layout, files, failed, folder })
 }
 
 fn export_one(
@@ -178,7 +190,6 @@ fn export_one(
     }
     let (log, network) = (recording.log(), recording.network()?);
     let window = window(log, args)?;
-    output::create_folder(out.parent().unwrap_or(Path::new(".")))?;
     let (about, counts) = (about(recording, &window, (args, size), camera.eyes), Counts::of(log, &window));
     let (from, to) = window.ticks.clone().into_inner();
     let kept = there == Some(Exported { about: about.clone(), is_whole: true });

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context;
+use base::failure::Failure;
 use base::json::Typed;
 use base::words;
 use kernel::time::Tick;
@@ -79,6 +80,8 @@ pub struct Overall {
     /// What they have in common.
     #[serde(flatten)]
     pub tally: Tally,
+    /// Files that were left out, and why.
+    pub failed: Vec<Failure>,
 }
 
 /// The last line of `aeye inspect` of several files.

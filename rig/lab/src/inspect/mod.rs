@@ -28,7 +28,7 @@ pub struct Options {
 pub struct Inspected {
     /// Files that could be read.
     pub read: usize,
-    /// What they have in common; none of a single file.
+    /// What they have in common, and what could not be read; none of a single file.
     pub overall: Option<Overall>,
     /// Those whose replay is not the run that was recorded.
     pub diverged: Vec<PathBuf>,
@@ -38,7 +38,7 @@ pub struct Inspected {
 
 /// Looks at every file, and shows what is in each, in their order.
 pub fn inspect(options: &Options, mut show: impl FnMut(&Contents) -> anyhow::Result<()>) -> anyhow::Result<Inspected> {
-    let Found { files, mut failed } = library::list(&options.files, Kind::All);
+    let Found { files, mut failed } = library::find(&options.files, Kind::All);
     let (mut seen, mut diverged) = (Vec::new(), Vec::new());
     in_order(
         jobs(options.jobs),
@@ -58,7 +58,9 @@ pub fn inspect(options: &Options, mut show: impl FnMut(&Contents) -> anyhow::Res
         },
     )?;
     let tally = || Tally::of(seen.iter().map(|(recording, measures)| (recording, measures.as_ref())));
-    let overall = (seen.len() > 1).then(|| Overall { kind: "overall", files: seen.len(), tally: tally() });
+    let several = seen.len() + failed.len() > 1;
+    let overall =
+        several.then(|| Overall { kind: "overall", files: seen.len(), tally: tally(), failed: failed.clone() });
     Ok(Inspected { read: seen.len(), overall, diverged, failed })
 }
 

@@ -2,7 +2,7 @@
 //!
 //! `OUT/NAME.fork.mcap` for each file (`NAME.fork-1.mcap` and so on for variations), recordings that verify as
 //! any other, and `OUT/redrive.jsonl`, a line for each. Forks that are there are found again through
-//! `OUT/.redrive`.
+//! `OUT/.redrive`; a folder holds those of the same options alone.
 
 mod counterfactual;
 mod fork;
@@ -28,10 +28,10 @@ use self::verdict::Need;
 use super::store::Store;
 use base::failure::{Failed, Failure, Usage};
 use base::json::json_line;
-use base::library::{self, Kind, Listed};
-use base::{maps, output};
+use base::library::{self, Entry, Kind};
 use base::progress::{self, Interrupt};
 use base::spread::{in_order, jobs};
+use base::{maps, output};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::recorded_eye::RecordedEye;
 use drivers::vision::{self, Eye, Vision};
@@ -39,6 +39,8 @@ use measures::criticality::{Extreme, Extremes};
 
 /// A variation lets the safety driver go so much earlier than the one before.
 const VARIATION_TICKS: Tick = TICK_HZ as Tick / 10;
+/// The table of all forks, in the folder of the results.
+const TABLE: &str = "redrive.jsonl";
 /// A time to collision up to this is told as a near miss, seconds.
 const NEAR_MISS_S: f64 = 1.5;
 
@@ -124,7 +126,7 @@ pub struct Options {
     pub seconds: u32,
     /// Files driven on at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
-    /// Folder of the forks' recordings and of `redrive.jsonl`. One that was begun is completed.
+    /// Folder of the forks' recordings and of `redrive.jsonl`. One that was begun with the same options is completed.
     pub out: PathBuf,
 }
 
@@ -150,9 +152,11 @@ type Kept = (Line, String);
 pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Forks> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "redrive")?;
-    let library::Found { files, mut failed } = library::list(&args.files, Kind::Cases).or_failed()?;
+    store.hold(&options(args)?)?;
+    let found = library::find(&args.files, Kind::Cases).apart_from(TABLE).or_failed()?;
+    let library::Found { files, mut failed } = found;
     // That of an earlier call would not be about these files.
-    let table = args.out.join("redrive.jsonl");
+    let table = args.out.join(TABLE);
     if table.exists() {
         fs::remove_file(&table).with_context(|| table.display().to_string())?;
     }
@@ -184,8 +188,21 @@ pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Forks> {
     Ok(Forks { out: args.out.display().to_string(), files: well, forks, verdicts, failed })
 }
 
+/// The options that forks in a folder have in common, as they are given.
+fn options(args: &Options) -> anyhow::Result<Vec<String>> {
+    let course = match &args.checkpoint {
+        None => "--without-intervention".to_owned(),
+        Some(choice) => {
+            let eye = Eye::open(choice)?;
+            let digest = eye.digest();
+            format!("--checkpoint {} ({})", eye.name(), digest.get(..8).unwrap_or(&digest))
+        }
+    };
+    Ok(vec![course, format!("--vary {}", args.vary), format!("--after {}s", args.seconds)])
+}
+
 /// What the forks of a file are called: without `.case`, unless its recording is among the files.
-fn stem(files: &[Listed], index: usize) -> &str {
+fn stem(files: &[Entry], index: usize) -> &str {
     let name = &files[index].name;
     let short = name.strip_suffix(".case").unwrap_or(name);
     if files.iter().enumerate().any(|(other, file)| other != index && file.name == short) { name } else { short }
@@ -194,12 +211,13 @@ fn stem(files: &[Listed], index: usize) -> &str {
 /// All forks of a file.
 fn forks_of(
     args: &Options,
-    (file, name): (&Listed, &str),
+    (file, name): (&Entry, &str),
     (store, interrupt): (&Store, &Interrupt),
 ) -> anyhow::Result<Vec<Line>> {
+    store.check(&mark(name, 0), file)?;
     let recording = Recording::open(&file.path)?;
     let network = recording.network()?;
-    let digest = blake3::Hash::from_bytes(recording.digest()).to_hex().to_string();
+    let digest = file.digest.to_hex().to_string();
     let log = recording.into_log();
     if args.without_intervention {
         log.intervention.context("holds no intervention that could be left out")?;
@@ -212,7 +230,7 @@ fn forks_of(
     let mut vision = None;
     let mut lines = Vec::new();
     for variation in 0..=args.vary {
-        let (mark, key) = (format!("{name}/{variation}"), key(args, &digest, &eye, variation));
+        let (mark, key) = (mark(name, variation), key(args, &digest, &eye, variation));
         let to = library::fork_name(name, variation);
         if let Some(line) = kept(args, store, &mark, &key) {
             lines.push(Line { file: file.path.display().to_string(), recording: to, ..line });
@@ -228,7 +246,7 @@ fn forks_of(
         let (course, after) = variant(args, &log, &network, variation).drive(&log, &network, seeing)?;
         vision = Some(after.with_eye(eye.clone()));
         let path = args.out.join(&to);
-        output::create_folder(path.parent().unwrap_or(&args.out))?;
+        store.make(path.parent().unwrap_or(&args.out))?;
         maps::put_beside(log.manifest.foreign_map.as_ref(), &path)?;
         output::write_file(&path, &course.recording)?;
         let recorded = blake3::hash(&course.recording).to_hex().to_string();
@@ -237,6 +255,11 @@ fn forks_of(
         lines.push(line);
     }
     Ok(lines)
+}
+
+/// The name of what is kept of a fork.
+fn mark(name: &str, variation: u16) -> String {
+    format!("{name}/{variation}")
 }
 
 fn key(args: &Options, log: &str, eye: &Eye, variation: u16) -> Key {
@@ -262,7 +285,7 @@ fn kept(args: &Options, store: &Store, mark: &str, key: &Key) -> Option<Line> {
 
 /// What came of a fork.
 fn line(
-    file: &Listed,
+    file: &Entry,
     (variation, recording): (u16, String),
     eye: &Eye,
     at: Tick,
@@ -380,8 +403,9 @@ mod tests {
 
     #[test]
     fn a_recording_and_its_case_have_forks_of_their_own() {
-        let listed = |name: &str| Listed { path: name.into(), name: name.into() };
-        let both = [listed("x"), listed("x.case"), listed("y.case")];
+        let digest = blake3::hash(b"");
+        let entry = |name: &str| Entry { is_case: true, path: name.into(), name: name.into(), digest };
+        let both = [entry("x"), entry("x.case"), entry("y.case")];
         assert_eq!([0, 1, 2].map(|index| stem(&both, index)), ["x", "x.case", "y"]);
     }
 

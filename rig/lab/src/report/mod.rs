@@ -2,7 +2,6 @@
 //! checkpoint made of it, and where it happened.
 
 mod drive;
-mod driven;
 mod fact;
 mod map;
 mod page;
@@ -12,22 +11,24 @@ mod trace;
 
 use std::path::PathBuf;
 
-use anyhow::anyhow;
+use anyhow::{anyhow, bail};
 use base::failure::{Failed, Failure};
-use base::library::{self, Found, Kind, Listed};
+use base::library::Entry;
 use base::progress;
 use base::say::say;
+use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::Tally;
 use measures::footage::Footage;
+use measures::statistics::Library;
 use perception::ConfusionMatrix;
 use render::AdapterChoice;
 
 use super::looks::{Size, Studio, look, open_eyes};
+use super::pipeline::Studios;
 use drive::Drive;
-use driven::driven;
 use page::{CasePart, Page};
 pub use page::{Class, STYLE, legend};
 use story::Story;
@@ -46,62 +47,71 @@ pub struct Report {
 
 /// What came of a case.
 enum Told {
-    Case(Box<(Drive, CasePart, Vec<ConfusionMatrix>)>),
+    Case(Box<(Drive, CasePart, Vec<ConfusionMatrix>, Seen)>),
     /// It was a drive to get used to the rig.
     Uncounted,
 }
 
 /// The page about the corner cases among files and folders, each drawn at a size (see [`open_eyes`]) and looked at through each
-/// checkpoint. Kilometres, and the corner cases that they are divided by, are those of all recordings in and below
-/// the folders of the cases, of which few may be shown. Drives to get used to the rig do not count.
-pub fn render(places: &[PathBuf], choices: &[CheckpointChoice], size: Option<Size>) -> anyhow::Result<Report> {
-    let (mut eyes, size) = open_eyes(choices, size)?;
+/// checkpoint, so many at the same time. Kilometres, and the corner cases that they are divided by, are those of all rides behind the cases (see
+/// [`Library::of`]), of which few may be shown. Drives to get used to the rig do not count.
+pub fn render(
+    places: &[PathBuf],
+    choices: &[CheckpointChoice],
+    size: Option<Size>,
+    threads: Option<u16>,
+) -> anyhow::Result<Report> {
+    let (eyes, size) = open_eyes(choices, size)?;
     AdapterChoice::default().find()?;
-    let mut studio = Studio::new(size);
     let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
     let (mut cases, mut drives, mut seen) = (Vec::new(), Vec::new(), Seen::nothing());
-    let Found { files, mut failed } = library::list(places, Kind::Cases).or_failed()?;
-    let bar = progress::bar("report", files.len() as u64);
-    for file in &files {
-        match tell(file, &mut studio, &mut eyes, &mut seen) {
+    let Library { cases: files, rides, mut failed } = Library::of(places);
+    if files.is_empty() && failed.is_empty() {
+        bail!("none of the files and folders holds a corner case; expected at least one *.case.mcap");
+    }
+    let (bar, studios) = (progress::bar("report", files.len() as u64), Studios::default());
+    let work = |index: usize| studios.with(size, |studio| tell(&files[index], studio, &mut eyes.clone()));
+    in_order(jobs(threads), files.len(), work, |index, told| {
+        let path = &files[index].path;
+        match told {
             Ok(Told::Case(told)) => {
-                let (drive, part, matrices) = *told;
+                let (drive, part, matrices, shown) = *told;
                 overall.iter_mut().zip(&matrices).for_each(|(sum, matrix)| sum.merge(matrix));
+                seen.merge(&shown);
                 cases.push(part);
                 drives.push(drive);
             }
-            Ok(Told::Uncounted) => {
-                say(format_args!("{}: left out, a drive to get used to the rig", file.path.display()))
-            }
-            Err(error) => failed.push(Failure::new(&file.path, &error)),
+            Ok(Told::Uncounted) => say(format_args!("{}: left out, a drive to get used to the rig", path.display())),
+            Err(error) => failed.push(Failure::new(path, &error)),
         }
         bar.inc(1);
-    }
+        Ok(())
+    })?;
     bar.finish_and_clear();
     if cases.is_empty() {
         let why = Failed::check(&failed, 0).err();
         return Err(why.unwrap_or_else(|| anyhow!("no case is left: expected one of a drive that counts")));
     }
     let tally = Tally::of(drives.iter().map(|drive| (&drive.recording, drive.measures.as_ref())));
-    let (number, driven) = (cases.len(), driven(&files, &mut failed));
-    let html = Page::new(&eyes, size, &overall, &seen, (&driven, &tally), cases).render()?;
+    let number = cases.len();
+    let html = Page::new(&eyes, size, &overall, &seen, (&rides, &tally), cases).render()?;
     Ok(Report { html, cases: number, failed })
 }
 
 /// What is on the page about a case.
-fn tell(file: &Listed, studio: &mut Studio, eyes: &mut [Eye], seen: &mut Seen) -> anyhow::Result<Told> {
+fn tell(file: &Entry, studio: &mut Studio, eyes: &mut [Eye]) -> anyhow::Result<Told> {
     let drive = Drive::of(&file.path)?;
     if drive.is_familiarisation() {
         return Ok(Told::Uncounted);
     }
     let footage = Footage::read(&file.path, CLIP_TICKS, CLIP_FPS)?;
-    let mut strip = Strip::new(eyes, &footage);
+    let (mut strip, mut seen) = (Strip::new(eyes, &footage), Seen::nothing());
     for scene in &footage.scenes {
         let frame = studio.draw(&footage.network, scene)?;
         let masks = look(eyes, &frame)?;
-        strip.add(&frame, &masks, seen)?;
+        strip.add(&frame, &masks, &mut seen)?;
     }
     let matrices = strip.matrices().to_vec();
     let (story, trace) = (Story::of(&drive, &footage)?, trace::of(&footage));
-    Ok(Told::Case(Box::new((drive, CasePart::new(&file.name, story, strip, trace), matrices))))
+    Ok(Told::Case(Box::new((drive, CasePart::new(&file.name, story, strip, trace), matrices, seen))))
 }

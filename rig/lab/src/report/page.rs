@@ -4,7 +4,7 @@ use anyhow::Context;
 use drivers::vision::Eye;
 use kernel::time::CLIP_FPS;
 use measures::Tally;
-use measures::statistics::Ride;
+use measures::statistics::{Group, Ride};
 use measures::stats::Spread;
 use perception::ConfusionMatrix;
 use perception::classes::{TRAIN_CLASSES, train_id};
@@ -22,7 +22,7 @@ pub const STYLE: &str = include_str!("style.css");
 
 #[derive(Serialize)]
 struct Tile {
-    name: &'static str,
+    name: String,
     value: String,
 }
 
@@ -116,40 +116,64 @@ fn score_rows(matrices: &[ConfusionMatrix], every_class: bool) -> Vec<Row> {
 }
 
 /// The figures at the top. Kilometres and the corner cases that they are divided by are those of the same
-/// rides, however many cases are shown.
-fn tiles(shown: usize, driven: &[Ride], tally: &Tally) -> Vec<Tile> {
-    let tile = |name, value| Tile { name, value };
-    let mut tiles = vec![tile("corner cases shown", shown.to_string())];
+/// rides, however many cases are shown, and of each checkpoint for itself.
+fn tiles(shown: usize, driven: &[Group], tally: &Tally) -> Vec<Tile> {
+    let mut tiles = Vec::new();
+    let mut tile = |name: &str, value| tiles.push(Tile { name: name.to_owned(), value });
+    tile("corner cases shown", shown.to_string());
     if !driven.is_empty() {
-        let (km, minutes) = driven.iter().fold((0.0, 0.0), |(km, min), ride| (km + ride.km, min + ride.minutes));
-        let cases = cases_of(driven);
-        tiles.push(tile("runs", driven.len().to_string()));
-        tiles.push(tile("kilometres driven", format!("{km:.2}")));
-        tiles.push(tile("minutes driven", format!("{minutes:.1}")));
-        tiles.push(tile("corner cases in these runs", cases.to_string()));
-        let per_case = if cases == 0 { "-".into() } else { format!("{:.2}", km / cases as f64) };
-        tiles.push(tile("km per corner case of these runs", per_case));
+        tile("runs", rides(driven).count().to_string());
+        tile("kilometres driven", format!("{:.2}", km(rides(driven))));
+        tile("minutes driven", format!("{:.1}", rides(driven).map(|ride| ride.minutes).sum::<f64>()));
+        tile("corner cases in these runs", cases(rides(driven)).to_string());
+    }
+    for group in driven {
+        let through = if driven.len() > 1 { format!(" ({})", group.checkpoint) } else { String::new() };
+        tile(&format!("km per corner case of these runs{through}"), km_per_case(&group.rides));
     }
     if tally.labelled > 0 {
-        tiles.push(tile("takeovers out of boredom", format!("{} of {}", tally.boredom, tally.labelled)));
+        tile("takeovers out of boredom", format!("{} of {}", tally.boredom, tally.labelled));
     }
     if let Some(Spread { median, n, .. }) = tally.intervention_ms {
-        tiles.push(tile("median from hazard to takeover", format!("{median:.0} ms (n = {n})")));
+        tile("median from hazard to takeover", format!("{median:.0} ms (n = {n})"));
     }
     tiles
 }
 
-fn cases_of(driven: &[Ride]) -> usize {
-    driven.iter().filter(|ride| ride.is_case).count()
+fn rides(driven: &[Group]) -> impl Iterator<Item = &Ride> {
+    driven.iter().flat_map(|group| &group.rides)
+}
+
+fn km<'a>(rides: impl Iterator<Item = &'a Ride>) -> f64 {
+    rides.map(|ride| ride.km).sum()
+}
+
+fn cases<'a>(rides: impl Iterator<Item = &'a Ride>) -> usize {
+    rides.filter(|ride| ride.is_case).count()
+}
+
+fn km_per_case(rides: &[Ride]) -> String {
+    match cases(rides.iter()) {
+        0 => "-".into(),
+        cases => format!("{:.2}", km(rides.iter()) / cases as f64),
+    }
 }
 
 /// What the tiles count, in a sentence.
-fn beside(shown: usize, driven: &[Ride]) -> String {
+fn beside(shown: usize, driven: &[Group]) -> String {
     if driven.is_empty() {
         return String::new();
     }
-    let selection = if shown < cases_of(driven) { "; those shown are a selection of them" } else { "" };
-    format!("Runs, kilometres, minutes and their corner cases are those of all recordings beside the cases{selection}.")
+    let each = if driven.len() > 1 {
+        "; kilometres a case are told of each checkpoint that they were driven with"
+    } else {
+        ""
+    };
+    let selection = if shown < cases(rides(driven)) { "; those shown are a selection of them" } else { "" };
+    format!(
+        "Runs, kilometres, minutes and their corner cases are those of all recordings in the folders that were given \
+         and beside the cases that were given{each}{selection}."
+    )
 }
 
 /// The whole page.
@@ -176,7 +200,7 @@ impl Page {
         (width, height): (u32, u32),
         overall: &[ConfusionMatrix],
         seen: &Seen,
-        (driven, tally): (&[Ride], &Tally),
+        (driven, tally): (&[Group], &Tally),
         cases: Vec<CasePart>,
     ) -> Self {
         let checkpoint = |eye: &Eye| Checkpoint { name: eye.name().to_owned(), digest: eye.digest() };

@@ -56,6 +56,11 @@ impl Seen {
         self.0[usize::from(tag)]
     }
 
+    /// Adds what other pictures show.
+    pub fn merge(&mut self, other: &Self) {
+        self.0.iter_mut().zip(other.0).for_each(|(seen, other)| *seen |= other);
+    }
+
     /// Adds what a picture shows.
     pub fn add(&mut self, ids: &[u8]) {
         ids.iter().for_each(|id| self.0[usize::from(*id)] = true);

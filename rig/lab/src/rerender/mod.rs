@@ -3,7 +3,7 @@
 //! `OUT/NAME/rgb/TICK.png`, `OUT/NAME/labels/TICK.png`, `OUT/NAME/predictions/CHECKPOINT/TICK.png`
 //! (ids are tags of CARLA 0.9.10), and `OUT/metrics.jsonl`: a line for each frame and checkpoint, for
 //! each file and checkpoint, and for each checkpoint over all. What is whole is found again through
-//! `OUT/.rerender`.
+//! `OUT/.rerender`; pictures in a folder are of the same options, through as many checkpoints as one likes.
 
 mod options;
 mod pictures;
@@ -31,6 +31,9 @@ use super::figures::{Figures, table};
 use super::looks::open_eyes;
 use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
+
+/// The table of all metrics, in the folder of the results.
+const TABLE: &str = "metrics.jsonl";
 
 /// A line of `metrics.jsonl`.
 #[derive(Serialize)]
@@ -99,9 +102,11 @@ impl fmt::Display for Rerendered {
 pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rerendered> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "rerender")?;
-    let library::Found { mut files, mut failed } = library::find(&args.files, Kind::Cases).or_failed()?;
+    let found = library::find(&args.files, Kind::Cases).apart_from(TABLE).or_failed()?;
+    let library::Found { mut files, mut failed } = found;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
-    let metrics = args.out.join("metrics.jsonl");
+    store.hold(&options::of_pictures(args, size))?;
+    let metrics = args.out.join(TABLE);
     // That of an earlier call would not be about these files.
     if metrics.exists() {
         fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use drivers::checkpoint::CheckpointChoice;
-use kernel::time::Tick;
+use kernel::time::{TICK_HZ, Tick};
 
 /// What is drawn and looked at again.
 #[derive(Clone, Debug)]
@@ -20,7 +20,13 @@ pub struct Options {
     pub size: Option<(u32, u32)>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
-    /// Folder of the results. One that this command began is completed: what is whole and follows from
-    /// the same files, checkpoints and options is kept.
+    /// Folder of the results. One that this command began with the same options is completed: what is whole and
+    /// follows from the same files and checkpoints is kept.
     pub out: PathBuf,
+}
+
+/// The options that pictures in a folder have in common, as they are given.
+pub fn of_pictures(args: &Options, (width, height): (u32, u32)) -> Vec<String> {
+    let last_s = args.last as f64 / f64::from(TICK_HZ);
+    vec![format!("--last {last_s}s"), format!("--fps {}", args.fps), format!("--size {width}x{height}")]
 }

@@ -47,6 +47,7 @@ impl Work for Pictures<'_> {
 
     fn read(&self, index: usize) -> anyhow::Result<(Footage, Making)> {
         let file = &self.files[index];
+        self.store.check(&frames_mark(file), file)?;
         let footage = Footage::read(&file.path, self.args.last, self.args.fps)?;
         let (frames, eyes) = self.missing(file);
         let making = Making { frames, eyes, folder: self.store.pending()? };

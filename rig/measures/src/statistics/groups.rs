@@ -1,13 +1,12 @@
 //! Rides by checkpoint.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use base::failure::{Failed, Failure, Usage};
 use base::json::Typed;
-use base::library::{self, Found, Kind, Listed};
-use base::spread::{in_order, jobs};
+use base::library::{self, Entry, Found, Kind};
+use base::spread::{collect_in_order, jobs};
 use replay::Recording;
 use serde::Serialize;
 
@@ -33,10 +32,13 @@ pub struct CheckpointStatistics {
 }
 
 /// The rides through one checkpoint.
-struct Group {
-    checkpoint: String,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Its name; with the beginning of its digest where several have that name.
+    pub checkpoint: String,
     digest: Option<String>,
-    rides: Vec<Ride>,
+    /// In the order in which they were driven.
+    pub rides: Vec<Ride>,
 }
 
 /// How the statistics are made.
@@ -69,8 +71,9 @@ impl Typed for StatisticsOfAll {
 /// Statistics of recordings and of those anywhere below folders (where corner cases and forks are left out),
 /// checkpoint by checkpoint in the order of their first rides.
 pub fn of_recordings(paths: &[PathBuf], choice: Choice<'_>) -> anyhow::Result<StatisticsOfAll> {
-    let (mut groups, failed) = group(library::list(paths, Kind::Drives), choice)?;
-    tell_apart(&mut groups);
+    let Found { files, mut failed } = library::find(paths, Kind::Drives);
+    let (groups, unread) = group(&files, choice.reveal, choice.jobs);
+    failed.extend(unread);
     let Some(first) = groups.first() else {
         let why = Failed::check(&failed, 0).err();
         return Err(why.unwrap_or_else(|| anyhow!("no recording counts: all are drives to get used to the rig")));
@@ -92,7 +95,6 @@ pub fn of_recordings(paths: &[PathBuf], choice: Choice<'_>) -> anyhow::Result<St
 
 /// What is known of a ride.
 struct Known {
-    digest: [u8; 32],
     checkpoint: String,
     checkpoint_digest: Option<String>,
     /// None for a drive to get used to the rig.
@@ -100,19 +102,12 @@ struct Known {
 }
 
 /// Rides by checkpoint, in the order of their first recordings, and the files that are none.
-fn group(found: Found<Listed>, choice: Choice<'_>) -> anyhow::Result<(Vec<Group>, Vec<Failure>)> {
-    let Found { files, mut failed } = found;
-    let mut groups: Vec<Group> = Vec::new();
-    let mut known = BTreeSet::new();
-    let read = |index: usize| read(&files[index].path, choice.reveal);
-    in_order(jobs(choice.jobs), files.len(), read, |index, ride| {
-        let path = &files[index].path;
-        let new = ride.and_then(|ride| match known.insert(ride.digest) {
-            true => Ok(ride),
-            false => bail!("{}: the same recording was given before; expected each once", path.display()),
-        });
-        match new {
-            Ok(Known { ride: Some(ride), checkpoint, checkpoint_digest: digest, .. }) => {
+pub fn group(files: &[Entry], reveal: bool, threads: Option<u16>) -> (Vec<Group>, Vec<Failure>) {
+    let (mut groups, mut failed): (Vec<Group>, _) = (Vec::new(), Vec::new());
+    let known = collect_in_order(jobs(threads), files.len(), |index| read(&files[index].path, reveal));
+    for (Entry { path, .. }, known) in files.iter().zip(known) {
+        match known {
+            Ok(Known { ride: Some(ride), checkpoint, checkpoint_digest: digest }) => {
                 match groups.iter_mut().find(|g| g.digest == digest && g.checkpoint == checkpoint) {
                     Some(group) => group.rides.push(ride),
                     None => groups.push(Group { checkpoint, digest, rides: vec![ride] }),
@@ -121,9 +116,9 @@ fn group(found: Found<Listed>, choice: Choice<'_>) -> anyhow::Result<(Vec<Group>
             Ok(_) => {}
             Err(error) => failed.push(Failure::new(path, &error)),
         }
-        Ok(())
-    })?;
-    Ok((groups, failed))
+    }
+    tell_apart(&mut groups);
+    (groups, failed)
 }
 
 fn read(path: &Path, reveal: bool) -> anyhow::Result<Known> {
@@ -138,7 +133,6 @@ fn read(path: &Path, reveal: bool) -> anyhow::Result<Known> {
     let told = study::tellable(&manifest.provenance, reveal);
     let untold = if study::is_blind(&manifest.provenance) { BLIND } else { UNKNOWN };
     Ok(Known {
-        digest: recording.digest(),
         checkpoint: told.get("checkpoint").cloned().unwrap_or_else(|| untold.into()),
         checkpoint_digest: told.get("checkpoint_digest").cloned(),
         ride: Ride::of(&recording),

@@ -1,5 +1,6 @@
 //! How often corner cases happen: statistics of rides, simulated or with people, from recordings alone.
 
+mod behind;
 mod compare;
 mod groups;
 mod legs;
@@ -12,8 +13,9 @@ use std::collections::BTreeMap;
 use replay::Label;
 use serde::Serialize;
 
+pub use behind::Library;
 pub use compare::Comparison;
-pub use groups::{CheckpointStatistics, Choice, StatisticsOfAll, of_recordings};
+pub use groups::{CheckpointStatistics, Choice, Group, StatisticsOfAll, of_recordings};
 pub use legs::Legs;
 pub use ride::Ride;
 pub use sampling::Sampling;

@@ -15,9 +15,8 @@ use self::parts::{Parts, SEAL};
 static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     scene("map = \"city\"\nseed = 7\n[traffic]\ncars = 6\nmotorcycles = 1\nbicycles = 1\npedestrians = 4\n")
 });
-static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
-    Recording::from_bytes(&record_all(&SCENE, 330, WITH_TAKEOVER_SOON)).expect("a recording")
-});
+static RECORDING: LazyLock<Recording> =
+    LazyLock::new(|| Recording::from_bytes(&record_all(&SCENE, 330, WITH_TAKEOVER_SOON)).expect("a recording"));
 /// A recording and a case, as files.
 static FILES: LazyLock<[Vec<u8>; 2]> = LazyLock::new(|| {
     let window = Case::window(RECORDING.log()).expect("an intervention");
@@ -100,7 +99,8 @@ fn change() -> impl Strategy<Value = Change> {
 
 impl Change {
     fn make(&self, parts: &mut Parts) {
-        let all: Vec<_> = (0..parts.chunks.len()).flat_map(|c| (0..parts.chunks[c].len()).map(move |m| (c, m))).collect();
+        let all: Vec<_> =
+            (0..parts.chunks.len()).flat_map(|c| (0..parts.chunks[c].len()).map(move |m| (c, m))).collect();
         match self {
             Self::Payload { message, byte, flip } => {
                 let payload = &mut parts.at(message).payload;

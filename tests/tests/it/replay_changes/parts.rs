@@ -86,7 +86,9 @@ impl Parts {
         for (schema, channel) in self.schemas.iter().zip(&self.channels) {
             writer.add_schema_with_id(schema.id, &schema.name, &schema.encoding, &schema.text).expect("a schema");
             let (topic, encoding) = (&channel.topic, &channel.message_encoding);
-            writer.add_channel_with_id(channel.id, channel.schema_id, topic, encoding, &channel.metadata).expect("a channel");
+            writer
+                .add_channel_with_id(channel.id, channel.schema_id, topic, encoding, &channel.metadata)
+                .expect("a channel");
         }
         for chunk in &self.chunks {
             for message in chunk {
@@ -131,5 +133,9 @@ fn text(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn metadata(map: &BTreeMap<String, String>) -> Vec<u8> {
-    text(&map.iter().flat_map(|(key, value)| [text(key.as_bytes()), text(value.as_bytes())].concat()).collect::<Vec<_>>())
+    text(
+        &map.iter()
+            .flat_map(|(key, value)| [text(key.as_bytes()), text(value.as_bytes())].concat())
+            .collect::<Vec<_>>(),
+    )
 }
