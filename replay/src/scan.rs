@@ -262,8 +262,12 @@ impl Data {
         if publish_time != log_time {
             return Err(part.damaged(format!("published at {publish_time}, logged at {log_time}")));
         }
-        self.index.message(channel_id, log_time);
         self.sealed = channel == Channel::Seal;
+        let before = self.messages.last().map(|message| message.time_ns);
+        if self.sealed && before != Some(log_time) {
+            return Err(part.damaged("its time is not that of the message that it seals"));
+        }
+        self.index.message(channel_id, log_time);
         if !self.sealed {
             let place = format!("byte {chunk_at} (chunk), message {sequence} of {}", channel.layout().topic);
             self.messages.push(Message { channel, time_ns: log_time, payload, place });

@@ -153,7 +153,7 @@ fn below(path: &Path, kind: Kind) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     collect(path, kind, true, &mut files)?;
     for export in files.extract_if(.., |file| is_export(file)) {
-        eprintln!("{}: left out, an export of aeye for viewers", export.display());
+        say(format_args!("{}: left out, an export of aeye for viewers", export.display()));
     }
     if files.is_empty() {
         let (what, ending) = kind.expected();

@@ -2,6 +2,7 @@
 
 mod parts;
 
+use std::fmt;
 use std::sync::{Arc, LazyLock};
 
 use kernel::RoadNetwork;
@@ -29,12 +30,22 @@ fn network() -> &'static Arc<RoadNetwork> {
 }
 
 /// What became of a changed file.
-#[derive(Debug, PartialEq)]
+#[derive(PartialEq)]
 enum Verdict {
     Refused,
     Diverged,
     /// It verifies.
     Passed(Box<Log>),
+}
+
+impl fmt::Debug for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Refused => "refused",
+            Self::Diverged => "diverged",
+            Self::Passed(_) => "passed",
+        })
+    }
 }
 
 fn verdict(file: &[u8]) -> Verdict {
@@ -209,11 +220,11 @@ proptest! {
         change.make(&mut parts);
         parts.seal();
         if let Verdict::Passed(log) = verdict(&parts.file()) {
-            prop_assert_eq!(replayed(&log), replayed(&original(which)));
+            prop_assert!(replayed(&log) == replayed(&original(which)), "it passes and says something else");
         }
     }
 
-    /// The records around the messages, and the index at the end.
+    /// The records around the messages, and the index at the end. zstd has several ways to pack the same bytes.
     #[test]
     fn a_changed_byte_is_found_although_the_checksums_fit(
         which in 0usize..2, at in any::<prop::sample::Index>(), flip in 1u8..,
@@ -221,8 +232,8 @@ proptest! {
         let mut file = FILES[which].clone();
         file[at.index(FILES[which].len())] ^= flip;
         repair(&mut file);
-        if file != FILES[which] {
-            prop_assert_eq!(verdict(&file), Verdict::Refused);
+        if let Verdict::Passed(log) = verdict(&file) {
+            prop_assert!(*log == original(which), "it passes and says something else");
         }
     }
 }
