@@ -24,7 +24,7 @@ impl Recording {
     /// Reads a file. Any changed byte is an error that says where; a file whose writer was stopped is
     /// read up to its last whole block ([`Recording::finished`] tells).
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let read = std::fs::read(path).map_err(Error::from);
+        let read = intake::read(path, intake::most::RECORDING).map_err(Error::from);
         read.and_then(|bytes| Self::from_bytes(&bytes)).map_err(|e| e.within(path))
     }
 

@@ -74,10 +74,13 @@ pub(crate) fn manifest(bytes: &[u8]) -> Result<Manifest, Wrong> {
         return Err(format!("layout version {format}; this program reads version {FORMAT_VERSION}"));
     }
     let wire: ManifestWire = decode(bytes)?;
+    let scenario = Scenario::from_toml(&wire.scenario).map_err(|e| format!("scenario: {e}"))?;
+    // What is made from a recording is filed under the name of its map.
+    intake::check_name(&scenario.map).map_err(|reason| format!("map: {reason}"))?;
     Ok(Manifest {
         format,
         kernel: wire.kernel,
-        scenario: Scenario::from_toml(&wire.scenario).map_err(|e| format!("scenario: {e}"))?,
+        scenario,
         map_digest: u128::from_le_bytes(wire.map_digest),
         foreign_map: wire.foreign_map,
         provenance: wire.provenance,
@@ -307,6 +310,17 @@ pub(crate) fn scenes(bytes: &[u8]) -> Result<Vec<SceneSnapshot>, Wrong> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_map_whose_name_leads_elsewhere_is_refused() {
+        let mut log = crate::testing::sample(60);
+        assert!(manifest(&manifest_bytes(&log.manifest)).is_ok());
+        for name in ["../../x", "/tmp/x", "", ".."] {
+            log.manifest.scenario.map = name.into();
+            let said = manifest(&manifest_bytes(&log.manifest)).unwrap_err();
+            assert!(said.starts_with("map: the name") && said.contains("cannot be a file's"), "{said}");
+        }
+    }
 
     fn mask() -> impl Strategy<Value = MaskShown> {
         let times = (any::<u64>(), any::<u64>(), any::<u64>())

@@ -4,6 +4,7 @@ use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use base::files::{self, most};
 use base::library::Entry;
 use base::output;
 use drivers::vision::{self, Eye};
@@ -118,7 +119,7 @@ impl Store {
 
     /// A result, if it is there, whole and of this key.
     pub fn find<T: DeserializeOwned, K: DeserializeOwned + PartialEq>(&self, name: &str, key: &K) -> Option<T> {
-        let bytes = fs::read(self.file(name)).ok()?;
+        let bytes = files::read(&self.file(name), most::TABLE).ok()?;
         let kept: Kept<K, T> = serde_json::from_slice(&bytes).ok()?;
         (kept.key == *key).then_some(kept.value)
     }
