@@ -44,6 +44,28 @@ const IN_BRANCHES: [&str; 20] = [
     "Unsqueeze",
 ];
 
+/// Operators of other tasks, and those that give something else every time.
+const UNSUITED: [&str; 18] = [
+    "Bernoulli",
+    "CategoryMapper",
+    "Compress",
+    "LinearClassifier",
+    "LinearRegressor",
+    "Loop",
+    "Multinomial",
+    "NonMaxSuppression",
+    "Normalizer",
+    "RandomNormal",
+    "RandomNormalLike",
+    "RandomUniform",
+    "RandomUniformLike",
+    "STFT",
+    "DFT",
+    "Scan",
+    "TreeEnsembleClassifier",
+    "TreeEnsembleRegressor",
+];
+
 /// Refuses a graph that the engine cannot work with, or only with too much of this machine.
 pub fn check(model: &pb::ModelProto) -> Result<(), String> {
     let graph = model.graph.as_ref().ok_or("it holds no graph")?;
@@ -96,6 +118,9 @@ impl Left {
         let refuse = |reason: String| Err(format!("{}: {reason}", place(node)));
         if node.input.len().max(node.output.len()).max(node.attribute.len()) > MOST_ENDS {
             return refuse(format!("more than {MOST_ENDS} inputs, outputs or attributes"));
+        }
+        if UNSUITED.contains(&node.op_type.as_str()) {
+            return refuse("the operator is not supported: it does not map a picture to the same classes every time".into());
         }
         if in_branch && !IN_BRANCHES.contains(&node.op_type.as_str()) {
             return refuse(format!("stands in a branch, which may hold {} only", IN_BRANCHES.join(", ")));

@@ -1,6 +1,5 @@
 //! A network made ready for one input shape, and run.
 
-use std::collections::HashMap;
 use std::panic::catch_unwind;
 use std::sync::{Arc, OnceLock};
 
@@ -11,7 +10,8 @@ use tract_onnx::model::{OnnxOpRegister, ParsingContext};
 use tract_onnx::tract_hir::internal::*;
 
 use super::guard::{guarded, guarded_thread, line, note, note_none};
-use super::{bounds, pb, typed};
+use super::typed::{Nodes, typed};
+use super::{bounds, pb};
 
 /// What the network takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,22 +56,21 @@ fn reason(error: TractError) -> String {
 }
 
 /// The same of a step that names no node by itself: the engine may have quoted one.
-fn reason_of(error: TractError, operators: &HashMap<String, String>) -> String {
+fn reason_of(error: TractError, nodes: &Nodes<'_>) -> String {
     let texts: Vec<String> = error.chain().map(ToString::to_string).collect();
     let quoted = texts.iter().flat_map(|text| text.split('"').skip(1).step_by(2));
     // What the engine adds to a node is called after it.
     let known = quoted.flat_map(|name| [name, name.rsplit_once('.').map_or(name, |(node, _)| node)]);
-    let node = known.into_iter().find_map(|name| operators.get_key_value(name));
-    if let Some((name, operator)) = node {
-        note(name, operator);
+    let node = known.into_iter().find_map(|name| nodes.get_key_value(name));
+    if let Some((name, node)) = node {
+        note(name, &node.op_type);
     }
     reason(error)
 }
 
-/// The operator of each node by the name that the engine gives it.
-fn operators(model: &pb::ModelProto) -> HashMap<String, String> {
-    let nodes = model.graph.iter().flat_map(|graph| &graph.node);
-    nodes.map(|node| (name(node).to_owned(), node.op_type.clone())).collect()
+/// The nodes of a model by the names that the engine gives them.
+fn nodes(model: &pb::ModelProto) -> Nodes<'_> {
+    model.graph.iter().flat_map(|graph| &graph.node).map(|node| (name(node), node)).collect()
 }
 
 fn name(node: &pb::NodeProto) -> &str {
@@ -129,15 +128,15 @@ impl Engine {
         input: InferenceFact,
         input_shape: [usize; 4],
     ) -> Result<Self, String> {
-        let operators = operators(model);
+        let nodes = nodes(model);
         let parsed = parse(model).and_then(|model| model.with_input_fact(0, input)).map_err(reason)?;
-        let network = typed::typed(parsed, &operators).map_err(reason)?;
+        let network = typed(parsed, &nodes).map_err(reason)?;
         note_none();
         bounds::check_work(&network).map_err(reason)?;
         let output = network.output_fact(0).map_err(reason)?;
         let shape = output.shape.as_concrete().ok_or("the output has no fixed shape")?;
         let (output_shape, gives_ids) = (shape.to_vec(), !output.datum_type.is_float());
-        let plan = runtime.prepare(network).map_err(|error| reason_of(error, &operators))?;
+        let plan = runtime.prepare(network).map_err(|error| reason_of(error, &nodes))?;
         // A GPU has memory of its own, and what runs there has run here before.
         if let Some(model) = plan.typed_model().filter(|_| runtime.name() == "cpu") {
             bounds::check_alive(model).map_err(reason)?;

@@ -6,6 +6,7 @@ mod check;
 mod decode;
 mod engine;
 mod guard;
+mod operands;
 mod typed;
 
 /// ONNX as protobuf messages.

@@ -10,34 +10,38 @@ use tract_onnx::tract_hir::internal::*;
 
 use super::bounds::{self, Left};
 use super::guard::{note, note_none};
+use super::{operands, pb};
+
+/// The nodes of a file by the names that the engine gives them.
+pub type Nodes<'a> = HashMap<&'a str, &'a pb::NodeProto>;
 
 /// How often a node's shapes are looked at on average until they are settled.
 const MOST_VISITS: usize = 50;
 
-/// The graph with types and shapes, if nothing in it becomes too large; `operators` are those of the nodes by name.
-pub fn typed(mut model: InferenceModel, operators: &HashMap<String, String>) -> TractResult<TypedModel> {
-    analyse(&mut model, operators)?;
+/// The graph with types and shapes, if nothing in it becomes too large; `nodes` are those of the file by name.
+pub fn typed(mut model: InferenceModel, nodes: &Nodes<'_>) -> TractResult<TypedModel> {
+    analyse(&mut model, nodes)?;
     note_none();
     let model = model.incorporate()?;
-    Bounded { operators, left: Left::default() }.translate_model(&model)
+    Bounded { nodes, left: Left::default() }.translate_model(&model)
 }
 
-fn note_node(node: &InferenceNode, operators: &HashMap<String, String>) {
-    match operators.get(&node.name) {
-        Some(operator) => note(&node.name, operator),
+fn note_node(node: &InferenceNode, nodes: &Nodes<'_>) {
+    match nodes.get(node.name.as_str()) {
+        Some(given) => note(&node.name, &given.op_type),
         None => note_none(),
     }
 }
 
 /// Settles types and shapes, as `InferenceModelExt::analyse` does.
-fn analyse(model: &mut InferenceModel, operators: &HashMap<String, String>) -> TractResult<()> {
+fn analyse(model: &mut InferenceModel, nodes: &Nodes<'_>) -> TractResult<()> {
     let left = Left::default();
     let mut waiting: BTreeSet<usize> = (0..model.nodes().len()).collect();
     let mut visits = MOST_VISITS * waiting.len();
     while let Some(id) = waiting.pop_first() {
-        note_node(model.node(id), operators);
+        note_node(model.node(id), nodes);
         visits = visits.checked_sub(1).context("the shapes do not settle")?;
-        for outlet in step(model, id, &left)? {
+        for outlet in step(model, id, nodes, &left)? {
             waiting.extend(model.node(outlet.node).outputs[outlet.slot].successors.iter().map(|inlet| inlet.node));
             waiting.insert(outlet.node);
         }
@@ -47,11 +51,12 @@ fn analyse(model: &mut InferenceModel, operators: &HashMap<String, String>) -> T
 }
 
 /// Settles what one node tells; gives the values of which more is known now.
-fn step(model: &mut InferenceModel, id: usize, left: &Left) -> TractResult<Vec<OutletId>> {
+fn step(model: &mut InferenceModel, id: usize, nodes: &Nodes<'_>, left: &Left) -> TractResult<Vec<OutletId>> {
     let (inputs, outputs) = model.node_facts(id)?;
     let inputs: Vec<InferenceFact> = inputs.into_iter().cloned().collect();
     let outputs: Vec<InferenceFact> = outputs.into_iter().cloned().collect();
     let node = model.node_mut(id);
+    nodes.get(node.name.as_str()).map_or(Ok(()), |given| operands::check(given, &inputs))?;
     let expected = node.op.nboutputs()?;
     ensure!(outputs.len() == expected, "it gives {} values, expected {expected}", outputs.len());
     let (shaped_inputs, shaped_outputs, _) =
@@ -128,7 +133,7 @@ fn wire(node: &InferenceNode, values: &[Arc<Tensor>], is_first_known: bool) -> O
 /// The way from settled shapes to operators.
 #[derive(Debug)]
 struct Bounded<'a> {
-    operators: &'a HashMap<String, String>,
+    nodes: &'a Nodes<'a>,
     left: Left,
 }
 
@@ -140,7 +145,7 @@ impl Translate<InferenceFact, Box<dyn InferenceOp>, TypedFact, Box<dyn TypedOp>>
         target: &mut TypedModel,
         mapping: &HashMap<OutletId, OutletId>,
     ) -> TractResult<TVec<OutletId>> {
-        note_node(node, self.operators);
+        note_node(node, self.nodes);
         let values: Option<Vec<Arc<Tensor>>> =
             node.outputs.iter().map(|output| output.fact.value.concretize()).collect();
         // The picture stays an input even where its value were known, and what has a state keeps it.
