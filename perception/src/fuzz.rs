@@ -234,7 +234,8 @@ proptest! {
 #[test]
 fn what_once_did_harm_runs_or_is_refused() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("regressions");
-    let files: Vec<_> = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path()).collect();
+    let files: Vec<_> =
+        std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path()).collect();
     assert!(!files.is_empty());
     files.iter().for_each(|file| try_bytes(&std::fs::read(file).expect("readable")));
 }

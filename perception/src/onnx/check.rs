@@ -120,7 +120,9 @@ impl Left {
             return refuse(format!("more than {MOST_ENDS} inputs, outputs or attributes"));
         }
         if UNSUITED.contains(&node.op_type.as_str()) {
-            return refuse("the operator is not supported: it does not map a picture to the same classes every time".into());
+            return refuse(
+                "the operator is not supported: it does not map a picture to the same classes every time".into(),
+            );
         }
         if in_branch && !IN_BRANCHES.contains(&node.op_type.as_str()) {
             return refuse(format!("stands in a branch, which may hold {} only", IN_BRANCHES.join(", ")));

@@ -84,7 +84,7 @@ const CASES: &str = r#"{"split":"train","size":[256,128],"cases":[{"name":"a","d
 const SIDECAR: &str = "classes = \"aeye\"\nmean = [0.5, 0.25, 0.125]\nstd = [0.2, 0.3, 0.4]\nlayout = \"nchw\"\n";
 const WHEEL: &str =
     "[G29 Racing Wheel]\nsteering_wheel = 0\nclutch = 1\nthrottle = 2\nbrake = 3\nhandbrake = 4\nreverse = 5\n";
-const ANSWERS: &str = "[semantic]\nage = 30\nremark = \"none\"\n\n[semantic.before]\nfatigue = 3\n";
+const ANSWERS: &str = "[semantic]\nexperience_years = 9\nremark = \"none\"\n\n[semantic.before]\nfatigue = 3\n";
 
 proptest! {
     #[test]
