@@ -7,7 +7,7 @@ use super::guard::{self, shown};
 use super::pb;
 
 /// Most nodes of a model, those of branches included.
-const MOST_NODES: usize = 10_000;
+const MOST_NODES: usize = 5000;
 /// Most values that a node takes or gives, and most attributes.
 const MOST_ENDS: usize = 1024;
 /// Most weights and constants.
