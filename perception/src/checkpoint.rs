@@ -73,8 +73,8 @@ impl Checkpoint {
         }
         let align_corners = peel(&mut model).unwrap_or(metadata.align_corners);
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        // What is made with it is filed under its name.
-        intake::check_name(&name).map_err(refuse)?;
+        // What is made with it is filed under its name, be it a hidden one.
+        intake::check_name(name.trim_start_matches('.')).map_err(refuse)?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes());
         weights_beside.iter().for_each(|weights| _ = hasher.update(weights.as_bytes()));

@@ -32,6 +32,9 @@ const OF_CHANNELS: [&str; 8] = [
 pub fn check(node: &pb::NodeProto, inputs: &[InferenceFact]) -> TractResult<()> {
     let Some(rank) = inputs.first().and_then(rank) else { return Ok(()) };
     check_axes(node, rank)?;
+    if node.op_type == "Range" {
+        check_range(inputs)?;
+    }
     let wants_channels = OF_CHANNELS.contains(&node.op_type.as_str());
     ensure!(rank > 1 || !wants_channels, "its value has {rank} dimensions, expected at least batch and channels");
     match SLIDING.iter().find(|(operator, _)| *operator == node.op_type) {
@@ -42,6 +45,17 @@ pub fn check(node: &pb::NodeProto, inputs: &[InferenceFact]) -> TractResult<()> 
 
 fn rank(fact: &InferenceFact) -> Option<i64> {
     fact.shape.rank().concretize()
+}
+
+/// A range counts in numbers whose differences are exact, and not for ever.
+fn check_range(inputs: &[InferenceFact]) -> TractResult<()> {
+    let number = |fact: &InferenceFact| fact.value.concretize()?.cast_to_scalar::<f64>().ok();
+    let numbers: Option<Vec<f64>> = inputs.iter().map(number).collect();
+    let Some([start, limit, step]) = numbers.as_deref() else { return Ok(()) };
+    let count = (limit - start) / step;
+    let is_exact = [start, limit, step].into_iter().all(|number| number.abs() < (1u64 << 53) as f64);
+    ensure!(is_exact && count.abs() < (1 << 28) as f64, "it counts from {start} to {limit} in steps of {step}");
+    Ok(())
 }
 
 /// Axes are those of the first value.
