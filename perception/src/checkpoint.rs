@@ -1,11 +1,13 @@
 //! A segmentation network in a file.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::metadata::{Layout, Metadata};
 use crate::onnx::{self, Element, pb};
 use crate::peel::peel;
+use crate::tensors;
 use crate::{ClassMap, PerceptionError};
 
 /// Where a model's metadata tells how it was trained.
@@ -45,18 +47,22 @@ impl Checkpoint {
     /// Reads a model with its metadata or sidecar (see [`crate::Metadata`]).
     pub fn load(path: impl AsRef<Path>) -> Result<Self, PerceptionError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|source| PerceptionError::Io { path: path.into(), source })?;
-        Self::new(path, &bytes, read_sidecar(&path.with_extension("toml"))?.as_deref())
+        let bytes = intake::read(path, intake::most::NETWORK);
+        let bytes = bytes.map_err(|source| PerceptionError::Io { path: path.into(), source })?;
+        Self::new(path, &bytes, read_sidecar(&path.with_extension("toml"))?.as_deref(), path.parent())
     }
 
     /// A model at hand as bytes, with its metadata; errors call it by its name.
     pub fn from_bytes(name: &str, bytes: &[u8]) -> Result<Self, PerceptionError> {
-        Self::new(Path::new(name), bytes, None)
+        Self::new(Path::new(name), bytes, None, None)
     }
 
-    fn new(path: &Path, bytes: &[u8], sidecar: Option<&str>) -> Result<Self, PerceptionError> {
+    /// Weights may stand in files of the folder, if there is one.
+    fn new(path: &Path, bytes: &[u8], sidecar: Option<&str>, folder: Option<&Path>) -> Result<Self, PerceptionError> {
         let mut model = onnx::decode(bytes).map_err(|reason| PerceptionError::NotOnnx { path: path.into(), reason })?;
         let refuse = |reason| PerceptionError::NotSegmentation { path: path.into(), reason };
+        let weights_beside = tensors::gather(&mut model, folder).map_err(refuse)?;
+        onnx::check(&model).map_err(refuse)?;
         let (input, output) = ends(&model).map_err(refuse)?;
         let metadata = metadata_of(path, &model, sidecar)?;
         check_classes(output, metadata.classes.count()).map_err(refuse)?;
@@ -67,8 +73,12 @@ impl Checkpoint {
         }
         let align_corners = peel(&mut model).unwrap_or(metadata.align_corners);
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        // What is made with it is filed under its name, be it a hidden one.
+        intake::check_name(name.trim_start_matches('.')).map_err(refuse)?;
         let mut hasher = blake3::Hasher::new();
-        let digest = hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes()).finalize();
+        hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes());
+        weights_beside.iter().for_each(|weights| _ = hasher.update(weights.as_bytes()));
+        let digest = hasher.finalize();
         Ok(Self { path: path.into(), name, digest, metadata, model: Arc::new(model), input, align_corners })
     }
 
@@ -82,7 +92,7 @@ impl Checkpoint {
         &self.name
     }
 
-    /// BLAKE3 over the model and its sidecar.
+    /// BLAKE3 over the model, its sidecar and its weights in other files.
     pub fn digest(&self) -> blake3::Hash {
         self.digest
     }
@@ -109,7 +119,7 @@ impl Checkpoint {
 }
 
 fn read_sidecar(path: &Path) -> Result<Option<String>, PerceptionError> {
-    match std::fs::read_to_string(path) {
+    match intake::read_text(path, intake::most::TEXT) {
         Ok(text) => Ok(Some(text)),
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
         Err(source) => Err(PerceptionError::Io { path: path.into(), source }),
@@ -135,8 +145,8 @@ fn metadata_of(path: &Path, model: &pb::ModelProto, sidecar: Option<&str>) -> Re
 /// The model's one input and its first output, if they can be a picture and a segmentation.
 fn ends(model: &pb::ModelProto) -> Result<(&pb::ValueInfoProto, &pb::ValueInfoProto), String> {
     let graph = model.graph.as_ref().ok_or("it holds no graph")?;
-    let weights: Vec<&str> = graph.initializer.iter().map(|t| t.name.as_str()).collect();
-    let inputs: Vec<_> = graph.input.iter().filter(|i| !weights.contains(&i.name.as_str())).collect();
+    let weights: HashSet<&str> = graph.initializer.iter().map(|t| t.name.as_str()).collect();
+    let inputs: Vec<_> = graph.input.iter().filter(|i| !weights.contains(i.name.as_str())).collect();
     let [input] = inputs[..] else {
         return Err(format!("it has {} inputs, expected one image", inputs.len()));
     };
@@ -182,6 +192,11 @@ fn input_of(input: &pb::ValueInfoProto, declared: Option<Layout>) -> Result<Inpu
         Layout::Nchw => (shape[2], shape[3]),
         Layout::Nhwc => (shape[1], shape[2]),
     };
+    let pixels = width.unwrap_or(1).checked_mul(height.unwrap_or(1));
+    if pixels.is_none_or(|pixels| pixels as u64 > intake::most::PIXELS) {
+        let most = intake::most::PIXELS;
+        return Err(format!("its input has the shape {}, expected at most {most} pixels", shape_text(&shape)));
+    }
     Ok(Input { element, layout, width, height })
 }
 

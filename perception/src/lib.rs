@@ -11,6 +11,8 @@ pub mod classes;
 mod compute;
 mod decode;
 mod error;
+#[cfg(test)]
+mod fuzz;
 mod image;
 mod metadata;
 mod metrics;
@@ -19,9 +21,14 @@ mod parts;
 mod peel;
 mod segmenter;
 mod taps;
+mod tensors;
+#[cfg(test)]
+mod tests;
 #[cfg(test)]
 mod toy;
 pub mod training;
+#[cfg(test)]
+mod zoo;
 
 pub use bundled::{BUNDLED, bundled};
 pub use checkpoint::Checkpoint;

@@ -141,8 +141,19 @@ impl Metadata {
 fn normalisation(mean: Option<[f32; 3]>, std: Option<[f32; 3]>) -> Result<Option<Normalisation>, String> {
     match (mean, std) {
         (None, None) => Ok(None),
-        (Some(mean), Some(std)) if std.iter().all(|v| *v > 0.0) => Ok(Some(Normalisation { mean, std })),
-        (Some(_), Some(std)) => Err(format!("key std: expected three positive numbers, got {std:?}")),
+        (Some(mean), Some(std)) => {
+            if !std.iter().all(|v| *v > 0.0) {
+                return Err(format!("key std: expected three positive numbers, got {std:?}"));
+            }
+            let normalisation = Normalisation { mean, std };
+            let finite = mean.iter().chain(&std).chain(normalisation.table().as_flattened()).all(|v| v.is_finite());
+            match finite {
+                true => Ok(Some(normalisation)),
+                false => Err(format!(
+                    "keys mean and std: expected finite numbers that make finite inputs, got {mean:?} and {std:?}"
+                )),
+            }
+        }
         _ => Err("keys mean and std must stand together".into()),
     }
 }
@@ -182,6 +193,11 @@ mod tests {
         assert!(said("classes = \"aeye\"\nmean = [0.0, 0.0, 0.0]").contains("together"));
         assert!(said("classes = \"aeye\"\nmean = [0.0, 0.0, 0.0]\nstd = [1.0, 0.0, 1.0]").contains("positive"));
         assert!(said("mean = [0.0, 0.0, 0.0]\nstd = [1.0, 1.0, 1.0]").contains("classes"));
+        for odd in ["nan", "inf", "-inf", "1e39", "1e-45"] {
+            let text = format!("classes = \"aeye\"\nmean = [0.0, 0.0, 0.0]\nstd = [1.0, {odd}, 1.0]");
+            assert!(Metadata::from_toml(&text).is_err(), "{odd}");
+        }
+        assert!(said("classes = \"aeye\"\nmean = [0.0, nan, 0.0]\nstd = [1.0, 1.0, 1.0]").contains("finite"));
         let broken = Metadata::from_props([("aeye.classes", "Road, Sky")]).unwrap().unwrap_err();
         assert!(broken.contains("aeye.classes is not JSON"), "{broken}");
     }

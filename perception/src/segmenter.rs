@@ -79,8 +79,7 @@ impl Segmenter {
         let refuse = |reason| PerceptionError::NotSegmentation { path: path.clone(), reason };
         let lacks = |reason| PerceptionError::Compute { name: compute.name(), reason };
         let runtime = onnx::runtime(compute.name()).map_err(lacks)?;
-        let dir = checkpoint.path().parent();
-        let engine = Engine::new(runtime, &checkpoint.model, dir, input.element, shape).map_err(refuse)?;
+        let engine = Engine::new(runtime, &checkpoint.model, input.element, shape).map_err(refuse)?;
         let grid = grid(&engine, checkpoint.classes().count(), input.layout).map_err(refuse)?;
         let decoder = Decoder::new(grid, width, height, checkpoint.align_corners);
         Ok(Self {
@@ -196,6 +195,9 @@ fn fill<T: Copy + Default>(out: &mut Vec<T>, rgb: &[u8], layout: Layout, value: 
 fn grid(engine: &Engine, classes: usize, input: Layout) -> Result<Grid, String> {
     let shape = &engine.output_shape;
     let text = || shape.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
+    if shape.contains(&0) {
+        return Err(format!("its output has the shape {}, which holds nothing", text()));
+    }
     let ids = |height, width| Ok(Grid { channels: 1, width, height, interleaved: false });
     match (engine.gives_ids, shape.as_slice()) {
         (true, &[1, h, w] | &[1, 1, h, w] | &[1, h, w, 1]) => ids(h, w),

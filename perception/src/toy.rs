@@ -57,7 +57,7 @@ pub fn metadata() -> Metadata {
     }
 }
 
-fn node(op: &str, inputs: &[&str], output: &str, attribute: Vec<pb::AttributeProto>) -> pb::NodeProto {
+pub fn node(op: &str, inputs: &[&str], output: &str, attribute: Vec<pb::AttributeProto>) -> pb::NodeProto {
     pb::NodeProto {
         op_type: op.into(),
         name: format!("{op}_{output}"),
@@ -68,7 +68,7 @@ fn node(op: &str, inputs: &[&str], output: &str, attribute: Vec<pb::AttributePro
     }
 }
 
-fn floats(name: &str, dims: &[i64], values: Vec<f32>) -> pb::TensorProto {
+pub fn floats(name: &str, dims: &[i64], values: Vec<f32>) -> pb::TensorProto {
     let data_type = DataType::Float as i32;
     pb::TensorProto { name: name.into(), dims: dims.to_vec(), data_type, float_data: values, ..Default::default() }
 }
@@ -137,7 +137,7 @@ impl Toy {
     }
 }
 
-fn finish(graph: pb::GraphProto, metadata: Option<&Metadata>) -> pb::ModelProto {
+pub fn finish(graph: pb::GraphProto, metadata: Option<&Metadata>) -> pb::ModelProto {
     parts::model(graph, metadata.map(Metadata::to_props).unwrap_or_default())
 }
 

@@ -1,7 +1,5 @@
 //! A log read back from its file.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,15 +20,12 @@ pub struct Recording {
     digest: [u8; 32],
 }
 
-/// Most bytes of a file: days of driving.
-const MAX_FILE: u64 = 192 << 20;
-
 impl Recording {
     /// Reads a file, and the file of a foreign map beside it. Any changed byte is an error that says where; a
     /// recording whose writer was stopped is read up to its last whole block ([`Recording::finished`] tells).
     pub fn open(path: &Path) -> Result<Self, Error> {
         let read = || {
-            let mut recording = Self::from_bytes(&read_at_most(path, MAX_FILE)?)?;
+            let mut recording = Self::from_bytes(&intake::read(path, intake::most::RECORDING)?)?;
             if let Some(map) = recording.log.manifest.foreign_map.as_mut().filter(|map| !map.embedded) {
                 map.look_beside(path)?;
             }
@@ -80,15 +75,6 @@ impl Recording {
     }
 }
 
-fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, Error> {
-    let mut bytes = Vec::new();
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most {
-        return Err(Error::Unsuited(format!("more than {most} bytes, which no recording has")));
-    }
-    Ok(bytes)
-}
-
 impl ForeignMap {
     /// Reads the map's file in the folder of a recording, if it is there.
     fn look_beside(&mut self, recording: &Path) -> Result<(), Error> {
@@ -96,7 +82,7 @@ impl ForeignMap {
         if !path.is_file() {
             return Ok(());
         }
-        let text = read_at_most(&path, MAX_FILE).map_err(|e| e.within(&path))?;
+        let text = intake::read(&path, intake::most::MAP).map_err(|e| Error::from(e).within(&path))?;
         let digest = *blake3::hash(&text).as_bytes();
         let text = String::from_utf8(text).ok().filter(|_| digest == self.digest);
         let changed = || Error::Unsuited("not the map of the recording: it was changed".into()).within(&path);

@@ -127,7 +127,10 @@ fn manifest_1(wire: ManifestWire1) -> Result<Manifest, Wrong> {
 }
 
 fn scenario(toml: &str) -> Result<Scenario, Wrong> {
-    Scenario::from_toml(toml).map_err(|e| format!("scenario: {e}"))
+    let scenario = Scenario::from_toml(toml).map_err(|e| format!("scenario: {e}"))?;
+    // What is made from a recording is filed under the name of its map.
+    intake::check_name(&scenario.map).map_err(|reason| format!("map: {reason}"))?;
+    Ok(scenario)
 }
 
 /// A keyframe repeats much of the one before it, which therefore serves as zstd's dictionary.
@@ -368,6 +371,17 @@ mod tests {
     use super::*;
     use crate::FORMAT_VERSION;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_map_whose_name_leads_elsewhere_is_refused() {
+        let mut log = crate::testing::sample(60);
+        assert!(manifest(&manifest_bytes(&log.manifest), FORMAT_VERSION).is_ok());
+        for name in ["../../x", "/tmp/x", "", ".."] {
+            log.manifest.scenario.map = name.into();
+            let said = manifest(&manifest_bytes(&log.manifest), FORMAT_VERSION).unwrap_err();
+            assert!(said.starts_with("map: the name") && said.contains("cannot be a file's"), "{said}");
+        }
+    }
 
     fn mask() -> impl Strategy<Value = MaskShown> {
         let times = (any::<u64>(), any::<u64>(), any::<u64>())

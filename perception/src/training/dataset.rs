@@ -101,7 +101,8 @@ fn read_png(
     height: usize,
     digest: &mut blake3::Hasher,
 ) -> Result<Vec<u8>, PerceptionError> {
-    let file = fs::read(path).map_err(|source| PerceptionError::Io { path: path.to_owned(), source })?;
+    let file = intake::read(path, intake::most::PICTURE)
+        .map_err(|source| PerceptionError::Io { path: path.to_owned(), source })?;
     digest.update(&file);
     let mut decoder = png::Decoder::new(Cursor::new(&file));
     decoder.set_transformations(png::Transformations::IDENTITY);

@@ -1,7 +1,6 @@
 //! A training that is not finished, as a file: one line of JSON, the numbers in little-endian order,
 //! and their digest.
 
-use std::fs;
 use std::io::Write;
 use std::path::Path;
 
@@ -125,7 +124,7 @@ impl State {
         dataset: blake3::Hash,
     ) -> Result<Option<Self>, PerceptionError> {
         let refuse = |reason: &str| PerceptionError::Unfinished { path: path.to_owned(), reason: reason.into() };
-        let bytes = match fs::read(path) {
+        let bytes = match intake::read(path, intake::most::NETWORK) {
             Ok(bytes) => bytes,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(source) => return Err(PerceptionError::Io { path: path.to_owned(), source }),
@@ -166,6 +165,8 @@ impl State {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

@@ -39,7 +39,7 @@ fn the_shipped_network_gives_the_logits_of_the_trained_one() {
     let bytes = export::onnx(&weights, WIDTH, HEIGHT, "{}").unwrap();
     assert_eq!(bytes, export::onnx(&weights, WIDTH, HEIGHT, "{}").unwrap());
     let cpu = onnx::runtime("cpu").unwrap();
-    let engine = Engine::new(cpu, &decode(&bytes).unwrap(), None, Element::Float, [1, 3, HEIGHT, WIDTH]).unwrap();
+    let engine = Engine::new(cpu, &decode(&bytes).unwrap(), Element::Float, [1, 3, HEIGHT, WIDTH]).unwrap();
     let classes = TRAIN_CLASSES.len();
     let positions = WIDTH / LOGIT_STRIDE * (HEIGHT / LOGIT_STRIDE);
     let spread = trained.iter().fold(0.0f32, |m, v| m.max(v.abs()));

@@ -5,6 +5,7 @@
 pub mod chart;
 pub mod clock;
 pub mod failure;
+pub mod files;
 pub mod image;
 pub mod json;
 pub mod library;

@@ -1,6 +1,5 @@
 //! Maps and scenarios by the names that people give on the command line.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,6 +10,7 @@ use replay::ForeignMap;
 
 use crate::failure::Usage;
 use crate::{output, toml_text};
+use crate::files::{self, check_name, most};
 
 /// A map to drive on.
 #[derive(Clone, Debug)]
@@ -31,8 +31,9 @@ impl Map {
             let known = BUNDLED.join(", ");
             return Err(Usage(format!("unknown map {name:?}: expected one of {known}, or an .xodr file")).into());
         }
-        let text = fs::read_to_string(name).with_context(|| name.to_owned())?;
+        let text = files::read_text(Path::new(name), most::MAP)?;
         let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+        check_name(&stem).map_err(|reason| anyhow!("{name}: {reason}"))?;
         let network = bake(&stem, &text).with_context(|| name.to_owned())?;
         Ok(Self { network: Arc::new(network), foreign: Some(ForeignMap::new(text, false)) })
     }
@@ -80,7 +81,7 @@ pub struct ScenarioFile {
 impl ScenarioFile {
     /// Reads one; a map file is looked for beside it.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        let text = files::read_text(path, most::TEXT)?;
         let mut scenario = Scenario::from_toml(&text).map_err(|e| usage_in(path, &e.to_string()))?;
         let beside: PathBuf = path.parent().unwrap_or(Path::new("")).join(&scenario.map);
         let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { scenario.map.clone() };

@@ -1,9 +1,12 @@
 //! Pictures as PNG files: colour, class ids with the tags' palette, plain ids.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use anyhow::{Context, bail};
 use render::tags;
+
+use crate::files::{self, most};
 
 fn encode(
     (width, height): (u32, u32),
@@ -51,13 +54,16 @@ pub fn grey16(size: (u32, u32), ids: &[u16]) -> anyhow::Result<Vec<u8>> {
 /// The samples of a file with `samples` bytes a pixel, palette indices as they are.
 pub fn read(path: &Path, samples: usize) -> anyhow::Result<((u32, u32), Vec<u8>)> {
     let place = || path.display().to_string();
-    let file = std::fs::File::open(path).with_context(place)?;
-    let mut decoder = png::Decoder::new(std::io::BufReader::new(file));
+    let file = files::read(path, most::PICTURE)?;
+    let mut decoder = png::Decoder::new(Cursor::new(file));
     decoder.set_transformations(png::Transformations::IDENTITY);
     let mut reader = decoder.read_info().with_context(place)?;
     let (width, height, bits) = (reader.info().width, reader.info().height, reader.info().bits_per_pixel());
     if bits != 8 * samples {
         bail!("{}: {bits} bits a pixel; expected {}", place(), 8 * samples);
+    }
+    if u64::from(width) * u64::from(height) > most::PIXELS {
+        bail!("{}: {width}x{height}; expected at most {} pixels", place(), most::PIXELS);
     }
     let mut bytes = vec![0; width as usize * height as usize * samples];
     reader.next_frame(&mut bytes).with_context(place)?;

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+use base::files::{self, most};
 use base::library::Entry;
 use base::output::{self, OutputFolder};
 use drivers::vision::{self, Eye};
@@ -145,7 +146,7 @@ impl Store {
 
     /// A result, if it is there, whole and of this key.
     pub fn find<T: DeserializeOwned, K: DeserializeOwned + PartialEq>(&self, name: &str, key: &K) -> Option<T> {
-        let bytes = fs::read(self.file(name)).ok()?;
+        let bytes = files::read(&self.file(name), most::TABLE).ok()?;
         let kept: Kept<K, T> = serde_json::from_slice(&bytes).ok()?;
         (kept.key == *key).then_some(kept.value)
     }

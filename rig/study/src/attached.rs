@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow, bail};
+use anyhow::{anyhow, bail};
+use base::files::{self, most};
 use base::toml_text;
 use replay::Recording;
 use toml::{Table, Value};
@@ -47,10 +48,7 @@ fn recorded(recording: &Recording) -> Questionnaire {
 /// The answers in a file, which must be about the recording; `None` without such a file.
 fn read(beside: &Path, recording: &Recording) -> anyhow::Result<Option<Questionnaire>> {
     let file = || beside.display().to_string();
-    let text = match std::fs::read_to_string(beside) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        read => read.with_context(file)?,
-    };
+    let Some(text) = files::read_text_if_there(beside, most::TEXT)? else { return Ok(None) };
     let mut table: Table = toml_text::read(&text).map_err(|problem| anyhow!("{}: {problem}", file()))?;
     let expected = hex(recording.source());
     match table.remove(RECORDING) {

@@ -5,7 +5,8 @@ use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
+use base::files::{self, most};
 use base::toml_text;
 use base::words::SEATS;
 use replay::Provenance;
@@ -58,7 +59,7 @@ pub struct Questionnaire(BTreeMap<String, Answer>);
 impl Questionnaire {
     /// Reads a file; what is wrong is said in a sentence that names file and key.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        let text = files::read_text(path, most::TEXT)?;
         Self::from_toml(&text).map_err(|problem| anyhow!("{}: {problem}", path.display()))
     }
 

@@ -2,6 +2,7 @@
 
 mod circles;
 mod classes;
+mod damaged_files;
 mod datasets;
 mod headless;
 mod json_page;

@@ -10,12 +10,13 @@ const MAX_FILE_LINES: usize = 600;
 const MAX_FUNCTION_LINES: usize = 100;
 
 /// Every crate by its folder, and which others of the workspace it may depend on; each stands above those.
-const IMPORTS: [(&str, &[&str]); 12] = [
+const IMPORTS: [(&str, &[&str]); 13] = [
+    ("intake", &[]),
     ("kernel", &[]),
-    ("perception", &[]),
+    ("perception", &["intake"]),
     ("render", &["kernel"]),
-    ("replay", &["kernel"]),
-    ("rig/base", &["kernel", "render", "replay"]),
+    ("replay", &["intake", "kernel"]),
+    ("rig/base", &["intake", "kernel", "render", "replay"]),
     ("rig/drivers", &["kernel", "perception", "render", "replay", "base"]),
     ("rig/study", &["kernel", "perception", "render", "replay", "base", "drivers"]),
     ("rig/measures", &["kernel", "replay", "base", "drivers", "study"]),
@@ -37,8 +38,8 @@ const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
 const NAMED_ONCE: [(&str, &[&str]); 12] = [
     ("rapier3d::", &["kernel/src/physics/"]),
-    ("tract_onnx", &["perception/src/onnx.rs"]),
-    ("tract_cuda", &["perception/src/onnx.rs"]),
+    ("tract_onnx", &["perception/src/onnx/"]),
+    ("tract_cuda", &["perception/src/onnx/"]),
     ("bincode::", &["replay/src/wire.rs"]),
     ("wgpu::", &["render/", WINDOWS[0], WINDOWS[1], WINDOWS[2]]),
     ("winit::", &WINDOWS),

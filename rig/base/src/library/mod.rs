@@ -15,6 +15,7 @@ pub use self::kind::{Kind, case_path, fork_name, is_case_name, is_drive_name};
 use self::names::{Way, tell_apart};
 use self::twins::{Opened, Place, Twins};
 use crate::failure::{Failed, Failure};
+use crate::say::say;
 use crate::spread::{collect_in_order, jobs};
 
 /// What was found, and what could not be read.

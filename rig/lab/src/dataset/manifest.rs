@@ -1,9 +1,9 @@
 //! `dataset.json`: what a dataset is made from, and what came of it.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
+use base::files::{self, most};
 use base::json::{self, Typed};
 use base::output;
 use base::words::count;
@@ -61,8 +61,11 @@ impl Manifest {
 
     /// Reads one wherever it lies.
     pub fn read_file(path: &Path) -> anyhow::Result<Self> {
-        let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-        serde_json::from_str(&text).with_context(|| format!("{}: does not describe a dataset", path.display()))
+        let text = files::read_text(path, most::TABLE)?;
+        let place = || format!("{}: does not describe a dataset", path.display());
+        let manifest: Self = serde_json::from_str(&text).with_context(place)?;
+        manifest.recipe.check().map_err(|reason| anyhow!("{}: {reason}", path.display()))?;
+        Ok(manifest)
     }
 
     /// That of a folder which holds a complete dataset of this recipe already; `None` when the dataset
@@ -134,7 +137,7 @@ impl Manifest {
 /// The frames' lines of a complete dataset, once it is certain that they are those of its manifest.
 pub(super) fn read_frames(folder: &Path, manifest: &Manifest) -> anyhow::Result<Vec<FrameLine>> {
     let path = folder.join(FRAMES);
-    let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let text = files::read_text(&path, most::TABLE)?;
     if blake3::hash(text.as_bytes()).to_hex().to_string() != manifest.digest {
         bail!("{}: was changed since; expected the digest that {MANIFEST} tells", path.display());
     }

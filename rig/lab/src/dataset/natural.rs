@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use base::failure::Usage;
+use base::files::{self, most};
 use base::maps::{self, Map};
 use base::output::{self, OutputFolder};
 use base::progress::{self, Bar, Interrupt};
@@ -134,7 +135,7 @@ fn prepare(out: &Path, recipe: &NaturalRecipe, adapter: &str) -> anyhow::Result<
         output::write_file(&file, serde_json::to_string_pretty(&now)?.as_bytes())?;
         return Ok(parts);
     }
-    let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+    let text = files::read_text(&file, most::TABLE)?;
     let begun: Begun = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
     if begun.recipe != now.recipe {
         bail!("{}: was begun with other arguments; expected the same to complete it", out.display());
@@ -157,8 +158,7 @@ fn finish(out: &Path, recipe: Recipe, scenes: &[Scene], parts: &Path, adapter: S
     for scene in scenes {
         let part = parts.join(scene.part());
         let context = || part.display().to_string();
-        let text = fs::read_to_string(&part).with_context(context)?;
-        frames.extend(provenance::parse(&text).with_context(context)?);
+        frames.extend(provenance::parse(&files::read_text(&part, most::TABLE)?).with_context(context)?);
     }
     let manifest = Manifest::complete(out, recipe, adapter, &frames)?;
     fs::remove_dir_all(parts).with_context(|| parts.display().to_string())?;
@@ -201,10 +201,7 @@ impl NaturalRecipe {
             pedestrians: args.pedestrians,
             maps: maps.iter().map(MapUsed::new).collect(),
         };
-        let scenes = recipe.scenes();
-        if scenes.is_empty() || scenes.iter().any(|scene| scene.frames == 0) {
-            return Err(Usage("a dataset needs at least one map, one scene and one frame a scene".into()).into());
-        }
+        recipe.check().map_err(Usage)?;
         Ok(recipe)
     }
 

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use anyhow::anyhow;
+use base::files::check_name;
 use base::json::{Typed, json_line};
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
@@ -136,6 +138,12 @@ impl FrameLine {
         }
     }
 
+    fn parse(text: &str) -> anyhow::Result<Self> {
+        let line: Self = serde_json::from_str(text)?;
+        [&line.split, &line.map].into_iter().try_for_each(|name| check_name(name)).map_err(|reason| anyhow!(reason))?;
+        Ok(line)
+    }
+
     /// Where its files lie.
     pub(super) fn place(&self) -> Place<'_> {
         Place { split: &self.split, city: &self.map, scene: self.scene, frame: self.frame }
@@ -169,5 +177,5 @@ pub(super) fn text(lines: &[FrameLine]) -> anyhow::Result<String> {
 
 /// The lines of such a text.
 pub(super) fn parse(text: &str) -> anyhow::Result<Vec<FrameLine>> {
-    text.lines().map(|line| Ok(serde_json::from_str(line)?)).collect()
+    text.lines().map(FrameLine::parse).collect()
 }

@@ -1,10 +1,16 @@
 //! What datasets are made from, as `dataset.json` says it; the same recipe gives the same files on the same adapter.
 
+use base::files::{check_name, most};
 use base::maps::Map;
 use kernel::time::Tick;
 use serde::{Deserialize, Serialize};
 
 use super::provenance::Part;
+
+/// Most scenes of a split, and frames of a scene: mixes number those of their parts apart by as many.
+const MOST_IN_A_SPLIT: u32 = 100_000;
+/// Most maps of a dataset.
+const MOST_MAPS: usize = 1000;
 
 /// What a dataset is made from; the same recipe gives the same files on the same adapter.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,6 +25,18 @@ pub enum Recipe {
 }
 
 impl Recipe {
+    /// Refuses what no dataset can be made from.
+    pub fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Natural(recipe) => recipe.check(),
+            Self::Cases(recipe) => recipe.check(),
+            Self::Mix(recipe) => {
+                recipe.natural.check()?;
+                recipe.by.source().check()
+            }
+        }
+    }
+
     /// The word that says which kind it is.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -63,6 +81,34 @@ pub struct NaturalRecipe {
     pub maps: Vec<MapUsed>,
 }
 
+impl NaturalRecipe {
+    /// Refuses what no drives can be made from.
+    pub fn check(&self) -> Result<(), String> {
+        check_size(self.size)?;
+        let splits = [(self.scenes, self.frames), (self.val_scenes, self.frames), (self.test_scenes, self.test_frames)];
+        let has_frames = |(scenes, frames): &(u32, u32)| *scenes == 0 || *frames > 0;
+        if self.maps.is_empty() || splits.iter().all(|(scenes, _)| *scenes == 0) || !splits.iter().all(has_frames) {
+            return Err("a dataset needs at least one map, one scene and one frame a scene".into());
+        }
+        let largest = splits.iter().flat_map(|(scenes, frames)| [*scenes, *frames]).fold(0, u32::max);
+        if largest > MOST_IN_A_SPLIT || self.maps.len() > MOST_MAPS {
+            return Err(format!(
+                "a dataset takes at most {MOST_IN_A_SPLIT} scenes a split and frames a scene, and {MOST_MAPS} maps"
+            ));
+        }
+        self.maps.iter().try_for_each(|map| check_name(&map.name))
+    }
+}
+
+/// Refuses pictures that are none, or larger than are read.
+fn check_size((width, height): (u32, u32)) -> Result<(), String> {
+    let pixels = u64::from(width) * u64::from(height);
+    if (1..=most::PIXELS).contains(&pixels) {
+        return Ok(());
+    }
+    Err(format!("pictures of {width}x{height}; expected 1 to {} pixels", most::PIXELS))
+}
+
 /// A map of a dataset.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MapUsed {
@@ -93,6 +139,17 @@ pub struct CasesRecipe {
     pub size: (u32, u32),
     /// The cases, in the order of their scenes' numbers.
     pub cases: Vec<CaseUsed>,
+}
+
+impl CasesRecipe {
+    fn check(&self) -> Result<(), String> {
+        check_size(self.size)?;
+        check_name(&self.split)?;
+        if self.cases.len() > MOST_IN_A_SPLIT as usize {
+            return Err(format!("a dataset takes at most {MOST_IN_A_SPLIT} cases"));
+        }
+        self.cases.iter().try_for_each(|case| check_name(&case.map))
+    }
 }
 
 /// A case of a dataset.

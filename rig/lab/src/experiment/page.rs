@@ -1,9 +1,9 @@
 //! All of an experiment on one page.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use base::files::{self, most};
 use base::json;
 use measures::statistics::CheckpointStatistics;
 use serde::Serialize;
@@ -205,14 +205,14 @@ fn cases_over_km(results: &Results) -> String {
 
 fn curves(checkpoint: &Path) -> anyhow::Result<Curves> {
     let path = checkpoint.with_extension("svg");
-    let svg = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let svg = files::read_text(&path, most::TEXT)?;
     Ok(Curves { name: name_of(checkpoint), svg })
 }
 
 /// Digests of what the tables follow from.
 fn made_of(results: &Results) -> anyhow::Result<Vec<(String, String)>> {
     let digest = |path: &PathBuf| -> anyhow::Result<(String, String)> {
-        let bytes = fs::read(path).with_context(|| path.display().to_string())?;
+        let bytes = files::read(path, most::NETWORK)?;
         Ok((name_of(path), blake3::hash(&bytes).to_hex().to_string()))
     };
     let networks = std::iter::once(&results.driving).chain(&results.networks).map(digest);

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, anyhow, bail};
+use base::files::{self, most};
 use base::json::Typed;
 use base::toml_text;
 use kernel::scenario::MOST_OF_A_KIND;
@@ -155,9 +156,7 @@ impl Preset {
 impl Recipe {
     /// Reads a recipe's file.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let context = || path.display().to_string();
-        let text = std::fs::read_to_string(path).with_context(context)?;
-        Self::parse(&text).with_context(context)
+        Self::parse(&files::read_text(path, most::TEXT)?).with_context(|| path.display().to_string())
     }
 
     fn parse(text: &str) -> anyhow::Result<Self> {

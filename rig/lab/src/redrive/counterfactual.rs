@@ -1,10 +1,10 @@
 //! The verdict on an intervention, kept beside its recording.
 
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::Context;
+use base::files::{self, most};
 use base::json::{self, Typed};
 use drivers::simulate::FORK_AFTER_TICKS;
 use drivers::vision::Vision;
@@ -97,12 +97,8 @@ impl Counterfactual {
 
     /// What was found before; `None` if nothing was, or of another recording.
     pub fn read(path: &Path, recording: &Recording) -> anyhow::Result<Option<Self>> {
-        let bytes = match fs::read(path) {
-            Ok(bytes) => bytes,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(e) => return Err(e).with_context(|| path.display().to_string()),
-        };
-        Ok(Self::decode(&bytes, recording))
+        let bytes = files::read_if_there(path, most::TABLE)?;
+        Ok(bytes.and_then(|bytes| Self::decode(&bytes, recording)))
     }
 
     /// As it is in a file, unless that is of another recording.

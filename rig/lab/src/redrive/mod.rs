@@ -15,6 +15,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
+use base::files::{self, most};
 use base::json::Typed;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, Scenario};
@@ -279,7 +280,7 @@ fn key(args: &Options, log: &str, eye: &Eye, variation: u16) -> Key {
 /// A fork that an earlier call left whole.
 fn kept(args: &Options, store: &Store, mark: &str, key: &Key) -> Option<Line> {
     let (line, digest): Kept = store.find(mark, key)?;
-    let bytes = fs::read(args.out.join(&line.recording)).ok()?;
+    let bytes = files::read(&args.out.join(&line.recording), most::RECORDING).ok()?;
     (blake3::hash(&bytes).to_hex().to_string() == digest).then_some(line)
 }
 

@@ -1,8 +1,8 @@
 //! The card beside a checkpoint: what it is, and how to make it again.
 
-use std::fs;
 use std::path::Path;
 
+use base::files::{self, most};
 use perception::classes::TRAIN_CLASSES;
 use perception::training::{CLASS_WEIGHT_OFFSET, EpochReport, LOGIT_STRIDE, TrainOptions, Trained};
 
@@ -64,7 +64,7 @@ fn epochs(options: &TrainOptions, trained: &Trained) -> String {
 
 /// What the folder says about how it was made.
 fn dataset_recipe(dataset: &Path) -> String {
-    let text = fs::read_to_string(dataset.join("dataset.json")).unwrap_or_default();
+    let text = files::read_text(&dataset.join("dataset.json"), most::TABLE).unwrap_or_default();
     let about: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     match (&about["kind"], &about["recipe"]) {
         (serde_json::Value::String(kind), recipe) if recipe.is_object() => format!("{kind}, recipe `{recipe}`"),

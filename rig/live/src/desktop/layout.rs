@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use base::files::{self, most};
 use base::output;
 use base::say::say;
 use serde::{Deserialize, Serialize};
@@ -52,11 +53,8 @@ impl Layout {
     }
 
     fn read(path: &Path) -> anyhow::Result<Self> {
-        match std::fs::read_to_string(path) {
-            Ok(text) => toml::from_str(&text).with_context(|| format!("{}: not a layout of windows", path.display())),
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(Self::default()),
-            Err(e) => Err(e).with_context(|| path.display().to_string()),
-        }
+        let Some(text) = files::read_text_if_there(path, most::TEXT)? else { return Ok(Self::default()) };
+        toml::from_str(&text).with_context(|| format!("{}: not a layout of windows", path.display()))
     }
 
     fn write(&self, path: &Path) -> anyhow::Result<()> {

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
+use base::files::{self, most};
 use base::json::Typed;
 use base::toml_text;
 use serde::{Deserialize, Serialize};
@@ -223,7 +224,7 @@ impl Calibration {
 
 /// Reads a calibration's file.
 pub fn read(path: &Path) -> anyhow::Result<Calibration> {
-    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    let text = files::read_text(path, most::TEXT)?;
     Calibration::from_toml(&text).map_err(|problem| anyhow!("{}: {problem}", path.display()))
 }
 

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
 use base::failure::Usage;
+use base::files::{self, most};
 use base::json::Typed;
 use base::output;
 use base::say::say;
@@ -115,7 +116,7 @@ fn by_asking(args: &WheelCalibrateArgs, json: bool) -> anyhow::Result<()> {
 fn by_import(args: &WheelImportArgs, json: bool) -> anyhow::Result<()> {
     output::check_file(&args.out)?;
     let name = args.file.display();
-    let text = std::fs::read_to_string(&args.file).with_context(|| name.to_string())?;
+    let text = files::read_text(&args.file, most::TEXT)?;
     let device = args.device.as_deref().map(|path| pick(&Hardware::open()?.devices(), Some(path))).transpose()?;
     let calibration = carla::import(&text, device.as_ref()).map_err(|problem| anyhow!("{name}: {problem}"))?;
     write(&calibration, &args.out, json)

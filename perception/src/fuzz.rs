@@ -1,0 +1,241 @@
+//! Damaged networks: whatever is changed in a valid one, it runs or is refused in one sentence. The program must
+//! not end, so that a panic that is not caught, an abort or a hang fails the test. `PROPTEST_CASES` says how many
+//! are tried.
+
+use std::path::Path;
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use prost::Message;
+
+use crate::onnx::pb::{self, tensor_proto::DataType};
+use crate::parts::{int, ints};
+use crate::zoo::networks;
+use crate::{Checkpoint, RgbView, Segmenter};
+
+/// Numbers at which things break.
+const ODD: [i64; 20] = [
+    0,
+    1,
+    -1,
+    2,
+    -2,
+    3,
+    7,
+    16,
+    64,
+    255,
+    1000,
+    65_536,
+    1 << 20,
+    1 << 31,
+    (1 << 31) - 1,
+    1 << 40,
+    1 << 62,
+    i64::MAX,
+    i64::MIN,
+    -60_000,
+];
+/// What nodes are turned into.
+const OPERATORS: [&str; 44] = [
+    "Add",
+    "ArgMax",
+    "AveragePool",
+    "Cast",
+    "Clip",
+    "Concat",
+    "Constant",
+    "ConstantOfShape",
+    "Conv",
+    "ConvTranspose",
+    "CumSum",
+    "DepthToSpace",
+    "Einsum",
+    "Expand",
+    "EyeLike",
+    "Flatten",
+    "GRU",
+    "Gather",
+    "GatherElements",
+    "GatherND",
+    "Gemm",
+    "GridSample",
+    "If",
+    "LSTM",
+    "Loop",
+    "MatMul",
+    "MaxPool",
+    "NonZero",
+    "OneHot",
+    "Pad",
+    "RandomUniform",
+    "Range",
+    "ReduceSum",
+    "Reshape",
+    "Resize",
+    "Scan",
+    "ScatterND",
+    "Slice",
+    "Split",
+    "Tile",
+    "TopK",
+    "Transpose",
+    "Upsample",
+    "Where",
+];
+/// What attributes are called.
+const ATTRIBUTES: [&str; 16] = [
+    "axes",
+    "axis",
+    "blocksize",
+    "dilations",
+    "group",
+    "hidden_size",
+    "k",
+    "keepdims",
+    "kernel_shape",
+    "num_outputs",
+    "output_shape",
+    "pads",
+    "perm",
+    "shape",
+    "strides",
+    "to",
+];
+
+/// A change of a model; the numbers choose what and how.
+#[derive(Clone, Copy, Debug)]
+struct Change {
+    kind: u8,
+    at: u16,
+    other: u16,
+    number: i64,
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let number = prop_oneof![3 => prop::sample::select(&ODD[..]), 1 => -20i64..20];
+    (any::<u8>(), any::<u16>(), any::<u16>(), number).prop_map(|(kind, at, other, number)| Change {
+        kind,
+        at,
+        other,
+        number,
+    })
+}
+
+/// One of several, if there are any.
+fn pick<T>(all: &mut [T], at: u16) -> Option<&mut T> {
+    let count = all.len();
+    all.get_mut(usize::from(at) % count.max(1))
+}
+
+impl Change {
+    /// Changes a model, unless there is nothing to change at that place.
+    fn apply(self, model: &mut pb::ModelProto) -> Option<()> {
+        let Self { kind, at, other, number } = self;
+        let names = values(model);
+        let graph = model.graph.as_mut()?;
+        match kind % 20 {
+            0 | 1 => pick(&mut pick(&mut attributes(graph), at)?.ints, other).map(|n| *n = number)?,
+            2 => pick(&mut attributes(graph), at)?.i = number,
+            3 => pick(&mut attributes(graph), at)?.ints.push(number),
+            4 => pick(&mut attributes(graph), at)?.ints.clear(),
+            5 => pick(&mut graph.node, at)?.attribute.clear(),
+            6 => {
+                let name = ATTRIBUTES[usize::from(other) % ATTRIBUTES.len()];
+                let new = if number % 2 == 0 { int(name, number) } else { ints(name, &[number, 2]) };
+                pick(&mut graph.node, at)?.attribute.push(new);
+            }
+            7 => pick(&mut graph.node, at)?.op_type = OPERATORS[usize::from(other) % OPERATORS.len()].into(),
+            8 | 9 => pick(&mut pick(&mut graph.node, at)?.input, number as u16)?
+                .clone_from(&names[usize::from(other) % names.len()]),
+            10 => _ = pick(&mut graph.node, at)?.input.pop(),
+            11 => pick(&mut graph.node, at)?.input.push(names[usize::from(other) % names.len()].clone()),
+            12 if !graph.node.is_empty() => _ = graph.node.remove(usize::from(at) % graph.node.len()),
+            13 => pick(&mut pick(&mut graph.initializer, at)?.dims, other).map(|n| *n = number)?,
+            14 | 15 => pick(&mut numbers(graph), at)
+                .map(|tensor| pick(&mut tensor.int64_data, other).map(|n| *n = number))??,
+            16 => pick(&mut pick(&mut graph.initializer, at)?.float_data, other)
+                .map(|v| *v = f32::from_bits(number as u32))?,
+            17 => pick(&mut graph.initializer, at)?.data_type = i32::from(other % 24),
+            18 => graph.output[0].name.clone_from(&names[usize::from(other) % names.len()]),
+            _ => model.opset_import[0].version = number.clamp(-1, 25),
+        }
+        Some(())
+    }
+}
+
+/// Names of all values.
+fn values(model: &pb::ModelProto) -> Vec<String> {
+    let graph = model.graph.as_ref().expect("a valid model");
+    let computed = graph.node.iter().flat_map(|node| node.output.iter().cloned());
+    let given = graph.initializer.iter().map(|tensor| tensor.name.clone());
+    computed.chain(given).chain(["image".into(), String::new(), "nobody's".into()]).collect()
+}
+
+fn attributes(graph: &mut pb::GraphProto) -> Vec<&mut pb::AttributeProto> {
+    graph.node.iter_mut().flat_map(|node| &mut node.attribute).collect()
+}
+
+fn numbers(graph: &mut pb::GraphProto) -> Vec<&mut pb::TensorProto> {
+    graph.initializer.iter_mut().filter(|tensor| tensor.data_type == DataType::Int64 as i32).collect()
+}
+
+/// Loads what is in a file and looks at a picture with it; an error must be one sentence that names the file.
+fn try_out(path: &Path) {
+    let said = |error: crate::PerceptionError| {
+        let text = error.to_string();
+        assert!(text.contains("case.onnx") && !text.contains('\n') && text.len() < 1000, "{text}");
+    };
+    let segmenter = Checkpoint::load(path).and_then(|checkpoint| Segmenter::new(&checkpoint, 32, 16));
+    match segmenter {
+        Ok(mut segmenter) => {
+            let rgb = crate::toy::picture(32, 16);
+            let image = RgbView::new(32, 16, &rgb).expect("a picture");
+            segmenter.run_with_confidence(image).map_or_else(said, drop);
+        }
+        Err(error) => said(error),
+    }
+}
+
+fn try_bytes(bytes: &[u8]) {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("case.onnx");
+    std::fs::write(&path, bytes).expect("writable");
+    try_out(&path);
+}
+
+proptest! {
+    #[test]
+    fn changed_networks_run_or_are_refused(which in any::<u16>(), changes in vec(change(), 1..6)) {
+        let model = pick(&mut networks(), which).expect("there are some").clone();
+        let changed = changes.into_iter().fold(model, |model, change| {
+            let mut changed = model.clone();
+            // What cannot be changed so is changed by the others.
+            change.apply(&mut changed);
+            changed
+        });
+        try_bytes(&changed.encode_to_vec());
+    }
+
+    #[test]
+    fn damaged_files_run_or_are_refused(
+        which in any::<u16>(),
+        flips in vec((any::<u16>(), any::<u8>()), 0..8),
+        keep in 0.0..2.0,
+    ) {
+        let mut bytes = pick(&mut networks(), which).expect("there are some").encode_to_vec();
+        flips.into_iter().for_each(|(at, byte)| *pick(&mut bytes, at).expect("some") = byte);
+        bytes.truncate((bytes.len() as f64 * keep) as usize);
+        try_bytes(&bytes);
+    }
+}
+
+/// Files that once panicked, hung or filled the memory.
+#[test]
+fn what_once_did_harm_runs_or_is_refused() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("regressions");
+    let files: Vec<_> =
+        std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path()).collect();
+    assert!(!files.is_empty());
+    files.iter().for_each(|file| try_bytes(&std::fs::read(file).expect("readable")));
+}

@@ -1,0 +1,17 @@
+//! The inference engine. This is the only folder that names tract. A model may be anything: it is decoded, looked
+//! at, typed and run within stated limits, and whatever goes wrong is an error.
+
+mod bounds;
+mod check;
+mod decode;
+mod engine;
+mod guard;
+mod operands;
+mod typed;
+
+/// ONNX as protobuf messages.
+pub(crate) use tract_onnx::pb;
+
+pub(crate) use check::check;
+pub(crate) use decode::decode;
+pub(crate) use engine::{Element, Engine, Output, Pixels, runtime};
