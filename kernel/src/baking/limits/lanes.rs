@@ -1,0 +1,101 @@
+//! Lane sections, and the lanes in them.
+
+use std::ops::Range;
+
+use roxmltree::Node;
+
+use super::constants::{ASIDE_M, LANES, RECORDS, SECTIONS, WIDTH_M};
+use super::cubic::Profile;
+use super::marks;
+use super::numbers::number;
+use super::roads::{Along, children};
+use super::sums::{Sum, Sums, at_most};
+use crate::baking::source::BakeError;
+
+/// Points of a lane per metre: where everything is straight, and where anything bends.
+const STRAIGHT_PER_M: f64 = 0.5;
+const BENT_PER_M: f64 = 4.0;
+
+/// One side of a section; the next one may go on with it, so it may have begun before.
+#[derive(Clone, Copy, Default)]
+struct Side<'a> {
+    node: Option<Node<'a, 'a>>,
+    start_m: f64,
+}
+
+/// A stretch of a road with the same lanes.
+pub struct Section {
+    pub length_m: f64,
+    /// Where its lanes have points, at most.
+    pub stations: f64,
+    /// Records that tell where the lanes are, each looked at for every station.
+    pub records: usize,
+}
+
+/// Checks the lanes of a road, and says how many there are.
+pub fn check(along: &Along<'_>, sums: &mut Sums) -> Result<usize, BakeError> {
+    let mut count = 0;
+    for lanes in children(along.node, "lanes") {
+        let mut sections: Vec<_> = children(lanes, "laneSection").collect();
+        at_most(lanes, sections.len(), SECTIONS, "lane sections of a road")?;
+        let start = |section: &Node<'_, '_>| number(*section, "s").unwrap_or(0.0).max(0.0);
+        sections.sort_by(|a, b| start(a).total_cmp(&start(b)));
+        let offsets = Profile::read(lanes, "laneOffset", "s")?;
+        let mut sides = [Side::default(); 3];
+        for (k, section) in sections.iter().enumerate() {
+            let end = sections.get(k + 1).map_or(along.length_m, start).min(along.length_m);
+            let over = start(section)..end.max(start(section));
+            go_on(&mut sides, *section, over.start);
+            count += of_section(along, *section, &over, &sides, &offsets, sums)?;
+        }
+    }
+    Ok(count)
+}
+
+/// The sides of a section: its own, or of one that tells a single side, those before.
+fn go_on<'a>(sides: &mut [Side<'a>; 3], section: Node<'a, 'a>, start_m: f64) {
+    let is_single = matches!(section.attribute("singleSide"), Some("true" | "1"));
+    for (side, tag) in sides.iter_mut().zip(["left", "center", "right"]) {
+        let node = children(section, tag).next();
+        if node.is_some() || !is_single {
+            *side = Side { node, start_m };
+        }
+    }
+}
+
+fn of_section<'a>(
+    along: &Along<'_>,
+    section: Node<'a, 'a>,
+    over: &Range<f64>,
+    sides: &[Side<'a>; 3],
+    offsets: &Profile<'_>,
+    sums: &mut Sums,
+) -> Result<usize, BakeError> {
+    let lanes = || {
+        sides
+            .iter()
+            .filter_map(|s| Some((s.node?, s.start_m)))
+            .flat_map(|(side, start)| children(side, "lane").map(move |lane| (lane, start)))
+    };
+    let count = lanes().count();
+    at_most(section, count, LANES, "lanes of a section")?;
+    let mut is_straight = along.is_straight(over) && offsets.is_constant(over);
+    let mut records = along.records + offsets.len();
+    for (lane, start_m) in lanes() {
+        let within = over.start - start_m..over.end - start_m;
+        let (widths, borders) = (Profile::read(lane, "width", "sOffset")?, Profile::read(lane, "border", "sOffset")?);
+        widths.within(&within, WIDTH_M, "a lane width", "m", false)?;
+        borders.within(&within, ASIDE_M, "a lane border", "m", true)?;
+        is_straight &= widths.is_constant(&within) && borders.is_constant(&within);
+        let others = lane.children().filter(|n| n.is_element() && !n.has_tag_name("roadMark")).count();
+        at_most(lane, others, 2 * RECORDS, "records of a lane")?;
+        records += others;
+    }
+    let length_m = over.end - over.start;
+    let stations = length_m * if is_straight { STRAIGHT_PER_M } else { BENT_PER_M } + 2.0;
+    sums.add(Sum::LanePoints, stations * count as f64, section)?;
+    sums.add(Sum::Steps, stations * count as f64 * records as f64, section)?;
+    let section = Section { length_m, stations, records };
+    lanes().try_for_each(|(lane, _)| marks::check(lane, &section, sums))?;
+    Ok(count)
+}
