@@ -225,10 +225,7 @@ impl<'a> Site<'a> {
         if prop.kind == PropKind::Tree {
             foot.size = Vec3::new(0.6, 0.6, prop.size.z);
         }
-        let all = LaneKind::ALL;
-        let is_hit = |p: Vec3, kind| !self.roads.around(p, kind, CLEAR_M).is_empty();
-        let is_on_lane = |p: Vec3| self.roads.may_be_near(p, all, CLEAR_M) && all.iter().any(|&kind| is_hit(p, kind));
-        !footprint(&foot, 2.0).into_iter().any(is_on_lane)
+        !footprint(&foot, 2.0).into_iter().any(|p| self.roads.is_near(p, CLEAR_M))
     }
 
     fn is_inside(&self, prop: &Prop) -> bool {

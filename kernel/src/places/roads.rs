@@ -97,9 +97,18 @@ impl Roads<'_> {
         found
     }
 
-    /// Whether any lane of some `kinds` may come within `radius_m` of `position`: the answer no is certain.
-    pub fn may_be_near(&self, position: Vec3, kinds: &[LaneKind], radius_m: f32) -> bool {
-        self.near(position, radius_m).any(|(lane, _)| kinds.contains(&self.lanes[lane as usize].kind))
+    /// Whether the area of any lane comes within `radius_m` of `position`.
+    pub fn is_near(&self, position: Vec3, radius_m: f32) -> bool {
+        let mut ids: Vec<LaneId> = self.near(position, radius_m).map(|(lane, _)| lane).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let within = |p: Projection| self.beyond_edge(&p) <= radius_m && self.on_level(&p, position);
+        ids.into_iter().any(|id| within(self.onto(id, position, radius_m)))
+    }
+
+    /// Whether any lane of `kind` may come within `radius_m` of `position`: the answer no is certain.
+    pub fn may_be_near(&self, position: Vec3, kind: LaneKind, radius_m: f32) -> bool {
+        self.near(position, radius_m).any(|(lane, _)| self.lanes[lane as usize].kind == kind)
     }
 
     /// Stretches that may come within `radius_m` of `position`, as their lane and first vertex; some come twice.

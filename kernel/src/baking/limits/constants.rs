@@ -23,8 +23,12 @@ pub const SECTIONS: usize = 2_000;
 pub const LANES: usize = 100;
 /// Points on the centre lines of all lanes.
 pub const LANE_POINTS: f64 = 3_000_000.0;
-/// Stretches of lanes that meet in one square of a grid over the map.
+/// Entries of lanes in the squares of a grid over the map.
+pub const SQUARES: f64 = 2e7;
+/// Stretches of lanes that meet in one square.
 pub const CROWD: usize = 4_000;
+/// Pairs of stretches in the same squares, of all squares.
+pub const PAIRS: f64 = 2e8;
 
 /// Marks along the border of a lane.
 pub const MARKS: usize = 1_000;
@@ -64,7 +68,7 @@ pub const ASIDE_M: f64 = 1_000.0;
 pub const TILT_RAD: f64 = 1.6;
 /// An angle, radians.
 pub const ANGLE_RAD: f64 = 1e6;
-/// How far one geometry may turn, radians.
-pub const TURN_RAD: f64 = 10_000.0;
+/// How far one geometry may turn, radians: a ramp of a car park turns ten times.
+pub const TURN_RAD: f64 = 200.0;
 /// Any other number.
 pub const NUMBER: f64 = 1e15;

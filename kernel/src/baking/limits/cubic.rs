@@ -49,20 +49,21 @@ impl<'a> Profile<'a> {
         first && active.next().is_none()
     }
 
-    /// Refuses values beyond `most` in a stretch, either way or, of what cannot be negative, above.
-    pub fn within(&self, over: &Range<f64>, most: f64, what: &str, unit: &str, signed: bool) -> Result<(), BakeError> {
+    /// The value farthest from 0 in a stretch, or, of what cannot be negative, the greatest; refused beyond `most`.
+    pub fn within(&self, over: &Range<f64>, most: f64, what: &str, unit: &str, signed: bool) -> Result<f64, BakeError> {
+        let mut peak = 0.0_f64;
         for (cubic, node, stretch) in self.active(over) {
             let (lowest, highest) = cubic.range(&stretch);
-            let worst = if signed && -lowest > highest { lowest } else { highest };
-            if !(worst.abs() <= most || (!signed && worst < 0.0)) {
+            let value = if signed { highest.max(-lowest) } else { highest };
+            if value > most {
                 let (from, to) = (stretch.start, stretch.end);
-                let reason = format!(
-                    "expected {what} of at most {most} {unit}, but between {from} m and {to} m it is {worst:.6}"
-                );
+                let reason =
+                    format!("expected {what} of at most {most} {unit}, but between {from} m and {to} m it is {value}");
                 return Err(refused(node, reason));
             }
+            peak = peak.max(value);
         }
-        Ok(())
+        Ok(peak)
     }
 
     /// The cubics that hold somewhere in a stretch, and where.

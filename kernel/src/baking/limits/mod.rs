@@ -2,6 +2,7 @@
 //! that a machine can bear. Files come from strangers.
 
 mod constants;
+mod crowd;
 mod cubic;
 mod document;
 mod junctions;
@@ -17,6 +18,7 @@ pub use constants::{CROWD, EXTENT_M, LANE_POINTS};
 pub use document::malformed;
 
 use self::constants::ROADS;
+use self::crowd::Crowd;
 use self::sums::{Sums, at_most};
 use super::source::BakeError;
 
@@ -28,10 +30,12 @@ pub fn check(text: &str) -> Result<(), BakeError> {
     let roads = root.children().filter(|n| n.has_tag_name("road"));
     at_most(root, roads.clone().count(), ROADS, "roads")?;
     let mut sums = Sums::default();
+    let mut crowd = Crowd::default();
     let references = objects::references(root);
     for road in roads {
         numbers::check(road)?;
-        roads::check(road, &references, &mut sums)?;
+        roads::check(road, &references, &mut sums, &mut crowd)?;
     }
+    crowd.check()?;
     junctions::check(root, &references, &mut sums)
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use roxmltree::Node;
 
 use super::constants::{ASIDE_M, COORDINATE_M, HEIGHT_M, RECORDS, ROAD_M, TILT_RAD, TURN_RAD};
+use super::crowd::Crowd;
 use super::cubic::Profile;
 use super::lanes;
 use super::numbers::number;
@@ -16,20 +17,44 @@ use crate::baking::source::BakeError;
 /// A road as its lanes need it.
 pub struct Along<'a> {
     pub length_m: f64,
-    /// Stretches that are not straight.
-    bends: Vec<Range<f64>>,
+    /// How densely the lanes of each geometry have points.
+    stations: Vec<(Range<f64>, f64)>,
     /// Records of elevation, superelevation and lateral profile, each looked at for every station of a lane.
     pub records: usize,
     pub node: Node<'a, 'a>,
 }
 
+/// Points of a lane per metre: where everything is straight, and where it bends most.
+const STRAIGHT_PER_M: f64 = 0.5;
+const BENT_PER_M: f64 = 4.0;
+/// From one point to the next, a lane turns by this at most where it may have fewer than [`BENT_PER_M`].
+const POINT_RAD: f64 = 0.03;
+
 impl Along<'_> {
-    pub fn is_straight(&self, over: &Range<f64>) -> bool {
-        !self.bends.iter().any(|bend| bend.start < over.end && over.start < bend.end)
+    /// Points that a lane may have in a stretch, of which the lanes bend by themselves as well or do not.
+    pub fn stations(&self, over: &Range<f64>, lanes_bend: bool) -> f64 {
+        let length_m = over.end - over.start;
+        if lanes_bend {
+            return length_m * BENT_PER_M + 2.0;
+        }
+        let of = |(stretch, per_m): &(Range<f64>, f64)| {
+            (stretch.end.min(over.end) - stretch.start.max(over.start)).max(0.0) * (per_m - STRAIGHT_PER_M)
+        };
+        length_m * STRAIGHT_PER_M + self.stations.iter().map(of).sum::<f64>() + 2.0
+    }
+
+    /// How many geometries [`Self::stations`] looks at.
+    pub fn geometries(&self) -> usize {
+        self.stations.len()
     }
 }
 
-pub fn check<'a>(road: Node<'a, 'a>, references: &References<'_>, sums: &mut Sums) -> Result<(), BakeError> {
+pub fn check<'a>(
+    road: Node<'a, 'a>,
+    references: &References<'_>,
+    sums: &mut Sums,
+    crowd: &mut Crowd<'a>,
+) -> Result<(), BakeError> {
     // Without a length it is no road, and left out.
     let Some(length_m) = number(road, "length").filter(|l| *l > 0.0) else { return Ok(()) };
     if length_m > ROAD_M {
@@ -37,7 +62,7 @@ pub fn check<'a>(road: Node<'a, 'a>, references: &References<'_>, sums: &mut Sum
     }
     sums.add(Sum::Roads, length_m, road)?;
     let whole = 0.0..length_m;
-    let bends = geometry(road, sums)?;
+    let stations = geometry(road, sums)?;
     let mut records = profile(road, "elevationProfile", "elevation", &whole, HEIGHT_M, "a height", "m")?;
     records += profile(road, "lateralProfile", "superelevation", &whole, TILT_RAD, "a superelevation", "rad")?;
     for lateral in children(road, "lateralProfile") {
@@ -48,9 +73,10 @@ pub fn check<'a>(road: Node<'a, 'a>, references: &References<'_>, sums: &mut Sum
     for lanes in children(road, "lanes") {
         Profile::read(lanes, "laneOffset", "s")?.within(&whole, ASIDE_M, "a lane offset", "m", true)?;
     }
-    let along = Along { length_m, bends, records, node: road };
+    let along = Along { length_m, stations, records, node: road };
     let lanes = lanes::check(&along, sums)?;
-    objects::check(road, lanes, references, sums)
+    crowd.add(road, lanes.per_m);
+    objects::check(road, lanes.count, references, sums)
 }
 
 /// The children of an element with some tag.
@@ -77,34 +103,35 @@ fn profile(
     Ok(records)
 }
 
-/// Checks the geometry of a road, and says where it bends.
-fn geometry(road: Node<'_, '_>, sums: &mut Sums) -> Result<Vec<Range<f64>>, BakeError> {
-    let mut bends: Vec<Range<f64>> = Vec::new();
+/// Checks the geometry of a road, and says how densely lanes along it have points.
+fn geometry(road: Node<'_, '_>, sums: &mut Sums) -> Result<Vec<(Range<f64>, f64)>, BakeError> {
+    let mut stations: Vec<(Range<f64>, f64)> = Vec::new();
     for view in children(road, "planView") {
         at_most(view, children(view, "geometry").count(), RECORDS, "geometries")?;
         for geometry in children(view, "geometry") {
             let (s, length_m) = (number(geometry, "s").unwrap_or(0.0), number(geometry, "length").unwrap_or(0.0));
             sums.add(Sum::Geometry, length_m.max(0.0), geometry)?;
-            if turn_rad(geometry, length_m) > TURN_RAD {
+            let curvature = curvature(geometry);
+            if curvature * length_m > TURN_RAD {
                 return Err(refused(geometry, format!("expected a geometry to turn by at most {TURN_RAD} rad")));
             }
             if reach_m(geometry, length_m) > COORDINATE_M {
                 return Err(refused(geometry, format!("expected a geometry to lead no farther than {COORDINATE_M} m")));
             }
-            if !children(geometry, "line").any(|_| true) {
-                bends.push(s..s + length_m);
-            }
+            let is_polynomial = geometry.children().any(|n| n.has_tag_name("poly3") || n.has_tag_name("paramPoly3"));
+            let per_m = if is_polynomial { BENT_PER_M } else { curvature / POINT_RAD };
+            stations.push((s..s + length_m, per_m.clamp(STRAIGHT_PER_M, BENT_PER_M)));
         }
     }
-    Ok(bends)
+    Ok(stations)
 }
 
-/// How far an arc or a spiral may turn.
-fn turn_rad(geometry: Node<'_, '_>, length_m: f64) -> f64 {
+/// The sharpest curvature of an arc or a spiral, 1/m.
+fn curvature(geometry: Node<'_, '_>) -> f64 {
     let curves = geometry.children().filter(|n| n.is_element());
     let of =
         |node: Node<'_, '_>| ["curvature", "curvStart", "curvEnd"].map(|name| number(node, name).unwrap_or(0.0).abs());
-    curves.flat_map(of).fold(0.0, f64::max) * length_m
+    curves.flat_map(of).fold(0.0, f64::max)
 }
 
 /// How far a polynomial may lead from where its geometry starts.

@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use super::constants::{ALL_ROADS_M, COPIED_BYTES, DASHES, LANE_POINTS, OBJECTS, SIGNALS, STEPS};
+use super::constants::{ALL_ROADS_M, COPIED_BYTES, DASHES, LANE_POINTS, OBJECTS, SIGNALS, SQUARES, STEPS};
 use super::place::refused;
 use crate::baking::source::BakeError;
 
@@ -12,6 +12,7 @@ pub enum Sum {
     Roads,
     Geometry,
     LanePoints,
+    Squares,
     Dashes,
     Objects,
     Signals,
@@ -26,6 +27,7 @@ impl Sum {
             Self::Roads => (ALL_ROADS_M, "m of roads"),
             Self::Geometry => (ALL_ROADS_M, "m of geometry"),
             Self::LanePoints => (LANE_POINTS, "points on the centre lines of lanes"),
+            Self::Squares => (SQUARES, "squares of 10 m that parts of lanes touch"),
             Self::Dashes => (DASHES, "dashes of road marks"),
             Self::Objects => (OBJECTS, "objects, repeated ones each time"),
             Self::Signals => (SIGNALS as f64, "signals"),
