@@ -74,7 +74,8 @@ impl<'a> Profile<'a> {
             .iter()
             .zip(ends)
             .map(|((cubic, node), end)| (*cubic, *node, cubic.start.max(over.start)..end.min(over.end)));
-        stretches.filter(|(_, _, stretch)| stretch.start < stretch.end)
+        // At the end of the stretch there is a point, at which one that starts there holds.
+        stretches.filter(|(_, _, s)| s.start < s.end || (s.start == over.end && s.end == over.end))
     }
 }
 

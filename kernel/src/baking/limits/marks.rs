@@ -39,8 +39,9 @@ fn of_mark(mark: Node<'_, '_>, length_m: f64, section: &Section, sums: &mut Sums
         let cuts = (dashes + stations) * 4.0 * (section.records + sways) as f64;
         sums.add(Sum::Steps, dashes * section.stations + cuts, mark)
     };
+    let is_broken = mark.attribute("type").is_some_and(|kind| kind.contains("broken"));
     match lines.is_empty() {
-        true => paint(BROKEN_M),
+        true => paint(if is_broken { BROKEN_M } else { f64::INFINITY }),
         false => lines.into_iter().try_for_each(|line| {
             let of = |name| number(line, name).unwrap_or(0.0).max(0.0);
             let is_dashed = line.parent().is_some_and(|group| group.has_tag_name("type")) && of("space") > 0.0;
