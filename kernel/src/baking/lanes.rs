@@ -31,7 +31,7 @@ pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError>
         let forward = lane.direction != xodr::Direction::Backward;
         let road = net.road(at.road).map_or("", |r| r.od_id());
         points_left -= lane.center.points().len() as f64 + f64::from(lane.center.length() / MAX_STEP_M);
-        if !(points_left >= 0.0) {
+        if points_left.is_nan() || points_left < 0.0 {
             return Err(BakeError {
                 place: format!("road {road}, section {}, lane {}", at.section, at.od_id),
                 reason: format!("expected at most {LANE_POINTS} points on the centre lines of lanes in the file"),

@@ -36,7 +36,7 @@ pub fn check(node: Node<'_, '_>) -> Result<(), BakeError> {
                 return Err(refused(element, reason));
             }
             if let (Some(largest), Ok(number)) = (largest(name), text.trim().parse::<f64>())
-                && !(number.abs() <= largest)
+                && !(-largest..=largest).contains(&number)
             {
                 let tag = element.tag_name().name();
                 let reason = format!("expected {name} of <{tag}> to be at most {largest:e}, but it is {}", said(text));
