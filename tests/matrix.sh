@@ -23,8 +23,11 @@ row() {
     while [ "$1" != -- ]; do settings+=("$1"); shift; done
     shift
     local log=$folder/${name//[^a-z0-9]/-}.log
-    if ! env "${settings[@]}" AEYE_BUILD="${name//[^a-z0-9]/-}" cargo test --target-dir "$folder/$place" "$@" \
-        -p kernel -p replay --lib --test golden --test resume --test exchange >"$log" 2>&1; then
+    settings+=("AEYE_BUILD=${name//[^a-z0-9]/-}" "CARGO_TARGET_DIR=$folder/$place")
+    if ! {
+        env "${settings[@]}" cargo test "$@" -p kernel -p replay --test golden --test resume --test exchange &&
+            env "${settings[@]}" cargo test "$@" -p kernel -p replay --lib -- bundled:: recording::
+    } >"$log" 2>&1; then
         result="DIFFERED (see $log)"
         differing=1
     fi

@@ -102,7 +102,7 @@ pub fn crossing(streets: usize, pitch_m: f64) -> String {
     let length_m = pitch_m * streets as f64;
     let street = |id: usize| {
         let aside = (id / 2) as f64 * pitch_m;
-        let place = if id % 2 == 0 { [0.0, aside, 0.0] } else { [aside, 0.0, std::f64::consts::FRAC_PI_2] };
+        let place = if id.is_multiple_of(2) { [0.0, aside, 0.0] } else { [aside, 0.0, std::f64::consts::FRAC_PI_2] };
         Road::straight(id, place, length_m)
     };
     file(&(0..2 * streets).map(street).collect::<Vec<_>>())
