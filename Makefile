@@ -10,13 +10,13 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test bench oracles check-long headless setup tools build
+.PHONY: demo test matrix bench oracles check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
 	$(AEYE) demo --out out/demo
 
-## Everything that CI runs.
+## Everything that CI runs, but for other builds (make matrix).
 test: PACKAGES += $(TEST_PACKAGES)
 test: setup tools
 	cargo fmt --all --check
@@ -26,7 +26,11 @@ test: setup tools
 	cargo clippy --release --workspace --all-targets -- -D warnings
 	cargo clippy --release -p aeye --no-default-features --all-targets -- -D warnings
 	cargo test --release --workspace
-	kernel/tests/portable.sh
+
+## The same hashes, keyframes and recordings from other builds, aarch64 among them.
+matrix: PACKAGES := gcc libc6-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
+matrix: setup
+	tests/matrix.sh
 
 ## Benchmarks; fails when a budget is broken.
 bench: setup

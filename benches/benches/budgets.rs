@@ -22,9 +22,11 @@ const SIZE: (u32, u32) = (256, 128);
 
 /// The budgets of the rig. Real-time factors hold on one core of a desktop machine; the ratios to
 /// references hold wherever both run.
-const BUDGETS: [Budget; 5] = [
+const BUDGETS: [Budget; 6] = [
     Budget { bench: "kernel/step", against: Against::RealTime(STEP_S as f64), at_least: 150.0 },
     Budget { bench: "replay/verify", against: Against::RealTime(STEP_S as f64), at_least: 100.0 },
+    // Four times the roads take four times as long, and a little more.
+    Budget { bench: "kernel/bake_40km", against: Against::Reference("kernel/bake_10km"), at_least: 0.2 },
     Budget { bench: "render/frame", against: Against::Reference("reference/bare_draw"), at_least: 0.15 },
     Budget { bench: "perception/infer", against: Against::Reference("reference/matrix_product"), at_least: 0.5 },
     Budget { bench: "rig/frame", against: Against::RealTime(1.0 / CLIP_FPS as f64), at_least: 2.0 },
@@ -51,6 +53,7 @@ fn run() -> Result<bool, String> {
         .warm_up_time(Duration::from_secs(1))
         .measurement_time(Duration::from_secs(4));
     kernel_step(&mut criterion, &drive);
+    kernel_bake(&mut criterion);
     replay_verify(&mut criterion, &drive)?;
     let mut sight = Sight::open(&drive.scene.network)?;
     references(&mut criterion, &drive)?;
@@ -78,6 +81,15 @@ fn kernel_step(criterion: &mut Criterion, drive: &BusyDrive) {
             BatchSize::LargeInput,
         )
     });
+}
+
+fn kernel_bake(criterion: &mut Criterion) {
+    for km in [10, 40] {
+        let text = ::tests::roads::winding(km, 1_000.0);
+        criterion.bench_function(&format!("kernel/bake_{km}km"), |b| {
+            b.iter(|| kernel::map::bake("winding", &text).expect("it bakes"))
+        });
+    }
 }
 
 fn replay_verify(criterion: &mut Criterion, drive: &BusyDrive) -> Result<(), String> {

@@ -2,6 +2,7 @@
 
 pub mod files;
 pub mod recordings;
+pub mod roads;
 pub mod scenes;
 pub mod street;
 pub mod toy;

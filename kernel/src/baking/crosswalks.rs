@@ -1,6 +1,6 @@
 //! Crosswalks: from the file's objects, or made where a junction with lights has none.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
@@ -35,18 +35,21 @@ pub(super) fn bake(
     let axes = outlines.filter_map(|outline| axis(roads, &outline));
     let mut found: Vec<Crosswalk> =
         axes.filter_map(|(ends, half_width_m)| crosswalk(roads, ends, half_width_m)).collect();
-    for (id, junction) in junctions.iter().enumerate() {
-        let has_lights = governed.iter().any(|g| g.junction as usize == id && g.is_light);
-        if has_lights && !has_crosswalk(roads.lanes, &found, id as u32) {
-            found.extend(invented(source, roads, id as u32, junction));
+    let lit: BTreeSet<u32> = governed.iter().filter(|g| g.is_light).map(|g| g.junction).collect();
+    let mut crossed: BTreeSet<u32> = found.iter().flat_map(|c| junctions_of(roads.lanes, c)).collect();
+    for id in lit {
+        if !crossed.contains(&id) {
+            let made = invented(source, roads, id, &junctions[id as usize]);
+            crossed.extend(made.iter().flat_map(|c| junctions_of(roads.lanes, c)));
+            found.extend(made);
         }
     }
     found
 }
 
-fn has_crosswalk(lanes: &[Lane], crosswalks: &[Crosswalk], junction: u32) -> bool {
-    let crossed = crosswalks.iter().flat_map(|c| &c.lanes);
-    crossed.into_iter().any(|&(lane, s)| reached(lanes, lane, s) == Some(junction))
+/// The junctions that the lanes of a crosswalk reach.
+fn junctions_of<'a>(lanes: &'a [Lane], crosswalk: &'a Crosswalk) -> impl Iterator<Item = u32> + 'a {
+    crosswalk.lanes.iter().filter_map(|&(lane, s)| reached(lanes, lane, s))
 }
 
 /// Corners of a flat shape, in order.
@@ -142,15 +145,11 @@ fn approaches(source: &Source, lanes: &[Lane], id: u32, junction: &Junction) -> 
 
 /// Offsets to the left of the inner edges of the sidewalks beside a road, (right, left).
 fn kerbs(source: &Source, lanes: &[Lane], lane: LaneId, position: Vec3) -> Option<(f32, f32)> {
-    let own = source.origins[lane as usize];
     let (along_m, ..) = lanes[lane as usize].project(position);
     let travel = direction(lanes[lane as usize].at(along_m).heading_rad);
     let (mut right, mut left): (Option<f32>, Option<f32>) = (None, None);
-    for (id, origin) in source.origins.iter().enumerate() {
-        let walk = &lanes[id];
-        if walk.kind != LaneKind::Sidewalk || origin.road != own.road || origin.section != own.section {
-            continue;
-        }
+    let section = source.section_of(lane).iter().map(|&l| &lanes[l as usize]);
+    for walk in section.filter(|l| l.kind == LaneKind::Sidewalk) {
         let (s, _, distance) = walk.project(position);
         let there = walk.at(s);
         let side = travel.perp_dot((there.position - position).truncate());

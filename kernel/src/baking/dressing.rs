@@ -69,8 +69,8 @@ impl Verge {
         if lanes[lane as usize].junction.is_some() || lanes[lane as usize].length_m < 6.0 {
             return None;
         }
-        let siblings = source.origins.iter().filter(|o| o.road == own.road && o.section == own.section);
-        let (low, high) = siblings.fold((0, 0), |(a, b), o| (a.min(o.od_id), b.max(o.od_id)));
+        let siblings = source.section_of(lane).iter().map(|&l| source.origins[l as usize].od_id);
+        let (low, high) = siblings.fold((0, 0), |(a, b), id| (a.min(id), b.max(id)));
         // Seen along the reference line, the land beyond the highest id is to the left.
         let along = match own.od_id {
             id if id == high && id > 0 => 1.0,
@@ -220,15 +220,12 @@ impl<'a> Site<'a> {
     }
 
     fn is_off_lanes(&self, prop: &Prop) -> bool {
-        use LaneKind as K;
         // A crown may hang over a sidewalk, a trunk may not stand on it.
         let mut foot = *prop;
         if prop.kind == PropKind::Tree {
             foot.size = Vec3::new(0.6, 0.6, prop.size.z);
         }
-        let hit = |p: Vec3, kind| !self.roads.around(p, kind, CLEAR_M).is_empty();
-        let kinds = [K::Driving, K::Sidewalk, K::Parking, K::Shoulder, K::Biking, K::Other];
-        !footprint(&foot, 2.0).iter().any(|&p| kinds.iter().any(|&k| hit(p, k)))
+        !footprint(&foot, 2.0).into_iter().any(|p| self.roads.is_near(p, CLEAR_M))
     }
 
     fn is_inside(&self, prop: &Prop) -> bool {

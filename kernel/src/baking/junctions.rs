@@ -6,8 +6,9 @@ use glam::Vec3;
 
 use super::rounding::snap3;
 use super::source::Source;
-use crate::map_data::{Conflict, Junction, Lane, LaneId, LaneKind, Turn};
+use crate::map_data::{Conflict, Junction, Lane, LaneId, LaneKind, LanePoint, Turn};
 use crate::ops;
+use crate::places::{LaneGrid, Roads};
 
 /// Turning by less than this is going straight on.
 const STRAIGHT_RAD: f32 = 0.5;
@@ -19,7 +20,7 @@ const PROBE_M: f32 = 0.5;
 const LEVEL_M: f32 = 3.0;
 
 /// Finds the junctions; of their lanes which way they turn, their limits, and where they overlap.
-pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>) -> (Vec<Lane>, Vec<Junction>) {
+pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, grid: &LaneGrid) -> (Vec<Lane>, Vec<Junction>) {
     let mut junctions: Vec<Junction> = Vec::new();
     let mut by_name: BTreeMap<&str, u32> = BTreeMap::new();
     for (id, lane) in lanes.iter_mut().enumerate() {
@@ -39,7 +40,12 @@ pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>) -> (Vec<Lane>, Vec<Jun
         junction.center = center(&junction.lanes, &lanes);
     }
     inherit_limits(&mut lanes);
-    overlaps(&mut lanes, &junctions);
+    for junction in &junctions {
+        let found: Vec<_> = junction.lanes.iter().map(|&id| overlaps(&grid.over(&lanes), id)).collect();
+        for (&id, conflicts) in junction.lanes.iter().zip(found) {
+            lanes[id as usize].conflicts = conflicts;
+        }
+    }
     (lanes, junctions)
 }
 
@@ -70,40 +76,33 @@ fn inherit_limits(lanes: &mut [Lane]) {
     }
 }
 
-fn overlaps(lanes: &mut [Lane], junctions: &[Junction]) {
-    for junction in junctions {
-        for &a in &junction.lanes {
-            for &b in &junction.lanes {
-                let (one, other) = (&lanes[a as usize], &lanes[b as usize]);
-                if a == b || same_start(one, other) {
-                    continue;
-                }
-                if let Some((from_m, to_m)) = overlap(one, other) {
-                    lanes[a as usize].conflicts.push(Conflict { lane: b, from_m, to_m, other_first: false });
-                }
+/// The lanes of the same junction within whose width a lane lies, and where.
+fn overlaps(roads: &Roads<'_>, id: LaneId) -> Vec<Conflict> {
+    let lane = &roads.lanes[id as usize];
+    let mut stretches: BTreeMap<LaneId, (f32, f32)> = BTreeMap::new();
+    let steps = (lane.length_m / PROBE_M) as u32 + 1;
+    for k in 0..=steps {
+        let s = (k as f32 * PROBE_M).min(lane.length_m);
+        let here = lane.at(s);
+        for near in roads.around(here.position, LaneKind::Driving, here.half_width_m) {
+            let other = &roads.lanes[near.lane as usize];
+            let competes = near.lane != id && other.junction == lane.junction && !same_start(lane, other);
+            if competes && overlap(&here, &other.at(near.s_m), near.distance_m) {
+                stretches.entry(near.lane).or_insert((s, s)).1 = s;
             }
         }
     }
+    let conflict = |(lane, (from_m, to_m))| Conflict { lane, from_m, to_m, other_first: false };
+    stretches.into_iter().map(conflict).collect()
+}
+
+/// Whether two places on lanes lie within the width of both.
+fn overlap(here: &LanePoint, there: &LanePoint, distance_m: f32) -> bool {
+    let near = here.half_width_m + there.half_width_m - CLEARANCE_M;
+    distance_m < near && (here.position.z - there.position.z).abs() < LEVEL_M
 }
 
 /// Lanes that fan out of one lane do not compete: who follows whom is settled before.
 fn same_start(a: &Lane, b: &Lane) -> bool {
     a.predecessors.iter().any(|p| b.predecessors.contains(p))
-}
-
-/// The stretch of `lane` that lies within the width of `other`.
-fn overlap(lane: &Lane, other: &Lane) -> Option<(f32, f32)> {
-    let mut stretch: Option<(f32, f32)> = None;
-    let steps = (lane.length_m / PROBE_M) as u32 + 1;
-    for k in 0..=steps {
-        let s = (k as f32 * PROBE_M).min(lane.length_m);
-        let here = lane.at(s);
-        let (at, _, distance) = other.project(here.position);
-        let there = other.at(at);
-        let near = here.half_width_m + there.half_width_m - CLEARANCE_M;
-        if distance < near && (here.position.z - there.position.z).abs() < LEVEL_M {
-            stretch = Some(stretch.map_or((s, s), |(from, _)| (from, s)));
-        }
-    }
-    stretch
 }

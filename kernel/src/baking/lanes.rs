@@ -1,5 +1,6 @@
 //! Lanes in their direction of travel, and how they follow and border each other.
 
+use super::limits::LANE_POINTS;
 use super::rounding::{snap, snap3};
 use super::shapes::point;
 use super::source::{BakeError, Origin, Source};
@@ -22,16 +23,24 @@ const MOTORWAY_MPS: f32 = 130.0 / 3.6;
 /// The lanes of the file, each with its origin, which the source remembers.
 pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError> {
     let mut lanes: Vec<Lane> = Vec::new();
-    let Source { net, origins, ids, .. } = &mut source;
+    let mut origins: Vec<Origin> = Vec::new();
+    let net = &source.net;
+    let mut points_left = LANE_POINTS;
     for lane in net.lanes().iter().filter(|l| l.layer == xodr::Layer::Permanent) {
         let Some(at) = net.road_lane(lane.id) else { continue };
         let forward = lane.direction != xodr::Direction::Backward;
+        let road = net.road(at.road).map_or("", |r| r.od_id());
+        points_left -= lane.center.points().len() as f64 + f64::from(lane.center.length() / MAX_STEP_M);
+        if points_left.is_nan() || points_left < 0.0 {
+            return Err(BakeError {
+                place: format!("road {road}, section {}, lane {}", at.section, at.od_id),
+                reason: format!("expected at most {LANE_POINTS} points on the centre lines of lanes in the file"),
+            });
+        }
         let points = centre_line(lane, forward);
         if points.len() < 2 || points.iter().all(|p| p.half_width_m * 2.0 < MIN_WIDTH_M) {
             continue;
         }
-        let road = net.road(at.road).map_or("", |r| r.od_id());
-        ids.insert(lane.id.0, lanes.len() as LaneId);
         origins.push(Origin { lane: lane.id, road: at.road.0, section: at.section, od_id: at.od_id, forward });
         lanes.push(Lane {
             kind: kind(lane.kind),
@@ -42,6 +51,7 @@ pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError>
             ..Lane::default()
         });
     }
+    origins.into_iter().for_each(|origin| source.remember(origin));
     if !lanes.iter().any(|l| l.kind == LaneKind::Driving) {
         return Err(BakeError {
             place: "the whole file".to_owned(),

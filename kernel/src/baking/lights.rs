@@ -1,6 +1,6 @@
 //! Traffic lights: their groups and heads.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
@@ -44,13 +44,12 @@ pub(super) fn groups(
 
 /// One head for each pole and approach.
 pub(super) fn heads(source: &Source, roads: &Roads<'_>, governed: &[Governed], groups: &Groups) -> Vec<LightHead> {
-    let (mut heads, mut placed) = (Vec::new(), Vec::<(usize, LightGroupId)>::new());
+    let (mut heads, mut placed) = (Vec::new(), BTreeSet::<(usize, LightGroupId)>::new());
     for g in governed.iter().filter(|g| g.is_light) {
         let group = groups[&(g.junction, g.approach)];
-        if placed.contains(&(g.signal, group)) {
+        if !placed.insert((g.signal, group)) {
             continue;
         }
-        placed.push((g.signal, group));
         let lane_end = *roads.lanes[g.lane as usize].end();
         let stands = point(source.net.signals()[g.signal].position);
         let height = stands.z - lane_end.position.z;

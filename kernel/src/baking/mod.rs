@@ -5,6 +5,7 @@ mod dressing;
 mod junctions;
 mod lanes;
 mod lights;
+mod limits;
 mod mesh;
 mod priority;
 mod props;

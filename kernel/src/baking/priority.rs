@@ -1,16 +1,19 @@
 //! Who goes first where lanes overlap.
 
+use std::collections::BTreeSet;
+
 use super::source::Source;
-use super::stops::stop_place;
+use super::stops::Crossed;
 use crate::geometry::direction;
-use crate::map_data::{Crosswalk, Lane, LaneId, LaneKind, StopKind, StopLine, Turn};
+use crate::map_data::{Lane, LaneId, LaneKind, StopKind, StopLine, Turn};
 
 /// Decides who goes first at every overlap, and adds the stop lines of those who wait without a sign.
-pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crosswalks: &[Crosswalk]) -> Vec<Lane> {
+pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crossed: &Crossed) -> Vec<Lane> {
+    let yields = Yields::new(source);
     for a in 0..lanes.len() as LaneId {
         for k in 0..lanes[a as usize].conflicts.len() {
             let b = lanes[a as usize].conflicts[k].lane;
-            lanes[a as usize].conflicts[k].other_first = gives_way(source, &lanes, a, b);
+            lanes[a as usize].conflicts[k].other_first = gives_way(source, &yields, &lanes, a, b);
         }
     }
     for before in 0..lanes.len() {
@@ -21,7 +24,7 @@ pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crosswalks: &[Crosswal
             && lane.junction.is_none()
             && lane.successors.iter().any(waits)
         {
-            let s_m = stop_place(&lanes, crosswalks, before as LaneId);
+            let s_m = crossed.stop_place(&lanes, before as LaneId);
             lanes[before].stop = Some(StopLine { s_m, kind: StopKind::Yield });
         }
     }
@@ -29,9 +32,9 @@ pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crosswalks: &[Crosswal
 }
 
 /// Whether traffic on junction lane `a` waits for traffic on `b`; never true both ways.
-fn gives_way(source: &Source, lanes: &[Lane], a: LaneId, b: LaneId) -> bool {
+fn gives_way(source: &Source, yields: &Yields, lanes: &[Lane], a: LaneId, b: LaneId) -> bool {
     let (one, other) = (&lanes[a as usize], &lanes[b as usize]);
-    if let Some(told) = priority(source, lanes, a, b) {
+    if let Some(told) = priority(source, yields, lanes, a, b) {
         return told;
     }
     match (sign(lanes, one), sign(lanes, other)) {
@@ -56,17 +59,24 @@ fn sign(lanes: &[Lane], lane: &Lane) -> u32 {
     u32::from(stops.into_iter().any(|s| matches!(s.kind, StopKind::Stop | StopKind::Yield)))
 }
 
+/// The `<priority>` records of the file: who waits, for whom.
+struct Yields(BTreeSet<(usize, usize)>);
+
+impl Yields {
+    fn new(source: &Source) -> Self {
+        Self(source.net.priorities().iter().map(|p| (p.low.0, p.high.0)).collect())
+    }
+}
+
 /// What `<priority>` records say about two junction lanes, by their own or their incoming roads.
-fn priority(source: &Source, lanes: &[Lane], a: LaneId, b: LaneId) -> Option<bool> {
+fn priority(source: &Source, yields: &Yields, lanes: &[Lane], a: LaneId, b: LaneId) -> Option<bool> {
     let roads = |id: LaneId| {
         let before = lanes[id as usize].predecessors.iter().map(|&p| source.origins[p as usize].road);
         std::iter::once(source.origins[id as usize].road).chain(before).collect::<Vec<_>>()
     };
     let (ours, theirs) = (roads(a), roads(b));
-    let yields = |low: &[usize], high: &[usize]| {
-        low.iter().any(|&l| source.net.yields_to(xodr::RoadId(l)).any(|h| high.contains(&h.0)))
-    };
-    match (yields(&ours, &theirs), yields(&theirs, &ours)) {
+    let waits = |low: &[usize], high: &[usize]| low.iter().any(|&l| high.iter().any(|&h| yields.0.contains(&(l, h))));
+    match (waits(&ours, &theirs), waits(&theirs, &ours)) {
         (true, false) => Some(true),
         (false, true) => Some(false),
         _ => None,

@@ -133,5 +133,9 @@ fn rail(a: Vec3, b: Vec3, height: f32, prop: &dyn Fn(Vec3, f32, Vec3) -> Prop) -
 
 /// Whether any of a prop's footprint lies on a driving lane.
 fn is_on_lane(roads: &Roads<'_>, prop: &Prop) -> bool {
-    footprint(prop, 1.0).iter().any(|&p| roads.at(p, LaneKind::Driving).iter().any(|l| roads.beyond_edge(l) < -0.1))
+    let reach_m = prop.size.truncate().length() / 2.0 + 0.1;
+    roads.may_be_near(prop.position, LaneKind::Driving, reach_m)
+        && footprint(prop, 1.0)
+            .iter()
+            .any(|&p| roads.at(p, LaneKind::Driving).iter().any(|l| roads.beyond_edge(l) < -0.1))
 }

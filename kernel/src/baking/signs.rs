@@ -1,5 +1,7 @@
 //! Which signals and signs of the file are for which lanes.
 
+use std::collections::BTreeSet;
+
 use super::source::{Approach, Source};
 use crate::map_data::{Lane, LaneId, LaneKind, StopKind};
 
@@ -27,6 +29,7 @@ pub(super) struct Governed {
 /// Which signals govern which lanes.
 pub(super) fn governed(source: &Source, lanes: &[Lane]) -> Vec<Governed> {
     let mut found = Vec::new();
+    let mut known: BTreeSet<(usize, u32, LaneId)> = BTreeSet::new();
     for (signal, s) in source.net.signals().iter().enumerate() {
         let is_light = s.kind == LIGHT || (s.dynamic && s.kind.starts_with("10000"));
         let kind = match s.kind.as_str() {
@@ -39,7 +42,7 @@ pub(super) fn governed(source: &Source, lanes: &[Lane]) -> Vec<Governed> {
         for lane in signalled.filter(|&l| lanes[l as usize].kind == LaneKind::Driving) {
             for (junction, before) in before_junction(lanes, lane) {
                 let approach = source.origins[before as usize].approach();
-                if !found.iter().any(|g: &Governed| g.lane == before && g.signal == signal && g.junction == junction) {
+                if known.insert((signal, junction, before)) {
                     found.push(Governed { junction, approach, lane: before, is_light, kind, signal });
                 }
             }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::limits;
 use crate::map_data::LaneId;
 
 /// Why a text is not a usable map.
@@ -22,6 +23,8 @@ pub(super) struct Source {
     pub origins: Vec<Origin>,
     /// The way back from xodr's ids.
     pub ids: BTreeMap<usize, LaneId>,
+    /// The lanes of each section, in ascending order.
+    sections: BTreeMap<Section, Vec<LaneId>>,
 }
 
 /// Where a lane came from.
@@ -34,6 +37,9 @@ pub(super) struct Origin {
     /// Whether it is driven along its road's reference line.
     pub forward: bool,
 }
+
+/// A road and the index of one of its sections.
+type Section = (usize, usize);
 
 impl Origin {
     /// The road and direction that lanes of one approach to a junction share.
@@ -51,25 +57,44 @@ const KERB_M: f32 = 0.125;
 impl Source {
     /// The file, before any lane is baked.
     pub fn read(text: &str) -> Result<Self, BakeError> {
+        limits::check(text)?;
         let (net, provenance) = xodr::load_str_with_provenance(text).map_err(explain)?;
-        Ok(Self { net, provenance, origins: Vec::new(), ids: BTreeMap::new() })
+        Ok(Self { net, provenance, origins: Vec::new(), ids: BTreeMap::new(), sections: BTreeMap::new() })
+    }
+
+    /// Remembers where the next lane came from.
+    pub fn remember(&mut self, origin: Origin) {
+        let id = self.origins.len() as LaneId;
+        self.ids.insert(origin.lane.0, id);
+        self.sections.entry((origin.road, origin.section)).or_default().push(id);
+        self.origins.push(origin);
+    }
+
+    /// The lanes of the section that a lane is in, itself among them.
+    pub fn section_of(&self, lane: LaneId) -> &[LaneId] {
+        let origin = &self.origins[lane as usize];
+        &self.sections[&(origin.road, origin.section)]
     }
 
     /// How far a lane stands above the road: pavements do, unless the file raises them itself.
     pub fn rise(&self, lane: LaneId) -> f32 {
         let origin = self.origins[lane as usize];
-        let told = self.provenance.lanes.iter().find(|p| p.lane == origin.lane);
+        let told = self.told_of(origin.lane);
         let is_raised = told.is_some_and(|p| p.heights.iter().any(|h| h.inner > 0.02 || h.outer > 0.02));
         if is_raised { 0.0 } else { KERB_M }
+    }
+
+    /// What xodr remembers of a lane: its records are in the order of their lanes.
+    fn told_of(&self, lane: xodr::LaneId) -> Option<&xodr::LaneProvenance> {
+        let lanes = &self.provenance.lanes;
+        let at = lanes.binary_search_by_key(&lane.0, |p| p.lane.0).ok()?;
+        Some(&lanes[at])
     }
 }
 
 fn explain(error: xodr::ImportError) -> BakeError {
     match error {
-        xodr::ImportError::Xml(e) => BakeError {
-            place: format!("line {}", e.pos().row),
-            reason: format!("expected well-formed OpenDRIVE XML, but {e}"),
-        },
+        xodr::ImportError::Xml(e) => limits::malformed(&e),
         other => BakeError { place: "the whole file".to_owned(), reason: format!("expected OpenDRIVE: {other}") },
     }
 }

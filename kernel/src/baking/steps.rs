@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::limits::{CROWD, EXTENT_M};
 use super::source::{BakeError, Source};
 use super::{
     crosswalks, dressing, junctions, lanes, lights, priority, props, signs, stops, surfaces, terrain, walkways,
@@ -16,19 +17,21 @@ use crate::places::LaneGrid;
 pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
     let source = Source::read(xodr)?;
     let (source, lanes) = lanes::bake(source)?;
-    let (lanes, junctions) = junctions::bake(&source, lanes);
+    let bounds = bounds(&lanes)?;
     let grid = LaneGrid::new(&lanes);
+    sparse(&lanes, &grid)?;
+    let (lanes, junctions) = junctions::bake(&source, lanes, &grid);
     let governed = signs::governed(&source, &lanes);
     let crosswalks = crosswalks::bake(&source, &grid.over(&lanes), &junctions, &governed);
     let (junctions, light_groups, groups) = lights::groups(&lanes, junctions, &governed);
-    let lanes = stops::bake(lanes, &crosswalks, &governed, &groups);
+    let crossed = stops::Crossed::new(&crosswalks);
+    let lanes = stops::bake(lanes, &crossed, &governed, &groups);
     let light_heads = lights::heads(&source, &grid.over(&lanes), &governed, &groups);
     let crosswalks = crosswalks::lit(crosswalks, &lanes, &junctions);
     let (walk_nodes, walk_edges) = walkways::bake(&source, &grid.over(&lanes), &crosswalks);
     let mut surfaces = surfaces::bake(&source, &lanes, &junctions, &crosswalks);
     // After the paint: who waits without a sign has no line on the road.
-    let lanes = priority::bake(&source, lanes, &crosswalks);
-    let bounds = bounds(&lanes);
+    let lanes = priority::bake(&source, lanes, &crossed);
     surfaces.push(terrain::bake(&lanes, bounds));
     let props = props::bake(&source, &grid.over(&lanes), &light_heads);
     let props = dressing::bake(&source, grid.over(&lanes), bounds, props);
@@ -54,13 +57,28 @@ pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
 /// Room around the lanes that belongs to the map, metres.
 const MARGIN_M: f32 = 60.0;
 
-fn bounds(lanes: &[Lane]) -> [Vec3; 2] {
+/// Least and greatest corner of the map; refused where it is larger than any is.
+fn bounds(lanes: &[Lane]) -> Result<[Vec3; 2], BakeError> {
     let mut low = Vec3::splat(f32::MAX);
     let mut high = Vec3::splat(f32::MIN);
-    for p in lanes.iter().flat_map(|l| &l.points) {
-        low = low.min(p.position);
-        high = high.max(p.position);
+    for lane in lanes {
+        for p in &lane.points {
+            low = low.min(p.position);
+            high = high.max(p.position);
+        }
+        if (high - low).max_element() > EXTENT_M {
+            let reason = format!("expected a map of at most {EXTENT_M} m, but this lane lies farther from others");
+            return Err(BakeError { place: format!("lane {}", lane.name), reason });
+        }
     }
     let around = Vec3::new(MARGIN_M, MARGIN_M, 0.0);
-    [low - around - Vec3::Z * 5.0, high + around + Vec3::Z * 40.0]
+    Ok([low - around - Vec3::Z * 5.0, high + around + Vec3::Z * 40.0])
+}
+
+/// Refuses lanes that lie on each other in great numbers: whatever asks about a place looks at all of them.
+fn sparse(lanes: &[Lane], grid: &LaneGrid) -> Result<(), BakeError> {
+    let Some((lane, crowd)) = grid.most_crowded().filter(|(_, crowd)| *crowd > CROWD) else { return Ok(()) };
+    let reason =
+        format!("expected at most {CROWD} stretches of lanes around one place, but around this lane {crowd} meet");
+    Err(BakeError { place: format!("lane {}", lanes[lane as usize].name), reason })
 }

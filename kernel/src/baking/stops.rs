@@ -1,5 +1,7 @@
 //! Stop lines.
 
+use std::collections::BTreeMap;
+
 use super::lights::Groups;
 use super::rounding::snap;
 use super::signs::Governed;
@@ -11,18 +13,13 @@ const SETBACK_M: f32 = 1.0;
 const CROSSWALK_M: f32 = 15.0;
 
 /// Gives the lanes before junctions the stop lines of their lights and signs.
-pub(super) fn bake(
-    mut lanes: Vec<Lane>,
-    crosswalks: &[Crosswalk],
-    governed: &[Governed],
-    groups: &Groups,
-) -> Vec<Lane> {
+pub(super) fn bake(mut lanes: Vec<Lane>, crossed: &Crossed, governed: &[Governed], groups: &Groups) -> Vec<Lane> {
     for g in governed {
         let kind = match g.kind {
             StopKind::Light(_) => StopKind::Light(groups[&(g.junction, g.approach)]),
             sign => sign,
         };
-        let s_m = stop_place(&lanes, crosswalks, g.lane);
+        let s_m = crossed.stop_place(&lanes, g.lane);
         let stop = &mut lanes[g.lane as usize].stop;
         if stop.is_none() || g.is_light {
             *stop = Some(StopLine { s_m, kind });
@@ -31,11 +28,25 @@ pub(super) fn bake(
     lanes
 }
 
-/// Where to stop on a lane before a junction: short of its end, or of a crosswalk there.
-pub(super) fn stop_place(lanes: &[Lane], crosswalks: &[Crosswalk], lane: LaneId) -> f32 {
-    let length = lanes[lane as usize].length_m;
-    let edges = crosswalks.iter().flat_map(|c| c.lanes.iter().map(move |&(l, s)| (l, s - c.half_width_m)));
-    let near = edges.filter(|&(l, s)| l == lane && length - s < CROSSWALK_M);
-    let before = near.map(|(_, s)| s).fold(length, f32::min);
-    snap((before - SETBACK_M).max(0.0))
+/// Where crosswalks begin on each lane, metres from its start.
+pub(super) struct Crossed(BTreeMap<LaneId, Vec<f32>>);
+
+impl Crossed {
+    pub fn new(crosswalks: &[Crosswalk]) -> Self {
+        let mut edges: BTreeMap<LaneId, Vec<f32>> = BTreeMap::new();
+        for crosswalk in crosswalks {
+            for &(lane, s) in &crosswalk.lanes {
+                edges.entry(lane).or_default().push(s - crosswalk.half_width_m);
+            }
+        }
+        Self(edges)
+    }
+
+    /// Where to stop on a lane before a junction: short of its end, or of a crosswalk there.
+    pub fn stop_place(&self, lanes: &[Lane], lane: LaneId) -> f32 {
+        let length = lanes[lane as usize].length_m;
+        let edges = self.0.get(&lane).into_iter().flatten().copied();
+        let before = edges.filter(|s| length - s < CROSSWALK_M).fold(length, f32::min);
+        snap((before - SETBACK_M).max(0.0))
+    }
 }

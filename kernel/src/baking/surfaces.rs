@@ -20,6 +20,8 @@ const FLOOR_M: f32 = 20.0 / 1024.0;
 const FLOOR_REACH_M: f32 = 60.0;
 /// A strip of surface is cut at least this often, metres.
 const MAX_QUAD_M: f32 = 24.0;
+/// A strip of this many ribs is cut, however short it is.
+const MAX_RIBS: usize = 256;
 /// An edge that strays less than this from a line is straight, metres.
 const STRAIGHT_M: f32 = 0.003;
 /// Depth of a stop line along the road, metres.
@@ -96,7 +98,7 @@ fn is_straight(ribs: &[[Vec3; 2]]) -> bool {
                 (off - along * (off.dot(along) / squared)).length_squared() < STRAIGHT_M * STRAIGHT_M
             })
     };
-    edge(0) && edge(1)
+    ribs.len() < MAX_RIBS && edge(0) && edge(1)
 }
 
 /// Faces down from both edges and both ends of a strip of (left, right) ribs.

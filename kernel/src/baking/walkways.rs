@@ -1,6 +1,6 @@
 //! The ways of pedestrians: sidewalks, crosswalks, and what joins them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
@@ -59,6 +59,8 @@ struct Graph {
     /// Nodes by the square metre they lie in.
     cells: BTreeMap<(i32, i32), Vec<u32>>,
     edges: Vec<WalkEdge>,
+    /// Corners of the box around each edge outside of which nothing is joined to it.
+    boxes: Vec<(Vec3, Vec3)>,
 }
 
 impl Graph {
@@ -87,6 +89,7 @@ impl Graph {
         let length_m = length(&points);
         if points.len() > 1 && length_m > 0.1 {
             let half_width_m = snap(half_width_m);
+            self.boxes.push(reachable(&points));
             self.edges.push(WalkEdge { nodes, points, half_width_m, length_m, crosswalk, beside });
         }
     }
@@ -94,7 +97,9 @@ impl Graph {
     /// The node of a sidewalk nearest to `place`; splits the sidewalk where it has none there.
     fn reach(&mut self, place: Vec3) -> Option<u32> {
         let mut best: Option<(f32, usize, usize, Vec3)> = None;
-        for (e, edge) in self.edges.iter().enumerate().filter(|(_, e)| e.crosswalk.is_none()) {
+        let near = |e: usize| self.boxes[e].0.cmple(place).all() && self.boxes[e].1.cmpge(place).all();
+        let sidewalks = self.edges.iter().enumerate().filter(|(_, e)| e.crosswalk.is_none());
+        for (e, edge) in sidewalks.filter(|(e, _)| near(*e)) {
             for (k, pair) in edge.points.windows(2).enumerate() {
                 let along = pair[1] - pair[0];
                 let share = ((place - pair[0]).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
@@ -121,6 +126,7 @@ impl Graph {
         tail.extend_from_slice(&edge.points[k + 1..]);
         let (half_width_m, beside) = (edge.half_width_m, edge.beside);
         self.edges.swap_remove(e);
+        self.boxes.swap_remove(e);
         self.add(head, half_width_m, None, beside);
         self.add(tail, half_width_m, None, beside);
         self.node(foot)
@@ -130,14 +136,12 @@ impl Graph {
     fn join_corners(&mut self, roads: &Roads<'_>) {
         let mut degree = vec![0; self.nodes.len()];
         self.edges.iter().flat_map(|e| e.nodes).for_each(|n| degree[n as usize] += 1);
-        let mut loose: Vec<u32> = (0..self.nodes.len() as u32).filter(|&n| degree[n as usize] == 1).collect();
+        let mut loose = Loose::new(&self.nodes, (0..self.nodes.len() as u32).filter(|&n| degree[n as usize] == 1));
         while let Some(a) = loose.pop() {
             let from = self.nodes[a as usize];
-            let free = |b: &&u32| is_dry(roads, from, self.nodes[**b as usize]);
-            let distance = |b: &u32| self.nodes[*b as usize].distance(from);
-            let near = loose.iter().filter(|b| distance(b) < CORNER_M).filter(free);
-            if let Some(&b) = near.min_by(|x, y| distance(x).total_cmp(&distance(y))) {
-                loose.retain(|&n| n != b);
+            let dry = loose.near(from).into_iter().find(|&b| is_dry(roads, from, self.nodes[b as usize]));
+            if let Some(b) = dry {
+                loose.remove(b);
                 self.add(vec![from, self.nodes[b as usize]], 0.6, None, None);
             }
         }
@@ -152,6 +156,58 @@ impl Graph {
             }
         }
         (nodes, self.edges)
+    }
+}
+
+/// The box around some points with [`JOIN_M`] on all sides, and a little for rounding.
+fn reachable(points: &[Vec3]) -> (Vec3, Vec3) {
+    let low = points.iter().fold(Vec3::MAX, |m, p| m.min(*p));
+    let high = points.iter().fold(Vec3::MIN, |m, p| m.max(*p));
+    (low - (JOIN_M + 0.1), high + (JOIN_M + 0.1))
+}
+
+/// Nodes at which one sidewalk ends.
+struct Loose {
+    places: BTreeMap<u32, Vec3>,
+    /// By square of [`CORNER_M`].
+    cells: BTreeMap<(i32, i32), BTreeSet<u32>>,
+}
+
+impl Loose {
+    fn new(nodes: &[Vec3], loose: impl Iterator<Item = u32>) -> Self {
+        let places: BTreeMap<u32, Vec3> = loose.map(|n| (n, nodes[n as usize])).collect();
+        let mut cells: BTreeMap<(i32, i32), BTreeSet<u32>> = BTreeMap::new();
+        places.iter().for_each(|(&n, &p)| _ = cells.entry(Self::cell(p)).or_default().insert(n));
+        Self { places, cells }
+    }
+
+    fn cell(p: Vec3) -> (i32, i32) {
+        let at = |v: f32| ops::floor(v / CORNER_M) as i32;
+        (at(p.x), at(p.y))
+    }
+
+    /// The last of them, which it is then no more.
+    fn pop(&mut self) -> Option<u32> {
+        let last = *self.places.last_key_value()?.0;
+        self.remove(last);
+        Some(last)
+    }
+
+    fn remove(&mut self, n: u32) {
+        if let Some(p) = self.places.remove(&n) {
+            self.cells.get_mut(&Self::cell(p)).map(|cell| cell.remove(&n));
+        }
+    }
+
+    /// Those nearer than [`CORNER_M`], the nearest first.
+    fn near(&self, place: Vec3) -> Vec<u32> {
+        let (x, y) = Self::cell(place);
+        let around = (x - 1..=x + 1).flat_map(|i| (y - 1..=y + 1).map(move |j| (i, j)));
+        let found = around.filter_map(|c| self.cells.get(&c)).flatten();
+        let mut near: Vec<(f32, u32)> = found.map(|n| (self.places[n].distance(place), *n)).collect();
+        near.retain(|(distance, _)| *distance < CORNER_M);
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.into_iter().map(|(_, n)| n).collect()
     }
 }
 

@@ -1,5 +1,7 @@
 //! Lanes, and places on them.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::digest::{Digested, digested, digested_codes};
@@ -209,14 +211,11 @@ impl Lane {
     pub fn segment(&self, s_m: f32) -> (usize, f32) {
         let points = &self.points;
         let last = points.len() - 2;
-        let guess = (s_m / self.length_m * (last + 1) as f32) as usize;
-        let mut i = guess.min(last);
-        while i > 0 && points[i].s_m > s_m {
-            i -= 1;
-        }
-        while i < last && points[i + 1].s_m <= s_m {
-            i += 1;
-        }
+        let guess = ((s_m / self.length_m * (last + 1) as f32) as usize).min(last);
+        // Most vertices are evenly spaced, so that the guess is right or one off.
+        let is_it = |i: &usize| (*i == 0 || points[*i].s_m <= s_m) && (*i == last || points[*i + 1].s_m > s_m);
+        let near = [guess, guess + 1, guess.saturating_sub(1)].into_iter().filter(|i| *i <= last).find(is_it);
+        let i = near.unwrap_or_else(|| points[..=last].partition_point(|p| p.s_m <= s_m).saturating_sub(1));
         // Vertices of a baked lane are 0.05 m apart or more.
         let span = (points[i + 1].s_m - points[i].s_m).max(1e-3);
         (i, (s_m - points[i].s_m) / span)
@@ -249,9 +248,14 @@ impl Lane {
 
     /// The nearest place of its centre line seen from above: (s, offset to the left, distance).
     pub fn project(&self, position: Vec3) -> (f32, f32, f32) {
+        self.project_onto(std::iter::once(0..self.points.len() - 1), position)
+    }
+
+    /// The same, of the segments in some ranges only.
+    pub(crate) fn project_onto(&self, segments: impl Iterator<Item = Range<usize>>, position: Vec3) -> (f32, f32, f32) {
         let p = position.truncate();
         let mut best = (0.0, 0.0, f32::MAX);
-        for pair in self.points.windows(2) {
+        for pair in segments.flat_map(|range| self.points[range.start..=range.end].windows(2)) {
             let (a, along) = (pair[0].position.truncate(), (pair[1].position - pair[0].position).truncate());
             let share = ((p - a).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
             let off = p - (a + along * share);

@@ -66,6 +66,12 @@ impl Grid {
         (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| y * columns + x))
     }
 
+    /// An item in the fullest cell, and how many that holds.
+    pub fn most_crowded(&self) -> Option<(u32, usize)> {
+        let cells = self.starts.windows(2).map(|c| &self.items[c[0] as usize..c[1] as usize]);
+        cells.max_by_key(|items| items.len()).and_then(|items| Some((*items.first()?, items.len())))
+    }
+
     /// Items whose boxes may touch the square of half side `radius_m` around `p`; some come twice.
     pub fn around(&self, p: Vec2, radius_m: f32) -> impl Iterator<Item = u32> + '_ {
         let empty = self.starts.is_empty();

@@ -8,6 +8,8 @@ use crate::ops;
 
 /// Vertices of a lane that share a box in the grid.
 const STRETCH: usize = 8;
+/// Lanes of more vertices than this are looked at stretch by stretch.
+const LONG: usize = 256;
 /// Side of a cell, metres.
 const CELL_M: f32 = 10.0;
 /// Distances that differ by less tie, and direction decides, metres.
@@ -17,14 +19,20 @@ const TIE_M: f32 = 0.5;
 #[derive(Debug)]
 pub(crate) struct LaneGrid {
     grid: Grid,
-    /// Lane of each item of the grid.
-    stretches: Vec<LaneId>,
+    /// Lane and first vertex of each item of the grid.
+    stretches: Vec<(LaneId, u32)>,
 }
 
 impl LaneGrid {
     pub fn new(lanes: &[Lane]) -> Self {
         let (boxes, stretches) = boxes(lanes);
         Self { grid: Grid::new(&boxes, CELL_M), stretches }
+    }
+
+    /// A lane in the cell that the most stretches touch, and how many do.
+    pub fn most_crowded(&self) -> Option<(LaneId, usize)> {
+        let (item, crowd) = self.grid.most_crowded()?;
+        Some((self.stretches[item as usize].0, crowd))
     }
 
     /// With the lanes it was made of; all but their lines may have changed.
@@ -80,15 +88,56 @@ impl Roads<'_> {
 
     /// Lanes of `kind` whose area comes within `radius_m` of `position`, by id.
     pub fn around(&self, position: Vec3, kind: LaneKind, radius_m: f32) -> Vec<Projection> {
-        let near = self.grid.grid.around(position.truncate(), radius_m);
-        let mut ids: Vec<LaneId> = near.map(|i| self.grid.stretches[i as usize]).collect();
+        let mut ids: Vec<LaneId> = self.near(position, radius_m).map(|(lane, _)| lane).collect();
         ids.sort_unstable();
         ids.dedup();
         ids.retain(|&id| self.lanes[id as usize].kind == kind);
-        let mut found: Vec<_> =
-            ids.into_iter().map(|id| Projection::onto(id, &self.lanes[id as usize], position)).collect();
+        let mut found: Vec<_> = ids.into_iter().map(|id| self.onto(id, position, radius_m)).collect();
         found.retain(|p| self.beyond_edge(p) <= radius_m && self.on_level(p, position));
         found
+    }
+
+    /// Whether the area of any lane comes within `radius_m` of `position`.
+    pub fn is_near(&self, position: Vec3, radius_m: f32) -> bool {
+        let mut ids: Vec<LaneId> = self.near(position, radius_m).map(|(lane, _)| lane).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let within = |p: Projection| self.beyond_edge(&p) <= radius_m && self.on_level(&p, position);
+        ids.into_iter().any(|id| within(self.onto(id, position, radius_m)))
+    }
+
+    /// Whether any lane of `kind` may come within `radius_m` of `position`: the answer no is certain.
+    pub fn may_be_near(&self, position: Vec3, kind: LaneKind, radius_m: f32) -> bool {
+        self.near(position, radius_m).any(|(lane, _)| self.lanes[lane as usize].kind == kind)
+    }
+
+    /// Stretches that may come within `radius_m` of `position`, as their lane and first vertex; some come twice.
+    fn near(&self, position: Vec3, radius_m: f32) -> impl Iterator<Item = (LaneId, u32)> + '_ {
+        self.grid.grid.around(position.truncate(), radius_m).map(|i| self.grid.stretches[i as usize])
+    }
+
+    /// [`Projection::onto`] a lane near `position`; of a long one only the stretches around are looked at.
+    fn onto(&self, id: LaneId, position: Vec3, near_m: f32) -> Projection {
+        let lane = &self.lanes[id as usize];
+        if lane.points.len() <= LONG {
+            return Projection::onto(id, lane, position);
+        }
+        let within = |reach_m: f32| {
+            // A little more, so that rounding leaves no stretch out.
+            let near = self.near(position, reach_m + 0.1).filter(|s| s.0 == id);
+            let mut firsts: Vec<usize> = near.map(|s| s.1 as usize).collect();
+            firsts.sort_unstable();
+            firsts.dedup();
+            let stretches = firsts.into_iter().map(|k| k..(k + STRETCH).min(lane.points.len() - 1));
+            lane.project_onto(stretches, position)
+        };
+        let mut found = within(near_m);
+        if found.2 > near_m {
+            // A stretch beyond may be nearer, but none farther than this.
+            found = within(found.2);
+        }
+        let (s_m, lateral_m, distance_m) = found;
+        Projection { lane: id, s_m, lateral_m, distance_m }
     }
 
     /// Distance from the lane's edge, negative inside its area.
@@ -102,8 +151,8 @@ impl Roads<'_> {
     }
 }
 
-/// The box of each stretch of a lane and its lane.
-fn boxes(lanes: &[Lane]) -> (Vec<Bounds>, Vec<LaneId>) {
+/// The box of each stretch of a lane, its lane and its first vertex.
+fn boxes(lanes: &[Lane]) -> (Vec<Bounds>, Vec<(LaneId, u32)>) {
     let mut boxes = Vec::new();
     let mut owners = Vec::new();
     for (id, lane) in lanes.iter().enumerate() {
@@ -114,7 +163,7 @@ fn boxes(lanes: &[Lane]) -> (Vec<Bounds>, Vec<LaneId>) {
             let low = part.iter().fold(Vec2::splat(f32::MAX), |m, p| m.min(p.position.truncate() - p.half_width_m));
             let high = part.iter().fold(Vec2::splat(f32::MIN), |m, p| m.max(p.position.truncate() + p.half_width_m));
             boxes.push((low, high));
-            owners.push(id as LaneId);
+            owners.push((id as LaneId, first as u32));
             first = end;
         }
     }

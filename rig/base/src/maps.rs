@@ -9,8 +9,8 @@ use kernel::{RoadNetwork, Scenario};
 use replay::ForeignMap;
 
 use crate::failure::Usage;
-use crate::{output, toml_text};
 use crate::files::{self, check_name, most};
+use crate::{output, toml_text};
 
 /// A map to drive on.
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use base::failure::sentence;
-use base::maps::read_scenario;
+use base::maps::ScenarioFile;
 use base::png;
 use lab::dataset::Manifest;
 use live::units::{calibration, carla};
@@ -122,7 +122,7 @@ proptest! {
     #[test]
     fn scenarios(changes in changes()) {
         let valid = kernel::Scenario::default_for("city", 7).to_toml();
-        try_out(valid.as_bytes(), &changes, "toml", |path| read_scenario(path).map(drop));
+        try_out(valid.as_bytes(), &changes, "toml", |path| ScenarioFile::read(path).map(drop));
     }
 
     #[test]
@@ -233,7 +233,7 @@ fn files_without_end_are_refused() {
         return;
     }
     let reads: [fn(&Path) -> anyhow::Result<()>; 6] = [
-        |path| read_scenario(path).map(drop),
+        |path| ScenarioFile::read(path).map(drop),
         |path| calibration::read(path).map(drop),
         |path| Questionnaire::read(path).map(drop),
         |path| Manifest::read_file(path).map(drop),

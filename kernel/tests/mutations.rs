@@ -1,0 +1,86 @@
+//! Whatever becomes of an OpenDRIVE text, it bakes to a sound map or is refused in one sentence.
+//! `PROPTEST_CASES=100000 cargo test -p kernel --release --test mutations` looks longer.
+#![allow(clippy::disallowed_methods, reason = "tests may read files and the environment")]
+
+#[path = "common/mutate.rs"]
+mod mutate;
+#[path = "../../tests/src/roads.rs"]
+#[allow(dead_code, reason = "others use the rest")]
+mod roads;
+
+use kernel::RoadNetwork;
+use kernel::map::{LaneKind, bake};
+use mutate::{Mutation, mutated, mutations};
+use proptest::prelude::*;
+
+/// Real and made maps, small ones first.
+fn origins() -> Vec<String> {
+    let maps = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/maps/");
+    let cross =
+        ["cross_none", "cross_lights", "cross_stop", "cross_yield", "cross_hill", "cross_wide", "cross_references"];
+    let read = |path: String| std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let mut texts = vec![roads::winding(2, 60.0), roads::crossing(2, 60.0)];
+    texts.extend(cross.map(|name| read(format!("{maps}{name}.xodr"))));
+    texts.push(read(concat!(env!("CARGO_MANIFEST_DIR"), "/maps/rural.xodr").to_owned()));
+    // A folder of further maps to start from.
+    if let Some(folder) = std::env::var_os("AEYE_MUTATE") {
+        let files = std::fs::read_dir(&folder).expect("AEYE_MUTATE names a folder");
+        texts.extend(files.map(|file| read(file.expect("the folder lists").path().display().to_string())));
+    }
+    texts
+}
+
+fn check_sound(map: &RoadNetwork) {
+    for lane in &map.lanes {
+        assert!(lane.points.len() >= 2 && lane.length_m > 0.0, "lane {} has a length", lane.name);
+        assert!(lane.points.iter().all(|p| p.position.is_finite() && p.half_width_m.is_finite()), "lane {}", lane.name);
+        let middle = lane.at(lane.length_m / 2.0).position;
+        assert!(lane.kind != LaneKind::Driving || map.nearest_lane(middle, lane.kind, None, 1.0).is_some());
+        let _ = map.ground(middle);
+    }
+    for surface in &map.surfaces {
+        assert!(surface.positions.iter().all(|p| p.is_finite()), "{:?}", surface.kind);
+    }
+    assert!(map.props.iter().all(|p| p.position.is_finite() && p.size.is_finite()));
+}
+
+fn check(text: &str) {
+    match bake("mutated", text) {
+        Ok(map) => check_sound(&map),
+        Err(refusal) => {
+            let said = refusal.to_string();
+            assert!(said.contains("expected") && !said.contains('\n') && said.len() < 400, "one sentence: {said}");
+        }
+    }
+}
+
+fn cases() -> ProptestConfig {
+    match std::env::var_os("PROPTEST_CASES") {
+        Some(_) => ProptestConfig::default(),
+        None => ProptestConfig { cases: 200, ..ProptestConfig::default() },
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, max_shrink_iters: 2_000, ..cases() })]
+
+    #[test]
+    fn a_changed_map_bakes_or_is_refused(origin in any::<prop::sample::Index>(), mutations in mutations()) {
+        thread_local! { static ORIGINS: Vec<String> = origins(); }
+        let text = ORIGINS.with(|texts| mutated(&texts[origin.index(texts.len())], &mutations));
+        check(&text);
+    }
+}
+
+#[test]
+fn every_kind_of_change_changes_something() {
+    let text = roads::winding(1, 20.0);
+    let at = || any::<prop::sample::Index>();
+    proptest!(ProptestConfig { cases: 20, failure_persistence: None, ..ProptestConfig::default() }, |(a in at())| {
+        for change in [
+            Mutation::Number(a, "7e7"), Mutation::Forget(a), Mutation::Delete(a), Mutation::Repeat(a, 2), Mutation::Cut(a),
+        ] {
+            prop_assert!(mutated(&text, std::slice::from_ref(&change)) != text, "{:?}", change);
+        }
+    });
+}
