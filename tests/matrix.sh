@@ -2,6 +2,8 @@
 # Golden hashes, keyframes and recordings in one build after another: a line for each says whether it agreed.
 # Every build replays the recordings of those before it, and must write the same bytes. Ends with 1 when one differs.
 #
+# Arguments name the builds to take, as `debug native`; without any, all.
+#
 # aarch64 is cross-built and run by qemu, with the standard library of rustup where that has it, else of Debian.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -15,6 +17,10 @@ trap 'rm -rf "$AEYE_EXCHANGE"' EXIT
 arm=aarch64-unknown-linux-gnu
 ran="golden hashes, map digests, keyframes, recordings"
 differing=0
+
+wanted=" $* "
+# Whether a build was asked for.
+asked() { [ "$wanted" = "  " ] || [[ "$wanted" == *" $1 "* ]]; }
 
 # row FOLDER NAME SETTING... -- CARGO_ARGUMENT...: one build and its line.
 row() {
@@ -57,15 +63,17 @@ for_arm() {
     echo "CC_$triple=aarch64-linux-gnu-gcc"
 }
 
-row release "release" -- --release
-row debug "debug" -- --profile dev
-row o1 "opt-level 1" CARGO_PROFILE_RELEASE_OPT_LEVEL=1 -- --release
-row native "target-cpu=native" RUSTFLAGS="-C target-cpu=native" -- --release
-if [ "$(uname -m)" = x86_64 ]; then
+! asked release || row release "release" -- --release
+! asked debug || row debug "debug" -- --profile dev
+! asked o1 || row o1 "opt-level 1" CARGO_PROFILE_RELEASE_OPT_LEVEL=1 -- --release
+! asked native || row native "target-cpu=native" RUSTFLAGS="-C target-cpu=native" -- --release
+if asked nehalem && [ "$(uname -m)" = x86_64 ]; then
     row release "x86-64 without AVX (qemu, Nehalem)" \
         CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="qemu-x86_64-static -cpu Nehalem" -- --release
 fi
-if settings=$(for_arm); then
+if ! asked arm; then
+    :
+elif settings=$(for_arm); then
     mapfile -t settings <<<"$settings"
     row arm "aarch64 (qemu)" "${settings[@]}" -- --release --target $arm
 else
