@@ -26,6 +26,7 @@ python "$here/cityscapes_eval.py" "$aeye" "$work"
 
 "$aeye" drive --headless --map city --max-time 20s --record "$work/drive.mcap"
 "$aeye" campaign --checkpoint early --seed 5 --cases 1 --out "$work/drives"
+python "$here/recording_reader.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.mcap
 python "$here/export_readers.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.case.mcap
 
 "$aeye" dataset natural --scenes 2 --val-scenes 1 --test-scenes 1 --frames 4 --test-frames 2 --out "$work/natural"

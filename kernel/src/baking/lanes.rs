@@ -1,9 +1,10 @@
 //! Lanes in their direction of travel, and how they follow and border each other.
 
+use super::error::BakeError;
 use super::limits::LANE_POINTS;
 use super::rounding::{snap, snap3};
 use super::shapes::point;
-use super::source::{BakeError, Origin, Source};
+use super::source::{Origin, Source};
 use crate::map_data::{Lane, LaneId, LaneKind, LanePoint, URBAN_MPS};
 use crate::ops;
 

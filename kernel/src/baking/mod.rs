@@ -2,6 +2,7 @@
 
 mod crosswalks;
 mod dressing;
+mod error;
 mod junctions;
 mod lanes;
 mod lights;
@@ -19,5 +20,5 @@ mod surfaces;
 mod terrain;
 mod walkways;
 
-pub use source::BakeError;
+pub use error::BakeError;
 pub use steps::bake;

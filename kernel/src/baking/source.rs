@@ -2,18 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::error::BakeError;
 use super::limits;
 use crate::map_data::LaneId;
-
-/// Why a text is not a usable map.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{place}: {reason}")]
-pub struct BakeError {
-    /// Where in the file: a line, a road, or the whole document.
-    pub place: String,
-    /// What is wrong, and what was expected.
-    pub reason: String,
-}
 
 /// A parsed file, and where each baked lane came from.
 pub(super) struct Source {

@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
+use super::error::BakeError;
 use super::limits::{CROWD, EXTENT_M};
-use super::source::{BakeError, Source};
+use super::source::Source;
 use super::{
     crosswalks, dressing, junctions, lanes, lights, priority, props, signs, stops, surfaces, terrain, walkways,
 };

@@ -1,22 +1,28 @@
 //! However the program is ended, and whoever listens to it: what it says, its exit code, and what is kept.
 #![cfg(unix)]
 
-use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
+mod common;
 
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::time::Duration;
+
+use common::{aeye, blind_drive};
 use replay::Recording;
 
-/// A command that waits for what is written to a pipe, and the end to write to, once it does wait.
-fn waiting(folder: &Path, arguments: &str, pipe: &str) -> (Child, File) {
-    let path = folder.join(pipe);
-    let made = Command::new("mkfifo").arg(&path).status().expect("mkfifo runs");
-    assert!(made.success());
-    let child = start(folder, arguments);
-    // Opens when the other end does.
-    (child, File::options().write(true).open(path).expect("a pipe"))
+/// A command that says more than a pipe holds, which nobody reads on.
+fn unheard(folder: &Path, command: &mut Command) -> (Child, ChildStdout) {
+    (0..60).for_each(|seed| blind_drive(&folder.join(format!("run-{seed}.mcap")), seed));
+    let mut child =
+        command.current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+    let mut out = child.stdout.take().expect("piped");
+    out.read_exact(&mut [0]).expect("it begins");
+    (child, out)
 }
+
+const INSPECT: &str = "inspect . --json --jobs 1";
 
 fn start(folder: &Path, arguments: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_aeye"));
@@ -38,7 +44,7 @@ fn hear(said: &mut impl BufRead, begins: &str) {
 fn what_nobody_can_go_on_with_ends_at_once_with_the_signal_in_its_exit_code() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let dir = tempfile::tempdir().expect("a folder");
-        let (mut child, _pipe) = waiting(dir.path(), "questionnaire run.mcap --answers answers.toml", "answers.toml");
+        let (mut child, _out) = unheard(dir.path(), &mut aeye(dir.path(), INSPECT));
         let mut said = BufReader::new(child.stderr.take().expect("piped"));
         send(signal, &child);
         hear(&mut said, "interrupted");
@@ -47,35 +53,29 @@ fn what_nobody_can_go_on_with_ends_at_once_with_the_signal_in_its_exit_code() {
 }
 
 #[test]
-fn a_second_signal_ends_at_once_what_the_first_asks_to_end() {
+fn two_signals_end_a_campaign_that_has_hours_to_go() {
     let dir = tempfile::tempdir().expect("a folder");
-    let campaign = "campaign --checkpoint truth --runs 1 --scenario start.toml --out runs";
-    let (mut child, pipe) = waiting(dir.path(), campaign, "start.toml");
-    let mut said = BufReader::new(child.stderr.take().expect("piped"));
-    send("INT", &child);
-    hear(&mut said, "interrupted");
-    assert!(child.try_wait().expect("a child").is_none(), "it is asked to end, and waits for its scenario");
-    send("INT", &child);
-    assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    drop(pipe);
-    assert!(!dir.path().join("runs").exists());
+    let mut child = start(dir.path(), "campaign --checkpoint truth --runs 1 --max-time 24h --out runs");
+    while !dir.path().join("runs").exists() {
+        assert!(child.try_wait().expect("a child").is_none(), "it drives");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    ["STOP", "INT", "TERM", "CONT"].iter().for_each(|signal| send(signal, &child));
+    let code = child.wait().expect("it ends").code();
+    assert!(matches!(code, Some(130 | 143)), "{code:?}");
+    assert!(!dir.path().join("runs/campaign.json").exists());
 }
 
 #[test]
 fn who_starts_the_program_may_have_it_ignore_signals() {
     let dir = tempfile::tempdir().expect("a folder");
-    let pipe = dir.path().join("answers.toml");
-    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs").success());
-    let ignoring = "trap '' HUP; exec \"$0\" questionnaire run.mcap --answers answers.toml";
-    let mut command = Command::new("sh");
-    command.current_dir(dir.path()).args(["-c", ignoring, env!("CARGO_BIN_EXE_aeye")]).stderr(Stdio::piped());
-    let child = command.spawn().expect("a shell");
-    let answers = File::options().write(true).open(pipe).expect("a pipe");
+    let ignoring = format!("trap '' HUP; exec \"$0\" {INSPECT}");
+    let (mut child, mut out) =
+        unheard(dir.path(), Command::new("sh").args(["-c", &ignoring, env!("CARGO_BIN_EXE_aeye")]));
     send("HUP", &child);
-    drop(answers);
-    let ended = child.wait_with_output().expect("it ends");
-    let said = String::from_utf8_lossy(&ended.stderr).into_owned();
-    assert!(ended.status.code() == Some(1) && said.starts_with("error: run.mcap: "), "{said}");
+    let mut rest = String::new();
+    out.read_to_string(&mut rest).expect("it goes on");
+    assert_eq!((rest.lines().count(), child.wait().expect("it ends").code()), (61, Some(0)));
 }
 
 const DRIVE: &str = "drive --headless --map rural --max-time";

@@ -27,6 +27,8 @@ pub struct Key {
     pub size: (u32, u32),
     /// Version of the program, hence of the measures.
     pub program: String,
+    /// Identity of the kernel that replays.
+    pub kernel: String,
     /// Version of the renderer.
     pub renderer: String,
     /// The graphics adapter and its driver.
@@ -58,6 +60,7 @@ impl Settings {
             fps: self.fps,
             size: self.size,
             program: env!("CARGO_PKG_VERSION").into(),
+            kernel: kernel::identity(),
             renderer: RENDERER_VERSION.into(),
             adapter: self.adapter.clone(),
             checkpoint: eye.map(Eye::digest),
@@ -217,8 +220,8 @@ mod tests {
     use super::*;
 
     fn key(log: &str) -> Key {
-        let [program, renderer, adapter] = ["1", "1", "cpu"].map(str::to_owned);
-        Key { log: log.into(), last_ticks: 180, fps: 10, size: (64, 32), program, renderer, adapter, checkpoint: None }
+        let [log, program, kernel, renderer, adapter] = [log, "1", "1", "1", "cpu"].map(str::to_owned);
+        Key { log, last_ticks: 180, fps: 10, size: (64, 32), program, kernel, renderer, adapter, checkpoint: None }
     }
 
     #[test]

@@ -24,11 +24,11 @@ use tests::scenes::busy_city;
 
 /// A case of the city, said to be driven with true masks, in a folder.
 fn case(folder: &Path) -> PathBuf {
-    let scene = busy_city();
+    let mut scene = busy_city();
+    // The run would have ended within a second of the takeover: a fork goes on all the same.
+    scene.scenario.rules.max_seconds = TAKEOVER as u32 / 60 + 1;
     let mut log = Recording::from_bytes(&record(&scene, TAKEOVER + 60, WITH_TAKEOVER)).unwrap().into_log();
     log.manifest.provenance.insert("checkpoint_digest".into(), "truth".into());
-    // The run would have ended within a second of the takeover: a fork goes on all the same.
-    log.manifest.scenario.rules.max_seconds = TAKEOVER as u32 / 60 + 1;
     let recording = Recording::from_bytes(&log.encode().unwrap()).unwrap();
     let window = Case::window(recording.log()).expect("an intervention");
     let path = folder.join("a.case.mcap");

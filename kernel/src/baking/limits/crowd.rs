@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use roxmltree::Node;
 
 use super::constants::PAIRS;
+use super::document::children;
 use super::numbers::number;
 use super::place::refused;
-use super::roads::children;
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// Side of a square, metres.
 const SQUARE_M: f64 = 10.0;

@@ -7,7 +7,7 @@ use roxmltree::Node;
 use super::constants::RECORDS;
 use super::numbers::number;
 use super::place::refused;
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// `a + b ds + c ds^2 + d ds^3` from its start on.
 #[derive(Clone, Copy, Debug, Default)]

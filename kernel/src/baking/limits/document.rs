@@ -1,9 +1,14 @@
 //! The text of a file as a tree.
 
-use roxmltree::{Document, Error, ParsingOptions};
+use roxmltree::{Document, Error, Node, ParsingOptions};
 
 use super::constants::{ATTRIBUTES, FILE_BYTES, NODES};
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
+
+/// The children of an element with some tag.
+pub fn children<'a>(node: Node<'a, 'a>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'a>> + Clone {
+    node.children().filter(move |n| n.has_tag_name(tag))
+}
 
 /// The text without what some programs write before the XML declaration, and without that.
 pub fn body(text: &str) -> Result<std::borrow::Cow<'_, str>, BakeError> {

@@ -3,11 +3,11 @@
 use roxmltree::Node;
 
 use super::constants::{CONNECTIONS, JUNCTIONS, LINKS};
+use super::document::children;
 use super::numbers;
 use super::objects::{self, References};
-use super::roads::children;
 use super::sums::{Sums, at_most};
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// Checks the junctions of a file.
 pub fn check(root: Node<'_, '_>, references: &References<'_>, sums: &mut Sums) -> Result<(), BakeError> {

@@ -6,11 +6,12 @@ use roxmltree::Node;
 
 use super::constants::{ASIDE_M, LANES, RECORDS, SECTIONS, WIDTH_M};
 use super::cubic::Profile;
+use super::document::children;
 use super::marks;
 use super::numbers::number;
-use super::roads::{Along, children};
+use super::stretch::{Along, Section};
 use super::sums::{Sum, Sums, at_most};
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// Side of the squares in which lanes are looked up, metres, and points of a lane that are one entry there.
 const SQUARE_M: f64 = 10.0;
@@ -29,15 +30,6 @@ pub struct Lanes {
 struct Side<'a> {
     node: Option<Node<'a, 'a>>,
     start_m: f64,
-}
-
-/// A stretch of a road with the same lanes.
-pub struct Section {
-    pub length_m: f64,
-    /// Where its lanes have points, at most.
-    pub stations: f64,
-    /// Records that tell where the lanes are, each looked at for every station.
-    pub records: usize,
 }
 
 /// Checks the lanes of a road, and says how many there are.

@@ -3,11 +3,11 @@
 use roxmltree::Node;
 
 use super::constants::{MARK_LINES, MARKS};
-use super::lanes::Section;
+use super::document::children;
 use super::numbers::number;
-use super::roads::children;
+use super::stretch::Section;
 use super::sums::{Sum, Sums, at_most};
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// Period of a broken line that the file does not tell, metres.
 const BROKEN_M: f64 = 12.0;

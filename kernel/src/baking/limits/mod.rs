@@ -12,6 +12,7 @@ mod numbers;
 mod objects;
 mod place;
 mod roads;
+mod stretch;
 mod sums;
 
 pub use constants::{CROWD, EXTENT_M, LANE_POINTS};
@@ -20,7 +21,7 @@ pub use document::malformed;
 use self::constants::ROADS;
 use self::crowd::Crowd;
 use self::sums::{Sums, at_most};
-use super::source::BakeError;
+use super::error::BakeError;
 
 /// Refuses a text that holds more than any map does.
 pub fn check(text: &str) -> Result<(), BakeError> {

@@ -4,7 +4,7 @@ use roxmltree::Node;
 
 use super::constants::{ANGLE_RAD, COORDINATE_M, NAME_BYTES, NUMBER};
 use super::place::{refused, said};
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// What an attribute measures, by its name: the largest number it may hold, either way.
 fn largest(name: &str) -> Option<f64> {

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use roxmltree::Node;
 
 use super::constants::RECORDS;
+use super::document::children;
 use super::numbers::number;
-use super::roads::children;
 use super::sums::{Sum, Sums, at_most};
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// The objects of a file by their ids, which references name.
 pub type References<'a> = BTreeMap<&'a str, Node<'a, 'a>>;

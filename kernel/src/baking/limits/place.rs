@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// Characters of an id that are said.
 const SAID: usize = 40;

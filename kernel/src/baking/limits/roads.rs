@@ -7,47 +7,14 @@ use roxmltree::Node;
 use super::constants::{ASIDE_M, COORDINATE_M, HEIGHT_M, RECORDS, ROAD_M, TILT_RAD, TURN_RAD};
 use super::crowd::Crowd;
 use super::cubic::Profile;
+use super::document::children;
 use super::lanes;
 use super::numbers::number;
 use super::objects::{self, References};
 use super::place::refused;
+use super::stretch::{Along, BENT_PER_M, POINT_RAD, STRAIGHT_PER_M};
 use super::sums::{Sum, Sums, at_most};
-use crate::baking::source::BakeError;
-
-/// A road as its lanes need it.
-pub struct Along<'a> {
-    pub length_m: f64,
-    /// How densely the lanes of each geometry have points.
-    stations: Vec<(Range<f64>, f64)>,
-    /// Records of elevation, superelevation and lateral profile, each looked at for every station of a lane.
-    pub records: usize,
-    pub node: Node<'a, 'a>,
-}
-
-/// Points of a lane per metre: where everything is straight, and where it bends most.
-const STRAIGHT_PER_M: f64 = 0.5;
-const BENT_PER_M: f64 = 4.0;
-/// From one point to the next, a lane turns by this at most where it may have fewer than [`BENT_PER_M`].
-const POINT_RAD: f64 = 0.03;
-
-impl Along<'_> {
-    /// Points that a lane may have in a stretch, of which the lanes bend by themselves as well or do not.
-    pub fn stations(&self, over: &Range<f64>, lanes_bend: bool) -> f64 {
-        let length_m = over.end - over.start;
-        if lanes_bend {
-            return length_m * BENT_PER_M + 2.0;
-        }
-        let of = |(stretch, per_m): &(Range<f64>, f64)| {
-            (stretch.end.min(over.end) - stretch.start.max(over.start)).max(0.0) * (per_m - STRAIGHT_PER_M)
-        };
-        length_m * STRAIGHT_PER_M + self.stations.iter().map(of).sum::<f64>() + 2.0
-    }
-
-    /// How many geometries [`Self::stations`] looks at.
-    pub fn geometries(&self) -> usize {
-        self.stations.len()
-    }
-}
+use crate::baking::error::BakeError;
 
 pub fn check<'a>(
     road: Node<'a, 'a>,
@@ -77,11 +44,6 @@ pub fn check<'a>(
     let lanes = lanes::check(&along, sums)?;
     crowd.add(road, lanes.per_m);
     objects::check(road, lanes.count, references, sums)
-}
-
-/// The children of an element with some tag.
-pub fn children<'a>(node: Node<'a, 'a>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'a>> + Clone {
-    node.children().filter(move |n| n.has_tag_name(tag))
 }
 
 /// Checks a profile of a road, and says how many records it has.

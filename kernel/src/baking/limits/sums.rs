@@ -4,7 +4,7 @@ use roxmltree::Node;
 
 use super::constants::{ALL_ROADS_M, COPIED_BYTES, DASHES, LANE_POINTS, OBJECTS, SIGNALS, SQUARES, STEPS};
 use super::place::refused;
-use crate::baking::source::BakeError;
+use crate::baking::error::BakeError;
 
 /// What adds up over a file, each with its limit.
 #[derive(Clone, Copy, Debug)]

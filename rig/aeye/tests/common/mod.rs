@@ -1,4 +1,5 @@
 //! The program as a process, and something for it to read.
+#![allow(dead_code, reason = "each test file uses some of it")]
 
 use std::fs;
 use std::path::Path;

@@ -100,7 +100,7 @@ fn a_terminated_drive_of_bots_leaves_a_whole_recording() {
     let pid = rig.child.id().to_string();
     assert!(Command::new("kill").args(["-TERM", &pid]).status().expect("kill runs").success());
     rig.says("ended by Ctrl-C or SIGTERM");
-    assert!(rig.exit().success());
+    assert_eq!(rig.exit().code(), Some(128 + 15));
     let contents = aeye(&["inspect"], &record);
     assert_eq!((&contents["finished"], &contents["outcome"]), (&true.into(), &"stopped".into()));
     assert_eq!(contents["provenance"]["semantic"], "bot");

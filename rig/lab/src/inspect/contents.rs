@@ -190,7 +190,7 @@ impl Contents {
             masks: log.masks.len(),
             figures: RunFigures::of(recording),
             map_digest: format!("{:032x}", manifest.map_digest),
-            embedded_map: manifest.foreign_map.is_some(),
+            embedded_map: manifest.foreign_map.as_ref().is_some_and(|map| map.embedded),
             provenance: study::tellable(&manifest.provenance, reveal),
             questionnaire: study::answers_of(file, recording)?,
             intervention,
