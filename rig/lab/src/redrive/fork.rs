@@ -124,7 +124,9 @@ impl Fork {
         manifest.scenario = lasting(manifest.scenario, end);
         let mut world = World::fork(&manifest.scenario, network, start)?;
         let mut recorder = Recorder::new(Vec::new(), &manifest, &world.initial_keyframe())?;
-        let mut crew = Crew::with(vision, self.safety_driver());
+        // What an earlier drive left on the screen is none of this one's.
+        let eye = vision.eye().clone();
+        let mut crew = Crew::with(vision.with_eye(eye), self.safety_driver());
         let (mut harm, mut collision) = (None, None);
         while world.tick() < end && world.arbiter().phase != Phase::Done {
             // The bots look on before the fork, too: their memory is then that of the drive.
