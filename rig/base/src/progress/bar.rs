@@ -112,6 +112,6 @@ mod tests {
             lines.iter().collect::<Vec<_>>()
         };
         assert_eq!(told(Duration::ZERO), ["runs: 1 of 3", "runs: 3 of 3 loss 0.5"]);
-        assert_eq!(told(LINE_EVERY), [String::new(); 0]);
+        assert!(told(LINE_EVERY).is_empty());
     }
 }

@@ -99,7 +99,7 @@ pub fn drive(options: Options) -> anyhow::Result<()> {
     let seating = Seating::new(seats, &calibration, &plan.scenario.rules)?;
     let timings = session(plan, seating, lineup, &pictures)?;
     if let Some(figures) = timings.figures() {
-        say(&figures);
+        say(figures);
         figures.shortfalls().iter().for_each(say);
     }
     Ok(())

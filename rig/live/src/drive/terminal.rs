@@ -19,7 +19,7 @@ impl Terminal {
         let (lines, inbox) = mpsc::channel::<String>();
         let writer = std::thread::spawn(move || {
             // Who does not listen any more misses nothing that is not in the recording.
-            inbox.iter().for_each(|line| base::say::say(line));
+            inbox.iter().for_each(base::say::say);
         });
         Self { lines: Some(lines), writer: Some(writer) }
     }

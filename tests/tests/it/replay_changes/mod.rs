@@ -250,10 +250,12 @@ fn repair(file: &mut [u8]) {
     }
 }
 
+type LogChange = fn(&mut Log);
+
 /// Changes of the content, written as this program writes it.
 #[test]
 fn a_changed_world_diverges_although_everything_fits() {
-    let changes: &[(&str, fn(&mut Log))] = &[
+    let changes: &[(&str, LogChange)] = &[
         ("sun", |log| log.manifest.scenario.weather.sun_altitude_deg += 1.0),
         ("limit", |log| log.manifest.scenario.rules.max_speed_kmh -= 1.0),
         ("brake threshold", |log| log.manifest.scenario.rules.brake_threshold += 0.01),
@@ -268,7 +270,7 @@ fn a_changed_world_diverges_although_everything_fits() {
         ("scenes in another order", |log| log.scenes.reverse()),
         ("a scene less", |log| drop(log.scenes.pop())),
         ("a scene twice", |log| log.scenes.extend(log.scenes.last().cloned())),
-        ("scenes of a recording", |log| drop(log.manifest.case.take())),
+        ("scenes of a recording", |log| log.manifest.case = None),
         ("weather of a scene", |log| log.scenes[3].weather.cloudiness_pct += 1.0),
         ("an event", |log| log.events.truncate(1)),
         ("no intervention", |log| log.intervention = None),
