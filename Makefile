@@ -16,7 +16,7 @@ AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 demo: build
 	$(AEYE) demo --out out/demo
 
-## Everything that CI runs; of other builds two (all: make matrix).
+## Everything that CI runs; more builds than here: make matrix.
 test: PACKAGES += $(TEST_PACKAGES)
 test: setup tools
 	cargo fmt --all --check
@@ -26,7 +26,7 @@ test: setup tools
 	cargo clippy --release --workspace --all-targets -- -D warnings
 	cargo clippy --release -p aeye --no-default-features --all-targets -- -D warnings
 	cargo test --release --workspace
-	tests/matrix.sh debug native
+	kernel/tests/portable.sh
 
 ## The same hashes, keyframes and recordings from other builds, aarch64 among them.
 matrix: PACKAGES := gcc libc6-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
