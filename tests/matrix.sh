@@ -59,7 +59,9 @@ for_arm() {
         echo "RUSTC=/usr/bin/rustc"
     }
     echo "CARGO_TARGET_${triple^^}_LINKER=aarch64-linux-gnu-gcc"
-    echo "CARGO_TARGET_${triple^^}_RUNNER=qemu-aarch64-static -L /usr/aarch64-linux-gnu"
+    # Where arm64 packages are installed too, the loader would find their libc, which is not its own.
+    local root=/usr/aarch64-linux-gnu
+    echo "CARGO_TARGET_${triple^^}_RUNNER=qemu-aarch64-static -L $root -E LD_LIBRARY_PATH=$root/lib"
     echo "CC_$triple=aarch64-linux-gnu-gcc"
 }
 
