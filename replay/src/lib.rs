@@ -3,7 +3,8 @@
 //!
 //! A [`Recorder`] writes while the run goes on; a [`Recording`] is such a file read back, every byte
 //! of it checked; a [`Replayer`] simulates it again and compares each tick; a [`Case`] is a
-//! self-contained cut around an intervention. [`Log`] is the content of all of these as plain data.
+//! self-contained cut around an intervention, but for the file of a foreign map, which may be beside it.
+//! [`Log`] is the content of all of these as plain data.
 //!
 //! Files are MCAP; `layout.rs` describes every channel. An [`Exporter`] writes MCAP files for viewers, of
 //! messages that the caller made.

@@ -69,7 +69,7 @@ impl Recording {
         self.log.manifest.case.as_ref().map_or(self.digest, |case| case.source)
     }
 
-    /// The map of the run: a bundled one, or the one embedded in the log; its digest is checked.
+    /// The map of the run: a bundled one, or the foreign one that is in the file or beside it; its digest is checked.
     pub fn network(&self) -> Result<Arc<RoadNetwork>, Error> {
         self.log.manifest.network()
     }
