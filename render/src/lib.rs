@@ -12,6 +12,7 @@ mod error;
 mod frame;
 mod gpu;
 mod horizon;
+mod identity;
 mod instance_ids;
 mod light;
 pub mod mesh;
@@ -26,9 +27,7 @@ pub use adapter::{AdapterChoice, AdapterInfo, adapters};
 pub use camera::{Camera, Mount};
 pub use error::RenderError;
 pub use frame::Frame;
+pub use identity::identity;
 pub use instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 pub use renderer::{Preset, RenderOptions, Renderer};
 pub use tags::SemanticTag;
-
-/// Version of the renderer: raised whenever the same scene gives other pixels.
-pub const RENDERER_VERSION: &str = "0.1.1";

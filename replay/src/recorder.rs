@@ -9,6 +9,7 @@ use kernel::{Keyframe, TickInput, TickOutput};
 
 use crate::block::{BLOCK_TICKS, Block};
 use crate::encode::LogFile;
+use crate::wire::MOST_A_TICK;
 use crate::{Annotation, Error, Manifest, Mark, MaskShown, Note, RunSummary};
 
 /// Writes a recording. What was written is only ever appended to, a block each second and at every
@@ -22,10 +23,36 @@ pub struct Recorder<W: Write> {
     block: Block,
     masks: Vec<MaskShown>,
     notes: Vec<Note>,
+    taken: [Taken; 2],
     /// Camera and digest of the last mask.
     on_screen: Option<(u8, u64)>,
     intervention: Option<Intervention>,
     annotation: Option<Annotation>,
+}
+
+/// What was logged of masks, or of notes.
+#[derive(Default)]
+struct Taken {
+    what: &'static str,
+    count: u64,
+    last: Tick,
+}
+
+impl Taken {
+    /// Takes one more of a tick after so many ticks.
+    fn take(&mut self, tick: Tick, ticks: Tick) -> Result<(), Error> {
+        let (what, last, most) = (self.what, self.last, MOST_A_TICK as u64 * (ticks + 1));
+        if tick < last {
+            return Err(Error::Unsuited(format!(
+                "cannot log a {what} of tick {tick}: the one before is of tick {last}"
+            )));
+        }
+        if self.count >= most {
+            return Err(Error::Unsuited(format!("cannot log more than {most} {what}s in {ticks} ticks")));
+        }
+        (self.count, self.last) = (self.count + 1, tick);
+        Ok(())
+    }
 }
 
 impl<W: Write> Recorder<W> {
@@ -37,6 +64,7 @@ impl<W: Write> Recorder<W> {
             block: Block::starting_at(start.tick + 1),
             masks: Vec::new(),
             notes: Vec::new(),
+            taken: [Taken { what: "mask", ..Taken::default() }, Taken { what: "note", ..Taken::default() }],
             on_screen: None,
             intervention: None,
             annotation: None,
@@ -58,19 +86,23 @@ impl<W: Write> Recorder<W> {
         Ok(())
     }
 
-    /// Logs the mask on the semantic driver's screen; call it as often as you like, only changes of
-    /// the mask are written.
-    pub fn mask_shown(&mut self, mask: MaskShown) {
+    /// Logs the mask on the semantic driver's screen, by ascending tick; call it as often as you like, only
+    /// changes of the mask are written. Refused are masks that no reader would take.
+    pub fn mask_shown(&mut self, mask: MaskShown) -> Result<(), Error> {
         let shown = Some((mask.camera, mask.digest));
         if self.on_screen != shown {
+            self.taken[0].take(mask.tick_shown, self.block.mark.tick)?;
             self.on_screen = shown;
             self.masks.push(mask);
         }
+        Ok(())
     }
 
-    /// Logs what happened to the rig, by ascending tick.
-    pub fn note(&mut self, note: Note) {
+    /// Logs what happened to the rig, by ascending tick. Refused are notes that no reader would take.
+    pub fn note(&mut self, note: Note) -> Result<(), Error> {
+        self.taken[1].take(note.tick, self.block.mark.tick)?;
         self.notes.push(note);
+        Ok(())
     }
 
     /// Says what the intervention was; the last call counts.
@@ -97,5 +129,28 @@ impl<W: Write> Recorder<W> {
         let next = Block { mark: self.block.mark, ..Block::starting_at(last + 1) };
         let block = std::mem::replace(&mut self.block, next);
         self.file.block(&block, masks.as_slice(), notes.as_slice())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kernel::Seat;
+
+    use super::*;
+    use crate::{NoteKind, testing};
+
+    #[test]
+    fn what_no_reader_would_take_is_not_written() {
+        let log = testing::sample(1);
+        let mut recorder = Recorder::new(Vec::new(), &log.manifest, &log.keyframes[0]).expect("a new log");
+        let note = |tick| Note { tick, kind: NoteKind::UnitLost, seat: Seat::Safety };
+        assert!((0..16).all(|_| recorder.note(note(3)).is_ok()));
+        let said = |refused: Result<(), Error>| refused.expect_err("refused").to_string();
+        assert!(said(recorder.note(note(2))).ends_with("cannot log a note of tick 2: the one before is of tick 3"));
+        assert!(said(recorder.note(note(3))).ends_with("cannot log more than 16 notes in 0 ticks"));
+        let mask = |tick_shown, digest| MaskShown { tick_shown, digest, ..log.masks[0] };
+        recorder.mask_shown(mask(9, 1)).expect("the first");
+        recorder.mask_shown(mask(8, 1)).expect("the same mask is not written again");
+        assert!(said(recorder.mask_shown(mask(8, 2))).contains("a mask of tick 8"));
     }
 }

@@ -45,9 +45,9 @@ pub fn record_all(scene: &Scene, ticks: Tick, script: Script) -> Vec<u8> {
 fn write(scene: &Scene, ticks: Tick, script: Script, notes: &[Note]) -> Vec<u8> {
     let mut world = scene.world();
     let mut recorder = Recorder::new(Vec::new(), &manifest(scene), &world.initial_keyframe()).expect("a new log");
-    notes.iter().for_each(|note| recorder.note(*note));
+    notes.iter().for_each(|note| recorder.note(*note).expect("in order"));
     while world.tick() < ticks && world.arbiter().phase != Phase::Done {
-        recorder.mask_shown(mask_at(world.tick() + 1));
+        recorder.mask_shown(mask_at(world.tick() + 1)).expect("in order");
         let input = script(&world);
         let output = world.step(&input);
         recorder.tick(&input, &output, &world.part_hashes()).expect("the log grows");

@@ -1,6 +1,6 @@
 //! A remote control centre looks on while the program drives.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -27,7 +27,7 @@ struct Telemetry {
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
-fn a_drive_is_seen_from_afar_while_garbage_does_no_harm() {
+fn a_drive_is_seen_from_afar_while_strangers_do_no_harm() {
     let dir = tempfile::tempdir().expect("a folder");
     let mut drive = Command::new(env!("CARGO_BIN_EXE_aeye"))
         .current_dir(dir.path())
@@ -42,11 +42,18 @@ fn a_drive_is_seen_from_afar_while_garbage_does_no_harm() {
     let listener = std::thread::spawn(move || said.count());
 
     let noise = [TcpStream::connect(address).expect("reachable"), TcpStream::connect(address).expect("reachable")];
-    std::io::Write::write_all(&mut &noise[0], &[0xA5; 2048]).expect("taken");
+    (&noise[0]).write_all(&[0xA5; 2048]).expect("taken");
+    let stuck = (0..8).map(|_| TcpStream::connect(address).expect("reachable"));
+    let stuck: Vec<_> =
+        stuck.inspect(|mut stream| stream.write_all(b"GET / HTTP/1.1\r\nX: ").expect("taken")).collect();
+    let page = ClientRequestBuilder::new(format!("ws://{address}").parse().expect("an address"));
+    let page = page.with_sub_protocol("foxglove.sdk.v1").with_header("Origin", "https://elsewhere.example");
+    assert!(client(page, TcpStream::connect(address).expect("reachable")).is_err(), "a page of a stranger");
     let ticks = look_on(address);
     assert!(ticks.is_sorted_by(|a, b| a < b), "{ticks:?}");
     assert!(drive.wait().expect("it ends").success());
     assert!(listener.join().is_ok());
+    drop(stuck);
     let verified = Command::new(env!("CARGO_BIN_EXE_aeye")).arg("verify").arg(dir.path().join("a.mcap")).status();
     assert!(verified.expect("aeye runs").success());
 }

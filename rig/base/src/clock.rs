@@ -31,6 +31,22 @@ impl Every {
     }
 }
 
+/// When a step has to be done.
+#[derive(Clone, Copy, Debug)]
+pub struct Deadline(Instant);
+
+impl Deadline {
+    /// So long from now.
+    pub fn after(time: Duration) -> Self {
+        Self(Instant::now() + time)
+    }
+
+    /// What is left until then; `None` when it has passed.
+    pub fn left(self) -> Option<Duration> {
+        self.0.checked_duration_since(Instant::now()).filter(|left| !left.is_zero())
+    }
+}
+
 /// Seconds that a piece of work takes.
 pub fn seconds_of<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();

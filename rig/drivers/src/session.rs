@@ -43,13 +43,13 @@ impl<W: Write> Session<W> {
     }
 
     /// Records what was on the semantic driver's screen.
-    pub fn mask_shown(&mut self, mask: MaskShown) {
-        self.recorder.mask_shown(mask);
+    pub fn mask_shown(&mut self, mask: MaskShown) -> Result<(), replay::Error> {
+        self.recorder.mask_shown(mask)
     }
 
     /// Records what happened to the rig.
-    pub fn note(&mut self, note: Note) {
-        self.recorder.note(note);
+    pub fn note(&mut self, note: Note) -> Result<(), replay::Error> {
+        self.recorder.note(note)
     }
 
     /// Says what the intervention was.

@@ -63,7 +63,7 @@ pub fn drive_as<W: Write>(
     let mut ended = false;
     while !ended && keep_on(session.world()) {
         let (input, shown) = crew.act(session.world())?;
-        session.mask_shown(shown);
+        session.mask_shown(shown)?;
         let (state, output) = session.tick(&input)?;
         keyframes.extend(output.keyframe);
         ended = state != SessionState::Driving;

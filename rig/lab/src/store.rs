@@ -9,7 +9,6 @@ use base::library::Entry;
 use base::output::{self, OutputFolder};
 use drivers::vision::{self, Eye};
 use kernel::time::Tick;
-use render::RENDERER_VERSION;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
@@ -61,7 +60,7 @@ impl Settings {
             size: self.size,
             program: env!("CARGO_PKG_VERSION").into(),
             kernel: kernel::identity(),
-            renderer: RENDERER_VERSION.into(),
+            renderer: render::identity(),
             adapter: self.adapter.clone(),
             checkpoint: eye.map(Eye::digest),
         }

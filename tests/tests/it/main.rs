@@ -10,6 +10,7 @@ mod lab;
 mod old_recordings;
 mod real_maps;
 mod render_frame;
+mod render_golden;
 mod render_oracle;
 mod replay_budget;
 mod replay_case;

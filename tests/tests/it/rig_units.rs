@@ -116,7 +116,10 @@ impl Rig {
                 taken_over: self.world().arbiter().intervention.is_some(),
             };
             let polled = self.seats.poll(car);
-            polled.events.iter().for_each(|e| self.session.note(e.note(self.session.world().tick() + 1)));
+            polled
+                .events
+                .iter()
+                .for_each(|e| self.session.note(e.note(self.session.world().tick() + 1)).expect("in order"));
             self.session.tick(&polled.input()).expect("the log grows");
             last = Some(polled);
         }

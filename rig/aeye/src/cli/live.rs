@@ -9,7 +9,7 @@ use drivers::pictures::{Pictures, Screens};
 use drivers::seat::SeatChoice;
 use perception::Compute;
 use study::{Pseudonym, Study};
-use viewers::server;
+use viewers::server::{self, Endpoint};
 
 use super::values::{
     CHECKPOINT, CHECKPOINTS, file, force, new_recording, one_checkpoint, screens, seconds, size, threshold,
@@ -37,7 +37,11 @@ pub struct DriveArgs {
     pub force: f32,
     /// Shows the drive to Foxglove at this port of this machine, or at this address.
     #[arg(long, value_parser = server::address, value_name = "PORT|ADDRESS:PORT")]
-    pub foxglove: Option<SocketAddr>,
+    foxglove: Option<SocketAddr>,
+    /// Pages in browsers that may look on too, as `http://rig.lab:8080`; those of this machine and
+    /// Foxglove's own always may.
+    #[arg(long, value_delimiter = ',', value_parser = server::origin, value_name = "ORIGIN,...", requires = "foxglove")]
+    foxglove_origin: Vec<String>,
     /// A bundled map or an OpenDRIVE file.
     #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
     pub map: Option<String>,
@@ -87,6 +91,11 @@ impl DriveArgs {
     /// Where the recording goes; nowhere where the scenario is only printed.
     pub fn record(&self) -> &Path {
         self.record.as_deref().unwrap_or(Path::new(""))
+    }
+
+    /// Where the drive is shown to Foxglove, and to whom.
+    pub fn foxglove(&self) -> Option<Endpoint> {
+        self.foxglove.map(|at| Endpoint { at, origins: self.foxglove_origin.clone() })
     }
 }
 

@@ -131,7 +131,7 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
     World::new(scenario, &map.network)?;
 
-    let mut publisher = args.foxglove.map(Publisher::bind).transpose()?;
+    let mut publisher = args.foxglove().map(Publisher::bind).transpose()?;
     let path = args.record();
     if path.is_file() {
         bail!("{}: exists already; expected a new file", path.display());

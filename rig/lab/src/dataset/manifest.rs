@@ -8,7 +8,6 @@ use base::json::{self, Typed};
 use base::output;
 use base::words::count;
 use perception::classes::TRAIN_CLASSES;
-use render::RENDERER_VERSION;
 
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +80,7 @@ impl Manifest {
         }
         let made_by = |kernel: &str, renderer: &str| format!("kernel {kernel} and renderer {renderer}");
         let (then, now) =
-            (made_by(&manifest.kernel, &manifest.renderer), made_by(&kernel::identity(), RENDERER_VERSION));
+            (made_by(&manifest.kernel, &manifest.renderer), made_by(&kernel::identity(), &render::identity()));
         if then != now {
             bail!("{}: holds this dataset as made by {then}; expected a new folder for {now}", folder.display());
         }
@@ -121,7 +120,7 @@ impl Manifest {
         Self {
             recipe,
             kernel: kernel::identity(),
-            renderer: RENDERER_VERSION.to_owned(),
+            renderer: render::identity(),
             adapter,
             train_frames,
             val_frames: count("val"),

@@ -18,7 +18,7 @@ use base::spread::{jobs, on_threads};
 use drivers::vision;
 use kernel::World;
 use perception::cityscapes::Place;
-use render::{Camera, RENDERER_VERSION, RenderOptions, Renderer};
+use render::{Camera, RenderOptions, Renderer};
 
 use serde::{Deserialize, Serialize};
 
@@ -128,7 +128,7 @@ fn prepare(out: &Path, recipe: &NaturalRecipe, adapter: &str) -> anyhow::Result<
     let now = Begun {
         recipe: recipe.clone(),
         kernel: kernel::identity(),
-        renderer: RENDERER_VERSION.to_owned(),
+        renderer: render::identity(),
         adapter: adapter.to_owned(),
     };
     if !file.exists() {
@@ -144,9 +144,10 @@ fn prepare(out: &Path, recipe: &NaturalRecipe, adapter: &str) -> anyhow::Result<
         let Begun { adapter: first, kernel, renderer, .. } = begun;
         bail!(
             "{}: was begun with kernel {kernel} and renderer {renderer} on {first}; expected the same to complete it, \
-             not {}, {RENDERER_VERSION} and {adapter}",
+             not {}, {} and {adapter}",
             out.display(),
-            now.kernel
+            now.kernel,
+            now.renderer
         );
     }
     Ok(parts)

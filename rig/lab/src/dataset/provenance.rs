@@ -10,7 +10,7 @@ use kernel::scene::Weather;
 use kernel::time::Tick;
 use perception::cityscapes::{Kind, Place};
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES, train_id};
-use render::{Frame, RENDERER_VERSION};
+use render::Frame;
 use serde::{Deserialize, Serialize};
 
 use crate::cityscapes;
@@ -130,7 +130,7 @@ impl FrameLine {
             weather: scene.weather.into(),
             label: drive.label.map(str::to_owned),
             camera: format!("driver {}x{}", frame.width, frame.height),
-            renderer: RENDERER_VERSION.to_owned(),
+            renderer: render::identity(),
             adapter: adapter.to_owned(),
             class_pixels: class_pixels(&frame.class_ids),
             rgb_digest: blake3::hash(&frame.rgb).to_hex().to_string(),

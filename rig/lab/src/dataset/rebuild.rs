@@ -10,7 +10,6 @@ use base::output::PendingFolder;
 use base::progress::Interrupt;
 use base::say::say;
 use drivers::vision;
-use render::RENDERER_VERSION;
 
 use serde::Serialize;
 
@@ -88,10 +87,10 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rebuilt> {
 /// What draws now that did not draw the first time.
 fn difference(first: &Manifest) -> anyhow::Result<Option<String>> {
     let adapter = vision::find_adapter()?;
-    let this_kernel = kernel::identity();
+    let (this_kernel, this_renderer) = (kernel::identity(), render::identity());
     let compared = [
         ("graphics adapter", first.adapter.as_str(), adapter.as_str()),
-        ("renderer", &first.renderer, RENDERER_VERSION),
+        ("renderer", &first.renderer, &this_renderer),
         ("kernel", &first.kernel, &this_kernel),
     ];
     let other = compared.into_iter().find(|(_, then, now)| then != now);

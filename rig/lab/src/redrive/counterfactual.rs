@@ -11,7 +11,6 @@ use drivers::vision::Vision;
 use kernel::RoadNetwork;
 use kernel::time::Tick;
 use measures::criticality::Extremes;
-use render::RENDERER_VERSION;
 use replay::Recording;
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +67,7 @@ impl Key {
         Self {
             recording: digest.to_string(),
             kernel: kernel::identity(),
-            renderer: RENDERER_VERSION.to_owned(),
+            renderer: render::identity(),
             after_ticks: FORK_AFTER_TICKS,
             verdicts: VERDICTS,
         }

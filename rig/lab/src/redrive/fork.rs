@@ -137,7 +137,7 @@ impl Fork {
                 harm = Harm::already(&world);
             }
             let input = if tick < fork_tick { logged(log, tick)? } else { self.controls(bots) };
-            recorder.mask_shown(shown);
+            recorder.mask_shown(shown)?;
             let speed_mps = world.hud().speed_mps;
             let output = world.step(&input);
             recorder.tick(&input, &output, &world.part_hashes())?;

@@ -19,7 +19,7 @@ use base::files::{self, most};
 use base::json::Typed;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, Scenario};
-use render::{AdapterChoice, RENDERER_VERSION, RenderOptions, Renderer};
+use render::{AdapterChoice, RenderOptions, Renderer};
 use replay::{Log, Recording};
 use serde::{Deserialize, Serialize};
 
@@ -272,7 +272,7 @@ fn key(args: &Options, log: &str, eye: &Eye, variation: u16) -> Key {
         seconds: args.seconds,
         kernel: kernel::identity(),
         program: env!("CARGO_PKG_VERSION").to_owned(),
-        renderer: RENDERER_VERSION.to_owned(),
+        renderer: render::identity(),
         adapter: vision::adapter(),
     }
 }

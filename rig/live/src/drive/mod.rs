@@ -22,7 +22,6 @@ mod timings;
 mod traces;
 mod windows;
 
-use std::net::SocketAddr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -49,7 +48,7 @@ use seating::Seating;
 use simulation::{Links, Plan, Simulation};
 pub use timings::LiveFigures;
 use timings::Timings;
-use viewers::server::Server;
+use viewers::server::{Endpoint, Server};
 use windows::{Link, Waker, Windows};
 
 /// A session of live drives.
@@ -65,7 +64,7 @@ pub struct Options {
     /// Greatest force of wheels and gamepads, [0, 1].
     pub force: f32,
     /// Where the drive is shown to Foxglove.
-    pub foxglove: Option<SocketAddr>,
+    pub foxglove: Option<Endpoint>,
     /// What the semantic driver sees.
     pub checkpoint: CheckpointChoice,
     /// The pictures in windows.
@@ -137,7 +136,7 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) ->
 
     let (outbox, inbox) = mpsc::channel();
     let (board, clock) = (Arc::new(Board::default()), SessionClock::starting_now());
-    let _server = plan.foxglove.map(|at| Server::bind(at, board.feed.clone(), clock)).transpose()?;
+    let _server = plan.foxglove.clone().map(|at| Server::bind(at, board.feed.clone(), clock)).transpose()?;
     let waker = windows.waker();
     let wake = waker.clone();
     let links = Links {

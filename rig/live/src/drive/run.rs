@@ -102,14 +102,8 @@ impl Run {
     ) -> anyhow::Result<(SessionState, TickOutput, TickInput)> {
         let mut input = polled.input();
         self.bots.act(self.session.world(), screen, polled.ready(), &mut input);
-        let next = self.world().tick() + 1;
-        for event in &polled.events {
-            self.session.note(event.note(next));
-        }
-        if let Some(shown) = screen.and_then(|screen| screen.shown(next)) {
-            self.session.mask_shown(shown);
-        }
-        let (state, output) = self.session.tick(&input).with_context(|| self.path.display().to_string())?;
+        let (state, output) =
+            record(&mut self.session, polled, screen, &input).with_context(|| self.path.display().to_string())?;
         Ok((state, output, input))
     }
 
@@ -128,6 +122,20 @@ impl Run {
         self.session.finish().and_then(|file| Ok(file.close()?)).with_context(named)?;
         Ok(self.path)
     }
+}
+
+fn record(
+    session: &mut Session<BackgroundFile>,
+    polled: &Polled,
+    screen: Option<&Screen>,
+    input: &TickInput,
+) -> anyhow::Result<(SessionState, TickOutput)> {
+    let next = session.world().tick() + 1;
+    polled.events.iter().try_for_each(|event| session.note(event.note(next)))?;
+    if let Some(shown) = screen.and_then(|screen| screen.shown(next)) {
+        session.mask_shown(shown)?;
+    }
+    session.tick(input)
 }
 
 /// What the units need to know of the car.

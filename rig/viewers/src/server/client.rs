@@ -3,18 +3,23 @@
 
 use std::io::ErrorKind;
 use std::net::TcpStream;
+use std::sync::Arc;
 use std::time::Duration;
 
+use base::say::say;
 use tungstenite::handshake::server::{ErrorResponse, Request, Response};
+use tungstenite::http::header::{HOST, HeaderName, ORIGIN};
 use tungstenite::http::{HeaderValue, StatusCode};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket, accept_hdr_with_config};
 
 use super::news::{Sent, Source, news};
+use super::places::{Arrival, Guest};
 use super::protocol::{self, Subscriptions};
+use super::timed::Timed;
 
 const SUBPROTOCOL: &str = "Sec-WebSocket-Protocol";
-/// Longest silence of a client that is still shaking hands, and longest wait for one that does not read.
+/// A handshake that lasts longer is ended, and so is a client that takes longer to take what is sent at a time.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// News are sent at most so often, microseconds.
 const PERIOD_US: u64 = 50_000;
@@ -23,33 +28,47 @@ const MOST_WORDS: u32 = 100;
 /// Longest message of a client, bytes; a subscription has about 100.
 const LONGEST_BYTES: usize = 16 << 10;
 
-/// Serves a client until it goes, misbehaves, or the server ends. Whatever goes wrong concerns the
-/// client alone.
-pub fn serve(stream: TcpStream, source: &Source) {
-    let _ = talk(stream, source);
+/// Serves a client until it goes, misbehaves, has to make room, or the server ends. Whatever goes wrong
+/// concerns the client alone.
+pub fn serve(stream: TcpStream, arrival: Arrival, source: &Source) {
+    if let Some((socket, guest)) = shake_hands(stream, source) {
+        drop(arrival);
+        let _ = talk(socket, &guest, source);
+    }
 }
 
-fn talk(stream: TcpStream, source: &Source) -> Result<(), Box<Error>> {
-    stream.set_nodelay(true).map_err(boxed)?;
-    stream.set_read_timeout(Some(PATIENCE)).map_err(boxed)?;
-    stream.set_write_timeout(Some(PATIENCE)).map_err(boxed)?;
+fn shake_hands(stream: TcpStream, source: &Source) -> Option<(WebSocket<Timed>, Arc<Guest>)> {
+    stream.set_nodelay(true).ok()?;
     let config = WebSocketConfig::default()
         .read_buffer_size(LONGEST_BYTES)
         .max_message_size(Some(LONGEST_BYTES))
         .max_frame_size(Some(LONGEST_BYTES));
-    let Ok(mut socket) = accept_hdr_with_config(stream, choose, Some(config)) else { return Ok(()) };
-    socket.get_ref().set_read_timeout(Some(Duration::from_micros(PERIOD_US))).map_err(boxed)?;
-    say(&mut socket, protocol::server_info(&source.clock.unix_ns(0).to_string()))?;
-    say(&mut socket, protocol::advertise())?;
+    let mut guest = None;
+    #[expect(clippy::result_large_err, reason = "the signature is tungstenite's")]
+    let answer = |request: &Request, response: Response| {
+        let response = choose(request, response, source)?;
+        guest = Some(source.places.seat().ok_or_else(|| refusal(StatusCode::SERVICE_UNAVAILABLE, "too many look on"))?);
+        Ok(response)
+    };
+    let socket = accept_hdr_with_config(Timed::new(stream, PATIENCE), answer, Some(config)).ok()?;
+    Some((socket, guest?))
+}
+
+fn talk(mut socket: WebSocket<Timed>, guest: &Guest, source: &Source) -> Result<(), Box<Error>> {
+    tell(&mut socket, protocol::server_info(&source.clock.unix_ns(0).to_string()))?;
+    tell(&mut socket, protocol::advertise())?;
 
     let (mut subscriptions, mut sent) = (Subscriptions::default(), Sent::default());
     let (mut sent_us, mut words) = (0, 0);
-    while !source.is_over() {
+    while !source.is_over() && !guest.is_sent_away() && words <= MOST_WORDS {
+        socket.get_mut().allow(Duration::from_micros(PERIOD_US));
         match socket.read() {
             Ok(Message::Text(text)) => {
                 words += 1;
-                if let Err(wrong) = subscriptions.hear(&text) {
-                    say(&mut socket, protocol::warning(&wrong))?;
+                let heard = subscriptions.hear(&text);
+                guest.set_looks_on(subscriptions.any());
+                if let Err(wrong) = heard {
+                    tell(&mut socket, protocol::warning(&wrong))?;
                 }
             }
             Ok(Message::Close(_)) => return Ok(()),
@@ -60,39 +79,46 @@ fn talk(stream: TcpStream, source: &Source) -> Result<(), Box<Error>> {
         let now_us = source.clock.now_us();
         if now_us >= sent_us + PERIOD_US {
             (sent_us, words) = (now_us, 0);
+            socket.get_mut().allow(PATIENCE);
             for (subscription, payload) in news(source, &subscriptions, &mut sent, now_us) {
                 let message = protocol::message(subscription, source.clock.unix_ns(now_us), &payload);
                 socket.send(Message::binary(message)).map_err(Box::new)?;
             }
         }
-        if words > MOST_WORDS {
-            return Ok(());
-        }
     }
     Ok(())
 }
 
-fn boxed(error: std::io::Error) -> Box<Error> {
-    Box::new(Error::Io(error))
-}
-
-fn say(socket: &mut WebSocket<TcpStream>, words: String) -> Result<(), Box<Error>> {
+fn tell(socket: &mut WebSocket<Timed>, words: String) -> Result<(), Box<Error>> {
+    socket.get_mut().allow(PATIENCE);
     socket.send(Message::text(words)).map_err(Box::new)
 }
 
 /// Chooses the subprotocol, or refuses.
 #[expect(clippy::result_large_err, reason = "the signature is tungstenite's")]
-fn choose(request: &Request, mut response: Response) -> Result<Response, ErrorResponse> {
-    let offered = request.headers().get_all(SUBPROTOCOL).into_iter().filter_map(|value| value.to_str().ok());
-    match offered.filter_map(protocol::subprotocol).next() {
-        Some(chosen) => {
-            response.headers_mut().insert(SUBPROTOCOL, HeaderValue::from_static(chosen));
-            Ok(response)
-        }
-        None => {
-            let mut refusal = ErrorResponse::new(Some("expected a subprotocol of Foxglove\n".into()));
-            *refusal.status_mut() = StatusCode::BAD_REQUEST;
-            Err(refusal)
-        }
+fn choose(request: &Request, mut response: Response, source: &Source) -> Result<Response, ErrorResponse> {
+    if let Some(reason) = unwelcome(request, source) {
+        source.refused.call_once(|| say(format_args!("Foxglove: {reason}")));
+        return Err(refusal(StatusCode::FORBIDDEN, &reason));
     }
+    let offered = request.headers().get_all(SUBPROTOCOL).into_iter().filter_map(|value| value.to_str().ok());
+    let chosen = offered.filter_map(protocol::subprotocol).next();
+    let chosen = chosen.ok_or_else(|| refusal(StatusCode::BAD_REQUEST, "expected a subprotocol of Foxglove"))?;
+    response.headers_mut().insert(SUBPROTOCOL, HeaderValue::from_static(chosen));
+    Ok(response)
+}
+
+/// Why whoever asks may not look on. Browsers send each of the headers at most once.
+fn unwelcome(request: &Request, source: &Source) -> Option<String> {
+    let all = |name: HeaderName| request.headers().get_all(name).into_iter().map(HeaderValue::as_bytes);
+    if all(HOST).count().max(all(ORIGIN).count()) > 1 {
+        return Some("it names more than one host or origin".into());
+    }
+    source.endpoint.refusal(all(HOST).next(), all(ORIGIN).next())
+}
+
+fn refusal(status: StatusCode, reason: &str) -> ErrorResponse {
+    let mut refusal = ErrorResponse::new(Some(format!("{reason}\n")));
+    *refusal.status_mut() = status;
+    refusal
 }

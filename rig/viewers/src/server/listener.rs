@@ -2,19 +2,18 @@
 
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use anyhow::Context;
 use base::clock::SessionClock;
 use base::say::say;
 
+use super::access::Endpoint;
 use super::client;
 use super::news::Source;
 use crate::feed::Feed;
 
-/// More are turned away.
-const MAX_CLIENTS: usize = 8;
 /// Longest wait for a connection to ourselves.
 const WAKE_UP: Duration = Duration::from_millis(200);
 
@@ -24,30 +23,15 @@ pub struct Server {
     is_over: Arc<AtomicBool>,
 }
 
-/// Counts a client for as long as its thread lives.
-struct Place(Arc<AtomicUsize>);
-
-impl Place {
-    fn take(taken: &Arc<AtomicUsize>) -> Option<Self> {
-        let free = |n: usize| (n < MAX_CLIENTS).then_some(n + 1);
-        taken.fetch_update(Ordering::Relaxed, Ordering::Relaxed, free).ok().map(|_| Self(taken.clone()))
-    }
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
-    }
-}
-
 impl Server {
     /// Serves what is in a feed at an address, and says where; port 0 takes one that is free.
-    pub fn bind(at: SocketAddr, feed: Arc<Feed>, clock: SessionClock) -> anyhow::Result<Self> {
+    pub fn bind(endpoint: Endpoint, feed: Arc<Feed>, clock: SessionClock) -> anyhow::Result<Self> {
+        let at = endpoint.at;
         let named = || format!("--foxglove {at}: expected an address of this machine and a port that is free");
         let listener = TcpListener::bind(at).with_context(named)?;
         let address = listener.local_addr().with_context(named)?;
         let is_over = Arc::new(AtomicBool::new(false));
-        let source = Arc::new(Source { feed, clock, images: Default::default(), is_over: is_over.clone() });
+        let source = Arc::new(Source::new(endpoint, feed, clock, is_over.clone()));
         std::thread::spawn(move || accept(&listener, &source));
         say(format_args!("Foxglove: ws://{address}"));
         Ok(Self { address, is_over })
@@ -69,20 +53,16 @@ impl Drop for Server {
 }
 
 fn accept(listener: &TcpListener, source: &Arc<Source>) {
-    let taken = Arc::new(AtomicUsize::new(0));
     for stream in listener.incoming() {
         if source.is_over() {
             return;
         }
         // A client that has gone away again is no matter.
         let Ok(stream) = stream else { continue };
-        match Place::take(&taken) {
-            Some(place) => {
+        match source.places.arrive() {
+            Some(arrival) => {
                 let source = source.clone();
-                std::thread::spawn(move || {
-                    let _place = place;
-                    client::serve(stream, &source);
-                });
+                std::thread::spawn(move || client::serve(stream, arrival, &source));
             }
             None => {
                 let _ = stream.shutdown(Shutdown::Both);

@@ -2,18 +2,20 @@
 //! Foxglove's WebSocket protocol. Clients only read.
 //!
 //! Each client has a thread of its own that looks at the feed from time to time, so that a slow or
-//! hostile one delays nobody but itself.
+//! hostile one delays nobody but itself; pages of strangers are refused.
 
+mod access;
 mod channels;
 mod client;
 mod images;
 mod listener;
 mod news;
+mod places;
 mod protocol;
 #[cfg(test)]
 mod tests;
+mod timed;
 
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 
 use base::clock::SessionClock;
@@ -23,15 +25,8 @@ use kernel::World;
 use crate::events::Events;
 use crate::feed::{Feed, Look};
 use crate::figures::TickFigures;
+pub use access::{Endpoint, address, origin};
 pub use listener::Server;
-
-/// `PORT` of this machine alone, or `ADDRESS:PORT`.
-pub fn address(text: &str) -> Result<SocketAddr, String> {
-    let loopback = |port| SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port);
-    let port = text.parse::<u16>().ok().map(loopback);
-    port.or_else(|| text.parse().ok())
-        .ok_or_else(|| "expected PORT, as in 8765, or ADDRESS:PORT, as in 0.0.0.0:8765 or [::1]:8765".into())
-}
 
 /// Publishes a drive without windows.
 pub struct Publisher {
@@ -42,10 +37,10 @@ pub struct Publisher {
 }
 
 impl Publisher {
-    /// Serves at an address.
-    pub fn bind(at: SocketAddr) -> anyhow::Result<Self> {
+    /// Serves at an endpoint.
+    pub fn bind(endpoint: Endpoint) -> anyhow::Result<Self> {
         let (feed, clock) = (Arc::new(Feed::default()), SessionClock::starting_now());
-        let server = Server::bind(at, feed.clone(), clock)?;
+        let server = Server::bind(endpoint, feed.clone(), clock)?;
         Ok(Self { feed, clock, events: Events::default(), _server: server })
     }
 

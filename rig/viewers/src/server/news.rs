@@ -1,14 +1,16 @@
 //! What is new in the feed for a client, as messages of the channels that it subscribed to.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Once};
 
 use base::clock::SessionClock;
 use foxglove::Encode;
 use render::Camera;
 
+use super::access::Endpoint;
 use super::channels::Channel;
 use super::images::Images;
+use super::places::Places;
 use super::protocol::Subscriptions;
 use crate::feed::{Feed, Look, View};
 use crate::figures::TickFigures;
@@ -21,8 +23,14 @@ use crate::messages::telemetry::Telemetry;
 /// Pictures are sent at most so often, microseconds.
 const PICTURE_PERIOD_US: u64 = 200_000;
 
-/// What clients are told of.
+/// What clients are told of, and who may be one.
 pub struct Source {
+    /// Where they come to, and which.
+    pub endpoint: Endpoint,
+    /// How many there are.
+    pub places: Places,
+    /// Told of the first that was refused, so that a page that stays empty has a reason.
+    pub refused: Once,
     /// The newest of everything.
     pub feed: Arc<Feed>,
     /// The session's time.
@@ -34,6 +42,12 @@ pub struct Source {
 }
 
 impl Source {
+    /// A source for a server's clients.
+    pub fn new(endpoint: Endpoint, feed: Arc<Feed>, clock: SessionClock, is_over: Arc<AtomicBool>) -> Self {
+        let (places, refused, images) = (Places::default(), Once::new(), Images::default());
+        Self { endpoint, places, refused, feed, clock, images, is_over }
+    }
+
     /// Whether the server ends.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::Relaxed)

@@ -88,6 +88,11 @@ impl Subscriptions {
         Ok(())
     }
 
+    /// Whether there is one.
+    pub fn any(&self) -> bool {
+        !self.0.is_empty()
+    }
+
     /// The number under which a channel is subscribed.
     pub fn of(&self, channel: Channel) -> Option<u32> {
         self.0.iter().find(|(_, had)| *had == channel).map(|(id, _)| *id)

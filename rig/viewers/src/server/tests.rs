@@ -1,7 +1,7 @@
 //! Clients of every kind, friendly or not.
 
 use std::io::{Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -95,6 +95,10 @@ impl Client {
     }
 }
 
+fn here(at: &str) -> Endpoint {
+    Endpoint { at: address(at).unwrap(), origins: vec!["http://rig.lab:8080".into()] }
+}
+
 /// A drive that is shown tick by tick.
 struct Drive {
     world: World,
@@ -105,7 +109,7 @@ impl Drive {
     fn start() -> Self {
         let map = Map::find("rural").unwrap();
         let world = World::new(&map.scenario(1), &map.network).unwrap();
-        Self { world, publisher: Publisher::bind(address("0").unwrap()).unwrap() }
+        Self { world, publisher: Publisher::bind(here("0")).unwrap() }
     }
 
     fn at(&self) -> SocketAddr {
@@ -280,14 +284,75 @@ fn hostile_clients_are_dropped_and_do_no_harm() {
 fn a_port_that_is_taken_is_said_in_one_sentence() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let at = taken.local_addr().unwrap();
-    let error = Publisher::bind(at).err().expect("taken");
+    let error = Publisher::bind(here(&at.to_string())).err().expect("taken");
     let said = base::failure::sentence(&error);
     assert!(said.starts_with(&format!("--foxglove {at}: expected an address")) && said.contains("in use"), "{said}");
 }
 
+/// Status and reason with which a page, and whoever asks for another host, is answered.
+fn answer(at: SocketAddr, header: &str) -> (String, String) {
+    let mut stream = TcpStream::connect(at).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    let request = format!(
+        "GET / HTTP/1.1\r\n{header}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
+         Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n"
+    );
+    stream.write_all(request.as_bytes()).unwrap();
+    let (mut answer, mut some) = (String::new(), [0; 512]);
+    let ends = ["look on", "asked for", "more than one", "serverInfo"];
+    while !ends.iter().any(|end| answer.contains(end)) {
+        let n = stream.read(&mut some).unwrap();
+        assert!(n > 0, "{answer}");
+        answer.push_str(&String::from_utf8_lossy(&some[..n]));
+    }
+    (answer[9..12].into(), answer)
+}
+
 #[test]
-fn addresses_are_of_this_machine_unless_said_otherwise() {
-    assert_eq!(address("8765"), Ok("127.0.0.1:8765".parse().unwrap()));
-    assert_eq!(address("[::1]:80"), Ok("[::1]:80".parse().unwrap()));
-    assert!(address("all:80").is_err() && address("70000").is_err() && address("").is_err());
+fn pages_of_strangers_are_refused_with_a_reason() {
+    let drive = Drive::start();
+    let host = format!("Host: {}", drive.at());
+    let with = |origin: &str| answer(drive.at(), &format!("{host}\r\nOrigin: {origin}"));
+    let (status, said) = with("https://evil.example");
+    assert!(status == "403" && said.contains("--foxglove-origin https://evil.example"), "{said}");
+    for origin in ["http://rig.lab:8080", "http://localhost:8080", "https://app.foxglove.dev"] {
+        assert_eq!(with(origin).0, "101", "{origin}");
+    }
+    assert_eq!(with("http://localhost\r\nOrigin: https://evil.example").0, "403");
+    assert_eq!(answer(drive.at(), "Host: evil.example").0, "403");
+}
+
+/// Sends a byte now and then until the connection is ended from the other side.
+fn dribble(mut stream: TcpStream, bytes: Vec<u8>) {
+    stream.set_nonblocking(true).unwrap();
+    for byte in bytes.into_iter().cycle() {
+        let gone = matches!(stream.read(&mut [0; 512]), Ok(0)) || stream.write_all(&[byte]).is_err();
+        if gone {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
+#[test]
+fn who_dribbles_locks_nobody_out() {
+    let mut drive = Drive::start();
+    let at = drive.at();
+    // Half of them never finish to shake hands, the others never finish to say what they want.
+    let header = b"GET / HTTP/1.1\r\nX: ";
+    let mut dribblers: Vec<_> = (0..8).map(|_| (TcpStream::connect(at).unwrap(), header.to_vec())).collect();
+    for _ in 0..8 {
+        let idle = Client::greeted(at).0.get_ref().try_clone().unwrap();
+        dribblers.push((idle, vec![0x81, 0xFE, 0x10, 0]));
+    }
+    let dribblers = dribblers.into_iter().map(|(stream, bytes)| std::thread::spawn(|| dribble(stream, bytes)));
+    let dribblers: Vec<_> = dribblers.collect();
+    let mut ninth = Client::greeted(at);
+    ninth.subscribe(&[Channel::Telemetry]);
+    for _ in 0..3 {
+        drive.tick();
+        assert_eq!(ninth.message().0, Channel::Telemetry);
+    }
+    drop(drive);
+    assert!(dribblers.into_iter().all(|dribbler| dribbler.join().is_ok()));
 }

@@ -36,7 +36,7 @@ fn options(args: &DriveArgs, scenario: Scenario, map: Map, tell: Tell) -> Option
         seats: [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default),
         calibration: args.calibration.clone(),
         force: args.force,
-        foxglove: args.foxglove,
+        foxglove: args.foxglove(),
         checkpoint: args.checkpoint.clone(),
         pictures: (&args.pictures).into(),
         study: (&args.study).into(),

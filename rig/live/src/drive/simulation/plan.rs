@@ -1,6 +1,5 @@
 //! What a session is about, and the threads around it.
 
-use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
@@ -12,6 +11,7 @@ use kernel::Scenario;
 use kernel::time::Tick;
 use replay::Provenance;
 use study::Cast;
+use viewers::server::Endpoint;
 
 use crate::drive::aftermath::Tell;
 use crate::drive::board::{About, Board, Message, Wake};
@@ -25,7 +25,7 @@ pub struct Plan {
     /// Greatest force of wheels, [0, 1].
     pub force: f32,
     /// Where remote control centres are served.
-    pub foxglove: Option<SocketAddr>,
+    pub foxglove: Option<Endpoint>,
     /// Where the recordings go.
     pub record: PathBuf,
     /// What the recordings say about themselves, the checkpoint aside.

@@ -1,0 +1,116 @@
+//! A street looks as the golden pictures say, on every adapter: which class is where, and the colours as seen from
+//! afar. `AEYE_BLESS=1 cargo test --release -p tests --test it render_golden` writes them, and the renderer has
+//! another identity from then on ([`render::identity`]).
+
+use std::fmt::Write;
+
+use render::{Camera, Frame, Preset, RenderOptions, Renderer};
+use tests::street;
+
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../render/golden_pictures.txt");
+/// Moments of the street, with other weather and other light.
+const MOMENTS: [u32; 4] = [0, 4, 9, 14];
+const WIDTH: usize = 96;
+const HEIGHT: usize = 48;
+/// Colours are means over squares of so many pixels.
+const SQUARE: usize = 12;
+/// How many labels in a thousand may differ: adapters round edges differently.
+const PER_MILLE: usize = 3;
+/// How far a mean colour may be off, of 255.
+const MARGIN: u8 = 6;
+
+/// A frame as text: a line for each row with a digit, to base 36, for each pixel's class; then a line for each row
+/// of squares with their colours.
+fn picture(frame: &Frame) -> String {
+    let digit = |id: &u8| char::from_digit(u32::from(*id), 36).expect("there are 29 classes");
+    let mut text: String =
+        frame.class_ids.chunks(WIDTH).map(|row| row.iter().map(digit).collect::<String>() + "\n").collect();
+    for y in 0..HEIGHT / SQUARE {
+        let colours: Vec<String> = (0..WIDTH / SQUARE).map(|x| colour(&frame.rgb, x, y)).collect();
+        writeln!(text, "{}", colours.join(" ")).expect("writing to a string");
+    }
+    text
+}
+
+/// The mean colour of a square.
+fn colour(rgb: &[u8], x: usize, y: usize) -> String {
+    let pixels = (0..SQUARE * SQUARE).map(|i| (y * SQUARE + i / SQUARE) * WIDTH + x * SQUARE + i % SQUARE);
+    let mean = |channel| pixels.clone().map(|at| usize::from(rgb[3 * at + channel])).sum::<usize>() / (SQUARE * SQUARE);
+    format!("{:02x}{:02x}{:02x}", mean(0), mean(1), mean(2))
+}
+
+/// What is wrong with a picture, if anything.
+fn difference(golden: &str, drawn: &str) -> Option<String> {
+    let rows = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+    let (golden, drawn) = (rows(golden), rows(drawn));
+    if golden.len() != drawn.len() {
+        return Some(format!("{} lines instead of {}", drawn.len(), golden.len()));
+    }
+    let labels = |rows: &[String]| rows[..HEIGHT].concat();
+    let (before, after) = (labels(&golden), labels(&drawn));
+    let others: Vec<usize> =
+        before.bytes().zip(after.bytes()).enumerate().filter(|(_, (a, b))| a != b).map(|(at, _)| at).collect();
+    if before.len() != after.len() || 1000 * others.len() > PER_MILLE * WIDTH * HEIGHT {
+        let first = others.first().map_or_else(String::new, |at| {
+            let class = |labels: &str| labels.as_bytes()[*at] as char;
+            format!(
+                ", first at column {}, row {}: {} instead of {}",
+                at % WIDTH,
+                at / WIDTH,
+                class(&after),
+                class(&before)
+            )
+        });
+        return Some(format!("{} labels differ{first}", others.len()));
+    }
+    let bytes = |rows: &[String]| -> Vec<u8> {
+        let colours = rows[HEIGHT..].join(" ").replace(' ', "");
+        (0..colours.len() / 2)
+            .map(|i| u8::from_str_radix(&colours[2 * i..2 * i + 2], 16).expect("hexadecimal"))
+            .collect()
+    };
+    let far = bytes(&golden).into_iter().zip(bytes(&drawn)).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0);
+    (far > MARGIN).then(|| format!("a colour is off by {far} of 255"))
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_street_looks_as_the_golden_pictures_say() {
+    let options = RenderOptions { preset: Preset::Cheap, ..Default::default() };
+    let mut renderer = Renderer::new(&street::network(), &options).expect("an adapter");
+    let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
+    let drawn = MOMENTS.map(|moment| picture(&renderer.draw(&street::scene(moment), &camera).expect("a frame")));
+    let differing = |golden: &str| -> Vec<String> {
+        let golden: Vec<_> = golden.split("\n\n").collect();
+        let differences = drawn.iter().zip(MOMENTS).enumerate().map(|(i, (drawn, moment))| {
+            let golden = golden.get(i).copied().unwrap_or_default();
+            difference(golden.trim_end(), drawn.trim_end()).map(|what| format!("moment {moment}: {what}"))
+        });
+        differences.flatten().collect()
+    };
+    let golden = std::fs::read_to_string(FILE).expect("render/golden_pictures.txt is there");
+    if std::env::var("AEYE_BLESS").is_ok_and(|bless| bless == "1") {
+        // What is as good as before stays, and so does the renderer's identity.
+        if !differing(&golden).is_empty() {
+            std::fs::write(FILE, drawn.join("\n")).expect("writable");
+        }
+        return;
+    }
+    let differing = differing(&golden);
+    assert!(differing.is_empty(), "this renderer draws otherwise than the golden pictures: {}", differing.join("; "));
+}
+
+#[test]
+fn labels_and_colours_that_differ_are_told() {
+    let frame = Frame { class_ids: vec![7; WIDTH * HEIGHT], rgb: vec![128; 3 * WIDTH * HEIGHT], ..Frame::default() };
+    let golden = picture(&frame);
+    assert_eq!(difference(&golden, &golden), None);
+    let mut person = frame.clone();
+    (0..20).for_each(|i| person.class_ids[3 * WIDTH + 40 + i] = 12);
+    let said = difference(&golden, &picture(&person)).expect("twenty pixels");
+    assert_eq!(said, "20 labels differ, first at column 40, row 3: c instead of 7");
+    let mut bright = frame;
+    bright.rgb.iter_mut().take(3 * WIDTH * SQUARE).for_each(|value| *value = 136);
+    assert_eq!(difference(&golden, &picture(&bright)), Some("a colour is off by 8 of 255".into()));
+    assert!(difference("", &golden).is_some());
+}
