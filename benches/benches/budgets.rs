@@ -16,21 +16,29 @@ use kernel::map::MapData;
 use kernel::time::CLIP_FPS;
 use perception::{Checkpoint, RgbView, Segmenter};
 use render::{Camera, RenderOptions, Renderer};
+use replay::Replayer;
 
 /// The size of the bundled checkpoints, pixels.
 const SIZE: (u32, u32) = (256, 128);
 
 /// The budgets of the rig. Real-time factors hold on one core of a desktop machine; the ratios to
 /// references hold wherever both run.
-const BUDGETS: [Budget; 6] = [
+const BUDGETS: [Budget; 7] = [
     Budget { bench: "kernel/step", against: Against::RealTime(STEP_S as f64), at_least: 150.0 },
     Budget { bench: "replay/verify", against: Against::RealTime(STEP_S as f64), at_least: 100.0 },
+    // Keyframes are 10 s apart: what lies between two is driven again.
+    Budget { bench: "replay/seek", against: Against::RealTime(KEYFRAMES_S), at_least: 100.0 },
     // Four times the roads take four times as long, and a little more.
     Budget { bench: "kernel/bake_40km", against: Against::Reference("kernel/bake_10km"), at_least: 0.2 },
     Budget { bench: "render/frame", against: Against::Reference("reference/bare_draw"), at_least: 0.15 },
     Budget { bench: "perception/infer", against: Against::Reference("reference/matrix_product"), at_least: 0.5 },
     Budget { bench: "rig/frame", against: Against::RealTime(1.0 / CLIP_FPS as f64), at_least: 2.0 },
 ];
+
+/// How far apart keyframes are, seconds.
+const KEYFRAMES_S: f64 = 10.0;
+/// The recording in which is sought, seconds.
+const SOUGHT_S: u32 = 30 * 60;
 
 fn main() -> ExitCode {
     match run() {
@@ -55,6 +63,7 @@ fn run() -> Result<bool, String> {
     kernel_step(&mut criterion, &drive);
     kernel_bake(&mut criterion);
     replay_verify(&mut criterion, &drive)?;
+    replay_seek(&mut criterion, &drive)?;
     let mut sight = Sight::open(&drive.scene.network)?;
     references(&mut criterion, &drive)?;
     sight.render(&mut criterion, &drive);
@@ -99,6 +108,18 @@ fn replay_verify(criterion: &mut Criterion, drive: &BusyDrive) -> Result<(), Str
             let report = replay::verify(&log, &drive.scene.network).expect("the log fits its map");
             assert_eq!(report.divergence, None, "the recording replays");
         })
+    });
+    Ok(())
+}
+
+/// To the tick of half an hour that is farthest from the keyframe before it, from the beginning and back.
+fn replay_seek(criterion: &mut Criterion, drive: &BusyDrive) -> Result<(), String> {
+    let log = recorded(&drive.scene, SOUGHT_S)?;
+    let gaps = log.keyframes.windows(2).map(|pair| (pair[1].tick - pair[0].tick, pair[1].tick - 1));
+    let (_, farthest) = gaps.max().ok_or("a recording with keyframes")?;
+    let mut replayer = Replayer::new(&log, drive.scene.network.clone()).map_err(|e| e.to_string())?;
+    criterion.bench_function("replay/seek", |b| {
+        b.iter(|| [log.first_tick(), farthest].map(|tick| replayer.seek(tick).expect("a tick of the log")))
     });
     Ok(())
 }
