@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test matrix bench oracles check-long headless setup tools build
+.PHONY: demo test matrix bench oracles kills check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -42,7 +42,11 @@ oracles: PACKAGES += python3-venv
 oracles: build
 	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
 
-## What takes long: oracles and benchmarks. docs/check-long.txt says when all of it passed, and of which commit.
+## Kills the program 200 times in everything that takes long; what was finished must stay.
+kills: setup
+	AEYE_KILLS=200 cargo test --release --workspace --test kills -- --nocapture
+
+## What takes long: oracles, benchmarks and kills. docs/check-long.txt says when all of it passed, and of which commit.
 check-long:
 	tests/check_long.sh
 

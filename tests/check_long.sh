@@ -10,7 +10,7 @@ if [ -n "$(git status --porcelain)" ]; then
 fi
 commit=$(git rev-parse HEAD)
 passed=""
-for part in oracles bench; do
+for part in oracles bench kills; do
     started=$SECONDS
     make --no-print-directory "$part"
     passed+=$(printf '%-8s passed in %d s' "$part" $((SECONDS - started)))$'\n'

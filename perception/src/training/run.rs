@@ -1,6 +1,5 @@
 //! The course of a training: epochs of steps, each epoch measured.
 
-use std::io::Write;
 use std::ops::ControlFlow;
 use std::panic::resume_unwind;
 use std::path::Path;
@@ -166,10 +165,8 @@ impl Run {
 
     /// Runs the network as it will be shipped over the validation split.
     fn measure(&self) -> Result<ConfusionMatrix, PerceptionError> {
-        let io = |source| PerceptionError::Io { path: std::env::temp_dir(), source };
-        let mut file = tempfile::Builder::new().suffix(".onnx").tempfile().map_err(io)?;
-        file.write_all(&self.onnx(&self.state.weights, "")?).map_err(io)?;
-        let segmenter = Segmenter::new(&Checkpoint::load(file.path())?, self.options.width, self.options.height)?;
+        let checkpoint = Checkpoint::from_bytes("trained", &self.onnx(&self.state.weights, "")?)?;
+        let segmenter = Segmenter::new(&checkpoint, self.options.width, self.options.height)?;
         let share = self.val.frames.len().div_ceil(rayon::current_num_threads());
         let matrices =
             self.val.frames.par_chunks(share).map(|frames| confusion(segmenter.clone(), frames, &self.options));

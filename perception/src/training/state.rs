@@ -1,8 +1,8 @@
 //! A training that is not finished, as a file: one line of JSON, the numbers in little-endian order,
 //! and their digest.
 
-use std::io::Write;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -90,7 +90,8 @@ impl State {
         self.weights.vectors().chain(adam).chain(best).flatten()
     }
 
-    /// Writes the file in one step.
+    /// Writes the file in one step: under a hidden name beside it, which is the same each time, so that what a
+    /// killed process left there goes.
     pub(super) fn save(
         &mut self,
         path: &Path,
@@ -110,11 +111,12 @@ impl State {
         bytes.extend(self.numbers().flat_map(|v| v.to_le_bytes()));
         let digest = blake3::hash(&bytes);
         bytes.extend(digest.as_bytes());
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut file = tempfile::NamedTempFile::new_in(folder).map_err(io)?;
-        file.as_file_mut().write_all(&bytes).map_err(io)?;
-        file.persist(path).map_err(|e| io(e.error))?;
-        Ok(())
+        let hidden = hidden(path);
+        let written = fs::write(&hidden, &bytes).and_then(|()| fs::rename(&hidden, path));
+        written.map_err(|error| {
+            let _ = fs::remove_file(&hidden);
+            io(error)
+        })
     }
 
     /// Reads the file if there is one; it must belong to these options and this dataset.
@@ -163,10 +165,13 @@ impl State {
     }
 }
 
+fn hidden(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".aeye-{name}"))
+}
+
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     #[test]
@@ -180,7 +185,9 @@ mod tests {
         state.adam.squares[4][2] = 0.5;
         state.weights.moments[1].variance[3] = 2.0;
         state.history.push(EpochReport { epoch: 1, loss: 2.845400542020798, miou: None, iou: vec![Some(0.1), None] });
+        fs::write(hidden(&path), "half").unwrap();
         state.save(&path, &options, dataset).unwrap();
+        assert!(!hidden(&path).exists());
         let read = State::load(&path, &options, dataset).unwrap().unwrap();
         assert_eq!((&read.weights, &read.adam, &read.history), (&state.weights, &state.adam, &state.history));
 

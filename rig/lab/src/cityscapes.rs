@@ -4,12 +4,12 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::Context;
-use base::png;
+use base::{output, png};
 use perception::cityscapes::{Kind, Place};
 use perception::classes::TRAIN_ID_OF_TAG;
 use render::Frame;
 
-/// Writes all files of a frame below `dir`.
+/// Writes all files of a frame below `dir`, where no other process writes, each in one step.
 pub fn write(dir: &Path, place: &Place<'_>, frame: &Frame) -> anyhow::Result<()> {
     let size = (frame.width, frame.height);
     let files = [
@@ -23,7 +23,7 @@ pub fn write(dir: &Path, place: &Place<'_>, frame: &Frame) -> anyhow::Result<()>
         let path = dir.join(place.path(kind));
         let folder = path.parent().unwrap_or(dir);
         fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-        fs::write(&path, bytes).with_context(|| path.display().to_string())?;
+        output::write_claimed(&path, &bytes)?;
     }
     Ok(())
 }

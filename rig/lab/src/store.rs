@@ -108,7 +108,9 @@ impl Store {
     /// other's.
     pub fn hold(&self, options: &[String]) -> anyhow::Result<()> {
         let path = self.folder.join(OPTIONS);
-        let Ok(text) = fs::read(&path) else {
+        // A process that was killed before it kept anything leaves its options.
+        let held = fs::read(&path).ok().filter(|_| !self.is_empty());
+        let Some(text) = held else {
             return output::write_file(&path, &serde_json::to_vec(options)?);
         };
         let held: Vec<String> = serde_json::from_slice(&text).with_context(|| path.display().to_string())?;
@@ -134,7 +136,9 @@ impl Store {
         for entry in fs::read_dir(&self.folder).with_context(place)? {
             let entry = entry.with_context(place)?;
             if entry.file_name().to_string_lossy().starts_with(PENDING) {
-                fs::remove_dir_all(entry.path()).with_context(|| entry.path().display().to_string())?;
+                let path = entry.path();
+                let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+                removed.with_context(|| path.display().to_string())?;
             }
         }
         Ok(())
@@ -187,6 +191,12 @@ impl Store {
         }
     }
 
+    /// Whether nothing is kept: where that is so, no options are held.
+    fn is_empty(&self) -> bool {
+        let mut kept = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        kept.all(|entry| entry.file_name() == OPTIONS)
+    }
+
     fn file(&self, name: &str) -> PathBuf {
         self.folder.join(format!("{name}.json"))
     }
@@ -198,9 +208,7 @@ const OPTIONS: &str = ".options.json";
 
 impl Drop for Store {
     fn drop(&mut self) {
-        // Where nothing was kept, nothing is held.
-        let mut kept = fs::read_dir(&self.folder).into_iter().flatten().flatten();
-        if kept.all(|entry| entry.file_name() == OPTIONS) {
+        if self.is_empty() {
             let _ = fs::remove_file(self.folder.join(OPTIONS));
         }
     }
@@ -245,9 +253,11 @@ mod tests {
         let store = Store::open(&out, "test").expect("free");
         let begun = store.pending().expect("a folder").keep();
         fs::write(begun.join("half"), "").expect("writable");
+        let file = out.join(".test/.aeye-a.json-abcdef");
+        fs::write(&file, "").expect("writable");
         drop(store);
         let store = Store::open(&out, "test").expect("of the same kind");
-        assert!(!begun.exists());
+        assert!(!begun.exists() && !file.exists());
         let said = Store::open(&out, "test").err().expect("in use").to_string();
         assert!(said.contains("another aeye is at work there"), "{said}");
         store.keep("a", key("x"), 1).expect("writable");

@@ -58,6 +58,9 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
     let dir = tempfile::tempdir().unwrap();
     let interrupt = Interrupt::default();
     let (a, b) = (dir.path().join("a"), dir.path().join("b"));
+    // As a kill leaves it that comes just before the recipe has its name.
+    fs::create_dir_all(a.join("parts")).unwrap();
+    fs::write(a.join("parts/.aeye-begun.json-abcdef"), "half").unwrap();
     let made = natural::make(&natural_args(a.clone(), 1), &interrupt).unwrap();
     assert_eq!((made.train_frames, made.val_frames, made.test_frames), (4, 2, 1));
     let whole = contents(&a);
@@ -90,7 +93,10 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
     natural::make(&natural_args(b.clone(), 2), &interrupt).unwrap();
     assert_eq!(contents(&b), whole);
 
+    // As a kill leaves it that comes just after the manifest was written.
+    fs::create_dir(a.join("parts")).unwrap();
     assert_eq!(natural::make(&natural_args(a.clone(), 1), &interrupt).unwrap(), made, "it is complete");
+    assert!(!a.join("parts").exists());
     let other = natural::Options { seed: 6, ..natural_args(a.clone(), 1) };
     assert!(natural::make(&other, &interrupt).unwrap_err().to_string().contains("another recipe"));
     assert_eq!(contents(&a), whole);

@@ -67,6 +67,32 @@ fn runs_that_do_not_count_leave_nothing_behind() {
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn runs_that_were_done_before_their_turn_are_not_driven_again() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let lines = drive(dir.path(), 1);
+    let (whole, waiting) = (contents(dir.path()), dir.path().join(".waiting/truth"));
+    let at = |name: &str| dir.path().join(name);
+    // As a kill leaves it that comes before the first run is done.
+    let wait = |name: &String| fs::rename(at(name), waiting.join(name)).expect("it was there");
+    let modified = |path: &Path| fs::metadata(path).and_then(|about| about.modified()).expect("a file");
+    fs::create_dir_all(&waiting).expect("writable");
+    whole.keys().filter(|name| name.contains("-0001.")).for_each(wait);
+    fs::remove_file(at(&lines[0].file)).expect("it was there");
+    let when = modified(&waiting.join(&lines[1].file));
+    assert_eq!(drive(dir.path(), 2), lines);
+    assert_eq!(contents(dir.path()), whole, "nothing waits any more");
+    assert_eq!(modified(&at(&lines[1].file)), when, "it is the same file");
+
+    // Of another campaign, they are none of this one's.
+    let other = Plan { seed: 6, ..plan(dir.path()) };
+    fs::create_dir_all(&waiting).expect("writable");
+    whole.keys().for_each(wait);
+    let others = drive_all(&other, &Eye::Truth, 1, &Interrupt::default()).expect("a campaign");
+    assert!(others.iter().zip(&lines).all(|(other, line)| other.figures.seed != line.figures.seed));
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn recordings_of_another_campaign_are_not_taken_for_this_one() {
     let dir = tempfile::tempdir().expect("a folder");
     drive(dir.path(), 1);

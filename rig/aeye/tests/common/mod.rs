@@ -7,6 +7,9 @@ use std::process::{Command, Output};
 
 use base::maps::Map;
 use kernel::{TickInput, World};
+use lab::cityscapes;
+use perception::cityscapes::Place;
+use render::Frame;
 use replay::{Manifest, Provenance, Recorder};
 
 /// The program in a folder, with arguments that hold no blanks.
@@ -43,4 +46,29 @@ pub fn blind_drive(path: &Path, seed: u64) {
         recorder.tick(&TickInput::default(), &output, &world.part_hashes()).expect("a tick");
     }
     fs::write(path, recorder.finish(None).expect("its end")).expect("writable");
+}
+
+/// A dataset of pictures with the sky above, a road below and somebody somewhere.
+pub fn dataset(dir: &Path, train: u32, val: u32) {
+    const SIZE: (u32, u32) = (64, 32);
+    for (split, count) in [("train", train), ("val", val)] {
+        for scene in 0..count {
+            let walker = 4 + scene * 13 % 48;
+            let tag = |(x, y): (u32, u32)| match (walker..walker + 8).contains(&x) && (8..24).contains(&y) {
+                true => 4,
+                false if y < 16 => 13,
+                false => 7,
+            };
+            let class_ids: Vec<u8> = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| tag((x, y)))).collect();
+            let frame = Frame {
+                width: SIZE.0,
+                height: SIZE.1,
+                rgb: class_ids.iter().flat_map(|tag| [tag * 15, 255 - tag * 9, 80]).collect(),
+                instance_ids: class_ids.iter().map(|tag| u16::from(*tag == 4)).collect(),
+                class_ids,
+                ..Frame::default()
+            };
+            cityscapes::write(dir, &Place { split, city: "toy", scene, frame: 0 }, &frame).expect("written");
+        }
+    }
 }

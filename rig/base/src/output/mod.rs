@@ -12,10 +12,23 @@ use anyhow::{Context, bail};
 pub use folder::OutputFolder;
 pub use pending::{PendingFile, PendingFolder};
 
-/// Writes a file in one step: under a temporary name beside it, then renamed.
+/// Writes a file in one step, as a [`PendingFile`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    temporary(path, bytes)?.persist(path).with_context(|| path.display().to_string())?;
-    Ok(())
+    let mut file = PendingFile::new(path)?;
+    file.write_all(bytes)?;
+    file.finish()
+}
+
+/// Writes a file in one step where no other process writes: under the one hidden name that it has each time, so that
+/// what a killed process left goes without a look at the folder, which may hold thousands.
+pub fn write_claimed(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let hidden = path.with_file_name(format!(".aeye-{name}"));
+    let written = fs::write(&hidden, bytes).and_then(|()| fs::rename(&hidden, path));
+    written.with_context(|| {
+        let _ = fs::remove_file(&hidden);
+        path.display().to_string()
+    })
 }
 
 /// Writes a file in one step under the first of `STEM.ENDING`, `STEM-2.ENDING`, `STEM-3.ENDING` ... that
@@ -108,6 +121,27 @@ mod tests {
         }
         assert_eq!(fs::read_to_string(dir.path().join("run.1.png")).expect("there"), "a");
         assert_eq!(fs::read_dir(dir.path()).expect("readable").count(), 3, "nothing temporary remains");
+    }
+
+    #[test]
+    fn what_a_killed_process_had_begun_of_a_file_goes_with_the_next_one() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| dir.path().join(name);
+        let names = || {
+            let mut names: Vec<_> = fs::read_dir(dir.path()).expect("readable").map(|e| e.expect("one")).collect();
+            names.sort_by_key(fs::DirEntry::file_name);
+            names.into_iter().map(|entry| entry.file_name().into_string().expect("UTF-8")).collect::<Vec<_>>()
+        };
+        for begun in [".aeye-a.json-abcdef", ".aeye-b.png", ".aeye-c-ghijkl"] {
+            fs::write(at(begun), "half").expect("writable");
+        }
+        write_file(&at("a.json"), b"a").expect("writable");
+        write_claimed(&at("b.png"), b"b").expect("writable");
+        assert_eq!(names(), [".aeye-c-ghijkl", "a.json", "b.png"]);
+        assert_eq!(fs::read(at("b.png")).expect("there"), b"b");
+        fs::create_dir(at("folder")).expect("writable");
+        let said = format!("{:#}", write_claimed(&at("folder"), b"c").expect_err("is a folder"));
+        assert!(said.contains("folder: ") && names().len() == 4, "{said}");
     }
 
     #[test]

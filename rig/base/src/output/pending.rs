@@ -1,4 +1,4 @@
-//! Long results under a hidden name until they are complete. What a killed process had begun of a result is
+//! Results under a hidden name until they are complete. What a killed process had begun of a result is
 //! removed when that result is begun again.
 
 use std::fs::{self, File, TryLockError};

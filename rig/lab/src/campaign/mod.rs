@@ -1,6 +1,7 @@
 //! Simulated drives in parallel. Run `i` follows from the campaign's seed and `i` alone, so that the
 //! results do not depend on how many worlds run at the same time, or on interruptions.
 
+mod aside;
 mod drive;
 mod figures;
 mod plan;

@@ -4,28 +4,29 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
+use base::maps;
 use base::progress::Interrupt;
-use base::{maps, output};
 use drivers::simulate::{self, manifest};
 use drivers::vision::{Eye, Vision};
 use kernel::World;
 use render::{RenderOptions, Renderer};
 use replay::{Case, Recording};
 
+use super::aside::Aside;
 use super::plan::Plan;
 use super::run_line::RunLine;
 use crate::redrive::Counterfactual;
 
-/// A run, and its files that are not there yet.
+/// A run, and its files, which are in their places or wait for them.
 pub struct Driven {
     line: RunLine,
-    files: Vec<(PathBuf, Vec<u8>)>,
+    files: Vec<PathBuf>,
 }
 
 impl Driven {
-    /// Writes the files.
-    pub fn keep(self) -> anyhow::Result<RunLine> {
-        self.files.iter().try_for_each(|(path, bytes)| output::write_file(path, bytes))?;
+    /// Gives the files their places.
+    pub fn keep(self, aside: &Aside) -> anyhow::Result<RunLine> {
+        self.files.iter().try_for_each(|path| aside.release(path))?;
         Ok(self.line)
     }
 }
@@ -34,6 +35,7 @@ impl Driven {
 pub struct Runner<'a> {
     plan: &'a Plan,
     eye: &'a Eye,
+    aside: &'a Aside,
     interrupt: &'a Interrupt,
     /// By the map's index.
     renderers: HashMap<usize, Renderer>,
@@ -41,40 +43,54 @@ pub struct Runner<'a> {
 
 impl<'a> Runner<'a> {
     /// One for a campaign.
-    pub fn new(plan: &'a Plan, eye: &'a Eye, interrupt: &'a Interrupt) -> Self {
-        Self { plan, eye, interrupt, renderers: HashMap::new() }
+    pub fn new(plan: &'a Plan, eye: &'a Eye, aside: &'a Aside, interrupt: &'a Interrupt) -> Self {
+        Self { plan, eye, aside, interrupt, renderers: HashMap::new() }
     }
 
     /// Drives a run, unless it is there already; `None` when interrupted.
     pub fn drive(&mut self, run: u32) -> anyhow::Result<Option<Driven>> {
         let path = self.plan.recording_path(self.eye.name(), run);
-        let mut files = Vec::new();
-        let recording = if path.exists() {
-            let recording = Recording::open(&path)?;
-            self.check(run, &path, &recording)?;
-            recording
-        } else {
-            let Some(bytes) = self.record(run)? else { return Ok(None) };
-            let recording = Recording::from_bytes(&bytes)?;
-            files.push((path.clone(), bytes));
-            recording
+        let recording = match self.known(run, &path)? {
+            Some(known) => known,
+            None => {
+                let Some(recorded) = self.record(run, &path)? else { return Ok(None) };
+                recorded
+            }
         };
-        let case = self.cut(run, &recording, &mut files)?;
+        let case = self.cut(run, &recording)?;
         let mut line = RunLine::new(self.eye.name(), &path, &recording, case.as_deref());
-        line.without_intervention = self.counterfactual(run, &recording, &mut files)?;
+        line.without_intervention = self.counterfactual(run, &recording)?;
+        let verdict = line.without_intervention.is_some().then(|| self.plan.counterfactual_path(self.eye.name(), run));
+        let files = std::iter::once(path).chain(case).chain(verdict).collect();
         Ok(Some(Driven { line, files }))
     }
 
-    /// The recording of a run; `None` when interrupted.
-    fn record(&mut self, run: u32) -> anyhow::Result<Option<Vec<u8>>> {
+    /// The recording of a run from an earlier call.
+    fn known(&self, run: u32, path: &Path) -> anyhow::Result<Option<Recording>> {
+        if path.exists() {
+            let recording = Recording::open(path)?;
+            self.check(run, path, &recording)?;
+            return Ok(Some(recording));
+        }
+        let waiting = self.aside.place(path);
+        Ok(Recording::open(&waiting).ok().filter(|recording| self.check(run, &waiting, recording).is_ok()))
+    }
+
+    /// Drives a run; its recording waits. `None` when interrupted.
+    fn record(&mut self, run: u32, path: &Path) -> anyhow::Result<Option<Recording>> {
         let index = self.plan.map_index(run);
         let vision = self.vision(index)?;
         let keep_on = |_: &World| !self.interrupt.is_raised();
         let (scenario, map) = (self.plan.scenario_of(run), &self.plan.maps[index]);
-        maps::put_beside(map.foreign.as_ref(), &self.plan.recording_path(self.eye.name(), run))?;
+        maps::put_beside(map.foreign.as_ref(), path)?;
         let (bytes, vision) = simulate::drive(&scenario, map, vision, Vec::new(), keep_on)?;
         self.renderers.insert(index, vision.into_renderer());
-        Ok((!self.interrupt.is_raised()).then_some(bytes))
+        if self.interrupt.is_raised() {
+            return Ok(None);
+        }
+        self.aside.put(path, &bytes)?;
+        maps::put_beside(map.foreign.as_ref(), &self.aside.place(path))?;
+        Ok(Some(Recording::from_bytes(&bytes)?))
     }
 
     /// A recording that is there already must be the one that would be driven.
@@ -91,35 +107,25 @@ impl<'a> Runner<'a> {
     }
 
     /// Cuts the corner case out of a recording, if there is one, and says where it goes.
-    fn cut(
-        &self,
-        run: u32,
-        recording: &Recording,
-        files: &mut Vec<(PathBuf, Vec<u8>)>,
-    ) -> anyhow::Result<Option<PathBuf>> {
+    fn cut(&self, run: u32, recording: &Recording) -> anyhow::Result<Option<PathBuf>> {
         let Some(window) = Case::window(recording.log()) else { return Ok(None) };
         let path = self.plan.case_path(self.eye.name(), run);
         let is_cut = |case: &Case| case.info().source == recording.digest() && case.info().to == *window.end();
-        if !Case::open(&path).is_ok_and(|case| is_cut(&case)) {
+        if !Case::open(&self.aside.find(&path)).is_ok_and(|case| is_cut(&case)) {
             let network = &self.plan.maps[self.plan.map_index(run)].network;
             let case = Case::cut(recording, network, window)?;
-            files.push((path.clone(), case.encode()?));
+            self.aside.put(&path, &case.encode()?)?;
         }
         Ok(Some(path))
     }
 
     /// What would have happened without the intervention, if there was one.
-    fn counterfactual(
-        &mut self,
-        run: u32,
-        recording: &Recording,
-        files: &mut Vec<(PathBuf, Vec<u8>)>,
-    ) -> anyhow::Result<Option<Counterfactual>> {
+    fn counterfactual(&mut self, run: u32, recording: &Recording) -> anyhow::Result<Option<Counterfactual>> {
         if recording.log().intervention.is_none() {
             return Ok(None);
         }
         let path = self.plan.counterfactual_path(self.eye.name(), run);
-        if let Some(known) = Counterfactual::read(&path, recording)? {
+        if let Some(known) = Counterfactual::read(&self.aside.find(&path), recording)? {
             return Ok(Some(known));
         }
         let index = self.plan.map_index(run);
@@ -129,7 +135,7 @@ impl<'a> Runner<'a> {
         let bytes = found.encode()?;
         // As it would be read again: numbers lose their last digits in JSON.
         let found = Counterfactual::decode(&bytes, recording);
-        files.push((path, bytes));
+        self.aside.put(&path, &bytes)?;
         Ok(found)
     }
 

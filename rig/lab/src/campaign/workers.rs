@@ -8,6 +8,7 @@ use base::progress::{self, Bar, Interrupt};
 use base::words;
 use drivers::vision::Eye;
 
+use super::aside::Aside;
 use super::plan::Plan;
 use super::run_line::RunLine;
 use super::runner::{Driven, Runner};
@@ -17,6 +18,7 @@ use super::until::{STALLED_RUNS, Until};
 struct Pool<'a> {
     plan: &'a Plan,
     eye: &'a Eye,
+    aside: &'a Aside,
     interrupt: &'a Interrupt,
     bar: Bar,
     state: Mutex<State>,
@@ -29,7 +31,7 @@ struct State {
     /// The runs from the first on without a gap; all of their files are there.
     runs: Vec<RunLine>,
     /// Runs that were done before their turn. Only in their turn it is known whether they count, so that
-    /// a campaign leaves no others behind, however it ends.
+    /// no others come among the results, however a campaign ends.
     waiting: BTreeMap<u32, Driven>,
     failure: Option<anyhow::Error>,
 }
@@ -37,7 +39,8 @@ struct State {
 /// Drives the runs of one checkpoint until there are enough, and gives them in order.
 pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> anyhow::Result<Vec<RunLine>> {
     let bar = progress::bar(eye.name(), plan.until.progress(&[]).1);
-    let pool = Pool { plan, eye, interrupt, bar, state: Mutex::default() };
+    let aside = &Aside::new(&plan.out, eye.name());
+    let pool = Pool { plan, eye, aside, interrupt, bar, state: Mutex::default() };
     std::thread::scope(|scope| {
         for _ in 0..jobs {
             scope.spawn(|| pool.work());
@@ -51,6 +54,7 @@ pub fn drive_all(plan: &Plan, eye: &Eye, jobs: usize, interrupt: &Interrupt) -> 
     if !plan.until.is_met(&runs) {
         bail!("interrupted after {}; the same command goes on from there", words::count(runs.len(), "run"));
     }
+    aside.clear()?;
     Ok(runs)
 }
 
@@ -61,7 +65,7 @@ impl Pool<'_> {
 
     /// Takes one run after the other until there are enough.
     fn work(&self) {
-        let mut runner = Runner::new(self.plan, self.eye, self.interrupt);
+        let mut runner = Runner::new(self.plan, self.eye, self.aside, self.interrupt);
         while let Some(run) = self.take() {
             let put = runner.drive(run).and_then(|driven| driven.map(|driven| self.put(run, driven)).transpose());
             match put {
@@ -95,7 +99,7 @@ impl Pool<'_> {
         while !self.plan.until.is_met(&state.runs) {
             let turn = state.runs.len() as u32;
             let Some(driven) = state.waiting.remove(&turn) else { break };
-            state.runs.push(driven.keep()?);
+            state.runs.push(driven.keep(self.aside)?);
             if self.plan.until.is_out_of_reach(&state.runs) {
                 bail!(
                     "{}: {STALLED_RUNS} runs in a row brought the campaign no further; expected a checkpoint that drives, \

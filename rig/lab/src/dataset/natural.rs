@@ -5,6 +5,7 @@
 //! recordings of the drives lie below `drives`. Each scene depends on the recipe and its number alone,
 //! so scenes run in parallel and an interrupted dataset is completed by the same command.
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -27,6 +28,7 @@ use super::manifest::{Manifest, PARTS};
 use super::provenance::{self, Drive, FrameLine};
 use super::recipe::{MapUsed, NaturalRecipe, Recipe};
 use crate::cityscapes;
+use crate::store::remove_folder;
 
 /// What natural frames are asked for.
 #[derive(Clone, Debug)]
@@ -71,6 +73,8 @@ pub(super) fn build(
 ) -> anyhow::Result<Manifest> {
     let whole = Recipe::Natural(recipe.clone());
     if let Some(finished) = Manifest::of_finished(out, &whole)? {
+        // A process that was killed just after it wrote the manifest leaves them.
+        remove_folder(&out.join(PARTS))?;
         return Ok(finished);
     }
     let options = RenderOptions::default();
@@ -109,11 +113,13 @@ struct Begun {
     adapter: String,
 }
 
-/// Whether a folder holds nothing but an empty `parts`, as a kill at the very begin leaves it.
+/// Whether a folder holds nothing but `parts` in which there is nothing with a name, as a kill at the very begin
+/// leaves it.
 fn only_parts(out: &Path) -> bool {
     let names = |path: &Path| fs::read_dir(path).map(|entries| entries.flatten().map(|e| e.file_name()).collect());
     let inside: Vec<_> = names(out).unwrap_or_default();
-    inside == [PARTS] && names(&out.join(PARTS)).is_ok_and(|inside: Vec<_>| inside.is_empty())
+    let is_hidden = |name: &OsString| name.to_string_lossy().starts_with('.');
+    inside == [PARTS] && names(&out.join(PARTS)).is_ok_and(|inside: Vec<_>| inside.iter().all(is_hidden))
 }
 
 /// The folder of finished scenes, once it is certain that they belong to this recipe.
@@ -162,7 +168,7 @@ fn finish(out: &Path, recipe: Recipe, scenes: &[Scene], parts: &Path, adapter: S
         frames.extend(provenance::parse(&files::read_text(&part, most::TABLE)?).with_context(context)?);
     }
     let manifest = Manifest::complete(out, recipe, adapter, &frames)?;
-    fs::remove_dir_all(parts).with_context(|| parts.display().to_string())?;
+    remove_folder(parts)?;
     Ok(manifest)
 }
 

@@ -6,6 +6,7 @@ mod curves;
 mod options;
 
 use std::fs;
+use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -64,7 +65,13 @@ pub fn train(
         let known = Checkpoint::load(&args.out).ok();
         let origin = |known| training::origin(known, &args.dataset, &options, args.epochs);
         match (known.as_ref().map(origin).transpose()?, known) {
-            (Some(Origin::This), Some(known)) => return Ok(summary(args, &known, true)),
+            (Some(Origin::This), Some(known)) => {
+                // A process that was killed just after it wrote the last file leaves it.
+                if args.epochs >= options.horizon {
+                    remove(&unfinished)?;
+                }
+                return Ok(summary(args, &known, true));
+            }
             // What is unfinished goes on from there.
             (Some(Origin::OtherEpochs), _) if unfinished.exists() => {}
             _ => {
@@ -96,7 +103,7 @@ pub fn train(
     };
     write(args, &options, &trained)?;
     if trained.is_final {
-        fs::remove_file(&unfinished).with_context(|| unfinished.display().to_string())?;
+        remove(&unfinished)?;
     }
     Ok(summary(args, &Checkpoint::load(&args.out)?, false))
 }
@@ -108,6 +115,14 @@ fn check_beside(args: &Options, unfinished: &Path) -> anyhow::Result<()> {
     match there.filter(|_| !is_own) {
         Some(path) => bail!("{}: exists already; expected another place", path.display()),
         None => Ok(()),
+    }
+}
+
+/// Removes a file, if it is there.
+fn remove(path: &Path) -> anyhow::Result<()> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(e).with_context(|| path.display().to_string()),
+        _ => Ok(()),
     }
 }
 
