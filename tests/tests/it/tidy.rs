@@ -48,7 +48,10 @@ const NAMED_ONCE: [(&str, &[&str]); 14] = [
     ("egui::", &WINDOWS),
     ("gilrs::", &["rig/live/src/units/mappings.rs"]),
     ("gilrs_core::", &["rig/live/src/units/hardware.rs"]),
-    ("tungstenite::", &["rig/viewers/src/server/client.rs", "rig/viewers/src/server/tests.rs"]),
+    (
+        "tungstenite::",
+        &["rig/viewers/src/server/access.rs", "rig/viewers/src/server/client.rs", "rig/viewers/src/server/tests.rs"],
+    ),
     ("evdev::", &["rig/live/src/drive/force/linux.rs"]),
     // What cannot be printed must not end a drive: `base::say` and `aeye::print` see to that.
     ("println!(", &[]),

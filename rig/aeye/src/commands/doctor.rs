@@ -127,7 +127,7 @@ fn measure(args: &DoctorArgs, findings: &mut Findings) -> anyhow::Result<()> {
     sizes.dedup();
     for (width, height) in sizes {
         let camera = Camera::driver(width, height);
-        let ms = milliseconds(|| Ok(drop(renderer.draw(&world.scene(), &camera)?)))?;
+        let ms = milliseconds(|| renderer.draw(&world.scene(), &camera).map(drop).map_err(Into::into))?;
         each(format!("frame {width}x{height}"), ms, FRAME_MS);
     }
 

@@ -40,7 +40,7 @@ fn a_drive_loses_at_most_a_second() {
 
 /// What was told before the kill is there and replays.
 fn check(folder: &Path, killed: &Start) {
-    let told = killed.said.lines().filter_map(|line| line.strip_prefix("tick ")?.parse::<Tick>().ok()).last();
+    let told = killed.said.lines().filter_map(|line| line.strip_prefix("tick ")?.parse::<Tick>().ok()).next_back();
     let Some(told) = told else { return };
     let recording = Recording::open(&folder.join("run.mcap")).expect("readable");
     let last = recording.log().last_tick();

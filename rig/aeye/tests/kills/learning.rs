@@ -29,7 +29,7 @@ fn a_training_goes_on_from_its_last_epoch() {
                 start.said
             );
             let epochs = start.out.lines().map(|line| serde_json::from_str(line).expect("JSON"));
-            let last = epochs.filter_map(|line: serde_json::Value| line["epoch"].as_u64()).last();
+            let last = epochs.filter_map(|line: serde_json::Value| line["epoch"].as_u64()).next_back();
             told = last.unwrap_or(told);
         },
     );

@@ -10,14 +10,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 
 pub use folder::OutputFolder;
-pub use pending::{PendingFile, PendingFolder};
-
-/// Writes a file in one step, as a [`PendingFile`].
-pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let mut file = PendingFile::new(path)?;
-    file.write_all(bytes)?;
-    file.finish()
-}
+pub use pending::{PendingFile, PendingFolder, write_file};
 
 /// Writes a file in one step where no other process writes: under the one hidden name that it has each time, so that
 /// what a killed process left goes without a look at the folder, which may hold thousands.

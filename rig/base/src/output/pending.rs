@@ -51,6 +51,13 @@ fn named(path: &Path, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 
+/// Writes a file in one step, as a [`PendingFile`].
+pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let mut file = PendingFile::new(path)?;
+    file.write_all(bytes)?;
+    file.finish()
+}
+
 /// A folder that gets its name only when it is complete; dropped before, nothing remains.
 pub struct PendingFolder {
     temporary: TempDir,

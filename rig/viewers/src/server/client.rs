@@ -1,5 +1,4 @@
-//! One client: what it subscribes to, and the newest of that, again and again. The only file that
-//! names tungstenite.
+//! One client: what it subscribes to, and the newest of that, again and again.
 
 use std::io::ErrorKind;
 use std::net::TcpStream;
