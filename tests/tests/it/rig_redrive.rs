@@ -72,7 +72,8 @@ fn without_the_intervention_the_past_is_the_same_and_the_fork_is_made_again() {
     let dir = tempfile::tempdir().unwrap();
     let path = case(dir.path());
     let case = Recording::open(&path).unwrap();
-    for name in ["first", "second"] {
+    // The last call finds the forks of the one before.
+    for name in ["first", "second", "second"] {
         redrive::run(&args(path.clone(), None, dir.path().join(name)), true).unwrap();
     }
     let read = |name: &str, file: &str| fs::read(dir.path().join(name).join(file)).unwrap();

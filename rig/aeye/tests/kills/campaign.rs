@@ -16,15 +16,15 @@ fn prepare(root: &Path) {
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_campaign_goes_on() {
-    let arguments = "campaign --checkpoint early --maps ../street.xodr --pedestrians 60 --cases 3 --max-time 15s \
-                     --jobs 3 --out out";
+    let arguments = "campaign --checkpoint early --maps ../street.xodr --pedestrians 60 --cases 1 --max-time 12s \
+                     --seed 3 --jobs 3 --out out";
     survive("campaign", arguments, |root| street(&root.join("street.xodr")), |_, _| ());
 }
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn forks_go_on() {
-    let arguments = "redrive ../cases --checkpoint early --vary 2 --after 3s --jobs 2 --out out";
+    let arguments = "redrive ../cases --checkpoint truth --vary 1 --after 1s --jobs 2 --out out";
     survive("redrive", arguments, prepare, |_, _| ());
 }
 

@@ -12,8 +12,8 @@ use drivers::vision::Eye;
 use kernel::{Controls, TickInput, World};
 use replay::{Annotation, Case, Label, Recording};
 
-/// When the safety driver brakes: 5 s after the begin.
-const TAKEOVER: u64 = 300;
+/// The tick at which the safety driver brakes, soon after it may.
+const TAKEOVER: u64 = 200;
 
 /// A corner case in the country: for no reason, the safety driver brakes.
 pub fn case(path: &Path, seed: u64) {

@@ -251,9 +251,11 @@ fn forks_of(
         maps::put_beside(log.manifest.foreign_map.as_ref(), &path)?;
         output::write_file(&path, &course.recording)?;
         let recorded = blake3::hash(&course.recording).to_hex().to_string();
-        let line = line(file, (variation, to), &eye, at, course, args);
-        store.keep(&mark, key, (&line, recorded))?;
-        lines.push(line);
+        let made = line(file, (variation, to), &eye, at, course, args);
+        store.keep(&mark, key.clone(), (made, recorded))?;
+        // As a later call finds it: numbers lose their last digits in JSON.
+        let found = kept(args, store, &mark, &key);
+        lines.push(found.with_context(|| format!("{}: was changed while it was written", path.display()))?);
     }
     Ok(lines)
 }
