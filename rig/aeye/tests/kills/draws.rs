@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use crate::program::Aim;
 
-/// Of so many kills in all ...
+/// Kills in all, unless told otherwise.
+const FEW: u64 = 7;
+/// Of so many kills ...
 const OF: u32 = 20;
 /// ... each command gets these.
 const SHARES: [(&str, u32); 7] =
@@ -27,7 +29,7 @@ impl Draws {
     /// How often it is killed: at least once.
     pub fn kills(&self) -> u32 {
         let share = SHARES.iter().find(|(name, _)| *name == self.command).expect("a share").1;
-        (number("AEYE_KILLS", OF.into()) as u32 * share / OF).max(1)
+        (number("AEYE_KILLS", FEW) as u32 * share / OF).max(1)
     }
 
     /// A moment within a time. Every other one is just after the next change in the folder from then on, as files

@@ -1,7 +1,7 @@
 //! The program is killed again and again, at any moment of everything that takes long, and goes on: what was finished
 //! stays, and in the end every file is the one of a run that nobody killed.
 //!
-//! `AEYE_KILLS` is how often in all (20 unless told otherwise), `AEYE_KILLS_SEED` draws the moments.
+//! `AEYE_KILLS` is how often in all (7 unless told otherwise), `AEYE_KILLS_SEED` draws the moments.
 #![cfg(unix)]
 
 #[path = "../common/mod.rs"]
