@@ -1,5 +1,5 @@
 //! Whatever becomes of an OpenDRIVE text, it bakes to a sound map or is refused in one sentence.
-//! `PROPTEST_CASES=100000 cargo test -p kernel --release --test mutations` looks longer.
+//! `tests/fuzz.sh` looks longer.
 #![allow(clippy::disallowed_methods, reason = "tests may read files and the environment")]
 
 #[path = "common/mutate.rs"]
@@ -12,6 +12,7 @@ use kernel::RoadNetwork;
 use kernel::map::{LaneKind, bake};
 use mutate::{Mutation, mutated, mutations};
 use proptest::prelude::*;
+use proptest::test_runner::TestCaseResult;
 
 /// Real and made maps, small ones first.
 fn origins() -> Vec<String> {
@@ -44,32 +45,28 @@ fn check_sound(map: &RoadNetwork) {
     assert!(map.props.iter().all(|p| p.position.is_finite() && p.size.is_finite()));
 }
 
-fn check(text: &str) {
+fn check(text: &str) -> TestCaseResult {
+    hunt::trying(&[("mutated.xodr", text.as_bytes())]);
     match bake("mutated", text) {
         Ok(map) => check_sound(&map),
         Err(refusal) => {
             let said = refusal.to_string();
-            assert!(said.contains("expected") && !said.contains('\n') && said.len() < 400, "one sentence: {said}");
+            prop_assert!(
+                said.contains("expected") && !said.contains('\n') && said.len() < 400,
+                "one sentence: {}",
+                said
+            );
         }
     }
+    Ok(())
 }
 
-fn cases() -> ProptestConfig {
-    match std::env::var_os("PROPTEST_CASES") {
-        Some(_) => ProptestConfig::default(),
-        None => ProptestConfig { cases: 200, ..ProptestConfig::default() },
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, max_shrink_iters: 2_000, ..cases() })]
-
-    #[test]
-    fn a_changed_map_bakes_or_is_refused(origin in any::<prop::sample::Index>(), mutations in mutations()) {
-        thread_local! { static ORIGINS: Vec<String> = origins(); }
-        let text = ORIGINS.with(|texts| mutated(&texts[origin.index(texts.len())], &mutations));
-        check(&text);
-    }
+#[test]
+fn a_changed_map_bakes_or_is_refused() {
+    let origins = origins();
+    hunt::hunt("map", 200, (any::<prop::sample::Index>(), mutations()), |(origin, mutations)| {
+        check(&mutated(&origins[origin.index(origins.len())], &mutations))
+    });
 }
 
 #[test]

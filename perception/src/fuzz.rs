@@ -1,15 +1,17 @@
 //! Damaged networks: whatever is changed in a valid one, it runs or is refused in one sentence. The program must
-//! not end, so that a panic that is not caught, an abort or a hang fails the test. `PROPTEST_CASES` says how many
-//! are tried.
+//! not end, so that a panic that is not caught, an abort or a hang fails the test. `tests/fuzz.sh` tries for longer.
 
 use std::path::Path;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::sample::Index;
+use proptest::test_runner::TestCaseResult;
 use prost::Message;
 
 use crate::onnx::pb::{self, tensor_proto::DataType};
 use crate::parts::{int, ints};
+use crate::tests::with_weights_beside;
 use crate::zoo::networks;
 use crate::{Checkpoint, RgbView, Segmenter};
 
@@ -36,6 +38,8 @@ const ODD: [i64; 20] = [
     i64::MIN,
     -60_000,
 ];
+/// How many networks a test run tries.
+const CASES: u32 = 256;
 /// What nodes are turned into.
 const OPERATORS: [&str; 44] = [
     "Add",
@@ -180,54 +184,72 @@ fn numbers(graph: &mut pb::GraphProto) -> Vec<&mut pb::TensorProto> {
     graph.initializer.iter_mut().filter(|tensor| tensor.data_type == DataType::Int64 as i32).collect()
 }
 
-/// Loads what is in a file and looks at a picture with it; an error must be one sentence that names the file.
-fn try_out(path: &Path) {
-    let said = |error: crate::PerceptionError| {
+/// Loads a network and looks at a picture with it; an error must be one sentence that names the file.
+fn check(files: &[(&str, &[u8])]) -> TestCaseResult {
+    let dir = hunt::trying(files);
+    let tried = Checkpoint::load(dir.join("case.onnx")).and_then(|checkpoint| {
+        let mut segmenter = Segmenter::new(&checkpoint, 32, 16)?;
+        let rgb = crate::toy::picture(32, 16);
+        segmenter.run_with_confidence(RgbView::new(32, 16, &rgb).expect("a picture")).map(drop)
+    });
+    if let Err(error) = tried {
         let text = error.to_string();
-        assert!(text.contains("case.onnx") && !text.contains('\n') && text.len() < 1000, "{text}");
-    };
-    let segmenter = Checkpoint::load(path).and_then(|checkpoint| Segmenter::new(&checkpoint, 32, 16));
-    match segmenter {
-        Ok(mut segmenter) => {
-            let rgb = crate::toy::picture(32, 16);
-            let image = RgbView::new(32, 16, &rgb).expect("a picture");
-            segmenter.run_with_confidence(image).map_or_else(said, drop);
-        }
-        Err(error) => said(error),
+        prop_assert!(text.contains("case.onnx") && !text.contains('\n') && text.len() < 1000, "{}", text);
     }
+    Ok(())
 }
 
-fn try_bytes(bytes: &[u8]) {
-    let dir = tempfile::tempdir().expect("a folder");
-    let path = dir.path().join("case.onnx");
-    std::fs::write(&path, bytes).expect("writable");
-    try_out(&path);
+/// A network with some changes; what cannot be changed is changed by the others.
+fn changed(model: &pb::ModelProto, changes: &[Change]) -> pb::ModelProto {
+    changes.iter().fold(model.clone(), |model, change| {
+        let mut changed = model.clone();
+        change.apply(&mut changed);
+        changed
+    })
 }
 
-proptest! {
-    #[test]
-    fn changed_networks_run_or_are_refused(which in any::<u16>(), changes in vec(change(), 1..6)) {
-        let model = pick(&mut networks(), which).expect("there are some").clone();
-        let changed = changes.into_iter().fold(model, |model, change| {
-            let mut changed = model.clone();
-            // What cannot be changed so is changed by the others.
-            change.apply(&mut changed);
-            changed
-        });
-        try_bytes(&changed.encode_to_vec());
-    }
+#[test]
+fn changed_networks_run_or_are_refused() {
+    let valid = networks();
+    hunt::hunt("network", CASES, (any::<Index>(), vec(change(), 1..6)), |(which, changes)| {
+        let model = changed(which.get(&valid), &changes);
+        check(&[("case.onnx", &model.encode_to_vec())])
+    });
+}
 
-    #[test]
-    fn damaged_files_run_or_are_refused(
-        which in any::<u16>(),
-        flips in vec((any::<u16>(), any::<u8>()), 0..8),
-        keep in 0.0..2.0,
-    ) {
-        let mut bytes = pick(&mut networks(), which).expect("there are some").encode_to_vec();
-        flips.into_iter().for_each(|(at, byte)| *pick(&mut bytes, at).expect("some") = byte);
+#[test]
+fn damaged_files_run_or_are_refused() {
+    let valid: Vec<_> = networks().iter().map(Message::encode_to_vec).collect();
+    let flips = vec((any::<Index>(), any::<u8>()), 0..8);
+    hunt::hunt("network-bytes", CASES, (any::<Index>(), flips, 0.0..2.0), |(which, flips, keep)| {
+        let mut bytes = which.get(&valid).clone();
+        flips.iter().for_each(|(at, byte)| *at.get_mut(&mut bytes) = *byte);
         bytes.truncate((bytes.len() as f64 * keep) as usize);
-        try_bytes(&bytes);
-    }
+        check(&[("case.onnx", &bytes)])
+    });
+}
+
+/// What the entry of a tensor beside its network may say.
+const ENTRIES: [&str; 10] =
+    ["", "0", "1", "575", "577", "4294967296", "18446744073709551615", "-1", "../weights.bin", "weights.bin"];
+
+#[test]
+fn weights_beside_a_network_are_read_or_refused() {
+    let strategy = (vec((0..3usize, any::<Index>()), 0..3), 0..1200usize, vec(change(), 0..3));
+    hunt::hunt("network-beside", CASES, strategy, |(entries, bytes, changes)| {
+        let mut model = with_weights_beside("weights.bin", Some(576));
+        let tensor = &mut model.graph.as_mut().expect("a graph").initializer[0];
+        for (key, text) in entries {
+            let entry = pb::StringStringEntryProto {
+                key: ["location", "offset", "length"][key].into(),
+                value: (*text.get(&ENTRIES)).into(),
+            };
+            tensor.external_data.retain(|other| other.key != entry.key);
+            tensor.external_data.push(entry);
+        }
+        let model = changed(&model, &changes);
+        check(&[("case.onnx", &model.encode_to_vec()), ("weights.bin", &0.25f32.to_le_bytes().repeat(bytes / 4))])
+    });
 }
 
 /// Files that once panicked, hung or filled the memory.
@@ -237,5 +259,8 @@ fn what_once_did_harm_runs_or_is_refused() {
     let files: Vec<_> =
         std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path()).collect();
     assert!(!files.is_empty());
-    files.iter().for_each(|file| try_bytes(&std::fs::read(file).expect("readable")));
+    for file in files {
+        check(&[("case.onnx", &std::fs::read(&file).expect("readable"))])
+            .unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    }
 }

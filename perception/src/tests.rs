@@ -221,7 +221,7 @@ fn weights_must_have_the_shape_that_they_say() {
 }
 
 /// A network whose weights stand in a file beside it.
-fn with_weights_beside(location: &str, length: Option<u64>) -> pb::ModelProto {
+pub fn with_weights_beside(location: &str, length: Option<u64>) -> pb::ModelProto {
     let mut model = Toy::default().model();
     let tensor = &mut model.graph.as_mut().unwrap().initializer[0];
     tensor.float_data.clear();

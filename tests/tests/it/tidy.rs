@@ -10,10 +10,11 @@ const MAX_FILE_LINES: usize = 600;
 const MAX_FUNCTION_LINES: usize = 100;
 
 /// Every crate by its folder, and which others of the workspace it may depend on; each stands above those.
-const IMPORTS: [(&str, &[&str]); 13] = [
+const IMPORTS: [(&str, &[&str]); 14] = [
+    ("tests/hunt", &[]),
     ("intake", &[]),
-    ("kernel", &[]),
-    ("perception", &["intake"]),
+    ("kernel", &["hunt"]),
+    ("perception", &["hunt", "intake"]),
     ("render", &["kernel"]),
     ("replay", &["intake", "kernel"]),
     ("rig/base", &["intake", "kernel", "render", "replay"]),

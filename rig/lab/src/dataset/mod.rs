@@ -17,7 +17,7 @@ pub mod mix;
 pub mod natural;
 mod provenance;
 pub mod rebuild;
-mod recipe;
+pub(crate) mod recipe;
 
 pub use manifest::{Manifest, check_whole};
 pub use provenance::{FrameLine, Part, WeatherLine};

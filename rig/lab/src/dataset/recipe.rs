@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::provenance::Part;
 
 /// Most scenes of a split, and frames of a scene: mixes number those of their parts apart by as many.
-const MOST_IN_A_SPLIT: u32 = 100_000;
+pub const MOST_IN_A_SPLIT: u32 = 100_000;
 /// Most maps of a dataset.
-const MOST_MAPS: usize = 1000;
+pub const MOST_MAPS: usize = 1000;
 
 /// What a dataset is made from; the same recipe gives the same files on the same adapter.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -101,7 +101,7 @@ impl NaturalRecipe {
 }
 
 /// Refuses pictures that are none, or larger than are read.
-fn check_size((width, height): (u32, u32)) -> Result<(), String> {
+pub fn check_size((width, height): (u32, u32)) -> Result<(), String> {
     let pixels = u64::from(width) * u64::from(height);
     if (1..=most::PIXELS).contains(&pixels) {
         return Ok(());

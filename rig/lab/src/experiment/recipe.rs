@@ -11,6 +11,8 @@ use kernel::time::CLIP_FRAMES;
 use perception::training::TrainOptions;
 use serde::{Deserialize, Serialize};
 
+use crate::dataset::recipe::{MOST_IN_A_SPLIT, MOST_MAPS, check_size};
+
 /// Everything that decides an experiment's results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -171,49 +173,25 @@ impl Recipe {
     }
 
     fn check(&self) -> anyhow::Result<()> {
-        let counts = [
-            ("natural.scenes", self.natural.scenes),
-            ("natural.val_scenes", self.natural.val_scenes),
-            ("natural.frames", self.natural.frames),
-            ("natural.test_scenes", self.natural.test_scenes),
-            ("natural.test_frames", self.natural.test_frames),
-            ("pool.scenes", self.pool.scenes),
-            ("driving.epochs", self.driving.epochs),
-            ("first_campaign.training_cases", self.first_campaign.training_cases),
-            ("first_campaign.test_cases", self.first_campaign.test_cases),
-            ("training.epochs", self.training.epochs),
-            ("training.seeds", self.training.seeds),
-        ];
-        if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
-            bail!("{name} is 0; expected at least 1");
-        }
+        self.check_counts()?;
         let (natural, pool) = (&self.natural, &self.pool);
-        let frames = CLIP_FRAMES * self.first_campaign.training_cases;
-        let least = natural.scenes.min(pool.scenes) * natural.frames;
+        let frames_of = |scenes: u32| u64::from(scenes) * u64::from(natural.frames);
+        let frames = u64::from(CLIP_FRAMES) * u64::from(self.first_campaign.training_cases);
+        let least = frames_of(natural.scenes.min(pool.scenes));
         if frames > least {
             bail!(
                 "first_campaign.training_cases replace {frames} frames; expected natural and pool to have as many, not {least}"
             );
         }
-        let side = self.size.0.min(self.size.1);
-        if side == 0 || !self.size.0.is_multiple_of(32) || !self.size.1.is_multiple_of(32) {
+        check_size(self.size).map_err(|reason| anyhow!(reason))?;
+        if !self.size.0.is_multiple_of(32) || !self.size.1.is_multiple_of(32) {
             bail!("size is {}x{}; expected sides that are multiples of 32", self.size.0, self.size.1);
         }
-        let batch = TrainOptions::default().batch as u32;
-        if natural.scenes * natural.frames < batch {
+        let batch = TrainOptions::default().batch as u64;
+        if frames_of(natural.scenes) < batch {
             bail!("natural.scenes of natural.frames are too few to learn from; expected {batch} frames");
         }
-        let people = [
-            ("pool", Some(pool.pedestrians)),
-            ("first_campaign", self.first_campaign.pedestrians),
-            ("second_campaign", self.second_campaign.pedestrians),
-        ];
-        if let Some((name, _)) = people.iter().find(|(_, people)| people.is_some_and(|n| n > MOST_OF_A_KIND)) {
-            bail!("{name}.pedestrians are too many; expected up to {MOST_OF_A_KIND}");
-        }
-        if self.first_campaign.pedestrians == Some(0) {
-            bail!("first_campaign.pedestrians is 0; expected people on foot, for cases with them");
-        }
+        self.check_people()?;
         if self.driving.horizon < self.driving.epochs {
             bail!("driving.horizon is {}; expected at least driving.epochs", self.driving.horizon);
         }
@@ -223,6 +201,48 @@ impl Recipe {
         let seconds = [self.first_campaign.run_seconds, self.second_campaign.run_seconds];
         if let Some(wrong) = seconds.iter().find(|s| !(10..=86_400).contains(*s)) {
             bail!("run_seconds is {wrong}; expected 10 to 86400");
+        }
+        Ok(())
+    }
+
+    fn check_counts(&self) -> anyhow::Result<()> {
+        let counts = [
+            ("natural.scenes", self.natural.scenes),
+            ("natural.val_scenes", self.natural.val_scenes),
+            ("natural.frames", self.natural.frames),
+            ("natural.test_scenes", self.natural.test_scenes),
+            ("natural.test_frames", self.natural.test_frames),
+            ("pool.scenes", self.pool.scenes),
+            ("driving.epochs", self.driving.epochs),
+            ("driving.horizon", self.driving.horizon),
+            ("first_campaign.training_cases", self.first_campaign.training_cases),
+            ("first_campaign.test_cases", self.first_campaign.test_cases),
+            ("training.epochs", self.training.epochs),
+            ("training.seeds", self.training.seeds),
+        ];
+        if let Some((name, _)) = counts.iter().find(|(_, count)| *count == 0) {
+            bail!("{name} is 0; expected at least 1");
+        }
+        if let Some((name, count)) = counts.iter().find(|(_, count)| *count > MOST_IN_A_SPLIT) {
+            bail!("{name} is {count}; expected at most {MOST_IN_A_SPLIT}");
+        }
+        if !(1..=MOST_MAPS).contains(&self.maps.len()) {
+            bail!("maps has {} names; expected 1 to {MOST_MAPS}", self.maps.len());
+        }
+        Ok(())
+    }
+
+    fn check_people(&self) -> anyhow::Result<()> {
+        let people = [
+            ("pool", Some(self.pool.pedestrians)),
+            ("first_campaign", self.first_campaign.pedestrians),
+            ("second_campaign", self.second_campaign.pedestrians),
+        ];
+        if let Some((name, _)) = people.iter().find(|(_, people)| people.is_some_and(|n| n > MOST_OF_A_KIND)) {
+            bail!("{name}.pedestrians are too many; expected up to {MOST_OF_A_KIND}");
+        }
+        if self.first_campaign.pedestrians == Some(0) {
+            bail!("first_campaign.pedestrians is 0; expected people on foot, for cases with them");
         }
         Ok(())
     }
@@ -257,6 +277,7 @@ mod tests {
             ("training_cases = 3", "training_cases = 30", "replace 900 frames"),
             ("size = [256, 128]", "size = [256, 100]", "multiples of 32"),
             ("km = 2.0", "km = -1.0", "more than 0"),
+            ("seeds = 2", "seeds = 4000000000", "at most 100000"),
             ("epochs = 3", "epochs = 30", "at least driving.epochs"),
             ("pedestrians = 400", "pedestrians = 501", "pool.pedestrians are too many"),
             ("run_seconds = 90", "run_seconds = 1", "10 to 86400"),

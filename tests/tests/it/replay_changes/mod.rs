@@ -1,6 +1,6 @@
 //! Nothing of a recording or case can be changed unnoticed: reading refuses it, or the replay diverges.
 
-mod parts;
+pub mod parts;
 
 use std::fmt;
 use std::sync::{Arc, LazyLock};
@@ -19,13 +19,13 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
 static RECORDING: LazyLock<Recording> =
     LazyLock::new(|| Recording::from_bytes(&record_all(&SCENE, 330, WITH_TAKEOVER_SOON)).expect("a recording"));
 /// A recording and a case, as files.
-static FILES: LazyLock<[Vec<u8>; 2]> = LazyLock::new(|| {
+pub static FILES: LazyLock<[Vec<u8>; 2]> = LazyLock::new(|| {
     let window = Case::window(RECORDING.log()).expect("an intervention");
     let case = Case::cut(&RECORDING, network(), window).expect("a case");
     [RECORDING.log(), case.log()].map(|log| log.encode().expect("a log"))
 });
 
-fn network() -> &'static Arc<RoadNetwork> {
+pub fn network() -> &'static Arc<RoadNetwork> {
     &SCENE.network
 }
 
@@ -74,7 +74,7 @@ fn original(which: usize) -> Log {
 
 /// A change of one thing in a file.
 #[derive(Clone, Debug)]
-enum Change {
+pub enum Change {
     Payload { message: prop::sample::Index, byte: prop::sample::Index, flip: u8 },
     Cut { message: prop::sample::Index, by: prop::sample::Index },
     Longer { message: prop::sample::Index, byte: u8 },
@@ -89,7 +89,7 @@ enum Change {
     Library,
 }
 
-fn change() -> impl Strategy<Value = Change> {
+pub fn change() -> impl Strategy<Value = Change> {
     use Change::*;
     let (index, flip) = (any::<prop::sample::Index>, 1u8..);
     prop_oneof![
@@ -109,7 +109,7 @@ fn change() -> impl Strategy<Value = Change> {
 }
 
 impl Change {
-    fn make(&self, parts: &mut Parts) {
+    pub fn make(&self, parts: &mut Parts) {
         let all: Vec<_> =
             (0..parts.chunks.len()).flat_map(|c| (0..parts.chunks[c].len()).map(move |m| (c, m))).collect();
         match self {
