@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test matrix bench oracles kills check-long headless setup tools build
+.PHONY: demo test matrix bench oracles kills fuzz check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -45,6 +45,10 @@ oracles: build
 ## Kills the program 200 times in everything that takes long; what was finished must stay.
 kills: setup
 	AEYE_KILLS=200 cargo test --release --workspace --test kills -- --nocapture
+
+## Damages files for every parser, 20 minutes or a million times each; other times: tests/fuzz.sh MINUTES.
+fuzz: setup
+	tests/fuzz.sh
 
 ## What takes long: oracles, benchmarks and kills. docs/check-long.txt says when all of it passed, and of which commit.
 check-long:

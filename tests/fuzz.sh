@@ -26,7 +26,7 @@ hunt() {
     name=${test//::/-}
     scratch=$(mktemp -d -p "$([ -d /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" fuzz-XXXXXX)
     cd "$folder"
-    if TMPDIR=$scratch nice "$binary" --exact "$test" --nocapture >"$FOUND/$name.log" 2>&1; then
+    if TMPDIR=$scratch "$binary" --exact "$test" --nocapture >"$FOUND/$name.log" 2>&1; then
         grep -a ' cases in ' "$FOUND/$name.log" || true
         rm -rf "$scratch"
     else
