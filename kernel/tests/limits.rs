@@ -157,6 +157,15 @@ fn a_map_as_large_as_a_country_is_refused() {
 }
 
 #[test]
+fn a_road_has_an_id_of_its_own_and_a_junction_not_too_many_roads() {
+    let twins = [Road::straight(3, [0.0; 3], 100.0), Road::straight(3, [0.0, 50.0, 0.0], 100.0)];
+    refused(&file(&twins), &["road 3", "another road has it"]);
+    let inside: Vec<_> = (0..401).map(|id| Road::straight(id, [0.0, 20.0 * id as f64, 0.0], 24.0)).collect();
+    let text = file(&inside).replace("junction=\"-1\"", "junction=\"5\"");
+    refused(&text, &["road 400", "at most 400 roads inside a junction"]);
+}
+
+#[test]
 fn lanes_on_one_heap_are_refused() {
     let heap: Vec<_> = (0..3_000).map(|id| Road::straight(id, [0.0; 3], 100.0)).collect();
     refused(&file(&heap), &["road 2999", "heap"]);

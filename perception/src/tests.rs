@@ -151,6 +151,14 @@ fn more_nodes_than_any_network_has_are_refused_and_many_are_made_ready() {
 }
 
 #[test]
+fn an_order_of_axes_names_each_once() {
+    for perm in [[0, 0, 0, 0], [9, 1, 2, 3], [0, 1, 2, 2]] {
+        let said = refused(&network(vec![node("Transpose", &["image"], "scores", vec![ints("perm", &perm)])], vec![]));
+        assert!(said.contains("(Transpose): perm is") && said.contains("expected every axis"), "{said}");
+    }
+}
+
+#[test]
 fn operators_that_are_not_known_are_named() {
     let said = refused(&network(vec![node("Frobnicate", &["image"], "scores", vec![])], vec![]));
     assert!(said.contains("node \"Frobnicate_scores\" (Frobnicate): the operator is not supported"), "{said}");

@@ -24,7 +24,8 @@ pub fn bytes<'a>(kind: DatumType, dims: impl IntoIterator<Item = Option<&'a TDim
         match dim.map(TDim::to_i64) {
             Some(Ok(n)) => {
                 let n = u64::try_from(n).map_err(|_| format_err!("a value would have a dimension of {n}"))?;
-                bytes = bytes.and_then(|bytes| bytes.checked_mul(n));
+                // One of 0 holds nothing, and yet the engine counts through the others.
+                bytes = bytes.and_then(|bytes| bytes.checked_mul(n.max(1)));
             }
             _ => is_known = false,
         }

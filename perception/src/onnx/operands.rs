@@ -32,8 +32,11 @@ const OF_CHANNELS: [&str; 8] = [
 pub fn check(node: &pb::NodeProto, inputs: &[InferenceFact]) -> TractResult<()> {
     let Some(rank) = inputs.first().and_then(rank) else { return Ok(()) };
     check_axes(node, rank)?;
-    if node.op_type == "Range" {
-        check_range(inputs)?;
+    match node.op_type.as_str() {
+        "Range" => check_range(inputs)?,
+        "Tile" => check_tiles(inputs)?,
+        "Transpose" => check_order(node, rank)?,
+        _ => {}
     }
     let wants_channels = OF_CHANNELS.contains(&node.op_type.as_str());
     ensure!(rank > 1 || !wants_channels, "its value has {rank} dimensions, expected at least batch and channels");
@@ -55,6 +58,30 @@ fn check_range(inputs: &[InferenceFact]) -> TractResult<()> {
     let count = (limit - start) / step;
     let is_exact = [start, limit, step].into_iter().all(|number| number.abs() < (1u64 << 53) as f64);
     ensure!(is_exact && count.abs() < (1 << 28) as f64, "it counts from {start} to {limit} in steps of {step}");
+    Ok(())
+}
+
+/// Tiles are laid one by one, even those of nothing.
+fn check_tiles(inputs: &[InferenceFact]) -> TractResult<()> {
+    let Some(repeats) = inputs.get(1).and_then(|fact| fact.value.concretize()) else { return Ok(()) };
+    let repeats = repeats.cast_to::<i64>()?;
+    let repeats = repeats.try_as_plain_ram()?.as_slice::<i64>()?;
+    let count = repeats.iter().try_fold(1u64, |count, n| count.checked_mul(u64::try_from(*n).ok()?.max(1)));
+    ensure!(count.is_some_and(|count| count < 1 << 28), "it repeats its value {repeats:?} times");
+    Ok(())
+}
+
+/// An order names every axis once.
+fn check_order(node: &pb::NodeProto, rank: i64) -> TractResult<()> {
+    let Some(order) = node.attribute.iter().find(|attribute| attribute.name == "perm") else { return Ok(()) };
+    let mut axes = order.ints.clone();
+    axes.sort_unstable();
+    ensure!(
+        axes.iter().copied().eq(0..rank),
+        "perm is {:?}, expected every axis from 0 to {} once",
+        order.ints,
+        rank - 1
+    );
     Ok(())
 }
 

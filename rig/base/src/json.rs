@@ -1,6 +1,8 @@
 //! Results as JSON, each with its type and version.
 
-use serde::Serialize;
+use anyhow::ensure;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 /// Version of everything that `--json` prints; raised when a field changes its meaning or goes.
 pub const JSON_VERSION: u32 = 2;
@@ -38,13 +40,30 @@ pub fn json_file<T: Typed>(value: &T) -> anyhow::Result<String> {
     Ok(text)
 }
 
+/// What a text of [`json_file`] holds. One that says that it is something else, or of a later version, is refused.
+pub fn read_json<T: Typed + DeserializeOwned>(text: &str) -> anyhow::Result<T> {
+    #[derive(Deserialize)]
+    struct Header {
+        r#type: Option<String>,
+        version: Option<u64>,
+    }
+    let Header { r#type, version } = serde_json::from_str(text)?;
+    if let Some(found) = r#type {
+        ensure!(found == T::TYPE, "its type is {found:?}, expected {:?}", T::TYPE);
+    }
+    if let Some(found) = version {
+        ensure!(found <= u64::from(JSON_VERSION), "its version is {found}, expected at most {JSON_VERSION}");
+    }
+    Ok(serde_json::from_str(text)?)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn json_says_what_it_is() {
-        #[derive(Serialize)]
+        #[derive(Debug, PartialEq, Serialize, Deserialize)]
         struct Ticks {
             ticks: u64,
         }
@@ -53,5 +72,12 @@ mod tests {
         }
         let line = json_line(&Ticks { ticks: 3 }).expect("serialises");
         assert_eq!(line, r#"{"type":"aeye.ticks","version":2,"ticks":3}"#);
+        assert_eq!(read_json::<Ticks>(&line).expect("as written"), Ticks { ticks: 3 });
+        let refused = |from: &str, to: &str| {
+            let said = read_json::<Ticks>(&line.replace(from, to)).expect_err("another").to_string();
+            assert!(said.contains("expected"), "{said}");
+        };
+        refused("aeye.ticks", "aeye.clocks");
+        refused("\"version\":2", "\"version\":99999999999");
     }
 }

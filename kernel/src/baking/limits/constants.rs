@@ -45,6 +45,8 @@ pub const COPIED_BYTES: f64 = (64 << 20) as f64;
 pub const SIGNALS: usize = 50_000;
 /// Junctions of a map.
 pub const JUNCTIONS: usize = 20_000;
+/// Roads inside a junction, each of which may cross each other one.
+pub const JUNCTION_ROADS: usize = 400;
 /// Connections of a junction.
 pub const CONNECTIONS: usize = 2_000;
 /// Lane links of a connection, and priorities of a junction.

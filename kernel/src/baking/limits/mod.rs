@@ -5,6 +5,7 @@ mod constants;
 mod crowd;
 mod cubic;
 mod document;
+mod ids;
 mod junctions;
 mod lanes;
 mod marks;
@@ -30,6 +31,7 @@ pub fn check(text: &str) -> Result<(), BakeError> {
     let root = document.root_element();
     let roads = root.children().filter(|n| n.has_tag_name("road"));
     at_most(root, roads.clone().count(), ROADS, "roads")?;
+    ids::check(roads.clone())?;
     let mut sums = Sums::default();
     let mut crowd = Crowd::default();
     let references = objects::references(root);

@@ -1,6 +1,8 @@
 //! The paper from end to end.
 
+use anyhow::Context;
 use base::failure::Usage;
+use base::maps::Map;
 use base::progress::Interrupt;
 use lab::experiment::{self, Recipe};
 
@@ -24,7 +26,11 @@ pub fn run(args: &ExperimentArgs, json: bool) -> anyhow::Result<Verdict> {
 fn chosen(args: &ExperimentArgs) -> anyhow::Result<Recipe> {
     match (&args.preset, &args.recipe) {
         (Some(preset), None) => preset.recipe(),
-        (None, Some(path)) => Recipe::read(path),
+        (None, Some(path)) => {
+            let recipe = Recipe::read(path)?;
+            Map::find_all(&recipe.maps).with_context(|| format!("{}: maps", path.display()))?;
+            Ok(recipe)
+        }
         _ => Err(Usage("expected one of --preset and --recipe".into()).into()),
     }
 }

@@ -62,7 +62,7 @@ impl Manifest {
     pub fn read_file(path: &Path) -> anyhow::Result<Self> {
         let text = files::read_text(path, most::TABLE)?;
         let place = || format!("{}: does not describe a dataset", path.display());
-        let manifest: Self = serde_json::from_str(&text).with_context(place)?;
+        let manifest: Self = json::read_json(&text).with_context(place)?;
         manifest.recipe.check().map_err(|reason| anyhow!("{}: {reason}", path.display()))?;
         Ok(manifest)
     }

@@ -276,6 +276,7 @@ mod tests {
             ("seeds = 2", "seeds = 0", "training.seeds is 0"),
             ("training_cases = 3", "training_cases = 30", "replace 900 frames"),
             ("size = [256, 128]", "size = [256, 100]", "multiples of 32"),
+            ("size = [256, 128]", "size = [60000, 60000]", "expected 1 to"),
             ("km = 2.0", "km = -1.0", "more than 0"),
             ("seeds = 2", "seeds = 4000000000", "at most 100000"),
             ("epochs = 3", "epochs = 30", "at least driving.epochs"),

@@ -57,6 +57,11 @@ fn button(line: usize, key: &str, number: usize, device: Option<&DeviceInfo>) ->
     code.ok_or_else(|| format!("line {line}: {key} is button {number}, which the device does not have"))
 }
 
+/// As much of a text of the file as a sentence can hold.
+fn shown(text: &str) -> String {
+    text.chars().take(80).collect()
+}
+
 /// The lines of the file: line, key and number.
 struct Numbers(Vec<(usize, String, usize)>);
 
@@ -71,11 +76,13 @@ impl Numbers {
             let (key, value) = content
                 .split_once(['=', ':'])
                 .map(|(key, value)| (key.trim().to_lowercase(), value.trim()))
-                .ok_or_else(|| format!("line {line}: {content:?}, expected KEY = NUMBER"))?;
+                .ok_or_else(|| format!("line {line}: {:?}, expected KEY = NUMBER", shown(content)))?;
             if !KEYS.contains(&key.as_str()) {
-                return Err(format!("line {line}: unknown key {key:?}, expected one of {}", KEYS.join(", ")));
+                let (key, keys) = (shown(&key), KEYS.join(", "));
+                return Err(format!("line {line}: unknown key {key:?}, expected one of {keys}"));
             }
-            let number = value.parse().map_err(|_| format!("line {line}: {key} is {value:?}, expected a number"))?;
+            let number = value.parse();
+            let number = number.map_err(|_| format!("line {line}: {key} is {:?}, expected a number", shown(value)))?;
             numbers.push((line, key, number));
         }
         Ok(Self(numbers))

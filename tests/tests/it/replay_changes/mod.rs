@@ -115,12 +115,14 @@ impl Change {
         match self {
             Self::Payload { message, byte, flip } => {
                 let payload = &mut parts.at(message).payload;
-                let at = byte.index(payload.len());
-                payload[at] ^= flip;
+                if !payload.is_empty() {
+                    let at = byte.index(payload.len());
+                    payload[at] ^= flip;
+                }
             }
             Self::Cut { message, by } => {
                 let payload = &mut parts.at(message).payload;
-                payload.truncate(by.index(payload.len()));
+                payload.truncate(by.index(payload.len() + 1).saturating_sub(1));
             }
             Self::Longer { message, byte } => parts.at(message).payload.push(*byte),
             Self::Sequence { message, by } => {
