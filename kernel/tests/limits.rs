@@ -157,6 +157,14 @@ fn a_map_as_large_as_a_country_is_refused() {
 }
 
 #[test]
+fn lanes_inside_each_other_are_named_once() {
+    let nested =
+        "<lane id=\"-1\" type=\"driving\">".repeat(100) + "<width sOffset=\"1e308\" a=\"1\"/>" + &"</lane>".repeat(100);
+    let sections = format!("<laneSection s=\"0\"><right>{nested}</right></laneSection>");
+    refused(&file(&[Road { sections, ..road() }]), &["road 7, section 0, lane -1: expected sOffset"]);
+}
+
+#[test]
 fn a_road_has_an_id_of_its_own_and_a_junction_not_too_many_roads() {
     let twins = [Road::straight(3, [0.0; 3], 100.0), Road::straight(3, [0.0, 50.0, 0.0], 100.0)];
     refused(&file(&twins), &["road 3", "another road has it"]);

@@ -39,7 +39,8 @@ pub fn hunt<S: Strategy>(name: &str, cases: u32, strategy: S, test: impl Fn(S::V
         run(name, BATCH, &strategy, &test);
         tried += BATCH;
     }
-    println!("{name}: {tried} cases in {:.0} s, nothing found", started.elapsed().as_secs_f64());
+    let (seconds, megabytes) = (started.elapsed().as_secs(), limits::peak_kb() / 1000);
+    println!("{name}: {tried} cases in {seconds} s, at most {megabytes} MB, nothing found");
 }
 
 /// Lays down what is tried next, instead of the last: files with their names, in the folder that it gives.

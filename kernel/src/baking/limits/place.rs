@@ -1,5 +1,7 @@
 //! Where in a file something stands, and what is wrong with it.
 
+use std::collections::BTreeSet;
+
 use roxmltree::Node;
 
 use crate::baking::error::BakeError;
@@ -12,9 +14,10 @@ pub fn refused(node: Node<'_, '_>, reason: String) -> BakeError {
     BakeError { place: place(node), reason }
 }
 
-/// The road, section and lane that hold a node, or the junction; else its line.
+/// The road, section and lane that hold a node, or the junction; else its line. Of those inside each other the inmost.
 fn place(node: Node<'_, '_>) -> String {
-    let mut around: Vec<_> = node.ancestors().filter_map(name).collect();
+    let mut kinds = BTreeSet::new();
+    let mut around: Vec<_> = node.ancestors().filter(|n| kinds.insert(n.tag_name().name())).filter_map(name).collect();
     around.reverse();
     match around.as_slice() {
         [] => format!("line {}", node.document().text_pos_at(node.range().start).row),
