@@ -43,6 +43,15 @@ fn a_polynomial_of_1e308_is_refused() {
 }
 
 #[test]
+fn a_road_whose_line_jumps_is_refused() {
+    let plan = |x: f64| geometry(0.0, [0.0; 3], 50.0, "<line/>") + &geometry(50.0, [x, 0.0, 0.0], 50.0, "<line/>");
+    refused(&file(&[Road { plan: plan(150_000.0), ..road() }]), &["road 7", "geometries that join", "14995"]);
+    // Neatly made ones join; torn by metres they are drawn as they are.
+    baked(&file(&[Road { plan: plan(50.0), ..road() }]));
+    baked(&file(&[Road { plan: plan(60.0), ..road() }]));
+}
+
+#[test]
 fn a_lane_kilometres_wide_is_refused() {
     let wide = |record: &str| {
         let sections = section(0.0, "").replacen("a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"", record, 1);
@@ -132,16 +141,18 @@ fn roads_and_junctions_are_counted() {
 
 #[test]
 fn objects_are_counted_as_often_as_they_are_repeated() {
-    let repeated = |distance: f64| {
+    let repeated = |distance: f64, length: f64| {
         let repeat = format!("<repeat s=\"0\" length=\"100\" distance=\"{distance}\" tStart=\"9\" tEnd=\"9\"/>");
         let extra = format!(
-            "<objects><object id=\"5\" type=\"tree\" s=\"0\" t=\"9\" length=\"1\" width=\"1\" height=\"3\">{repeat}\
-             </object></objects>"
+            "<objects><object id=\"5\" type=\"tree\" s=\"0\" t=\"9\" length=\"{length}\" width=\"1\" height=\"3\">\
+             {repeat}</object></objects>"
         );
         file(&[Road { extra, ..road() }])
     };
-    baked(&repeated(5.0));
-    refused(&repeated(1e-6), &["road 7, object 5", "objects"]);
+    baked(&repeated(5.0, 1.0));
+    refused(&repeated(1e-6, 1.0), &["road 7, object 5", "objects"]);
+    // Long ones one in the other are looked at every metre.
+    refused(&repeated(0.002, 48.0), &["road 7, object 5", "m² below objects"]);
 }
 
 #[test]

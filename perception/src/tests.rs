@@ -39,7 +39,7 @@ fn values_that_nobody_computes_are_named() {
     assert!(refused(&model).contains("its output \"phantom\" is computed by no node"));
     let mut model = Toy::default().model();
     model.graph.as_mut().unwrap().node[0].input[1] = "phantom".into();
-    assert!(refused(&model).contains("node \"Conv_coarse\" (Conv): takes \"phantom\", which nothing computes"));
+    assert!(refused(&model).contains("node \"Conv_coarse\" (Conv): takes \"phantom\", which nothing before it computes"));
 }
 
 #[test]
@@ -90,6 +90,36 @@ fn values_that_would_fill_the_memory_are_refused_before_they_are_made() {
         ];
         let said = refused(&adding(vec![node], initializer));
         assert!(said.contains(&format!("({name})")), "{said}");
+    }
+}
+
+/// Standard ONNX has the order in which values are computed; the engine reads beyond a shape in a circle.
+#[test]
+fn values_that_follow_from_themselves_are_refused() {
+    let circle = vec![
+        node("Relu", &["b"], "a", vec![]),
+        node("BatchNormalization", &["a", "w", "w", "w", "w"], "b", vec![]),
+        node("Add", &["image", "b"], "scores", vec![]),
+    ];
+    let said = refused(&network(circle, vec![floats("w", &[1], vec![1.0])]));
+    assert!(said.contains("node \"Relu_a\" (Relu): takes \"b\", which nothing before it computes"), "{said}");
+}
+
+#[test]
+fn windows_and_lists_without_end_are_refused() {
+    for operator in ["MaxPool", "AveragePool"] {
+        for side in [4000, 1000] {
+            let sides = [ints("kernel_shape", &[side; 2]), ints("pads", &[side - 1; 4])];
+            let said = refused(&network(vec![node(operator, &["image"], "scores", sides.into())], vec![]));
+            let expected = if side == 4000 { "the window of node" } else { "multiplications a picture" };
+            assert!(said.contains(expected), "{said}");
+        }
+    }
+    for operator in ["ConstantOfShape", "Expand", "Reshape", "Tile"] {
+        let inputs: &[&str] = if operator == "ConstantOfShape" { &["long"] } else { &["one", "long"] };
+        let initializer = vec![floats("one", &[1], vec![1.0]), numbers("long", &[1; 100_000])];
+        let said = refused(&adding(vec![node(operator, inputs, "extra", vec![])], initializer));
+        assert!(said.contains(&format!("({operator}): 100000 numbers")), "{said}");
     }
 }
 

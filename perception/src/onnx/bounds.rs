@@ -3,16 +3,21 @@
 use std::cell::Cell;
 use std::collections::HashMap;
 
+use tract_onnx::tract_core::ops::cnn::{MaxPool, SumPool};
 use tract_onnx::tract_hir::internal::*;
 
 /// Most bytes of values that are alive at once while a picture is computed, weights aside.
 const MOST_ALIVE: u64 = 1 << 30;
 /// Most dimensions of a value.
-const MOST_DIMS: usize = 16;
+pub const MOST_DIMS: usize = 16;
 /// Most bytes that values computed from weights alone take beyond those they are computed from.
 const MOST_GROWN: u64 = 1 << 29;
 /// Most multiplications for values computed from weights alone.
 const MOST_FOLDED: u64 = 1 << 35;
+/// Most places that a pooling operator looks at for one output: the engine lists them.
+const MOST_WINDOW: u64 = 1 << 21;
+/// How many multiplications the engine makes in the time in which a pooling operator looks at one place.
+const LOOK_WORK: u64 = 64;
 /// Most multiplications for a picture.
 const MOST_WORK: u64 = 1 << 43;
 
@@ -98,11 +103,27 @@ impl Left {
     }
 }
 
-/// Multiplications of a node.
+/// Multiplications of a node, or what takes as long.
 fn work(node: &TypedNode, inputs: &[&TypedFact]) -> TractResult<u64> {
     let counts = node.op.cost(inputs)?;
-    let work = counts.iter().filter(|(kind, _)| kind.is_compute()).map(|(_, count)| count.to_i64().unwrap_or(0));
-    Ok(work.fold(0u64, |sum, count| sum.saturating_add(u64::try_from(count).unwrap_or(u64::MAX))))
+    let counted = counts.iter().filter(|(kind, _)| kind.is_compute()).map(|(_, count)| count.to_i64().unwrap_or(0));
+    let work = counted.fold(0u64, |sum, count| sum.saturating_add(u64::try_from(count).unwrap_or(u64::MAX)));
+    Ok(work.saturating_add(pooling(node)?))
+}
+
+/// The work of a pooling operator, which the engine does not count: its whole window for every output.
+fn pooling(node: &TypedNode) -> TractResult<u64> {
+    let spec = node.op_as::<MaxPool>().map(|pool| &pool.pool_spec);
+    let Some(spec) = spec.or_else(|| node.op_as::<SumPool>().map(|pool| &pool.pool_spec)) else { return Ok(0) };
+    let window = spec.kernel_shape.iter().fold(1u64, |area, side| area.saturating_mul(*side as u64));
+    ensure!(
+        window <= MOST_WINDOW,
+        "the window of node {:?} is {:?}; at most {MOST_WINDOW} places",
+        node.name,
+        spec.kernel_shape
+    );
+    let outputs = node.outputs[0].fact.shape.as_concrete().map_or(0, |dims| dims.iter().product::<usize>());
+    Ok(LOOK_WORK.saturating_mul(window).saturating_mul(outputs as u64))
 }
 
 /// Refuses a network that multiplies too much for a picture.

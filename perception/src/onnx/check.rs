@@ -1,5 +1,5 @@
-//! What is looked at in a graph before the engine sees it: how much there is, whether every value is computed,
-//! and numbers that no operator can work with.
+//! What is looked at in a graph before the engine sees it: how much there is, whether every value is computed
+//! before it is taken, and numbers that no operator can work with.
 
 use std::collections::HashSet;
 
@@ -71,18 +71,25 @@ pub fn check(model: &pb::ModelProto) -> Result<(), String> {
     let graph = model.graph.as_ref().ok_or("it holds no graph")?;
     let mut left = Left { nodes: MOST_NODES, tensors: MOST_TENSORS };
     left.take(graph, false)?;
-    let mut known: HashSet<&str> = graph.initializer.iter().map(|tensor| tensor.name.as_str()).collect();
+    check_order(graph, HashSet::new())
+}
+
+/// Every value is computed once, and before it is taken, as the format demands: so nothing goes round in circles.
+/// A branch may take what is `known` around it.
+fn check_order<'a>(graph: &'a pb::GraphProto, mut known: HashSet<&'a str>) -> Result<(), String> {
+    known.extend(graph.initializer.iter().map(|tensor| tensor.name.as_str()));
     known.extend(graph.input.iter().map(|input| input.name.as_str()));
     for node in &graph.node {
+        if let Some(input) = node.input.iter().find(|input| !input.is_empty() && !known.contains(input.as_str())) {
+            return Err(format!("{}: takes {}, which nothing before it computes", place(node), shown(input)));
+        }
+        for branch in node.attribute.iter().flat_map(|attribute| attribute.g.iter().chain(&attribute.graphs)) {
+            check_order(branch, known.clone())?;
+        }
         for output in node.output.iter().filter(|output| !output.is_empty()) {
             if !known.insert(output) {
                 return Err(format!("{}: computes {} a second time", place(node), shown(output)));
             }
-        }
-    }
-    for node in &graph.node {
-        if let Some(input) = node.input.iter().find(|input| !input.is_empty() && !known.contains(input.as_str())) {
-            return Err(format!("{}: takes {}, which nothing computes", place(node), shown(input)));
         }
     }
     match graph.output.iter().find(|output| !known.contains(output.name.as_str())) {

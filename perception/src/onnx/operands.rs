@@ -1,8 +1,11 @@
 //! What operators take for granted: axes that their values have, and windows that fit them. The engine counts and
 //! reaches beyond its values where it is not so.
 
+use std::ops::Range;
+
 use tract_onnx::tract_hir::internal::*;
 
+use super::bounds::MOST_DIMS;
 use super::pb;
 
 /// Operators that move a window over rows and columns, and how many of their values share its rank.
@@ -28,8 +31,22 @@ const OF_CHANNELS: [&str; 8] = [
     "SpaceToDepth",
 ];
 
+/// Operators whose inputs list dimensions or axes, and which inputs do.
+const LISTS: [(&str, Range<usize>); 9] = [
+    ("ConstantOfShape", 0..1),
+    ("Expand", 1..2),
+    ("Pad", 1..2),
+    ("Reshape", 1..2),
+    ("Resize", 1..4),
+    ("Slice", 1..5),
+    ("Squeeze", 1..2),
+    ("Tile", 1..2),
+    ("Unsqueeze", 1..2),
+];
+
 /// Refuses a node whose attributes do not fit its values, as far as these are known.
 pub fn check(node: &pb::NodeProto, inputs: &[InferenceFact]) -> TractResult<()> {
+    check_lists(node, inputs)?;
     let Some(rank) = inputs.first().and_then(rank) else { return Ok(()) };
     check_axes(node, rank)?;
     match node.op_type.as_str() {
@@ -44,6 +61,21 @@ pub fn check(node: &pb::NodeProto, inputs: &[InferenceFact]) -> TractResult<()> 
         Some((_, count)) => check_window(node, rank, &inputs[..inputs.len().min(*count)]),
         None => Ok(()),
     }
+}
+
+/// Lists about dimensions are as long as values have dimensions, or twice that.
+fn check_lists(node: &pb::NodeProto, inputs: &[InferenceFact]) -> TractResult<()> {
+    let Some((_, lists)) = LISTS.iter().find(|(operator, _)| *operator == node.op_type) else { return Ok(()) };
+    for list in inputs.get(lists.clone()).or(inputs.get(lists.start..)).unwrap_or_default() {
+        let count = list.shape.concretize().and_then(|dims| dims.iter().product::<TDim>().to_usize().ok());
+        let most = 2 * MOST_DIMS;
+        ensure!(
+            count.is_none_or(|count| count <= most),
+            "{} numbers say what to do with dimensions; at most {most}",
+            count.unwrap_or_default()
+        );
+    }
+    Ok(())
 }
 
 fn rank(fact: &InferenceFact) -> Option<i64> {

@@ -39,6 +39,8 @@ pub const DASHES: f64 = 500_000.0;
 
 /// Objects of a map, repeated ones each time.
 pub const OBJECTS: f64 = 100_000.0;
+/// Places a metre apart below all objects, each of which is looked at.
+pub const COVERED: f64 = 3e6;
 /// Bytes of text that repeated objects copy.
 pub const COPIED_BYTES: f64 = (64 << 20) as f64;
 /// Signals of a map.

@@ -1,5 +1,5 @@
 //! Roads on a heap: whatever asks about a place looks at all lanes there, so that time and memory grow
-//! with the square of how many there are.
+//! with the square of how many there are. And torn ones: a jump is as long as a road.
 
 use std::collections::BTreeMap;
 
@@ -18,21 +18,38 @@ const STEP_M: f64 = 8.0;
 /// A curve is followed in steps of this, metres.
 const PART_M: f64 = 2.0;
 
+/// From one place on a road to the next there are at most this many metres: lanes are drawn across what is between
+/// them. Roads are torn by centimetres, poorly made ones by metres.
+const GAP_M: f64 = 100.0;
+
 /// Stretches of lanes by the square of the plane that they lie in, and the last road there.
 #[derive(Default)]
 pub struct Crowd<'a>(BTreeMap<(i64, i64), (f64, Node<'a, 'a>)>);
 
 impl<'a> Crowd<'a> {
-    /// Adds a road with so many lanes beside each other.
-    pub fn add(&mut self, road: Node<'a, 'a>, lanes: f64) {
-        for geometry in children(road, "planView").flat_map(|view| children(view, "geometry")) {
-            for [x, y] in places(geometry) {
+    /// Adds a road with so many lanes beside each other; refused where its line is torn.
+    pub fn add(&mut self, road: Node<'a, 'a>, lanes: f64) -> Result<(), BakeError> {
+        let mut parts: Vec<_> = children(road, "planView").flat_map(|view| children(view, "geometry")).collect();
+        parts.sort_by(|a, b| number(*a, "s").unwrap_or(0.0).total_cmp(&number(*b, "s").unwrap_or(0.0)));
+        let mut end: Option<[f64; 2]> = None;
+        for geometry in parts {
+            let places = places(geometry);
+            if let (Some([x0, y0]), Some([x, y])) = (end, places.first()) {
+                let gap_m = libm::hypot(x - x0, y - y0);
+                if gap_m > GAP_M {
+                    let reason = format!("expected geometries that join, but from one to the next it is {gap_m:.0} m");
+                    return Err(refused(geometry, reason));
+                }
+            }
+            end = places.last().copied().or(end);
+            for [x, y] in places {
                 let square = ((x / SQUARE_M).floor() as i64, (y / SQUARE_M).floor() as i64);
-                let (count, last) = self.0.entry(square).or_insert((0.0, road));
+                let (count, holder) = self.0.entry(square).or_insert((0.0, road));
                 *count += lanes;
-                *last = road;
+                *holder = road;
             }
         }
+        Ok(())
     }
 
     /// Refuses too many pairs of stretches in the same squares.

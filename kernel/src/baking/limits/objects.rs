@@ -10,6 +10,9 @@ use super::numbers::number;
 use super::sums::{Sum, Sums, at_most};
 use crate::baking::error::BakeError;
 
+/// Longer sides of objects count as this, metres.
+const SIDE_M: f64 = 200.0;
+
 /// The objects of a file by their ids, which references name.
 pub type References<'a> = BTreeMap<&'a str, Node<'a, 'a>>;
 
@@ -33,6 +36,7 @@ pub fn check(road: Node<'_, '_>, lanes: usize, references: &References<'_>, sums
         let Some(object) = object else { continue };
         let copies = copies(object);
         sums.add(Sum::Objects, copies, node)?;
+        sums.add(Sum::Covered, copies * covered_m2(object), node)?;
         sums.add(Sum::CopiedBytes, (copies - 1.0) * object.range().len() as f64, node)?;
         sums.add(Sum::Steps, copies * lanes as f64, node)?;
     }
@@ -55,4 +59,24 @@ fn copies(object: Node<'_, '_>) -> f64 {
         }
     };
     children(object, "repeat").map(of).sum::<f64>().max(1.0)
+}
+
+/// What lies below an object, each side a metre longer, m²; of one too large for any object, what counts as that.
+fn covered_m2(object: Node<'_, '_>) -> f64 {
+    let own = |name| number(object, name).unwrap_or(0.0);
+    let repeated = |names: [&str; 2]| {
+        let numbers = children(object, "repeat").flat_map(|node| names.map(|name| number(node, name).unwrap_or(0.0)));
+        numbers.fold(0.0, f64::max)
+    };
+    let spread = |names: [&str; 2]| {
+        let corners = object.descendants().filter(|n| n.tag_name().name().starts_with("corner"));
+        let numbers = corners.filter_map(|corner| names.iter().find_map(|name| number(corner, name)));
+        let (low, high) = numbers.fold((f64::MAX, f64::MIN), |(low, high), n| (low.min(n), high.max(n)));
+        (high - low).max(0.0)
+    };
+    let round_m = 2.0 * own("radius").max(repeated(["radiusStart", "radiusEnd"]));
+    let length_m = own("length").max(repeated(["lengthStart", "lengthEnd"])).max(round_m).max(spread(["u", "s"]));
+    let width_m = own("width").max(repeated(["widthStart", "widthEnd"])).max(round_m).max(spread(["v", "t"]));
+    let side = |m: f64| m.min(SIDE_M) + 1.0;
+    side(length_m) * side(width_m)
 }

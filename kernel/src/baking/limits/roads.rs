@@ -42,7 +42,7 @@ pub fn check<'a>(
     }
     let along = Along { length_m, stations, records, node: road };
     let lanes = lanes::check(&along, sums)?;
-    crowd.add(road, lanes.per_m);
+    crowd.add(road, lanes.per_m)?;
     objects::check(road, lanes.count, references, sums)
 }
 

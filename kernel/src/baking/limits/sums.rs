@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use super::constants::{ALL_ROADS_M, COPIED_BYTES, DASHES, LANE_POINTS, OBJECTS, SIGNALS, SQUARES, STEPS};
+use super::constants::{ALL_ROADS_M, COPIED_BYTES, COVERED, DASHES, LANE_POINTS, OBJECTS, SIGNALS, SQUARES, STEPS};
 use super::place::refused;
 use crate::baking::error::BakeError;
 
@@ -15,6 +15,7 @@ pub enum Sum {
     Squares,
     Dashes,
     Objects,
+    Covered,
     Signals,
     CopiedBytes,
     Steps,
@@ -30,6 +31,7 @@ impl Sum {
             Self::Squares => (SQUARES, "squares of 10 m that parts of lanes touch"),
             Self::Dashes => (DASHES, "dashes of road marks"),
             Self::Objects => (OBJECTS, "objects, repeated ones each time"),
+            Self::Covered => (COVERED, "m² below objects, repeated ones each time,"),
             Self::Signals => (SIGNALS as f64, "signals"),
             Self::CopiedBytes => (COPIED_BYTES, "bytes of text in repeated objects"),
             Self::Steps => (STEPS, "steps of computing"),
