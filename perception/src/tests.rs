@@ -39,7 +39,9 @@ fn values_that_nobody_computes_are_named() {
     assert!(refused(&model).contains("its output \"phantom\" is computed by no node"));
     let mut model = Toy::default().model();
     model.graph.as_mut().unwrap().node[0].input[1] = "phantom".into();
-    assert!(refused(&model).contains("node \"Conv_coarse\" (Conv): takes \"phantom\", which nothing before it computes"));
+    assert!(
+        refused(&model).contains("node \"Conv_coarse\" (Conv): takes \"phantom\", which nothing before it computes")
+    );
 }
 
 #[test]
