@@ -26,7 +26,7 @@ const SIZE: (u32, u32) = (256, 128);
 const BUDGETS: [Budget; 7] = [
     Budget { bench: "kernel/step", against: Against::RealTime(STEP_S as f64), at_least: 150.0 },
     Budget { bench: "replay/verify", against: Against::RealTime(STEP_S as f64), at_least: 100.0 },
-    // Keyframes are 10 s apart: what lies between two is driven again.
+    // Keyframes are 7 s apart: what lies between two is driven again.
     Budget { bench: "replay/seek", against: Against::RealTime(KEYFRAMES_S), at_least: 100.0 },
     // Four times the roads take four times as long, and a little more.
     Budget { bench: "kernel/bake_40km", against: Against::Reference("kernel/bake_10km"), at_least: 0.2 },
@@ -36,7 +36,7 @@ const BUDGETS: [Budget; 7] = [
 ];
 
 /// How far apart keyframes are, seconds.
-const KEYFRAMES_S: f64 = 10.0;
+const KEYFRAMES_S: f64 = 7.0;
 /// The recording in which is sought, seconds.
 const SOUGHT_S: u32 = 30 * 60;
 

@@ -27,11 +27,15 @@ state_enum! {
         Seen = 8,
         /// The run ended.
         Ended = 9,
+        /// A vehicle of traffic has stood for a minute without a reason; `actor` names it. A fault of the simulation.
+        Stuck = 10,
+        /// It was taken off the road because of that and enters the map elsewhere; `actor` names it. Counts as a failure.
+        Dissolved = 11,
     }
 }
 
 state! {
-    /// An event of the ego car.
+    /// An event of the ego car, or one that the watchdog over traffic tells.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Event {
         /// What happened.

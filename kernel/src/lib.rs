@@ -10,6 +10,7 @@
 mod actor;
 pub mod arbiter;
 mod baking;
+pub mod car;
 pub mod controls;
 pub mod ego;
 pub mod events;

@@ -231,6 +231,23 @@ impl<T: State> State for Vec<T> {
     }
 }
 
+impl<T: State, const N: usize> State for [T; N] {
+    fn write(&self, out: &mut Vec<u8>) {
+        for item in self {
+            item.write(out);
+        }
+    }
+    fn read(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let items: Vec<T> = (0..N).map(|_| T::read(r)).collect::<Result<_, _>>()?;
+        items.try_into().map_err(|_| r.error("an item"))
+    }
+    fn name(&self, path: &str, out: &mut Vec<NamedValue>) {
+        for (i, item) in self.iter().enumerate() {
+            item.name(&format!("{path}[{i}]"), out);
+        }
+    }
+}
+
 /// Declares a struct whose fields are all [`State`], and implements [`State`] for it.
 #[macro_export]
 macro_rules! state {

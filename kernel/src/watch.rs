@@ -47,7 +47,8 @@ impl Log<'_> {
         self.with(kind, 0);
     }
 
-    fn with(&mut self, kind: EventKind, actor: u32) {
+    /// An event with an actor.
+    pub fn with(&mut self, kind: EventKind, actor: u32) {
         self.events.push(Event { kind, actor, speed_mps: self.speed_mps });
     }
 

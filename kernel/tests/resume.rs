@@ -4,6 +4,7 @@ mod common;
 
 use common::{on_ring, ring, script};
 use kernel::state::StateHash;
+use kernel::time::KEYFRAME_TICKS;
 use kernel::world::PARTS;
 use kernel::{Controls, Keyframe, TickInput, World};
 use proptest::prelude::*;
@@ -109,11 +110,12 @@ fn a_truncated_or_mismatched_keyframe_is_refused_in_one_sentence() {
     for length in 0..keyframe.bytes.len() {
         let cut = Keyframe { tick: keyframe.tick, bytes: keyframe.bytes[..length].to_vec() };
         let error = World::resume(world.scenario(), world.network(), &cut).err().expect("it is refused");
-        assert!(error.to_string().starts_with("keyframe of tick 600: "), "{error}");
+        assert!(error.to_string().starts_with(&format!("keyframe of tick {KEYFRAME_TICKS}: ")), "{error}");
     }
-    let late = Keyframe { tick: 601, ..keyframe };
+    let late = Keyframe { tick: KEYFRAME_TICKS + 1, ..keyframe };
     let error = World::resume(world.scenario(), world.network(), &late).err().expect("it is refused");
-    assert_eq!(error.to_string(), "keyframe of tick 601: its state is that of tick 600");
+    let expected = format!("keyframe of tick {}: its state is that of tick {KEYFRAME_TICKS}", KEYFRAME_TICKS + 1);
+    assert_eq!(error.to_string(), expected);
 }
 
 fn controls() -> impl Strategy<Value = Controls> {

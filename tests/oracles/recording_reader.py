@@ -18,7 +18,7 @@ import zstandard
 
 VERSION = 2
 EVENTS = ["CollisionActor", "CollisionScenery", "RedLight", "Speeding", "OffRoad", "WrongWay", "Armed", "Intervention"]
-EVENTS += ["Seen", "Ended"]
+EVENTS += ["Seen", "Ended", "Stuck", "Dissolved"]
 NOTES = ["unit bound", "unit armed", "unit lost", "unit returned"]
 
 

@@ -56,7 +56,7 @@ impl RoadNetwork {
     }
 
     /// What traffic looks up.
-    pub(crate) fn ways(&self) -> &Arc<Ways> {
+    pub fn ways(&self) -> &Arc<Ways> {
         self.ways.get_or_init(|| Arc::new(Ways::new(self.places())))
     }
 

@@ -1,11 +1,9 @@
-//! What bodies are made of: groups, masses, and the car's wheels.
+//! What bodies are made of: groups and masses.
 
 use glam::Vec3;
-use rapier3d::control::{DynamicRayCastVehicleController, WheelTuning};
 use rapier3d::prelude::*;
 
 use crate::actor::ActorKind;
-use crate::ego;
 use crate::motion::Motion;
 use crate::time::TICK_S;
 
@@ -49,25 +47,4 @@ pub(super) fn mass(kind: ActorKind) -> MassProperties {
     let square = size * size;
     let inertia = Vec3::new(square.y + square.z, square.x + square.z, square.x + square.y) * (kg / 12.0);
     MassProperties::new(Vec3::Z * 0.45 * size.z, kg, inertia)
-}
-
-/// Four wheels, front left, front right, rear left, rear right. The axle points to the right: with
-/// the axle to the left, the controller drives backwards.
-pub(super) fn car(chassis: RigidBodyHandle) -> DynamicRayCastVehicleController {
-    let tuning = WheelTuning {
-        suspension_stiffness: ego::SPRING_PER_S2,
-        suspension_compression: ego::BUMP_PER_S,
-        suspension_damping: ego::REBOUND_PER_S,
-        max_suspension_travel: ego::TRAVEL_M,
-        side_friction_stiffness: 1.0,
-        friction_slip: ego::GRIP,
-        max_suspension_force: ego::MAX_SUSPENSION_N,
-    };
-    let mut car = DynamicRayCastVehicleController::new(chassis);
-    car.index_up_axis = 2;
-    car.index_forward_axis = 0;
-    for mount in ego::wheel_mounts() {
-        car.add_wheel(mount, Vec3::NEG_Z, Vec3::NEG_Y, ego::SPRING_REST_M, ego::WHEEL_RADIUS_M, &tuning);
-    }
-    car
 }

@@ -3,17 +3,19 @@
 use std::sync::Arc;
 
 use glam::{Quat, Vec3};
-use rapier3d::control::DynamicRayCastVehicleController;
 use rapier3d::prelude::*;
 
-use super::build::{ACTORS, EGO, GROUND, PROPS, car, free, groups, mass, parameters};
-use super::statics::Statics;
+use super::build::{ACTORS, EGO, GROUND, PROPS, free, groups, mass, parameters};
+use super::statics::{Statics, is_soft};
 use crate::actor::ActorKind;
-use crate::ego::{self, WheelForces};
+use crate::car::{self, CarSetup, Footing, Footprint, WHEELS};
+use crate::controls::Controls;
+use crate::ego::Ego;
 use crate::motion::Motion;
-use crate::time::TICK_S;
 
-const GRAVITY: Vec3 = Vec3::new(0.0, 0.0, -9.81);
+const GRAVITY: Vec3 = Vec3::new(0.0, 0.0, -car::GRAVITY_MPS2);
+/// Ground that is steeper than this along the car's z axis carries no wheel.
+const LEAST_NORMAL_Z: f32 = 0.3;
 /// Impulse within a tick from which contact counts as a collision, N s.
 const COLLISION_IMPULSE_NS: f32 = 1.0;
 
@@ -65,7 +67,8 @@ pub struct Physics {
     parameters: IntegrationParameters,
     ego: RigidBodyHandle,
     ego_collider: ColliderHandle,
-    car: DynamicRayCastVehicleController,
+    off_road: bool,
+    footprints: [Footprint; WHEELS],
     actors: Vec<Actor>,
 }
 
@@ -87,7 +90,8 @@ impl Clone for Physics {
             parameters: self.parameters,
             ego: self.ego,
             ego_collider: self.ego_collider,
-            car: self.car.clone(),
+            off_road: self.off_road,
+            footprints: self.footprints,
             actors: self.actors.clone(),
         }
     }
@@ -97,21 +101,17 @@ impl Physics {
     /// The ego car alone on a map.
     pub fn new(statics: &Arc<Statics>, ego: &Motion) -> Self {
         let (mut colliders, mut bodies) = (statics.colliders.clone(), RigidBodySet::new());
-        let body = bodies.insert(free(ego).additional_mass_properties(MassProperties::new(
-            ego::CENTRE_OF_MASS_M,
-            ego::MASS_KG,
-            ego::INERTIA,
-        )));
-        let half = ego::SIZE_M * 0.5;
+        let mass = MassProperties::new(car::CENTRE_OF_MASS_M, car::MASS_KG, car::INERTIA);
+        // Its weight is among the forces that it steps under within a tick.
+        let body = bodies.insert(free(ego).additional_mass_properties(mass).gravity_scale(0.0));
+        let half = car::SIZE_M * 0.5;
         let shell = ColliderBuilder::cuboid(half.x, half.y, half.z)
-            .translation(ego::CENTRE_M)
+            .translation(car::CENTRE_M)
             .density(0.0)
             .friction(0.3)
             .restitution(0.1)
             .collision_groups(groups(EGO, GROUND | PROPS | ACTORS));
         let ego_collider = colliders.insert_with_parent(shell, body, &mut bodies);
-        // The wheels push before the first step would do this: without a mass they give NaN.
-        bodies[body].recompute_mass_properties_from_colliders(&colliders);
         Self {
             statics: statics.clone(),
             broad_phase: statics.broad_phase.clone(),
@@ -127,7 +127,8 @@ impl Physics {
             parameters: parameters(),
             ego: body,
             ego_collider,
-            car: car(body),
+            off_road: false,
+            footprints: Default::default(),
             actors: Vec::new(),
         }
     }
@@ -182,9 +183,9 @@ impl Physics {
         }
     }
 
-    /// Advances by one tick.
-    pub fn step(&mut self, forces: &WheelForces) {
-        self.drive(forces);
+    /// Advances by one tick, the ego car under the controls of its driver.
+    pub fn step(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup) {
+        self.drive(ego, controls, setup);
         self.pipeline.step(
             GRAVITY,
             &self.parameters,
@@ -200,25 +201,35 @@ impl Physics {
             &(),
             &(),
         );
+        ego.moved(motion(&self.bodies[self.ego]));
     }
 
-    fn drive(&mut self, forces: &WheelForces) {
-        for (i, wheel) in self.car.wheels_mut().iter_mut().enumerate() {
-            let front = i < 2;
-            // Rapier turns the wheel counter-clockwise, we count to the right.
-            wheel.steering = if front { -forces.wheel_angle_rad } else { 0.0 };
-            wheel.engine_force = if front { 0.5 * forces.drive_n } else { 0.0 };
-            wheel.brake = 0.5 * TICK_S * if front { forces.front_brake_n } else { forces.rear_brake_n };
-        }
-        let filter = QueryFilter::default().groups(groups(EGO, GROUND));
-        let dispatcher = self.narrow_phase.query_dispatcher();
-        let queries = self.broad_phase.as_query_pipeline_mut(dispatcher, &mut self.bodies, &mut self.colliders, filter);
-        self.car.update_vehicle(TICK_S, queries);
+    /// The body gets the velocities that its wheels give it. What it runs into is for the engine.
+    fn drive(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup) {
+        let ground = self.ground(&ego.motion);
+        self.off_road = ground.iter().flatten().any(|footing| is_soft(footing.kind));
+        let (velocity, spin, footprints) = ego.gear.advance(&ego.motion, controls, setup, &ground);
+        self.footprints = footprints;
+        let body = &mut self.bodies[self.ego];
+        body.set_linvel(velocity, true);
+        body.set_angvel(spin, true);
     }
 
-    /// Motion of the ego car.
-    pub fn ego(&self) -> Motion {
-        motion(&self.bodies[self.ego])
+    /// The ground below each wheel.
+    fn ground(&self, motion: &Motion) -> [Option<Footing>; WHEELS] {
+        let (to_body, down) = (motion.rotation.conjugate(), motion.rotation * Vec3::NEG_Z);
+        car::mounts().map(|mount| {
+            let from = motion.position + motion.rotation * mount;
+            let (distance_m, normal, kind) = self.statics.ground(from, down, car::reach_m())?;
+            let normal = to_body * normal;
+            let normal = if normal.z < 0.0 { -normal } else { normal };
+            (normal.z > LEAST_NORMAL_Z).then_some(Footing { distance_m, normal, kind })
+        })
+    }
+
+    /// What the wheels of the ego car and the ground did to each other at the end of the last step.
+    pub fn footprints(&self) -> &[Footprint; WHEELS] {
+        &self.footprints
     }
 
     /// Motion of an actor that is in the physics world.
@@ -226,10 +237,9 @@ impl Physics {
         self.place(id).ok().map(|at| motion(&self.bodies[self.actors[at].body]))
     }
 
-    /// Whether a wheel of the ego car stands on something that is not paved.
+    /// Whether a wheel of the ego car stood on something that is not paved at the beginning of the last step.
     pub fn off_road(&self) -> bool {
-        let on = |wheel: &rapier3d::control::Wheel| wheel.raycast_info().ground_object;
-        self.car.wheels().iter().filter_map(on).any(|ground| Some(ground) != self.statics.paved)
+        self.off_road
     }
 
     /// What the ego car touched in the last step; reuses `touched`.

@@ -16,8 +16,33 @@ const CATCH_DEPTH_M: f32 = 5.0;
 pub struct Statics {
     pub(super) colliders: ColliderSet,
     pub(super) broad_phase: BroadPhaseBvh,
-    pub(super) paved: Option<ColliderHandle>,
+    ground: Vec<Ground>,
+    /// Lies just above the road.
+    paint: Option<Ground>,
+    floor_m: f32,
     pub(super) scenery: Option<ColliderHandle>,
+}
+
+/// Surfaces of some kinds as one mesh.
+struct Ground {
+    shape: SharedShape,
+    /// The first triangle of each surface, and what that is made of.
+    kinds: Vec<(u32, SurfaceKind)>,
+}
+
+impl Ground {
+    fn kind(&self, triangle: u32) -> SurfaceKind {
+        self.kinds[self.kinds.partition_point(|(first, _)| *first <= triangle) - 1].1
+    }
+}
+
+fn is_paved(kind: SurfaceKind) -> bool {
+    matches!(kind, SurfaceKind::Road | SurfaceKind::Ground)
+}
+
+/// Whether a wheel on such a surface is off the road.
+pub(super) fn is_soft(kind: SurfaceKind) -> bool {
+    matches!(kind, SurfaceKind::Sidewalk | SurfaceKind::Terrain)
 }
 
 impl fmt::Debug for Statics {
@@ -34,16 +59,34 @@ impl Statics {
         let mut insert = |shape: SharedShape, groups| {
             colliders.insert(ColliderBuilder::new(shape).collision_groups(groups).friction(0.6))
         };
-        let is_paved = |kind| matches!(kind, SurfaceKind::Road | SurfaceKind::Ground);
-        let is_soft = |kind| matches!(kind, SurfaceKind::Sidewalk | SurfaceKind::Terrain);
-        let paved = mesh(map, is_paved).map(|shape| insert(shape, ground));
-        mesh(map, is_soft).map(|shape| insert(shape, ground));
+        let paint = mesh(map, |kind| kind == SurfaceKind::RoadLine);
+        let meshes: Vec<Ground> = [is_paved, is_soft].into_iter().filter_map(|wanted| mesh(map, wanted)).collect();
+        for mesh in &meshes {
+            insert(mesh.shape.clone(), ground);
+        }
         let floor = insert(SharedShape::halfspace(Vec3::Z), ground);
         let boxes: Vec<_> = map.props.iter().map(solid).collect();
         let scenery = (!boxes.is_empty()).then(|| insert(SharedShape::compound(boxes), groups(PROPS, ACTORS | EGO)));
-        let depth = map.bounds[0].z - CATCH_DEPTH_M;
-        colliders[floor].set_translation(Vec3::new(0.0, 0.0, depth));
-        Self { broad_phase: filled(&mut colliders), colliders, paved, scenery }
+        let floor_m = map.bounds[0].z - CATCH_DEPTH_M;
+        colliders[floor].set_translation(Vec3::new(0.0, 0.0, floor_m));
+        Self { broad_phase: filled(&mut colliders), colliders, ground: meshes, paint, floor_m, scenery }
+    }
+
+    /// The first ground on the way from a place in a direction of unit length: how far away, metres, its normal, and
+    /// what it is made of.
+    pub(super) fn ground(&self, from: Vec3, direction: Vec3, reach_m: f32) -> Option<(f32, Vec3, SurfaceKind)> {
+        let ray = Ray::new(from, direction);
+        let floor = (self.floor_m - from.z) / direction.z;
+        let caught = (direction.z < 0.0 && (0.0..reach_m).contains(&floor)).then_some(floor);
+        let caught = caught.map(|distance| (distance, Vec3::Z, SurfaceKind::Terrain));
+        let (distance_m, normal, kind) = self.ground.iter().fold(caught, |nearest, ground| {
+            let reach_m = nearest.map_or(reach_m, |(distance, ..)| distance);
+            let Some(hit) = ground.shape.cast_local_ray_and_get_normal(&ray, reach_m, false) else { return nearest };
+            Some((hit.time_of_impact, hit.normal, ground.kind(hit.subshape)))
+        })?;
+        let painted = |paint: &Ground| paint.shape.cast_local_ray(&ray, distance_m, false).is_some();
+        let is_paint = kind == SurfaceKind::Road && self.paint.as_ref().is_some_and(painted);
+        Some((distance_m, normal, if is_paint { SurfaceKind::RoadLine } else { kind }))
     }
 }
 
@@ -64,14 +107,15 @@ fn filled(colliders: &mut ColliderSet) -> BroadPhaseBvh {
 }
 
 /// All surfaces of some kinds as one mesh; none where the map has no such surface.
-fn mesh(map: &MapData, wanted: impl Fn(SurfaceKind) -> bool) -> Option<SharedShape> {
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+fn mesh(map: &MapData, wanted: fn(SurfaceKind) -> bool) -> Option<Ground> {
+    let (mut vertices, mut triangles, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
     for surface in map.surfaces.iter().filter(|s| wanted(s.kind)) {
         let first = vertices.len() as u32;
+        kinds.push((triangles.len() as u32, surface.kind));
         vertices.extend_from_slice(&surface.positions);
         triangles.extend(surface.triangles.iter().map(|t| t.map(|v| v + first)));
     }
-    SharedShape::trimesh(vertices, triangles).ok()
+    Some(Ground { shape: SharedShape::trimesh(vertices, triangles).ok()?, kinds })
 }
 
 /// The solid box of a prop: of a tree its trunk, of a lamp or a sign its post.

@@ -1,5 +1,6 @@
 //! The scenario that a map and a seed stand for: weather and traffic in the ranges of the paper.
 
+use crate::car::CarSetup;
 use crate::map::{self, LaneKind};
 use crate::rng::{self, Stream};
 use crate::traffic::TrafficCounts;
@@ -41,6 +42,7 @@ impl Scenario {
                 sun_azimuth_deg: draw(3, SUN_AZIMUTH_DEG),
             },
             ego: EgoStart { lane: None, s_m: 0.0 },
+            car: CarSetup::default(),
             rules: Rules {
                 max_speed_kmh: MAX_SPEED_KMH,
                 max_seconds: MAX_SECONDS,

@@ -1,5 +1,6 @@
 //! What a scenario holds.
 
+use crate::car::CarSetup;
 use crate::state;
 use crate::traffic::TrafficCounts;
 use crate::weather::Weather;
@@ -47,6 +48,8 @@ state! {
         pub weather: Weather,
         /// Start of the ego car.
         pub ego: EgoStart,
+        /// Which helpers of the ego car are on.
+        pub car: CarSetup,
         /// Rules.
         pub rules: Rules,
     }

@@ -5,6 +5,7 @@ mod fields;
 mod start;
 mod text;
 
+pub use crate::car::CarSetup;
 pub use crate::traffic::TrafficCounts;
 pub use fields::{EgoStart, MOST_OF_A_KIND, Rules, Scenario, ScenarioError};
 pub use start::{StartError, driving_lanes};

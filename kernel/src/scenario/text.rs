@@ -20,6 +20,8 @@ struct Text {
     #[serde(default)]
     ego: Ego,
     #[serde(default)]
+    car: Car,
+    #[serde(default)]
     rules: Rules,
 }
 
@@ -49,6 +51,13 @@ struct Weather {
 struct Ego {
     lane: Given<u32>,
     s_m: Given<f32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Car {
+    abs: Option<bool>,
+    esc: Option<bool>,
 }
 
 #[derive(Default, Deserialize)]
@@ -125,6 +134,9 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     if let Some(lane) = given.ego.lane {
         scenario.ego.lane = Some(*lane.get_ref());
     }
+    let helpers = &mut scenario.car;
+    helpers.abs = given.car.abs.unwrap_or(helpers.abs);
+    helpers.esc = given.car.esc.unwrap_or(helpers.esc);
     reader.take("ego.s_m", given.ego.s_m, 0.0..=1e6, &mut scenario.ego.s_m)?;
     Ok(scenario)
 }
@@ -158,7 +170,7 @@ fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(
 
 /// Every key, so that the text still says the same when a default changes.
 fn print(scenario: &Scenario) -> String {
-    let Scenario { map, seed, traffic, weather, ego, rules } = scenario;
+    let Scenario { map, seed, traffic, weather, ego, car, rules } = scenario;
     let map = toml::Value::from(map.as_str());
     let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));
     format!(
@@ -166,6 +178,7 @@ fn print(scenario: &Scenario) -> String {
          [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\n\
          [weather]\ncloudiness_pct = {:?}\nwind_pct = {:?}\nsun_altitude_deg = {:?}\nsun_azimuth_deg = {:?}\n\n\
          [ego]\n{lane}s_m = {:?}\n\n\
+         [car]\nabs = {}\nesc = {}\n\n\
          [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n",
         traffic.cars,
         traffic.motorcycles,
@@ -177,6 +190,8 @@ fn print(scenario: &Scenario) -> String {
         weather.sun_altitude_deg,
         weather.sun_azimuth_deg,
         ego.s_m,
+        car.abs,
+        car.esc,
         rules.max_speed_kmh,
         rules.max_seconds,
         rules.brake_threshold,
@@ -187,6 +202,7 @@ fn print(scenario: &Scenario) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::car::CarSetup;
 
     /// A map that is not bundled, so that no map has to be baked.
     const TEXT: &str = "map = \"field\"\nseed = 7\n\n[weather]\nsun_altitude_deg = 30\n\n[ego]\nlane = 2\ns_m = 4.5\n";
@@ -203,12 +219,15 @@ mod tests {
         expected.weather.sun_altitude_deg = 30.0;
         (expected.ego.lane, expected.ego.s_m) = (Some(2), 4.5);
         assert_eq!(scenario, expected);
+        let bare = Scenario::from_toml(&format!("{TEXT}\n[car]\nesc = false\n")).expect("a valid text");
+        assert_eq!(bare.car, CarSetup { abs: true, esc: false });
     }
 
     #[test]
     fn a_text_comes_back() {
         for seed in [0, 1, 7, u64::MAX / 2, u64::MAX] {
-            let scenario = Scenario::default_for("a \"map\" of its own", seed);
+            let mut scenario = Scenario::default_for("a \"map\" of its own", seed);
+            scenario.car.abs = seed % 2 == 0;
             assert_eq!(Scenario::from_toml(&scenario.to_toml()), Ok(scenario));
         }
     }
@@ -225,8 +244,8 @@ mod tests {
         assert!(number.starts_with("line 9: ego.s_m is NaN"), "{number}");
         let syntax = refused("[ego]", "[ego");
         assert!(syntax.starts_with("line 7: "), "{syntax}");
-        let section = refused("[ego]", "[car]");
-        assert!(section.contains("unknown field `car`"), "{section}");
+        let section = refused("[ego]", "[wagon]");
+        assert!(section.contains("unknown field `wagon`"), "{section}");
         let missing = refused("map = \"field\"\n", "");
         assert!(missing.contains("missing field `map`"), "{missing}");
     }

@@ -7,33 +7,38 @@ use super::counts::TrafficCounts;
 use super::state::TrafficState;
 use super::traits::{Driver, WalkerTraits, driver, walker_traits};
 use super::ways::Ways;
-use crate::map_data::MapData;
+use crate::map_data::{MapData, Place};
 
 /// All actors of a world.
 #[derive(Clone, Debug)]
 pub(super) struct Actors {
     pub ways: Arc<Ways>,
     pub seed: u64,
-    pub jaywalks_per_min: f32,
+    pub counts: TrafficCounts,
     pub state: TrafficState,
     pub drivers: Vec<Driver>,
     pub walker_traits: Vec<WalkerTraits>,
+    /// Where walkers stand on their ways, before what they are beside the middle.
+    pub places: Vec<Place>,
     /// At the places of the state.
     pub bodies: Vec<Body>,
 }
 
 impl Actors {
-    /// Those of a state, not yet placed.
+    /// Those of a state.
     pub fn new(counts: &TrafficCounts, seed: u64, ways: &Arc<Ways>, state: TrafficState) -> Self {
-        Self {
+        let mut actors = Self {
             ways: ways.clone(),
             seed,
-            jaywalks_per_min: counts.jaywalks_per_min,
+            counts: *counts,
             drivers: state.vehicles.iter().map(|v| driver(seed, v.id, v.kind)).collect(),
             walker_traits: state.walkers.iter().map(|w| walker_traits(seed, w.id)).collect(),
+            places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),
             state,
             bodies: Vec::new(),
-        }
+        };
+        actors.place_bodies();
+        actors
     }
 
     /// The map they are on.

@@ -8,7 +8,7 @@ use crate::rng::{Stream, unit};
 use crate::time::{TICK_HZ, Tick};
 
 use super::hazard::Hazard;
-use super::lists::Lists;
+use super::lists::{Entry, Lists};
 use super::walker::Walker;
 use super::ways::Ways;
 
@@ -18,6 +18,8 @@ const APPROACH_S: f32 = 4.0;
 const CARELESS: f32 = 0.06;
 /// Vehicles slower than this let people go, m/s.
 const CREEP_MPS: f32 = 1.2;
+/// Braking that careless people expect of vehicles, m/s².
+const CARELESS_BRAKE_MPS2: f32 = 3.5;
 /// Time that people want to have left when the vehicle arrives, s.
 const SPARE_S: f32 = 0.5;
 /// Vehicles farther away than this are not waited for, metres.
@@ -32,12 +34,12 @@ pub(super) struct Claim {
     pub waiting: bool,
 }
 
-/// Whether people on a crosswalk keep a vehicle from going over it; `place` is where its lane meets
-/// the crosswalk. `claims` are sorted by crosswalk.
-pub(super) fn is_claimed(claims: &[Claim], crosswalk: u32, place: impl Fn() -> Place) -> bool {
+/// Whether people on a crosswalk, or `heeds_waiting` also those who wait at it, keep a vehicle from going
+/// over it; `place` is where its lane meets the crosswalk. `claims` are sorted by crosswalk.
+pub(super) fn is_claimed(claims: &[Claim], crosswalk: u32, heeds_waiting: bool, place: impl Fn() -> Place) -> bool {
     let first = claims.partition_point(|c| c.crosswalk < crosswalk);
     let mut on_it = claims[first..].iter().take_while(|c| c.crosswalk == crosswalk);
-    on_it.any(|claim| claim.waiting || crosses(claim, &place()))
+    on_it.any(|claim| if claim.waiting { heeds_waiting } else { crosses(claim, &place()) })
 }
 
 fn crosses(claim: &Claim, place: &Place) -> bool {
@@ -74,7 +76,36 @@ impl Gaps<'_> {
             return false;
         }
         let careless = unit(self.seed, Stream::Walk, u64::from(walker.id), !u64::from(walker.hops)) < CARELESS;
-        (careless && lights.is_empty()) || self.is_clear(crosswalk, position, time_s)
+        (careless && lights.is_empty() && self.can_stop(crosswalk)) || self.is_clear(crosswalk, position, time_s)
+    }
+
+    /// Whether every vehicle on the lanes of a crosswalk can still stop before it. Of the ego car
+    /// somebody careless does not think.
+    fn can_stop(&self, crosswalk: u32) -> bool {
+        let crossed = &self.map.crosswalks[crosswalk as usize];
+        crossed.lanes.iter().all(|&(lane, s_m)| !self.overruns(lane, s_m, crossed.half_width_m, 0))
+    }
+
+    /// Whether a vehicle on `lane` or the lanes before it is on the crosswalk at `s_m`, or cannot stop before it.
+    fn overruns(&self, lane: LaneId, s_m: f32, half_width_m: f32, depth: u32) -> bool {
+        let early = self.lists.on(lane).iter().any(|entry| {
+            let gap_m = s_m - half_width_m - entry.s_m - entry.half_m;
+            let gone = entry.s_m - entry.half_m > s_m + half_width_m;
+            !gone && gap_m < entry.speed_mps * entry.speed_mps / (2.0 * CARELESS_BRAKE_MPS2) + 1.5
+        });
+        let further =
+            |p: &LaneId| self.overruns(*p, s_m + self.map.lanes[*p as usize].length_m, half_width_m, depth + 1);
+        early || (depth < 2 && s_m < WATCH_M && self.map.lanes[lane as usize].predecessors.iter().any(further))
+    }
+
+    /// Whether a vehicle stands on a crosswalk, so that nobody can cross whoever waits for them.
+    pub fn is_blocked(&self, crosswalk: u32) -> bool {
+        let crossed = &self.map.crosswalks[crosswalk as usize];
+        let stands = |lane: LaneId, s_m: f32| {
+            let on_it = |e: &Entry| (e.s_m - s_m).abs() < e.half_m + crossed.half_width_m && e.speed_mps < 0.5;
+            self.lists.on(lane).iter().any(on_it)
+        };
+        crossed.lanes.iter().any(|&(lane, s_m)| stands(lane, s_m))
     }
 
     /// Whether nothing arrives before the crosswalk is crossed.

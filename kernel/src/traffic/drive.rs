@@ -6,13 +6,15 @@ use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
 use super::crosswalk::{self, Claim};
-use super::hazard::{Hazard, Seeker, in_way};
-use super::junction::{self, Members, Signal, swept_half_m};
+use super::hazard::{Hazard, Seeker, side, sight};
+use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
 use super::lists::{Entry, Lists};
-use super::plan::{self, Line, Plan, Step, next_lane, stopping_speed};
+use super::plan::{self, Line, Plan, next_lane, stopping_speed};
+use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 use super::ways::{ConflictKind, LaneConflict, Ways};
+use super::zebra;
 
 /// Hardest braking, m/s².
 const EMERGENCY_MPS2: f32 = 8.0;
@@ -20,14 +22,18 @@ const EMERGENCY_MPS2: f32 = 8.0;
 const ADAPT_S: f32 = 0.4;
 /// The same before a line; short, so that it is not overrun.
 const STOP_S: f32 = 0.25;
-/// Distance kept from a line, metres.
-const LINE_MARGIN_M: f32 = 1.0;
 /// Vehicles look this far ahead for others in a junction, metres.
 const CONFLICT_M: f32 = 30.0;
 /// How long a vehicle stands at a stop sign.
 const HALT_TICKS: u16 = seconds(1) as u16;
 /// Braking at most for people at a crosswalk who are not in the way yet, m/s².
 const CROSSWALK_BRAKE_MPS2: f32 = 4.5;
+/// After standing this long people who only wait are not waited for any more, s.
+const HEED_S: u8 = 15;
+/// Sideways by so much for each metre driven.
+const DRIFT: f32 = 0.08;
+/// The same to pass something.
+const PASS_DRIFT: f32 = 0.2;
 /// Distance that one turn of the pedals drives a bicycle, metres.
 const PEDAL_M: f32 = 5.0;
 
@@ -44,8 +50,27 @@ pub(super) struct View<'a> {
     pub plans: &'a [Plan],
     pub lists: &'a Lists,
     pub members: &'a Members,
+    /// The ego car and loose actors first, `free` of them, then people on the road.
     pub hazards: &'a [Hazard],
+    pub free: usize,
     pub claims: &'a [Claim],
+    pub tick: Tick,
+}
+
+/// Where across its lane a vehicle is to drive, metres to the left of the middle, and how fast it gets
+/// there: metres sideways for each metre ahead.
+#[derive(Clone, Copy)]
+struct Side {
+    aim_m: f32,
+    drift: f32,
+}
+
+impl Side {
+    /// Where one that is `offset_m` to the left is after so many metres ahead.
+    fn after(&self, offset_m: f32, ahead_m: f32) -> f32 {
+        let most_m = self.drift * ahead_m;
+        offset_m + (self.aim_m - offset_m).clamp(-most_m, most_m)
+    }
 }
 
 impl View<'_> {
@@ -54,12 +79,17 @@ impl View<'_> {
         let plan = &self.plans[index];
         let mut next = self.vehicles[index];
         self.decide(index, plan, &mut next);
-        let accel = self.acceleration(index, plan, &next);
-        self.advance(index, accel, &mut next);
+        let seeker = self.seeker(index);
+        let side = self.side(index, plan, &seeker);
+        let accel = self.acceleration(index, plan, &next, &seeker, side);
+        self.advance(index, accel, side, &mut next);
+        if self.tick.is_multiple_of(seconds(1)) {
+            next.stuck_s = self.stuck_s(index);
+        }
         next
     }
 
-    fn steps_of(&self, plan: &Plan) -> &[Step] {
+    pub(super) fn steps_of(&self, plan: &Plan) -> &[Step] {
         &self.steps[plan.steps.0 as usize..plan.steps.1 as usize]
     }
 
@@ -73,10 +103,11 @@ impl View<'_> {
         let steps = self.steps_of(plan);
         let signal = junction::signal(self.map, self.lights, next, steps[line.approach].lane);
         if next.flags & Vehicle::GRANTED != 0 {
-            if junction::must_stop(signal, next, line) || !junction::near_enough(next, line, 6.0) {
+            let keeps = junction::near_enough(next, line, 6.0) && !self.lost_room(index, plan, line, next);
+            if junction::must_stop(signal, next, line) || !keeps {
                 next.flags &= !Vehicle::GRANTED;
             }
-        } else if let Some(asking) = self.members.asking(line.junction, index)
+        } else if let Some(asking) = self.members.asking(line.zone, index)
             && self.members.grants(self.ways, asking, &steps[line.inside.0..line.inside.1])
         {
             next.flags |= Vehicle::GRANTED;
@@ -84,10 +115,18 @@ impl View<'_> {
         self.wait(line, signal, steps, next);
     }
 
+    /// Whether one that stands before the line with a grant has no room beyond the junction any more.
+    fn lost_room(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle) -> bool {
+        let (steps, driver) = (self.steps_of(plan), &self.drivers[index]);
+        let known = (self.map, self.ways, self.lists);
+        let waits = next.speed_mps < 0.1 && line.ahead_m > 0.0 && !line.passed;
+        waits && !has_room(known, plan, line, steps, index, driver, f32::MAX)
+    }
+
     fn wait(&self, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
         let stop = self.map.lanes[steps[line.approach].lane as usize].stop;
         let sign = stop.is_some_and(|stop| stop.kind == StopKind::Stop);
-        let at_line = line.ahead_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
+        let at_line = line.hold_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
         if at_line && (sign || signal == Signal::Open) {
             next.wait_ticks = next.wait_ticks.saturating_add(1);
         } else if !at_line {
@@ -98,19 +137,21 @@ impl View<'_> {
         }
     }
 
-    fn acceleration(&self, index: usize, plan: &Plan, next: &Vehicle) -> f32 {
+    fn acceleration(&self, index: usize, plan: &Plan, next: &Vehicle, seeker: &Seeker, side: Side) -> f32 {
         let driver = &self.drivers[index];
         let steps = self.steps_of(plan);
         let v = next.speed_mps;
-        let mut accel = self.free_acceleration(next, driver, steps);
+        let mut accel = self.free_acceleration(next, driver, steps).min(self.zip(index, steps, next, seeker.horizon_m));
         let mut follow = |gap_m: f32, speed_mps: f32| accel = accel.min(follow_idm(driver, v, gap_m, speed_mps));
         if let Some(leader) = plan.leader {
             follow(leader.gap_m, leader.speed_mps);
         }
-        let seeker = self.seeker(index, driver);
         for hazard in self.hazards {
-            if let Some((gap_m, speed_mps)) = in_way(self.map, steps, &seeker, hazard) {
-                follow(gap_m, speed_mps);
+            let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
+            let ahead_m = if hazard.stands() { seen.gap_m.max(0.0) } else { 0.0 };
+            let offset_m = side.after(seeker.offset_m, ahead_m);
+            if seen.blocks(offset_m, seeker.half.y) {
+                follow(seen.gap_m, seen.speed_mps);
             }
         }
         self.conflicts(index, plan, steps, next, &mut follow);
@@ -119,8 +160,8 @@ impl View<'_> {
         accel.min(stop).max(-EMERGENCY_MPS2)
     }
 
-    fn seeker(&self, index: usize, driver: &Driver) -> Seeker {
-        let vehicle = &self.vehicles[index];
+    pub(super) fn seeker(&self, index: usize) -> Seeker {
+        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
         Seeker {
             position: self.bodies[index].position,
             offset_m: vehicle.offset_m,
@@ -128,6 +169,15 @@ impl View<'_> {
             half: driver.size_m.truncate() * 0.5,
             horizon_m: plan::horizon_m(vehicle.speed_mps, driver),
         }
+    }
+
+    fn side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
+        let vehicle = &self.vehicles[index];
+        let lane = &self.map.lanes[vehicle.lane as usize];
+        let half_width_m = || lane.points[lane.segment(vehicle.s_m).0].half_width_m;
+        let likes_m = self.drivers[index].from_right_m.map_or(0.0, |m| (m - half_width_m()).min(0.0));
+        let aim_m = side(self.map, self.steps_of(plan), seeker, &self.hazards[..self.free], likes_m);
+        Side { aim_m, drift: if aim_m == likes_m { DRIFT } else { PASS_DRIFT } }
     }
 
     /// Acceleration on an empty road: the model's, and what curves and limits ahead ask for.
@@ -153,6 +203,8 @@ impl View<'_> {
     /// Distance from the front to the first place at which the vehicle must not go on, metres.
     fn wall(&self, plan: &Plan, steps: &[Step], next: &Vehicle, driver: &Driver) -> f32 {
         let front_m = driver.size_m.x * 0.5;
+        let crossing = next.flags & Vehicle::CROSSING != 0;
+        let heeds_waiting = !crossing && next.stuck_s < HEED_S;
         let mut wall_m = plan.dead_end_m.map_or(f32::MAX, |m| m - front_m - 1.0);
         if let Some(line) = plan.line.filter(|_| next.flags & Vehicle::GRANTED == 0) {
             wall_m = wall_m.min(line.ahead_m - LINE_MARGIN_M);
@@ -165,12 +217,21 @@ impl View<'_> {
                 }
                 let place = || self.map.lanes[step.lane as usize].straight_on(span.near_m);
                 let stoppable = plan::braking_needed(next.speed_mps, ahead_m + 0.3) < CROSSWALK_BRAKE_MPS2;
-                if stoppable && crosswalk::is_claimed(self.claims, span.crosswalk, place) {
+                if stoppable && crosswalk::is_claimed(self.claims, span.crosswalk, heeds_waiting, place) {
                     wall_m = ahead_m;
                 }
             }
         }
-        wall_m
+        if crossing { wall_m } else { self.clear_of_crosswalks(plan, steps, next, driver, wall_m) }
+    }
+
+    /// The same so that the vehicle stands on no crosswalk, behind its leader or before `wall_m`.
+    fn clear_of_crosswalks(&self, plan: &Plan, steps: &[Step], next: &Vehicle, driver: &Driver, wall_m: f32) -> f32 {
+        let behind = |leader: plan::Leader| leader.gap_m + stopping_m(leader.speed_mps) - driver.gap_m;
+        let stop_m = plan.leader.map_or(f32::MAX, behind).min(wall_m);
+        let clear_m = zebra::kept_clear(self.ways, steps, driver, stop_m);
+        let stoppable = plan::braking_needed(next.speed_mps, clear_m + 0.3) < CROSSWALK_BRAKE_MPS2;
+        if clear_m < stop_m && stoppable { clear_m } else { wall_m }
     }
 
     /// Follows or lets pass those inside the junction whose lanes conflict with this vehicle's.
@@ -213,7 +274,7 @@ impl View<'_> {
         (between_m > 0.0).then_some((between_m - entry.half_m - half_m, entry.speed_mps))
     }
 
-    fn advance(&self, index: usize, accel: f32, next: &mut Vehicle) {
+    fn advance(&self, index: usize, accel: f32, side: Side, next: &mut Vehicle) {
         let driver = &self.drivers[index];
         let was_braking = next.flags & Vehicle::BRAKING != 0;
         let before = next.speed_mps;
@@ -228,7 +289,7 @@ impl View<'_> {
         let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
         next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };
         self.change_lane(driver, next);
-        self.keep_side(driver, moved_m, next);
+        next.offset_m = side.after(next.offset_m, moved_m);
     }
 
     /// Takes the lanes that follow, and clears what belonged to the junction left behind.
@@ -238,38 +299,34 @@ impl View<'_> {
             if next.s_m < length_m {
                 break;
             }
-            let Some(lane) = next_lane(self.ways, self.seed, next, next.hops, next.lane) else {
+            let Some(onward) = next_lane(self.ways, self.seed, next, next.hops, next.lane) else {
                 next.s_m = length_m;
                 next.speed_mps = 0.0;
                 break;
             };
-            next.s_m -= length_m;
-            next.lane = lane;
+            // At the same place in the world, however the lanes join.
+            let at = self.map.lanes[next.lane as usize].straight_on(length_m).beside(next.offset_m);
+            let place = self.map.lanes[onward.lane as usize].straight_on(onward.at_m);
+            next.offset_m = (at - place.position).truncate().dot(place.left());
+            next.s_m += onward.at_m - length_m;
+            next.lane = onward.lane;
             next.hops = next.hops.wrapping_add(1);
-            if self.map.lanes[lane as usize].junction.is_some() {
+            if self.ways.lanes[next.lane as usize].zone.is_some() {
                 next.flags &= !(Vehicle::GRANTED | Vehicle::HALTED);
                 next.flags |= Vehicle::CROSSING;
                 next.wait_ticks = 0;
             }
         }
-        let outside = self.map.lanes[next.lane as usize].junction.is_none();
+        let outside = self.ways.lanes[next.lane as usize].zone.is_none();
         if outside && next.s_m > swept_half_m(driver.size_m) {
             next.flags &= !Vehicle::CROSSING;
         }
-    }
-
-    fn keep_side(&self, driver: &Driver, moved_m: f32, next: &mut Vehicle) {
-        let lane = &self.map.lanes[next.lane as usize];
-        let half_width_m = || lane.points[lane.segment(next.s_m).0].half_width_m;
-        let aim = driver.from_right_m.map_or(0.0, |m| (m - half_width_m()).min(0.0));
-        let step = 0.08 * moved_m;
-        next.offset_m += (aim - next.offset_m).clamp(-step, step);
     }
 }
 
 /// Acceleration behind somebody: the interaction part of the intelligent driver model; the caller
 /// takes the lesser of this and the free part, as IDM+ does (Schakel, van Arem and Netten 2010). m/s².
-fn follow_idm(driver: &Driver, speed_mps: f32, gap_m: f32, leader_mps: f32) -> f32 {
+pub(super) fn follow_idm(driver: &Driver, speed_mps: f32, gap_m: f32, leader_mps: f32) -> f32 {
     if gap_m < 0.3 {
         return -EMERGENCY_MPS2;
     }

@@ -7,7 +7,7 @@ use crate::geometry::direction;
 use crate::map_data::{MapData, Place};
 
 use super::body::{Body, Obstacle};
-use super::plan::Step;
+use super::step::Step;
 
 /// Nothing farther than this from the middle of the way matters, metres.
 const REACH_M: f32 = 6.5;
@@ -17,6 +17,10 @@ const CLEARANCE_M: f32 = 0.35;
 const WALKER_FORESIGHT_S: f32 = 2.5;
 /// The same for a vehicle.
 const VEHICLE_FORESIGHT_S: f32 = 0.8;
+/// What stands is passed from so far before it on, metres.
+const PASS_M: f32 = 35.0;
+/// Slower than this it stands, m/s.
+const STANDS_MPS: f32 = 0.5;
 /// Levels farther apart than this are different roads, metres.
 const LEVEL_M: f32 = 3.0;
 
@@ -55,6 +59,11 @@ impl Hazard {
         }
     }
 
+    /// Whether it is a vehicle that stands.
+    pub fn stands(&self) -> bool {
+        !self.walker && self.velocity.length_squared() < STANDS_MPS * STANDS_MPS
+    }
+
     /// Half of its extent along a horizontal unit vector, metres.
     fn half_along(&self, axis: Vec2) -> f32 {
         self.half.x * self.forward.dot(axis).abs() + self.half.y * self.forward.perp_dot(axis).abs()
@@ -72,9 +81,57 @@ pub(super) struct Seeker {
     pub horizon_m: f32,
 }
 
-/// Gap to a hazard in the way (bumper to its near side, metres) and its speed along the way (m/s);
-/// `None` when it is not in the way and does not step into it.
-pub(super) fn in_way(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -> Option<(f32, f32)> {
+/// A hazard as a vehicle sees it from its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sighted {
+    /// From the vehicle's bumper to its near side, metres; negative beside it.
+    pub gap_m: f32,
+    /// Its speed along the way, m/s.
+    pub speed_mps: f32,
+    /// Its middle is before the vehicle's.
+    pub ahead: bool,
+    /// Its middle to the left of that of the way, metres: least and greatest until the vehicle is there.
+    aside_m: [f32; 2],
+    /// Half of its extent across the way, metres.
+    half_m: f32,
+    /// Half of the way's width there, metres.
+    way_half_m: f32,
+}
+
+impl Sighted {
+    /// Whether it is in the way of a vehicle `offset_m` to the left of the middle, half as wide as `half_m`.
+    pub fn blocks(&self, offset_m: f32, half_m: f32) -> bool {
+        let reach_m = self.half_m + half_m + CLEARANCE_M;
+        self.ahead && self.aside_m[0] - offset_m < reach_m && self.aside_m[1] - offset_m > -reach_m
+    }
+
+    /// Where to pass it within the lane, if there is room: the place nearest to `offset_m`.
+    fn passed_at(&self, offset_m: f32, half_m: f32) -> Option<f32> {
+        let reach_m = self.half_m + half_m + CLEARANCE_M;
+        let room_m = self.way_half_m - half_m;
+        let sides = [self.aside_m[1] + reach_m, self.aside_m[0] - reach_m];
+        let free = sides.into_iter().filter(|m| m.abs() <= room_m);
+        free.min_by(|a, b| (a - offset_m).abs().total_cmp(&(b - offset_m).abs()))
+    }
+}
+
+/// Where across its way a vehicle drives that keeps to `offset_m` otherwise: it passes what stands in
+/// it, where its lane has the room.
+pub(super) fn side(map: &MapData, steps: &[Step], seeker: &Seeker, free: &[Hazard], offset_m: f32) -> f32 {
+    let mut aim_m = offset_m;
+    for hazard in free.iter().filter(|h| h.stands()) {
+        let seen = sight(map, steps, seeker, hazard).filter(|seen| seen.gap_m < PASS_M);
+        // Also beside it, until the tail has passed.
+        let beside = |seen: &Sighted| Sighted { ahead: true, ..*seen }.blocks(aim_m, seeker.half.y);
+        if let Some(seen) = seen.filter(beside) {
+            aim_m = seen.passed_at(seeker.offset_m, seeker.half.y).unwrap_or(aim_m);
+        }
+    }
+    aim_m
+}
+
+/// How a hazard lies to a vehicle's way; `None` where it does not come near it.
+pub(super) fn sight(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -> Option<Sighted> {
     let reach = seeker.horizon_m + REACH_M;
     let apart = hazard.position - seeker.position;
     if apart.truncate().length_squared() > reach * reach || apart.z.abs() > LEVEL_M + 0.15 * reach {
@@ -84,17 +141,24 @@ pub(super) fn in_way(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Ha
     let (forward, left) = (place.forward.truncate().normalize_or(Vec2::X), place.left());
     let offset = (hazard.position - place.position).truncate();
     let at_m = along_m + offset.dot(forward);
-    let gap_m = at_m - hazard.half_along(forward) - seeker.half.x;
-    if at_m <= 0.0 || (hazard.position.z - place.position.z).abs() > LEVEL_M {
+    let half_along_m = hazard.half_along(forward);
+    let gap_m = at_m - half_along_m - seeker.half.x;
+    let gone = at_m < -(half_along_m + seeker.half.x + CLEARANCE_M);
+    if gone || (hazard.position.z - place.position.z).abs() > LEVEL_M {
         return None;
     }
     let time_s = gap_m.max(0.0) / seeker.speed_mps.max(1.0);
     let foresight_s = time_s.min(if hazard.walker { WALKER_FORESIGHT_S } else { VEHICLE_FORESIGHT_S });
-    let now_m = offset.dot(left) - seeker.offset_m;
+    let now_m = offset.dot(left);
     let then_m = now_m + hazard.velocity.dot(left) * foresight_s;
-    let half_m = hazard.half_along(left) + seeker.half.y + CLEARANCE_M;
-    let in_way = now_m.min(then_m) < half_m && now_m.max(then_m) > -half_m;
-    in_way.then(|| (gap_m, hazard.velocity.dot(forward)))
+    Some(Sighted {
+        gap_m,
+        speed_mps: hazard.velocity.dot(forward),
+        ahead: at_m > 0.0,
+        aside_m: [now_m.min(then_m), now_m.max(then_m)],
+        half_m: hazard.half_along(left),
+        way_half_m: place.half_width_m,
+    })
 }
 
 /// The first place on the way at which the distance to the hazard is least, if that is within

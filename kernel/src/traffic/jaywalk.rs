@@ -5,9 +5,10 @@ use glam::{Vec2, Vec3};
 use crate::geometry::direction;
 use crate::map_data::{MapData, Prop, PropKind};
 use crate::rng::{Stream, bits, unit};
-use crate::time::{TICK_HZ, Tick};
+use crate::time::TICK_HZ;
 
-use super::body::Obstacle;
+use super::actors::Actors;
+use super::body::{Body, Obstacle, Surroundings};
 use super::traits::WalkerTraits;
 use super::walker::{Walker, WalkerMode};
 use super::ways::Ways;
@@ -22,6 +23,13 @@ const RUN_MPS: f32 = 2.8;
 const TRIES: usize = 8;
 /// Radius of a walker, metres.
 const WALKER_M: f32 = 0.35;
+/// Braking that jaywalkers expect of vehicles, m/s², and after which time, s.
+const BRAKE_MPS2: f32 = 3.5;
+const REACTION_S: f32 = 0.7;
+/// Distance that they keep from them, metres.
+const NEAR_M: f32 = 2.0;
+/// Places on their way that are looked at.
+const STRIDES: u32 = 8;
 /// Roads narrower or wider than this between the middles of the sidewalks are not crossed, metres.
 const ROAD_M: std::ops::Range<f32> = 4.0..32.0;
 
@@ -35,16 +43,10 @@ pub(super) struct Goal {
 }
 
 /// The walker who steps onto the road in this tick, if anybody does.
-pub(super) fn starter(
-    map: &MapData,
-    ways: &Ways,
-    seed: u64,
-    rate_per_min: f32,
-    tick: Tick,
-    walkers: &[Walker],
-    ego: &Obstacle,
-) -> Option<usize> {
-    if unit(seed, Stream::Jaywalk, 0, tick) >= rate_per_min / (60 * TICK_HZ) as f32 {
+pub(super) fn starter(actors: &Actors, around: &Surroundings<'_>) -> Option<usize> {
+    let (map, ways, walkers) = (actors.map(), &*actors.ways, &actors.state.walkers);
+    let (seed, tick, ego) = (actors.seed, around.tick, &around.ego);
+    if unit(seed, Stream::Jaywalk, 0, tick) >= actors.counts.jaywalks_per_min / (60 * TICK_HZ) as f32 {
         return None;
     }
     let seek_ego = unit(seed, Stream::Jaywalk, u64::MAX, tick) < BEFORE_EGO;
@@ -54,9 +56,32 @@ pub(super) fn starter(
         let far = !(seek_ego && is_before(ego, place));
         (far, bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
     };
-    let mut candidates: Vec<usize> = (0..walkers.len()).filter(|i| beside_road(map, &walkers[*i])).collect();
+    let may = |i: &usize| beside_road(map, &walkers[*i]) && !around.holds(walkers[*i].id);
+    let mut candidates: Vec<usize> = (0..walkers.len()).filter(may).collect();
     candidates.sort_by_cached_key(rank);
-    candidates.into_iter().take(TRIES).find(|i| can_cross(map, ways, &walkers[*i]))
+    candidates.into_iter().take(TRIES).find(|i| {
+        let way = way_across(map, ways, &walkers[*i]);
+        way.is_some_and(|[from, to]| is_free(map, from, to) && can_stop(actors, from, to))
+    })
+}
+
+/// Whether every vehicle in traffic can still stop before a way across the road. Of the ego car a
+/// jaywalker does not think.
+fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
+    let overruns = |body: &Body| {
+        let speed = body.velocity_mps.truncate().length();
+        let forward = (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X);
+        let half_m = body.kind.size_m().x * 0.5;
+        let stop_m = half_m + NEAR_M + speed * REACTION_S + speed * speed / (2.0 * BRAKE_MPS2);
+        let place = body.position.truncate();
+        (0..=STRIDES).any(|k| {
+            let way = from.lerp(to, k as f32 / STRIDES as f32) - place;
+            let (ahead_m, aside_m) = (way.dot(forward), forward.perp_dot(way).abs());
+            // Straight ahead, or anywhere around where its lane may bend to.
+            (aside_m < 3.0 && ahead_m > -half_m && ahead_m < stop_m) || way.length() < half_m + NEAR_M
+        })
+    };
+    !actors.bodies[..actors.state.vehicles.len()].iter().any(overruns)
 }
 
 fn beside_road(map: &MapData, walker: &Walker) -> bool {
@@ -81,14 +106,17 @@ fn is_before(ego: &Obstacle, place: Vec3) -> bool {
     ahead_m > 0.0 && aside_m < 14.0 && arrives_s > steps_s - 0.5 && arrives_s < steps_s + 1.5
 }
 
-fn can_cross(map: &MapData, ways: &Ways, walker: &Walker) -> bool {
+/// From where to where a walker would cross the road.
+fn way_across(map: &MapData, ways: &Ways, walker: &Walker) -> Option<[Vec2; 2]> {
     let start = Walker { forward: road_is_left(map, ways, walker), ..*walker };
-    goal(map, ways, &start).is_some_and(|goal| {
-        let place = ways.walker_place(&start);
-        let sign = if start.forward { 1.0 } else { -1.0 };
-        let (from, to) = (place.beside(start.offset_m), place.beside(sign * goal.distance_m));
-        !map.props.iter().any(|prop| touches(prop, from.truncate(), to.truncate()))
-    })
+    let goal = goal(map, ways, &start)?;
+    let place = ways.walker_place(&start);
+    let sign = if start.forward { 1.0 } else { -1.0 };
+    Some([place.beside(start.offset_m), place.beside(sign * goal.distance_m)].map(Vec3::truncate))
+}
+
+fn is_free(map: &MapData, from: Vec2, to: Vec2) -> bool {
+    !map.props.iter().any(|prop| touches(prop, from, to))
 }
 
 /// Whether the road beside a walker's edge lies to the left of it.

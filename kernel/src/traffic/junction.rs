@@ -12,29 +12,31 @@ use crate::map_data::{LaneId, MapData, StopKind};
 use crate::time::Tick;
 
 use super::lists::Lists;
-use super::plan::{Line, Plan, Step, braking_needed};
+use super::plan::{Line, Plan, braking_needed};
+use super::step::Step;
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 use super::ways::{ConflictKind, LaneConflict, Ways};
+use super::zebra;
 
 /// After this long at a line a vehicle goes before those that have the right of way.
 pub(super) const PATIENCE_TICKS: u16 = 240;
 /// Braking that a yellow light asks for at most, m/s².
-const YELLOW_BRAKE_MPS2: f32 = 3.0;
+const YELLOW_BRAKE_MPS2: f32 = 4.0;
 /// Braking within which a vehicle asks for its grant, m/s².
 const ASK_BRAKE_MPS2: f32 = 1.5;
 /// Distance from the line within which it asks at any speed, metres.
 const ASK_M: f32 = 8.0;
-/// Vehicles slower than this may come to a stand where they are, m/s.
-const SLOW_MPS: f32 = 2.5;
+/// Braking with which whoever is ahead is expected to come to a stand, m/s².
+const AHEAD_BRAKE_MPS2: f32 = 2.0;
 
 /// Half of the length up to which a vehicle turns within its lane, metres.
 const LONG_HALF_M: f32 = 2.5;
 
-/// Somebody in a junction, or before it.
+/// Somebody in a zone of junctions, or before it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Member {
-    pub junction: u32,
+    pub zone: u32,
     /// Index of the vehicle; [`EGO`] for the ego car.
     pub vehicle: u32,
     pub id: u16,
@@ -43,7 +45,7 @@ pub(super) struct Member {
     /// [`swept_half_m`] of it.
     pub half_m: f32,
     pub wait_ticks: u16,
-    /// Its lanes in this junction, a stretch of the list of [`Members`].
+    /// Its lanes in this zone, a stretch of the list of [`Members`].
     pub lanes: (u32, u32),
 }
 
@@ -57,7 +59,7 @@ pub(super) fn swept_half_m(size_m: Vec3) -> f32 {
 /// [`Member::vehicle`] of the ego car.
 pub(super) const EGO: u32 = u32::MAX;
 
-/// Everybody in or before a junction, by junction and id.
+/// Everybody in or before a junction, by zone and id.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Members {
     list: Vec<Member>,
@@ -77,12 +79,12 @@ impl Members {
     }
 
     pub fn sort(&mut self) {
-        self.list.sort_unstable_by_key(|m| (m.junction, m.id, m.holds));
+        self.list.sort_unstable_by_key(|m| (m.zone, m.id, m.holds));
     }
 
-    fn of(&self, junction: u32) -> &[Member] {
-        let first = self.list.partition_point(|m| m.junction < junction);
-        let count = self.list[first..].partition_point(|m| m.junction == junction);
+    fn of(&self, zone: u32) -> &[Member] {
+        let first = self.list.partition_point(|m| m.zone < zone);
+        let count = self.list[first..].partition_point(|m| m.zone == zone);
         &self.list[first..first + count]
     }
 
@@ -92,7 +94,7 @@ impl Members {
 
     /// Whether the one who asks may enter.
     pub fn grants(&self, ways: &Ways, asking: &Member, steps: &[Step]) -> bool {
-        let others = self.of(asking.junction).iter().filter(|m| m.vehicle != asking.vehicle);
+        let others = self.of(asking.zone).iter().filter(|m| m.vehicle != asking.vehicle);
         let keeps_out = |other: &Member| {
             steps.iter().any(|step| {
                 let conflicts = &ways.lanes[step.lane as usize].conflicts;
@@ -104,8 +106,8 @@ impl Members {
     }
 
     /// The member that asks for vehicle `index`, if it asks.
-    pub fn asking(&self, junction: u32, index: usize) -> Option<&Member> {
-        self.of(junction).iter().find(|m| m.vehicle as usize == index && !m.holds)
+    pub fn asking(&self, zone: u32, index: usize) -> Option<&Member> {
+        self.of(zone).iter().find(|m| m.vehicle as usize == index && !m.holds)
     }
 }
 
@@ -162,7 +164,7 @@ pub(super) fn signal(map: &MapData, lights: &[(LightPhase, Tick)], vehicle: &Veh
 /// Whether a vehicle is close enough to the line to ask; `spare_m` widens the distance.
 pub(super) fn near_enough(vehicle: &Vehicle, line: &Line, spare_m: f32) -> bool {
     let near_m = ASK_M + spare_m;
-    line.ahead_m < near_m || braking_needed(vehicle.speed_mps, line.ahead_m - near_m) > ASK_BRAKE_MPS2
+    line.hold_m < near_m || braking_needed(vehicle.speed_mps, line.hold_m - near_m) > ASK_BRAKE_MPS2
 }
 
 /// Whether a granted vehicle gives its grant back because the light has changed.
@@ -172,31 +174,39 @@ pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line) -> bool 
         _ if line.passed => false,
         Signal::Open => false,
         Signal::Closing => needed < YELLOW_BRAKE_MPS2,
-        Signal::Closed => needed < 2.0 * YELLOW_BRAKE_MPS2,
+        Signal::Closed => needed < 1.5 * YELLOW_BRAKE_MPS2,
     }
 }
 
-/// Whether the way out of the junction has room for the vehicle behind everyone who is before it.
+/// How far a vehicle gets until it stands, metres.
+pub(super) fn stopping_m(speed_mps: f32) -> f32 {
+    speed_mps * speed_mps / (2.0 * AHEAD_BRAKE_MPS2)
+}
+
+/// Whether the way out of the junction has room for the vehicle behind everyone who is before it,
+/// wherever they come to a stand; `stands_m` is where something stands in its way, from its middle.
 pub(super) fn has_room(
-    map: &MapData,
-    lists: &Lists,
+    view: (&MapData, &Ways, &Lists),
     plan: &Plan,
     line: &Line,
     steps: &[Step],
     index: usize,
     driver: &Driver,
+    stands_m: f32,
 ) -> bool {
+    let (map, ways, lists) = view;
     let last = steps[line.inside.1 - 1];
     let end_m = last.start_m + map.lanes[last.lane as usize].length_m;
+    let end_m = zebra::beyond(ways, &steps[line.inside.1..], driver, end_m);
     let mut needed_m = driver.size_m.x + driver.gap_m;
     for step in &steps[line.approach..] {
         for entry in lists.on(step.lane) {
             let at_m = step.start_m + entry.s_m;
-            if entry.vehicle as usize == index || at_m <= 0.0 {
+            if entry.vehicle as usize == index || at_m <= 0.0 || (entry.s_m < step.from_m && step.from_m > 0.0) {
                 continue;
             }
             if at_m - entry.half_m > end_m {
-                return entry.speed_mps > SLOW_MPS || at_m - entry.half_m - end_m > needed_m;
+                return (at_m - entry.half_m + stopping_m(entry.speed_mps)).min(stands_m) - end_m > needed_m;
             }
             if entry.speed_mps < 0.5 {
                 return false;
@@ -204,5 +214,5 @@ pub(super) fn has_room(
             needed_m += 2.0 * entry.half_m + driver.gap_m;
         }
     }
-    plan.dead_end_m.is_none_or(|m| m - end_m > needed_m)
+    plan.dead_end_m.unwrap_or(f32::MAX).min(stands_m) - end_m > needed_m
 }

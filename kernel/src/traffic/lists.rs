@@ -2,6 +2,7 @@
 
 use crate::map_data::{LaneId, MapData};
 
+use super::links::Onward;
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
@@ -38,7 +39,7 @@ impl Lists {
         map: &MapData,
         vehicles: &[Vehicle],
         drivers: &[Driver],
-        next_lane: impl Fn(&Vehicle) -> Option<LaneId>,
+        next_lane: impl Fn(&Vehicle) -> Option<Onward>,
         present: impl Fn(u16) -> bool,
     ) {
         for entry in self.entries.drain(..) {
@@ -67,7 +68,7 @@ impl Lists {
         index: usize,
         vehicle: &Vehicle,
         half_m: f32,
-        next_lane: &impl Fn(&Vehicle) -> Option<LaneId>,
+        next_lane: &impl Fn(&Vehicle) -> Option<Onward>,
     ) {
         let lane = &map.lanes[vehicle.lane as usize];
         let entry = Entry {
@@ -86,9 +87,8 @@ impl Lists {
             }
         }
         if vehicle.s_m + half_m > lane.length_m {
-            let ahead =
-                next_lane(vehicle).map(|lane_id| Entry { lane: lane_id, s_m: vehicle.s_m - lane.length_m, ..entry });
-            self.entries.extend(ahead);
+            let reach = |next: Onward| Entry { lane: next.lane, s_m: vehicle.s_m - lane.length_m + next.at_m, ..entry };
+            self.entries.extend(next_lane(vehicle).map(reach));
         }
     }
 }

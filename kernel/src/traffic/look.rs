@@ -1,26 +1,29 @@
 //! What everybody sees in a tick, gathered once for all.
 
-use crate::map_data::{LaneKind, StopKind};
+use crate::map_data::{LaneKind, Place, Projection, StopKind};
 use crate::signals::{self, LightPhase};
 use crate::time::Tick;
 
 use super::actors::Actors;
 use super::body::Surroundings;
 use super::crosswalk::{Claim, Gaps};
+use super::crowd::Crowd;
 use super::drive::View;
-use super::edge_lists::EdgeLists;
-use super::hazard::Hazard;
+use super::hazard::{Hazard, Seeker, side, sight};
 use super::jaywalk;
 use super::junction::{self, EGO, Member, Members, Signal, swept_half_m};
 use super::lists::Lists;
-use super::plan::{self, Line, Plan, Step, next_lane};
+use super::plan::{self, Line, Plan, next_lane};
 use super::state::TrafficState;
+use super::step::Step;
 use super::vehicle::Vehicle;
 use super::walk::{Streets, wanted_crosswalk};
 use super::walker::{Walker, WalkerMode};
 
 /// The ego car is expected at a junction that it reaches within this time, s.
 const EGO_EXPECTED_S: f32 = 4.0;
+/// Before it asks for a junction a vehicle looks this far for what stands in its way, metres.
+const STANDING_M: f32 = 60.0;
 /// Slower than this it lets others go, m/s.
 const EGO_WAITS_MPS: f32 = 1.0;
 
@@ -28,6 +31,7 @@ const EGO_WAITS_MPS: f32 = 1.0;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sight {
     pub next: TrafficState,
+    pub places: Vec<Place>,
     lights: Vec<(LightPhase, Tick)>,
     lists: Lists,
     steps: Vec<Step>,
@@ -39,27 +43,28 @@ pub(super) struct Sight {
     /// Vehicles, the ego car and loose actors.
     blocks: Vec<Hazard>,
     claims: Vec<Claim>,
-    edges: EdgeLists,
+    crowd: Crowd,
     jaywalker: Option<usize>,
+    tick: Tick,
 }
 
 impl Sight {
     /// Looks at the state of the previous tick.
     pub fn look(&mut self, actors: &Actors, around: &Surroundings<'_>) {
         let map = actors.map();
+        self.tick = around.tick;
         let groups = 0..map.light_groups.len() as u32;
         self.lights.clear();
         self.lights.extend(groups.map(|g| signals::phase(map, actors.seed, g, around.tick)));
         let next = |v: &Vehicle| next_lane(&actors.ways, actors.seed, v, v.hops, v.lane);
         let vehicles = &actors.state.vehicles;
         self.lists.rebuild(map, vehicles, &actors.drivers, next, |id| !around.holds(id));
-        self.edges.rebuild(&actors.state.walkers);
+        let people = &actors.bodies[actors.state.vehicles.len()..];
+        self.crowd.rebuild(people, |id| !around.holds(id as u16));
         self.plan(actors);
         self.gather_hazards(actors, around);
         self.gather_members(actors, around);
-        let walkers = &actors.state.walkers;
-        let rate = actors.jaywalks_per_min;
-        self.jaywalker = jaywalk::starter(map, &actors.ways, actors.seed, rate, around.tick, walkers, &around.ego);
+        self.jaywalker = jaywalk::starter(actors, around);
     }
 
     pub fn view<'a>(&'a self, actors: &'a Actors) -> View<'a> {
@@ -76,7 +81,9 @@ impl Sight {
             lists: &self.lists,
             members: &self.members,
             hazards: &self.hazards,
+            free: self.free,
             claims: &self.claims,
+            tick: self.tick,
         }
     }
 
@@ -87,18 +94,24 @@ impl Sight {
             seed: actors.seed,
             walkers: &actors.state.walkers,
             walker_traits: &actors.walker_traits,
+            places: &actors.places,
             bodies: &actors.bodies[actors.state.vehicles.len()..],
-            lists: &self.edges,
-            gaps: Gaps {
-                map: actors.map(),
-                ways: &actors.ways,
-                seed: actors.seed,
-                lists: &self.lists,
-                lights: &self.lights,
-                free: &self.hazards[..self.free],
-            },
+            crowd: &self.crowd,
+            gaps: self.gaps(actors),
             blocks: &self.blocks,
+            tick: self.tick,
             jaywalker: self.jaywalker,
+        }
+    }
+
+    fn gaps<'a>(&'a self, actors: &'a Actors) -> Gaps<'a> {
+        Gaps {
+            map: actors.map(),
+            ways: &actors.ways,
+            seed: actors.seed,
+            lists: &self.lists,
+            lights: &self.lights,
+            free: &self.hazards[..self.free],
         }
     }
 
@@ -143,10 +156,11 @@ impl Sight {
         self.claims.sort_unstable_by_key(|c| c.crosswalk);
     }
 
-    /// The crosswalk without lights at which a walker waits.
+    /// The crosswalk without lights at which a walker waits, if it could go when vehicles stopped.
     fn wanted_unlit_crosswalk(&self, actors: &Actors, walker: &Walker) -> Option<u32> {
         let wanted = wanted_crosswalk(actors.map(), actors.seed, walker);
-        wanted.filter(|c| actors.ways.crosswalk_lights[*c as usize].is_empty())
+        let unlit = wanted.filter(|c| actors.ways.crosswalk_lights[*c as usize].is_empty());
+        unlit.filter(|c| !self.gaps(actors).is_blocked(*c))
     }
 
     fn gather_members(&mut self, actors: &Actors, around: &Surroundings<'_>) {
@@ -172,20 +186,18 @@ impl Sight {
         if vehicle.flags & Vehicle::CROSSING == 0 {
             return;
         }
-        let lanes = &actors.map().lanes;
-        let lane = &lanes[vehicle.lane as usize];
+        let (lanes, ways) = (&actors.map().lanes, &actors.ways.lanes);
         let reaches_back = vehicle.s_m < half_m;
-        let behind = lane
-            .predecessors
-            .iter()
-            .filter(|_| reaches_back)
-            .map(|&before| Step { lane: before, start_m: -vehicle.s_m - lanes[before as usize].length_m });
-        let inside = |step: &Step| lanes[step.lane as usize].junction;
-        let junction = lane.junction.or_else(|| behind.clone().find_map(|s| inside(&s)));
-        let Some(junction) = junction else { return };
-        let here = self.steps_of(&self.plans[i]).iter().copied().take_while(|s| inside(s) == Some(junction));
-        let member = member(actors, i, junction, true);
-        members.push(member, here.chain(behind.filter(|s| inside(s) == Some(junction))));
+        let behind = lanes[vehicle.lane as usize].predecessors.iter().filter(|_| reaches_back).map(|&before| {
+            let start_m = -vehicle.s_m - lanes[before as usize].length_m;
+            Step { lane: before, start_m, from_m: 0.0 }
+        });
+        let inside = |step: &Step| ways[step.lane as usize].zone;
+        let zone = ways[vehicle.lane as usize].zone.or_else(|| behind.clone().find_map(|s| inside(&s)));
+        let Some(zone) = zone else { return };
+        let here = self.steps_of(&self.plans[i]).iter().copied().take_while(|s| inside(s) == Some(zone));
+        let member = member(actors, i, zone, true);
+        members.push(member, here.chain(behind.filter(|s| inside(s) == Some(zone))));
     }
 
     fn add_before_junction(&self, actors: &Actors, i: usize, members: &mut Members) {
@@ -194,7 +206,7 @@ impl Sight {
         let granted = actors.state.vehicles[i].flags & Vehicle::GRANTED != 0;
         if granted || self.asks(actors, i, plan, line) {
             let inside = &self.steps_of(plan)[line.inside.0..line.inside.1];
-            members.push(member(actors, i, line.junction, granted), inside.iter().copied());
+            members.push(member(actors, i, line.zone, granted), inside.iter().copied());
         }
     }
 
@@ -206,9 +218,22 @@ impl Sight {
             let ahead = &actors.state.vehicles[leader.vehicle as usize];
             leader.gap_m > line.ahead_m || ahead.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0
         });
-        let driver = &actors.drivers[i];
-        let near = junction::near_enough(vehicle, line, 0.0);
-        near && open && free && junction::has_room(map, &self.lists, plan, line, steps, i, driver)
+        let known = (map, &*actors.ways, &self.lists);
+        let room =
+            || junction::has_room(known, plan, line, steps, i, &actors.drivers[i], self.standing_m(actors, i, steps));
+        junction::near_enough(vehicle, line, 0.0) && open && free && room()
+    }
+
+    /// From a vehicle's middle to the nearest thing that stands in its way and cannot be passed, metres.
+    fn standing_m(&self, actors: &Actors, i: usize, steps: &[Step]) -> f32 {
+        let half = actors.drivers[i].size_m.truncate() * 0.5;
+        let (position, offset_m) = (actors.bodies[i].position, actors.state.vehicles[i].offset_m);
+        let seeker = Seeker { position, offset_m, speed_mps: 0.0, half, horizon_m: STANDING_M };
+        let free = &self.hazards[..self.free];
+        let aim_m = side(actors.map(), steps, &seeker, free, offset_m);
+        let seen = free.iter().filter(|h| h.stands()).filter_map(|h| sight(actors.map(), steps, &seeker, h));
+        let blocking = seen.filter(|seen| seen.blocks(aim_m, half.y));
+        blocking.map(|seen| seen.gap_m + half.x).fold(f32::MAX, f32::min)
     }
 
     /// The ego car counts as crossing where it is, and as asking for every way it may take.
@@ -222,13 +247,12 @@ impl Sight {
         let Some(place) = place else { return };
         let lane = &map.lanes[place.lane as usize];
         let half_m = ego.size_m.x * 0.5;
-        let member =
-            |junction, holds| Member { junction, vehicle: EGO, id: 0, holds, half_m, wait_ticks: 0, lanes: (0, 0) };
-        if let Some(junction) = lane.junction {
+        let member = |zone, holds| Member { zone, vehicle: EGO, id: 0, holds, half_m, wait_ticks: 0, lanes: (0, 0) };
+        if let (Some(junction), Some(zone)) = (lane.junction, actors.ways.lanes[place.lane as usize].zone) {
             let near = |id: &u32| map.project(*id, ego.position);
             let lanes = map.junctions[junction as usize].lanes.iter().map(near);
-            let here = lanes.filter(|p| p.distance_m < 1.8).map(|p| Step { lane: p.lane, start_m: -p.s_m });
-            members.push(member(junction, true), here);
+            let step = |p: Projection| Step { lane: p.lane, start_m: -p.s_m, from_m: 0.0 };
+            members.push(member(zone, true), lanes.filter(|p| p.distance_m < 1.8).map(step));
             return;
         }
         let ahead_m = lane.length_m - place.s_m;
@@ -237,17 +261,18 @@ impl Sight {
             Some(StopKind::Light(group)) => self.lights[group as usize].0 == LightPhase::Red,
             _ => false,
         };
-        let ways = actors.ways.lanes[place.lane as usize].onward.iter();
-        let next = ways.filter_map(|id| Some((*id, map.lanes[*id as usize].junction?)));
-        let lanes = next.clone().map(|(lane, _)| Step { lane, start_m: ahead_m });
-        if let Some((_, junction)) = next.clone().next().filter(|_| expected && !closed) {
-            members.push(member(junction, false), lanes);
+        let ways = &actors.ways.lanes;
+        let next = ways[place.lane as usize].onward.iter();
+        let next = next.filter_map(|onward| Some((onward.lane, ways[onward.lane as usize].zone?)));
+        let lanes = next.clone().map(|(lane, _)| Step { lane, start_m: ahead_m, from_m: 0.0 });
+        if let Some((_, zone)) = next.clone().next().filter(|_| expected && !closed) {
+            members.push(member(zone, false), lanes);
         }
     }
 }
 
-fn member(actors: &Actors, i: usize, junction: u32, holds: bool) -> Member {
+fn member(actors: &Actors, i: usize, zone: u32, holds: bool) -> Member {
     let vehicle = &actors.state.vehicles[i];
     let half_m = swept_half_m(actors.drivers[i].size_m);
-    Member { junction, vehicle: i as u32, id: vehicle.id, holds, half_m, wait_ticks: vehicle.wait_ticks, lanes: (0, 0) }
+    Member { zone, vehicle: i as u32, id: vehicle.id, holds, half_m, wait_ticks: vehicle.wait_ticks, lanes: (0, 0) }
 }

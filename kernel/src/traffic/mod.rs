@@ -7,38 +7,50 @@
 
 mod actors;
 mod body;
+mod company;
 mod counts;
 mod crosswalk;
+mod crowd;
 mod drive;
-mod edge_lists;
 mod hazard;
 mod jaywalk;
 mod junction;
+mod links;
 mod lists;
 mod look;
+mod meets;
+mod passage;
 mod plan;
 mod poses;
 mod spawn;
 mod state;
+mod step;
 mod traits;
 mod vehicle;
 mod walk;
 mod walker;
+mod watchdog;
 mod ways;
+mod zebra;
+mod zipper;
+mod zones;
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::actor::ActorKind;
+use crate::events::EventKind;
 use actors::Actors;
 use look::Sight;
+use passage::Told;
 
 pub use body::{Body, Obstacle, Surroundings};
-pub use counts::TrafficCounts;
+pub use counts::{Missing, TrafficCounts};
 pub use state::TrafficState;
 pub use vehicle::Vehicle;
 pub use walker::{Walker, WalkerMode};
-pub(crate) use ways::Ways;
+pub use ways::Ways;
 
 /// All traffic of a world: its state, and what is derived from it and the map.
 #[derive(Clone, Debug)]
@@ -46,12 +58,14 @@ pub struct Traffic {
     actors: Actors,
     /// Memory for the next step; holds nothing between steps.
     sight: Sight,
+    /// What the watchdog found in the last step.
+    told: Vec<Told>,
 }
 
 impl Traffic {
     /// Fills a map with the actors that are asked for, none inside another or within 20 m of
-    /// `ego_start`; fewer where the map has no room (compare [`Traffic::bodies`] with `counts`).
-    pub(crate) fn spawn(counts: &TrafficCounts, seed: u64, ways: &Arc<Ways>, ego_start: Vec3) -> Self {
+    /// `ego_start`; fewer where the map has no room ([`Traffic::missing`] says so).
+    pub fn spawn(counts: &TrafficCounts, seed: u64, ways: &Arc<Ways>, ego_start: Vec3) -> Self {
         Self::with(counts, seed, ways, spawn::spawn(counts, seed, ways, ego_start))
     }
 
@@ -68,9 +82,8 @@ impl Traffic {
     }
 
     fn with(counts: &TrafficCounts, seed: u64, ways: &Arc<Ways>, state: TrafficState) -> Self {
-        let mut actors = Actors::new(counts, seed, ways, state);
-        actors.place_bodies();
-        Self { actors, sight: Sight::default() }
+        let actors = Actors::new(counts, seed, ways, state);
+        Self { actors, sight: Sight::default(), told: Vec::new() }
     }
 
     /// The steering state, for hashing and keyframes.
@@ -84,20 +97,40 @@ impl Traffic {
         &self.actors.bodies
     }
 
+    /// Who was asked for and found no room.
+    pub fn missing(&self) -> Missing {
+        let TrafficState { vehicles, walkers } = self.state();
+        let walkers = walkers.iter().map(|_| ActorKind::Pedestrian);
+        self.actors.counts.missing(vehicles.iter().map(|v| v.kind).chain(walkers))
+    }
+
+    /// What the watchdog found in the last step, each with the id of a vehicle: [`EventKind::Stuck`] and
+    /// [`EventKind::Dissolved`].
+    pub fn told(&self) -> &[(EventKind, u32)] {
+        &self.told
+    }
+
     /// Advances everyone by one tick.
     pub fn step(&mut self, surroundings: &Surroundings<'_>) {
-        let Self { actors, sight } = self;
+        let Self { actors, sight, told } = self;
+        told.clear();
         sight.look(actors, surroundings);
-        let mut next = std::mem::take(&mut sight.next);
+        let (mut next, mut places) = (std::mem::take(&mut sight.next), std::mem::take(&mut sight.places));
+        places.clear();
         next.vehicles.clear();
         next.walkers.clear();
         let (view, streets) = (sight.view(actors), sight.streets(actors));
         let driven = |i: usize, v: &Vehicle| if surroundings.holds(v.id) { *v } else { view.drive(i) };
         next.vehicles.extend(actors.state.vehicles.iter().enumerate().map(|(i, v)| driven(i, v)));
-        let walked = |i: usize, w: &Walker| if surroundings.holds(w.id) { *w } else { streets.walk(i) };
-        next.walkers.extend(actors.state.walkers.iter().enumerate().map(|(i, w)| walked(i, w)));
+        for (i, walker) in actors.state.walkers.iter().enumerate() {
+            let held = surroundings.holds(walker.id);
+            let (walker, place) = if held { (*walker, actors.places[i]) } else { streets.walk(i) };
+            next.walkers.push(walker);
+            places.push(place);
+        }
         sight.next = std::mem::replace(&mut actors.state, next);
-        actors.return_to_map(surroundings);
+        sight.places = std::mem::replace(&mut actors.places, places);
+        actors.return_to_map(surroundings, told);
         actors.place_bodies();
     }
 }

@@ -5,10 +5,13 @@ use crate::map_data::{Lane, LaneId, MapData};
 use crate::ops;
 use crate::rng::{self, Stream};
 
-use super::lists::Lists;
+use super::links::Onward;
+use super::lists::{Entry, Lists};
+use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 use super::ways::Ways;
+use super::zebra;
 
 /// Braking that the look-ahead distance allows for, m/s².
 const LOOK_BRAKE_MPS2: f32 = 2.0;
@@ -17,21 +20,15 @@ const BEYOND_JUNCTION_M: f32 = 20.0;
 /// Most lanes of a plan.
 const MAX_STEPS: usize = 24;
 
-/// A lane of a plan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step {
-    pub lane: LaneId,
-    /// From the vehicle's middle to the start of the lane, metres; negative for the lane it is on.
-    pub start_m: f32,
-}
-
 /// The line before the next junction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
-    /// Index of the junction.
-    pub junction: u32,
+    /// The zone of the junction.
+    pub zone: u32,
     /// From the vehicle's front to the line, metres; negative when it reaches over it.
     pub ahead_m: f32,
+    /// The same to where it waits: before a crosswalk where there is no room between that and the line.
+    pub hold_m: f32,
     /// Whether the front is over the marked line already; the vehicle may still stop where the
     /// junction begins.
     pub passed: bool,
@@ -57,12 +54,12 @@ pub(super) struct Plan {
     pub steps: (u32, u32),
     pub line: Option<Line>,
     pub leader: Option<Leader>,
-    /// From the vehicle's middle to where its lane ends without a successor, metres.
+    /// From the vehicle's middle to where it can go no further, metres.
     pub dead_end_m: Option<f32>,
 }
 
-/// The lane a vehicle takes after `lane`, when it has entered `hops` lanes.
-pub(super) fn next_lane(ways: &Ways, seed: u64, vehicle: &Vehicle, hops: u16, lane: LaneId) -> Option<LaneId> {
+/// Where a vehicle goes on after `lane`, when it has entered `hops` lanes.
+pub(super) fn next_lane(ways: &Ways, seed: u64, vehicle: &Vehicle, hops: u16, lane: LaneId) -> Option<Onward> {
     let way = &ways.lanes[lane as usize];
     let long = matches!(vehicle.kind, ActorKind::Bus | ActorKind::Truck);
     match if long { &way.onward_wide } else { &way.onward }.as_slice() {
@@ -73,6 +70,11 @@ pub(super) fn next_lane(ways: &Ways, seed: u64, vehicle: &Vehicle, hops: u16, la
             Some(many[pick as usize])
         }
     }
+}
+
+/// Where a lane ends from which no way goes on, metres from its start: at its stop line if it has one.
+pub(super) fn way_end_m(lane: &Lane) -> f32 {
+    lane.stop.map_or(lane.length_m, |stop| stop.s_m)
 }
 
 /// How far a vehicle looks ahead, metres.
@@ -92,22 +94,22 @@ pub(super) fn plan(
     let first = out.len();
     let horizon = horizon_m(vehicle.speed_mps, driver);
     let mut plan = Plan::default();
-    let mut step = Step { lane: vehicle.lane, start_m: -vehicle.s_m };
+    let mut step = Step { lane: vehicle.lane, start_m: -vehicle.s_m, from_m: 0.0 };
     let mut beyond_m = f32::NEG_INFINITY;
     for k in 0..MAX_STEPS {
         out.push(step);
         let lane = &map.lanes[step.lane as usize];
         let end_m = step.start_m + lane.length_m;
         let Some(next) = next_lane(ways, seed, vehicle, vehicle.hops.wrapping_add(k as u16), step.lane) else {
-            plan.dead_end_m = Some(end_m);
+            plan.dead_end_m = Some(step.start_m + way_end_m(lane));
             break;
         };
-        let junction = map.lanes[next as usize].junction;
+        let zone = ways.lanes[next.lane as usize].zone;
         match &mut plan.line {
-            None if junction != lane.junction && junction.is_some() => {
-                plan.line = Some(line(lane, junction.unwrap_or(0), end_m, driver, k));
+            None if zone != ways.lanes[step.lane as usize].zone && zone.is_some() => {
+                plan.line = Some(line(lane, zone.unwrap_or(0), end_m, driver, k));
             }
-            Some(line) if line.inside.1 == k + 1 && junction == Some(line.junction) => line.inside.1 += 1,
+            Some(line) if line.inside.1 == k + 1 && zone == Some(line.zone) => line.inside.1 += 1,
             Some(line) if line.inside.1 == k + 1 => beyond_m = end_m + BEYOND_JUNCTION_M,
             _ => {}
         }
@@ -115,26 +117,32 @@ pub(super) fn plan(
         if end_m > horizon.max(beyond_m) && !undecided {
             break;
         }
-        step = Step { lane: next, start_m: end_m };
+        step = Step { lane: next.lane, start_m: end_m - next.at_m, from_m: next.at_m };
     }
     plan.steps = (first as u32, out.len() as u32);
     let count = out.len() - first;
     plan.line = plan.line.filter(|line| line.inside.1 <= count);
+    if let Some(line) = &mut plan.line {
+        let hold_m = zebra::kept_clear(ways, &out[first..], driver, line.ahead_m - LINE_MARGIN_M);
+        line.hold_m = line.ahead_m.min(hold_m + LINE_MARGIN_M);
+    }
     plan
 }
 
-fn line(lane: &Lane, junction: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
+fn line(lane: &Lane, zone: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
     let front_m = driver.size_m.x * 0.5;
     let marked = lane.stop.map(|stop| end_m - lane.length_m + stop.s_m - front_m);
     let passed = marked.is_some_and(|m| m < -1.0);
     let ahead_m = marked.filter(|_| !passed).unwrap_or(end_m - front_m);
-    Line { junction, ahead_m, passed, approach: k, inside: (k + 1, k + 2) }
+    Line { zone, ahead_m, hold_m: ahead_m, passed, approach: k, inside: (k + 1, k + 2) }
 }
 
 /// The nearest vehicle ahead on the planned way.
 pub(super) fn leader(lists: &Lists, steps: &[Step], index: usize, driver: &Driver, horizon_m: f32) -> Option<Leader> {
     for step in steps.iter().take_while(|step| step.start_m < horizon_m) {
-        let ahead = lists.on(step.lane).iter().find(|e| e.vehicle as usize != index && step.start_m + e.s_m > 0.0);
+        // Whoever is beside the place where this vehicle joins the lane is for `zipper` to settle.
+        let is_ahead = |e: &&Entry| step.start_m + e.s_m > 0.0 && (e.s_m >= step.from_m || step.from_m == 0.0);
+        let ahead = lists.on(step.lane).iter().find(|e| e.vehicle as usize != index && is_ahead(e));
         if let Some(entry) = ahead {
             let gap_m = step.start_m + entry.s_m - entry.half_m - driver.size_m.x * 0.5;
             return Some(Leader { vehicle: entry.vehicle, gap_m, speed_mps: entry.speed_mps });

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::actor::ActorKind;
+use crate::geometry::rectangles_overlap;
 use crate::map_data::{LaneKind, MapData};
 use crate::ops;
 use crate::rng::{Stream, bits, unit};
@@ -17,12 +18,20 @@ use super::ways::Ways;
 
 /// Nobody starts nearer to the ego car than this, metres.
 pub(super) const EGO_CLEARANCE_M: f32 = 20.0;
-/// Free space around a vehicle at its start, metres.
-const VEHICLE_SPACE_M: f32 = 6.0;
-/// Free space around a walker, metres.
-const WALKER_SPACE_M: f32 = 0.9;
-/// Places that are tried for each actor.
+/// Free space around a vehicle at its start, along its lane and across, metres.
+const VEHICLE_SPACE_M: Vec2 = Vec2::new(1.5, 0.3);
+/// Free space around a person, metres.
+const WALKER_SPACE_M: Vec2 = Vec2::splat(0.2);
+/// Places that are drawn for each actor.
 const TRIES: u64 = 40;
+/// Who finds none of these free looks all over the map, at places so far apart, metres.
+const SEARCH_M: f32 = 2.5;
+/// Half the extent of a person, metres.
+const WALKER_M: f32 = 0.25;
+/// Half the width of a lane that is wide enough to start on, metres.
+const LEAST_HALF_M: f32 = 1.2;
+/// Speed at the start of who had to look for a place, m/s.
+const CROWDED_MPS: f32 = 2.0;
 /// Highest speed at the start, m/s.
 const START_MPS: f32 = 6.0;
 /// Of 100 cars so many are lorries, and so many buses.
@@ -53,6 +62,33 @@ fn pick(stretches: &[Stretch], t: f32) -> (u32, f32) {
     (stretch.index, (at_m - (stretch.end_m - stretch.length_m)).clamp(0.0, stretch.length_m))
 }
 
+/// Tries all places, as far apart as a search looks, from a random one on.
+fn search(stretches: &[Stretch], from: f32, mut fits: impl FnMut((u32, f32)) -> bool) -> bool {
+    let total_m = stretches.last().map_or(0.0, |s| s.end_m);
+    let count = (total_m / SEARCH_M) as u32 + 1;
+    (0..count).any(|k| {
+        let t = from + k as f32 / count as f32;
+        fits(pick(stretches, if t < 1.0 { t } else { t - 1.0 }))
+    })
+}
+
+/// A place that is taken: a box on the ground with the free space around it.
+struct Taken {
+    middle: Vec2,
+    forward: Vec2,
+    half: Vec2,
+}
+
+impl Taken {
+    fn meets(&self, other: &Self) -> bool {
+        let to = other.middle - self.middle;
+        let reach_m = self.half.length() + other.half.length();
+        let turned = |v: Vec2| Vec2::new(v.dot(self.forward), self.forward.perp_dot(v));
+        let near = to.length_squared() < reach_m * reach_m;
+        near && rectangles_overlap(self.half, turned(to), turned(other.forward), other.half)
+    }
+}
+
 /// Everybody who is asked for, as far as the map has room.
 pub(super) fn spawn(counts: &TrafficCounts, seed: u64, ways: &Ways, ego: Vec3) -> TrafficState {
     let (map, ego) = (&*ways.places.map, ego.truncate());
@@ -68,8 +104,7 @@ struct Spawner<'a> {
     map: &'a MapData,
     ways: &'a Ways,
     ego: Vec2,
-    /// Places taken, with the free radius around each.
-    taken: Vec<(Vec2, f32)>,
+    taken: Vec<Taken>,
     state: TrafficState,
 }
 
@@ -78,18 +113,18 @@ impl Spawner<'_> {
         (self.state.vehicles.len() + self.state.walkers.len() + 1) as u16
     }
 
-    fn take(&mut self, at: Vec2, radius_m: f32) -> bool {
-        let free = self.taken.iter().all(|(other, r)| other.distance(at) > radius_m + r);
-        let clear = self.ego.distance(at) > EGO_CLEARANCE_M + radius_m;
+    fn take(&mut self, place: Taken) -> bool {
+        let free = self.taken.iter().all(|other| !other.meets(&place));
+        let clear = self.ego.distance(place.middle) > EGO_CLEARANCE_M + place.half.length();
         if free && clear {
-            self.taken.push((at, radius_m));
+            self.taken.push(place);
         }
         free && clear
     }
 
     fn vehicles(&mut self) {
         let lanes = self.map.lanes.iter().enumerate();
-        let usable = lanes.filter(|(_, l)| l.kind == LaneKind::Driving && l.junction.is_none() && l.length_m > 20.0);
+        let usable = lanes.filter(|(_, l)| l.kind == LaneKind::Driving && l.junction.is_none() && l.length_m > 10.0);
         let stretches = stretches(usable.map(|(i, l)| (i as u32, l.length_m)));
         if stretches.is_empty() {
             return;
@@ -101,13 +136,18 @@ impl Spawner<'_> {
             (counts.bicycles, ActorKind::Bicycle),
         ];
         let wanted = kinds.into_iter().flat_map(|(count, kind)| (0..count).map(move |_| kind));
+        // Kinds for which there is no room any more.
+        let mut full: Vec<ActorKind> = Vec::new();
         for (number, kind) in wanted.enumerate() {
-            let kind = if kind == ActorKind::Car { self.car(number as u64) } else { kind };
-            for attempt in 0..TRIES {
-                let t = unit(self.seed, Stream::Spawn, number as u64, attempt);
-                if self.vehicle(kind, pick(&stretches, t)) {
-                    break;
-                }
+            let number = number as u64;
+            let kind = if kind == ActorKind::Car { self.car(number) } else { kind };
+            let t = |attempt| unit(self.seed, Stream::Spawn, number, attempt);
+            let (drawn, from): (Vec<f32>, f32) = ((0..TRIES).map(t).collect(), t(TRIES + 2));
+            let found = full.contains(&kind)
+                || drawn.into_iter().any(|t| self.vehicle(kind, START_MPS, pick(&stretches, t)))
+                || search(&stretches, from, |place| self.vehicle(kind, CROWDED_MPS, place));
+            if !found {
+                full.push(kind);
             }
         }
     }
@@ -120,7 +160,7 @@ impl Spawner<'_> {
         }
     }
 
-    fn vehicle(&mut self, kind: ActorKind, (lane, s_m): (u32, f32)) -> bool {
+    fn vehicle(&mut self, kind: ActorKind, most_mps: f32, (lane, s_m): (u32, f32)) -> bool {
         let id = self.next_id();
         let driver = driver(self.seed, id, kind);
         let half_m = driver.size_m.x * 0.5;
@@ -135,10 +175,13 @@ impl Spawner<'_> {
         }
         let place = way.straight_on(s_m);
         let offset_m = driver.from_right_m.map_or(0.0, |m| (m - place.half_width_m).min(0.0));
-        if !self.take(place.position.truncate(), half_m + VEHICLE_SPACE_M * 0.5) {
+        let middle = place.beside(offset_m).truncate();
+        let forward = place.forward.truncate().normalize_or(Vec2::X);
+        let half = driver.size_m.truncate() * 0.5 + VEHICLE_SPACE_M;
+        if place.half_width_m < LEAST_HALF_M || !self.take(Taken { middle, forward, half }) {
             return false;
         }
-        let desired = (way.speed_limit_mps * driver.limit_share).min(driver.top_mps).min(START_MPS);
+        let desired = (way.speed_limit_mps * driver.limit_share).min(driver.top_mps).min(most_mps);
         let speed_mps = desired.min(stopping_speed(end_m - s_m - half_m - 2.0, 1.0));
         self.state.vehicles.push(Vehicle {
             id,
@@ -151,6 +194,7 @@ impl Spawner<'_> {
             hops: 0,
             wait_ticks: 0,
             phase: bits(self.seed, Stream::Spawn, u64::from(id), TRIES + 1) as u16,
+            stuck_s: 0,
         });
         true
     }
@@ -163,11 +207,12 @@ impl Spawner<'_> {
         }
         let first = 1 << 20;
         for number in first..first + u64::from(self.counts.pedestrians) {
-            for attempt in 0..TRIES {
-                let t = unit(self.seed, Stream::Spawn, number, attempt);
-                if self.walker(number, pick(&stretches, t)) {
-                    break;
-                }
+            let t = |attempt| unit(self.seed, Stream::Spawn, number, attempt);
+            let (drawn, from): (Vec<f32>, f32) = ((0..TRIES).map(t).collect(), t(TRIES + 2));
+            let found = drawn.into_iter().any(|t| self.walker(number, pick(&stretches, t)))
+                || search(&stretches, from, |place| self.walker(number, place));
+            if !found {
+                return;
             }
         }
     }
@@ -178,7 +223,9 @@ impl Spawner<'_> {
         let way = &self.map.walk_edges[edge as usize];
         let place = self.ways.edge_place(edge, s_m);
         let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
-        if !self.take(place.beside(offset_m).truncate(), WALKER_SPACE_M * 0.5) {
+        let middle = place.beside(offset_m).truncate();
+        let half = Vec2::splat(WALKER_M) + WALKER_SPACE_M;
+        if !self.take(Taken { middle, forward: Vec2::X, half }) {
             return false;
         }
         let random = bits(self.seed, Stream::Spawn, number, TRIES + 1);

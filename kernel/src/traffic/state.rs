@@ -6,6 +6,11 @@ use crate::actor::ActorKind;
 use crate::map_data::MapData;
 use crate::state;
 
+/// No road user is faster, m/s.
+const FASTEST_MPS: f32 = 150.0;
+/// Nor farther from its lane or way, metres.
+const ASIDE_M: f32 = 100.0;
+
 state! {
     /// Steering state of all traffic. Ids are unique over both lists, ascending in each, and start
     /// at 1; vehicles come before people.
@@ -28,11 +33,16 @@ impl TrafficState {
         for v in &self.vehicles {
             let lane = map.lanes.get(v.lane as usize).filter(|lane| (0.0..=lane.length_m).contains(&v.s_m));
             let kind = v.kind != ActorKind::Pedestrian;
-            if lane.is_none() || !kind || v.speed_mps < 0.0 || v.flags & !Vehicle::ALL_FLAGS != 0 {
+            let moves = (0.0..=FASTEST_MPS).contains(&v.speed_mps) && v.offset_m.abs() <= ASIDE_M;
+            if lane.is_none() || !kind || !moves || v.flags & !Vehicle::ALL_FLAGS != 0 {
                 return Err(format!("vehicle {}: expected a vehicle on a lane of map {}", v.id, map.name));
             }
         }
-        let on_map = |w: &&Walker| (w.edge as usize) < map.walk_edges.len() && w.speed_mps >= 0.0;
+        let on_map = |w: &&Walker| {
+            let edge = map.walk_edges.get(w.edge as usize);
+            let on_it = edge.is_some_and(|edge| (-ASIDE_M..=edge.length_m + ASIDE_M).contains(&w.s_m));
+            on_it && (0.0..=FASTEST_MPS).contains(&w.speed_mps) && w.offset_m.abs() <= ASIDE_M
+        };
         match self.walkers.iter().find(|w| !on_map(w)) {
             Some(w) => Err(format!("walker {}: expected a way of map {}", w.id, map.name)),
             None => Ok(()),

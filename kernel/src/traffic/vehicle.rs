@@ -5,7 +5,7 @@ use crate::map_data::LaneId;
 use crate::state;
 
 state! {
-    /// A vehicle on a lane. 26 bytes.
+    /// A vehicle on a lane. 27 bytes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Vehicle {
         /// Id of the actor.
@@ -28,6 +28,8 @@ state! {
         pub wait_ticks: u16,
         /// Phase of pedalling, 2^-16 turns.
         pub phase: u16,
+        /// Seconds for which it has stood without a reason, saturating.
+        pub stuck_s: u8,
     }
 }
 

@@ -5,11 +5,12 @@ use glam::Vec2;
 use crate::map_data::{MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
 use crate::rng::{self, Stream};
-use crate::time::{TICK_S, seconds};
+use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
+use super::company::{Leeway, leeway};
 use super::crosswalk::Gaps;
-use super::edge_lists::EdgeLists;
+use super::crowd::Crowd;
 use super::hazard::Hazard;
 use super::jaywalk;
 use super::traits::WalkerTraits;
@@ -18,20 +19,34 @@ use super::ways::Ways;
 
 /// Acceleration of a walker, m/s².
 const ACCEL_MPS2: f32 = 1.5;
-/// People look this far ahead for each other, metres.
-const SIGHT_M: f32 = 3.0;
-/// Sideways distance that they keep between their middles, metres.
-const SHOULDER_M: f32 = 0.7;
 /// Sideways speed as a share of the speed ahead.
 const DRIFT: f32 = 0.35;
-/// Slowest pace in a crowd; nobody stops for others on foot, so no crowd can jam. m/s.
+/// Sideways speed of somebody who gets out of another's way, m/s.
+const SIDESTEP_MPS: f32 = 0.35;
+/// Pace of somebody who squeezes past others, m/s.
 const SHUFFLE_MPS: f32 = 0.3;
+/// Whoever has stood before others for this long does that, so that no crowd can jam.
+const SQUEEZE_TICKS: u16 = seconds(4) as u16;
+/// Whoever waits steps back from vehicles that come by within this of their sides, metres.
+const SWEPT_M: f32 = 0.4;
+/// And the farther the longer a vehicle is: by so much for each metre beyond a car's half length.
+const TAIL: f32 = 0.15;
+/// From those that are there within this time, s.
+const SWEEP_S: f32 = 0.8;
+/// At this speed, m/s.
+const BACK_MPS: f32 = 1.2;
+/// Whoever waits looks out for that so often.
+const LOOK_TICKS: Tick = 6;
+/// A queue before a crosswalk is at most so long, metres.
+const QUEUE_M: f32 = 4.0;
 /// Distance walked in one cycle of the gait (two steps), metres.
 const STRIDE_M: f32 = 1.45;
 /// Fastest turn of the body, 2^-16 turns a tick (about 270 degrees a second).
 const TURN_PER_TICK: i16 = 820;
 /// Distance kept from the edge of the way, metres.
 const EDGE_MARGIN_M: f32 = 0.35;
+/// The same when passing others.
+const PASSING_MARGIN_M: f32 = 0.1;
 /// Whoever has waited this long at a kerb goes another way.
 const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
@@ -63,19 +78,22 @@ pub(super) struct Streets<'a> {
     pub seed: u64,
     pub walkers: &'a [Walker],
     pub walker_traits: &'a [WalkerTraits],
-    /// Bodies of the walkers.
+    /// Where they stand on their ways.
+    pub places: &'a [Place],
+    /// Their bodies.
     pub bodies: &'a [Body],
-    pub lists: &'a EdgeLists,
+    pub crowd: &'a Crowd,
     pub gaps: Gaps<'a>,
     /// Vehicles, the ego car and loose actors: what people do not walk into.
     pub blocks: &'a [Hazard],
+    pub tick: Tick,
     /// Index of the walker that starts to jaywalk.
     pub jaywalker: Option<usize>,
 }
 
 impl Streets<'_> {
-    /// The next state of walker `index`.
-    pub fn walk(&self, index: usize) -> Walker {
+    /// The next state of walker `index`, and where that is on its way.
+    pub fn walk(&self, index: usize) -> (Walker, Place) {
         let mut next = self.walkers[index];
         if self.jaywalker == Some(index) {
             next.mode = WalkerMode::Jaywalk;
@@ -91,69 +109,74 @@ impl Streets<'_> {
         let moved = place.beside(next.offset_m).truncate() - before;
         next.phase = next.phase.wrapping_add((moved.length() / STRIDE_M * 65536.0) as u16);
         self.face(moved, &place, &mut next);
-        next
+        (next, place)
     }
 
     fn stroll(&self, index: usize, next: &mut Walker) {
         let edge = &self.map.walk_edges[next.edge as usize];
         let direction = if next.forward { 1.0 } else { -1.0 };
-        let (aim_m, limit_mps) = self.avoid(index, edge, direction);
-        let mut aim_mps = self.walker_traits[index].speed_mps.min(limit_mps);
-        if edge.crosswalk.is_some() {
-            // Across the road people hurry a little, and do not walk into vehicles.
-            aim_mps = (aim_mps * 1.15).max(1.0);
-            let place = self.ways.walker_place(next);
-            if self.blocked(index, place.forward.truncate() * direction) {
-                aim_mps = 0.0;
-                halt(next);
-            }
+        let place = self.places[index];
+        let ahead = place.forward.truncate().normalize_or(Vec2::X) * direction;
+        let pace_mps = self.walker_traits[index].speed_mps;
+        // Across the road people hurry a little.
+        let wants_mps = if edge.crosswalk.is_some() { (pace_mps * 1.15).max(1.0) } else { pace_mps };
+        let leeway = leeway(self.crowd, self.bodies, index, ahead, wants_mps);
+        let aim_mps = if edge.crosswalk.is_some() && self.blocked(index, ahead) {
+            halt(next);
+            0.0
+        } else {
+            wants_mps.min(self.among_others(&leeway, next))
+        };
+        let hindered = leeway.most_mps < 2.0 * SHUFFLE_MPS;
+        if hindered && self.joins_those_who_wait(index, edge, next) {
+            return;
         }
         approach_speed(next, aim_mps);
         let moved_m = next.speed_mps * TICK_S;
         next.s_m += direction * moved_m;
-        // Whoever comes back from the road goes straight for the way.
-        let astray = next.offset_m.abs() > edge.half_width_m;
-        let drift = if astray { moved_m } else { DRIFT * moved_m };
-        next.offset_m += (aim_m - next.offset_m).clamp(-drift, drift);
+        self.drift(index, edge, direction, &leeway, moved_m, next);
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         if left_m <= 0.0 {
             self.turn_or_wait(index, next);
         }
     }
 
-    /// Where to walk across the way, and how fast at most, because of others on it.
-    fn avoid(&self, index: usize, edge: &WalkEdge, direction: f32) -> (f32, f32) {
-        let me = &self.walkers[index];
-        let room_m = (edge.half_width_m - EDGE_MARGIN_M).max(0.0);
-        // A third of the way to the right, as people mostly keep.
-        let mut aim_m = (self.walker_traits[index].place - direction * 0.33).clamp(-1.0, 1.0) * room_m;
-        let mut limit_mps = f32::MAX;
-        let (up, down) = self.lists.around(index);
-        let near = |i: &usize| {
-            let other = &self.walkers[*i];
-            other.edge == me.edge && (other.s_m - me.s_m).abs() < SIGHT_M
-        };
-        let mut meet = |i: usize| {
-            let other = &self.walkers[i];
-            let ahead_m = (other.s_m - me.s_m) * direction;
-            let beside_m = me.offset_m - other.offset_m;
-            if other.mode == WalkerMode::Jaywalk || ahead_m < 0.0 || beside_m.abs() > SHOULDER_M {
-                return;
-            }
-            let same_way = other.forward == me.forward;
-            let side = if beside_m.abs() > 0.15 { beside_m.signum() } else { -direction };
-            aim_m = other.offset_m + side * (SHOULDER_M + 0.1);
-            if ahead_m < 0.9 && beside_m.abs() < 0.45 {
-                let pace = if same_way { other.speed_mps } else { 0.0 };
-                limit_mps = limit_mps.min(pace.max(SHUFFLE_MPS));
-            }
-        };
-        if direction > 0.0 {
-            up.take_while(near).take(1).for_each(&mut meet);
-        } else {
-            down.take_while(near).take(1).for_each(&mut meet);
+    /// Whoever is held up by others shortly before a crosswalk that is not free waits behind them.
+    fn joins_those_who_wait(&self, index: usize, edge: &WalkEdge, next: &mut Walker) -> bool {
+        let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
+        let wanted = || wanted_crosswalk(self.map, self.seed, next);
+        let waits =
+            left_m < QUEUE_M && edge.crosswalk.is_none() && wanted().is_some_and(|c| !self.may_cross(index, c, next));
+        if waits {
+            begin_waiting(next);
         }
-        (aim_m.clamp(-room_m, room_m), limit_mps)
+        waits
+    }
+
+    /// The speed that others leave; whoever stood before them for long squeezes past.
+    fn among_others(&self, leeway: &Leeway, next: &mut Walker) -> f32 {
+        if leeway.most_mps >= 2.0 * SHUFFLE_MPS {
+            next.wait_ticks = 0;
+            return leeway.most_mps;
+        }
+        next.wait_ticks = next.wait_ticks.saturating_add(1);
+        if next.wait_ticks > SQUEEZE_TICKS { leeway.most_mps.max(SHUFFLE_MPS) } else { leeway.most_mps }
+    }
+
+    /// Moves sideways: to where somebody likes to walk, or past others.
+    fn drift(&self, index: usize, edge: &WalkEdge, direction: f32, leeway: &Leeway, moved_m: f32, next: &mut Walker) {
+        let room_m = |margin_m: f32| (edge.half_width_m - margin_m).max(0.0);
+        // A third of the way to the right, as people mostly keep.
+        let likes_m = (self.walker_traits[index].place - direction * 0.33).clamp(-1.0, 1.0) * room_m(EDGE_MARGIN_M);
+        let aim_m = leeway.aside_m.map_or(likes_m, |aside_m| next.offset_m + direction * aside_m);
+        // Whoever comes back from the road goes straight for the way.
+        let astray = next.offset_m.abs() > edge.half_width_m;
+        let least_m = if leeway.aside_m.is_some() { SIDESTEP_MPS * TICK_S } else { 0.0 };
+        let most_m = if astray { moved_m } else { (DRIFT * moved_m).max(least_m) };
+        let room_m = room_m(if leeway.aside_m.is_some() { PASSING_MARGIN_M } else { EDGE_MARGIN_M });
+        let step_m = (aim_m.clamp(-room_m, room_m) - next.offset_m).clamp(-most_m, most_m);
+        let [right_m, left_m] = leeway.free_m;
+        next.offset_m += direction * (direction * step_m).clamp(right_m, left_m);
     }
 
     /// At the end of an edge: takes the next one, or waits at the kerb.
@@ -161,8 +184,7 @@ impl Streets<'_> {
         let edge = next_edge(self.map, self.seed, next);
         let crosswalk = self.map.walk_edges[edge as usize].crosswalk.filter(|_| edge != next.edge);
         if crosswalk.is_some_and(|c| !self.may_cross(index, c, next)) {
-            next.mode = WalkerMode::Wait;
-            next.speed_mps = 0.0;
+            begin_waiting(next);
         } else {
             self.enter(edge, next);
         }
@@ -176,6 +198,12 @@ impl Streets<'_> {
     }
 
     fn wait(&self, index: usize, next: &mut Walker) {
+        if (self.tick + Tick::from(next.id)).is_multiple_of(LOOK_TICKS) {
+            let away = self.swept_from(index) * (BACK_MPS * TICK_S * LOOK_TICKS as f32);
+            let place = self.places[index];
+            next.s_m += away.dot(place.forward.truncate());
+            next.offset_m += away.dot(place.left());
+        }
         next.wait_ticks = next.wait_ticks.saturating_add(1);
         if next.wait_ticks > GIVE_UP_TICKS {
             next.hops = next.hops.wrapping_add(1);
@@ -207,14 +235,16 @@ impl Streets<'_> {
     }
 
     fn jaywalk(&self, index: usize, next: &mut Walker) {
-        let place = self.ways.walker_place(next);
+        let place = self.places[index];
         let sign = if next.forward { 1.0 } else { -1.0 };
         let Some(goal) = jaywalk::goal(self.map, self.ways, next) else {
             next.mode = WalkerMode::Walk;
             return;
         };
         let blocked = self.blocked(index, place.left() * sign);
-        let aim_mps = if blocked { 0.0 } else { jaywalk::pace(self.seed, next, &self.walker_traits[index]) };
+        let pace_mps = jaywalk::pace(self.seed, next, &self.walker_traits[index]);
+        let leeway = leeway(self.crowd, self.bodies, index, place.left() * sign, pace_mps);
+        let aim_mps = if blocked { 0.0 } else { pace_mps.min(leeway.most_mps.max(SHUFFLE_MPS)) };
         if blocked {
             halt(next);
         }
@@ -232,6 +262,24 @@ impl Streets<'_> {
             let offset = toe - block.position.truncate();
             let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
             x.abs() < block.half.x + 0.2 && y.abs() < block.half.y + 0.2
+        })
+    }
+
+    /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where
+    /// none is. The tail of a long one swings out of its lane.
+    fn swept_from(&self, index: usize) -> Vec2 {
+        let here = self.bodies[index].position.truncate();
+        let sweeps = |block: &&Hazard| {
+            let offset = here - block.position.truncate();
+            let ahead_m = block.velocity.length() * SWEEP_S;
+            let aside_m = block.half.y + SWEPT_M + TAIL * (block.half.x - 2.5).max(0.0);
+            let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
+            ahead_m > 0.3 && x.abs() < block.half.x + ahead_m && y.abs() < aside_m
+        };
+        let swept = self.blocks.iter().find(sweeps);
+        swept.map_or(Vec2::ZERO, |block| {
+            let left = block.forward.perp();
+            left * (here - block.position.truncate()).dot(left).signum()
         })
     }
 
@@ -259,10 +307,16 @@ impl Streets<'_> {
     }
 }
 
+fn begin_waiting(next: &mut Walker) {
+    next.mode = WalkerMode::Wait;
+    next.speed_mps = 0.0;
+    next.wait_ticks = 0;
+}
+
 /// Stands before a vehicle, and turns back when it stays.
 fn halt(next: &mut Walker) {
     next.speed_mps = 0.0;
-    next.wait_ticks += 1;
+    next.wait_ticks = next.wait_ticks.saturating_add(1);
     if next.wait_ticks > TURN_BACK_TICKS {
         next.wait_ticks = 0;
         next.forward = !next.forward;

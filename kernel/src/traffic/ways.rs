@@ -1,12 +1,15 @@
-//! Lookups of a map, made once: curve speeds, directions, where lanes conflict in a junction.
+//! Lookups of a map, made once: curve speeds, directions, what follows, where lanes conflict and meet.
 
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+use super::links::{Onward, onward};
+use super::meets::{Meet, meets};
 use super::walker::Walker;
+use super::zones::zones;
 use crate::map_data::{
-    Conflict, Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, StopKind, Turn, WalkEdgeId,
+    Conflict, Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, StopKind, WalkEdgeId,
 };
 use crate::ops;
 use crate::places::Places;
@@ -19,6 +22,11 @@ const CURVE_BRAKE_MPS2: f32 = 1.8;
 const CURVE_FLOOR_MPS: f32 = 2.5;
 /// Sidewalks farther apart than this do not face each other across a road, metres.
 const FACING_M: f32 = 32.0;
+
+/// Half the width at which a lane is wide enough to enter the map on, metres.
+const LEAST_ENTRY_M: f32 = 1.2;
+/// Lanes whose edges come within this of where another begins lie beside it, metres.
+const FROM_BEFORE_M: f32 = 2.0;
 
 /// How two lanes of a junction conflict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,11 +68,16 @@ pub(super) struct LaneWay {
     pub speed_mps: Vec<f32>,
     /// Direction of travel from each point to the next.
     pub forward: Vec<Vec3>,
-    /// Successors that vehicles drive on.
-    pub onward: Vec<LaneId>,
-    /// Those that long vehicles take: no right turns, where there is another way.
-    pub onward_wide: Vec<LaneId>,
+    /// Where vehicles go on.
+    pub onward: Vec<Onward>,
+    /// Where long vehicles do: no right turns, where there is another way.
+    pub onward_wide: Vec<Onward>,
+    /// Lanes of the same junction that overlap it.
     pub conflicts: Vec<LaneConflict>,
+    /// Lanes that it meets outside junctions.
+    pub meets: Vec<Meet>,
+    /// Its zone: junctions without room to wait between them are one.
+    pub zone: Option<u32>,
     /// Crosswalks on it, in the direction of travel.
     pub crosswalks: Vec<CrosswalkSpan>,
 }
@@ -81,27 +94,27 @@ pub(super) struct EdgeWay {
 
 /// What traffic looks up in a map.
 #[derive(Debug)]
-pub(crate) struct Ways {
+pub struct Ways {
     /// The map with its places.
     pub(super) places: Arc<Places>,
     pub(super) lanes: Vec<LaneWay>,
     pub(super) edges: Vec<EdgeWay>,
     /// Light groups that must be red for each crosswalk; empty for one without.
     pub(super) crosswalk_lights: Vec<Vec<LightGroupId>>,
-    /// Lanes without predecessors, where vehicles that leave the map come back.
+    /// Lanes with which roads begin, where vehicles that leave the map come back.
     pub(super) entries: Vec<LaneId>,
 }
 
 impl Ways {
     /// The lookups of a map.
-    pub fn new(places: &Arc<Places>) -> Self {
+    pub(crate) fn new(places: &Arc<Places>) -> Self {
         let map = &*places.map;
         let mut ways = Self {
             places: places.clone(),
-            lanes: (0..map.lanes.len()).map(|id| lane_way(map, id as LaneId)).collect(),
+            lanes: lane_ways(places),
             edges: (0..map.walk_edges.len()).map(|e| edge_way(map, e)).collect(),
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
-            entries: entries(map),
+            entries: entries(places),
         };
         ways.add_crosswalks(map);
         ways
@@ -120,6 +133,12 @@ impl Ways {
     /// Where a walker stands.
     pub(super) fn walker_place(&self, walker: &Walker) -> Place {
         self.edge_place(walker.edge, walker.s_m)
+    }
+
+    /// Whether a light holds traffic at the end of a lane.
+    pub(super) fn is_lit(&self, lane: LaneId) -> bool {
+        let stop = self.places.map.lanes[lane as usize].stop;
+        stop.is_some_and(|stop| matches!(stop.kind, StopKind::Light(_)))
     }
 
     fn add_crosswalks(&mut self, map: &MapData) {
@@ -159,7 +178,15 @@ impl LaneWay {
     }
 }
 
-fn lane_way(map: &MapData, id: LaneId) -> LaneWay {
+fn lane_ways(places: &Places) -> Vec<LaneWay> {
+    let map = &*places.map;
+    let onward = onward(places);
+    let (meets, zones) = (meets(places, &onward), zones(map));
+    let ways = onward.into_iter().zip(meets).zip(zones).enumerate();
+    ways.map(|(id, ((onward, meets), zone))| LaneWay { meets, zone, ..lane_way(map, id as LaneId, onward) }).collect()
+}
+
+fn lane_way(map: &MapData, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) -> LaneWay {
     let lane = &map.lanes[id as usize];
     let mut speed_mps = curve_speeds(lane);
     for i in (0..speed_mps.len().saturating_sub(1)).rev() {
@@ -167,14 +194,9 @@ fn lane_way(map: &MapData, id: LaneId) -> LaneWay {
         let reachable = ops::sqrt(speed_mps[i + 1] * speed_mps[i + 1] + 2.0 * CURVE_BRAKE_MPS2 * ds.max(0.0));
         speed_mps[i] = speed_mps[i].min(reachable);
     }
-    let drivable = |next: &LaneId| map.lanes[*next as usize].kind == LaneKind::Driving;
-    let onward: Vec<_> = lane.successors.iter().copied().filter(drivable).collect();
-    let wide = |next: &LaneId| map.lanes[*next as usize].turn != Turn::Right;
-    let onward_wide: Vec<_> = onward.iter().copied().filter(wide).collect();
-    let onward_wide = if onward_wide.is_empty() { onward.clone() } else { onward_wide };
     let conflicts = lane.conflicts.iter().filter_map(|c| lane_conflict(map, id, c)).collect();
     let forward = directions(lane.points.iter().map(|p| p.position));
-    LaneWay { speed_mps, forward, onward, onward_wide, conflicts, crosswalks: Vec::new() }
+    LaneWay { speed_mps, forward, onward, onward_wide, conflicts, ..LaneWay::default() }
 }
 
 /// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken
@@ -231,13 +253,27 @@ fn crosswalk_lights(map: &MapData, crosswalk: &Crosswalk) -> Vec<LightGroupId> {
     groups
 }
 
-fn entries(map: &MapData) -> Vec<LaneId> {
-    let drivable = |lane: &Lane| lane.kind == LaneKind::Driving && lane.length_m > 15.0;
-    let open = |lane: &Lane| drivable(lane) && lane.junction.is_none();
-    let lanes = || map.lanes.iter().enumerate();
-    let starts: Vec<_> =
-        lanes().filter(|(_, l)| open(l) && l.predecessors.is_empty()).map(|(i, _)| i as LaneId).collect();
-    if starts.is_empty() { lanes().filter(|(_, l)| open(l)).map(|(i, _)| i as LaneId).collect() } else { starts }
+/// Lanes with which roads begin; every lane where no road does.
+fn entries(places: &Places) -> Vec<LaneId> {
+    let map = &*places.map;
+    let open = |lane: &Lane| lane.kind == LaneKind::Driving && lane.length_m > 15.0 && lane.junction.is_none();
+    let lanes = || map.lanes.iter().enumerate().filter(|(_, lane)| open(lane)).map(|(id, _)| id as LaneId);
+    let starts: Vec<_> = lanes().filter(|id| begins(places, *id)).collect();
+    if starts.is_empty() { lanes().collect() } else { starts }
+}
+
+/// Whether a road begins with this lane, and not only the lane beside others that come from before.
+fn begins(places: &Places, id: LaneId) -> bool {
+    let lanes = &places.map.lanes;
+    let lane = &lanes[id as usize];
+    let start = lane.start();
+    let comes_by = |other: LaneId, s_m: f32| {
+        let along = ops::cos(lanes[other as usize].at(s_m).heading_rad - start.heading_rad) > 0.5;
+        other != id && along && s_m > 5.0
+    };
+    let wide = start.half_width_m > LEAST_ENTRY_M;
+    let near = || places.roads().around(start.position, LaneKind::Driving, FROM_BEFORE_M);
+    lane.predecessors.is_empty() && wide && !near().iter().any(|p| comes_by(p.lane, p.s_m))
 }
 
 fn edge_way(map: &MapData, index: usize) -> EdgeWay {

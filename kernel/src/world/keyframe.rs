@@ -4,6 +4,7 @@ use std::fmt;
 
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::car::{RunningGear, Wheel};
 use crate::map::RoadNetwork;
 use crate::motion::Motion;
 use crate::state::{State, StateHash, first_difference};
@@ -122,6 +123,15 @@ fn fits(motion: &Motion) -> bool {
         && (motion.rotation.length_squared() - 1.0).abs() < 1e-3
 }
 
+fn rolls(gear: &RunningGear) -> bool {
+    let wheel = |wheel: &Wheel| {
+        wheel.spin_radps.abs() < 10.0 * MOST_SPEED
+            && wheel.travel_m.abs() < 1.0
+            && wheel.tread_m.abs().max_element() < 1.0
+    };
+    gear.wheels.iter().all(wheel) && gear.wheel_angle_rad.abs() < 1.0 && gear.meant_yaw_radps.abs() < MOST_SPEED
+}
+
 /// Refuses a state that was never written by a world on this map.
 pub(super) fn check(parts: &Parts, network: &RoadNetwork) -> Result<(), String> {
     let lanes = &parts.ego.route.lanes;
@@ -131,6 +141,9 @@ pub(super) fn check(parts: &Parts, network: &RoadNetwork) -> Result<(), String> 
     }
     if !fits(&parts.ego.car.motion) {
         return Err(format!("ego.car.motion is {:?}, expected a possible motion", parts.ego.car.motion));
+    }
+    if !rolls(&parts.ego.car.gear) {
+        return Err(format!("ego.car.gear is {:?}, expected a possible one", parts.ego.car.gear));
     }
     let ascending = |ids: &mut dyn Iterator<Item = u32>| {
         let ids: Vec<u32> = ids.collect();

@@ -50,5 +50,5 @@ fn standing(network: &RoadNetwork, lane: LaneId, s_m: f32) -> Ego {
     let rotation = rotation(point.heading_rad);
     let position = point.position - rotation * Vec3::new(ego::CENTRE_M.x, 0.0, 0.0);
     let motion = Motion { position, rotation, velocity_mps: Vec3::ZERO, spin_radps: Vec3::ZERO };
-    Ego { motion, wheel_angle_rad: 0.0, odometer_um: 0 }
+    Ego::new(motion)
 }

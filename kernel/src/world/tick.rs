@@ -142,10 +142,10 @@ impl World {
             size_m: ego::SIZE_M,
         };
         self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, loose: obstacles });
+        let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
+        self.traffic.told().iter().for_each(|(kind, actor)| log.with(*kind, *actor));
         bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
-        let forces = car.actuate(&self.parts.output.applied.controls);
-        self.physics.step(&forces);
-        car.moved(self.physics.ego());
+        self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
     }
 

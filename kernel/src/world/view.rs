@@ -11,6 +11,7 @@ use crate::map::RoadNetwork;
 use crate::scenario::Scenario;
 use crate::scene::{ActorScene, EgoScene, SceneSnapshot, quantise};
 use crate::signals;
+use crate::traffic::Missing;
 use crate::watch::Watch;
 
 use super::keyframe::{self, FieldDifference, Keyframe};
@@ -21,6 +22,11 @@ impl World {
     /// The keyframe that a run begins with; only valid before the first step.
     pub fn initial_keyframe(&self) -> Keyframe {
         Keyframe { tick: self.tick(), bytes: self.bytes.clone() }
+    }
+
+    /// Road users that the scenario asks for and the map has no room for.
+    pub fn missing(&self) -> Missing {
+        self.traffic.missing()
     }
 
     /// Size of the canonical bytes of the state.
@@ -51,7 +57,7 @@ impl World {
                 position: car.motion.position,
                 rotation: car.motion.rotation,
                 speed_mps: car.speed_mps(),
-                wheel_angle_rad: car.wheel_angle_rad,
+                wheel_angle_rad: car.gear.wheel_angle_rad,
             },
             actors: self.actors().collect(),
             lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
@@ -82,6 +88,12 @@ impl World {
     /// What the HUD shows.
     pub fn hud(&self) -> Hud {
         self.parts.ego.route.hud(&self.network, &self.scenario, self.tick(), &self.parts.ego.car)
+    }
+
+    /// Torque of the road on the front wheels about their steering axes, N m, positive to the right: what a driver's
+    /// hands feel, before any assistance.
+    pub fn aligning_torque_nm(&self) -> f32 {
+        self.parts.ego.car.gear.aligning_torque_nm
     }
 
     /// What goes on around the ego car; its beginnings are the events.

@@ -18,7 +18,9 @@ fn beside(world: &World, target_mps: f32, bearing_deg: f32) -> Controls {
     let hud = world.hud();
     let steer = (f32::from(hud.arrow.bearing_deg) - bearing_deg) * 0.013;
     let gap = target_mps - hud.speed_mps;
-    Controls::from_fractions(steer, gap * 0.3, if gap < -0.3 { -gap * 0.2 } else { 0.0 })
+    let brake = if gap < -0.3 { -gap * 0.2 } else { 0.0 };
+    // A car that is to stand is held, as it creeps without a pedal.
+    Controls::from_fractions(steer, gap * 0.3, if target_mps > 0.0 { brake } else { brake.max(0.3) })
 }
 
 /// Keeps the limit and stops at lights.

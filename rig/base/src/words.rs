@@ -37,7 +37,7 @@ pub fn actor(actor: &ActorScene) -> String {
     format!("{} {}", road_user(actor.kind), actor.id)
 }
 
-/// What happened to the ego car, as in `red light passed at 43 km/h`.
+/// What happened to the ego car, as in `red light passed at 43 km/h`, or to traffic.
 pub fn event(event: &Event) -> String {
     let what = match event.kind {
         EventKind::CollisionActor => format!("collision with actor {}", event.actor),
@@ -50,6 +50,10 @@ pub fn event(event: &Event) -> String {
         EventKind::Intervention => "intervention".into(),
         EventKind::Seen => "\"I see it\"".into(),
         EventKind::Ended => "run ended".into(),
+        EventKind::Stuck => return format!("vehicle {} has stood for a minute without a reason", event.actor),
+        EventKind::Dissolved => {
+            return format!("vehicle {} stood for too long and was taken off the road", event.actor);
+        }
     };
     // The tick of a collision ends with what the impact has left of the speed.
     let at = match event.kind {

@@ -56,12 +56,22 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
         print::text(&as_driven(scenario, &map)?)?;
         return Ok(Verdict::Ok);
     }
+    say_missing(&scenario, &map)?;
     if args.headless {
         headless(args, &scenario, &map, json)?;
     } else {
         windows::drive(args, scenario, map, move |path, figures| tell(path, figures, json))?;
     }
     Ok(Verdict::Ok)
+}
+
+/// Says which road users of a scenario have no room on the map.
+fn say_missing(scenario: &Scenario, map: &Map) -> anyhow::Result<()> {
+    let missing = World::new(scenario, &map.network)?.missing();
+    if missing.total() > 0 {
+        say(format_args!("map {} has no room for {missing}", map.network.name));
+    }
+    Ok(())
 }
 
 /// What the run starts from, and where.

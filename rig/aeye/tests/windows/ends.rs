@@ -9,10 +9,10 @@ use replay::Recording;
 use crate::display::Display;
 use crate::rig::{AEYE, CENTRE, Rig, SAFETY, aeye, wait_for_tick};
 
-/// Starts a drive of bots and waits for its third second.
+/// Starts a drive of a bot, which nobody ends by a takeover, and waits for its third second.
 fn driving(display: &Display, wrapper: &[&str]) -> (Rig, PathBuf) {
     let record = display.folder().join("drive.mcap");
-    let rig = Rig::start_with(display, wrapper, &record, &["--semantic", "bot", "--safety", "bot"]);
+    let rig = Rig::start_with(display, wrapper, &record, &["--semantic", "bot", "--safety", "keyboard"]);
     rig.says("run 1 is ready");
     display.focus(&display.window(CENTRE));
     display.keys(&["key", "n"]);

@@ -17,6 +17,7 @@ pub fn event(event: &Event, said: &str, time_ns: u64) -> Line {
     let level = match event.kind {
         EventKind::CollisionActor | EventKind::CollisionScenery | EventKind::Intervention => Level::Error,
         EventKind::RedLight | EventKind::Speeding | EventKind::OffRoad | EventKind::WrongWay => Level::Warning,
+        EventKind::Stuck | EventKind::Dissolved => Level::Warning,
         EventKind::Armed | EventKind::Seen | EventKind::Ended => Level::Info,
     };
     line(level, DRIVE, words::event(event) + said, time_ns)

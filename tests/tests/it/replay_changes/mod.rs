@@ -266,6 +266,7 @@ fn a_changed_world_diverges_although_everything_fits() {
         ("jaywalks", |log| log.manifest.scenario.traffic.jaywalks_per_min += 0.5),
         ("seed", |log| log.manifest.scenario.seed += 1),
         ("start", |log| log.manifest.scenario.ego.s_m += 0.5),
+        ("helpers of the car", |log| log.manifest.scenario.car.esc = false),
         ("window's begin", |log| log.manifest.case.iter_mut().for_each(|case| case.from += 6)),
         ("window's end", |log| log.manifest.case.iter_mut().for_each(|case| case.to -= 6)),
         ("window beyond the log", |log| log.manifest.case.iter_mut().for_each(|case| case.to += 6000)),

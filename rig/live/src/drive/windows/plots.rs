@@ -96,5 +96,7 @@ fn mark(kind: EventKind) -> (Color32, &'static str) {
         EventKind::Intervention => (SAFETY, "intervention"),
         EventKind::Seen => (SEMANTIC, "seen"),
         EventKind::Ended => (TEXT, "end"),
+        EventKind::Stuck => (TEXT, "stuck"),
+        EventKind::Dissolved => (TEXT, "taken off"),
     }
 }

@@ -1,0 +1,73 @@
+//! No tyre ever gives more than its load and the ground allow.
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// Controls that are held for some ticks each.
+fn sequences() -> impl Strategy<Value = Vec<(Controls, u8)>> {
+    let controls = (any::<i16>(), any::<u16>(), any::<u16>(), 0..4u8, any::<bool>()).prop_map(
+        |(steer, throttle, brake, flags, coast)| Controls {
+            steer,
+            throttle,
+            brake: if coast { 0 } else { brake },
+            flags,
+        },
+    );
+    prop::collection::vec((controls, 5..60u8), 2..8)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    /// 10,000 of them: `PROPTEST_CASES=10000`.
+    #[test]
+    fn force_stays_inside_the_friction_circle(
+        sequence in sequences(),
+        kind in prop::sample::select(SurfaceKind::ALL.to_vec()),
+        speed in 0f32..40.0,
+        (abs, esc) in any::<(bool, bool)>(),
+    ) {
+        let mut drive = Drive::over(kind, speed, CarSetup { abs, esc });
+        for (controls, ticks) in sequence {
+            for _ in 0..ticks {
+                drive.step(&controls);
+                let mut loads = 0.0;
+                for print in drive.physics.footprints() {
+                    let most = most_n(friction(kind)[0], f64::from(print.load_n));
+                    let force = f64::from(print.force_n.length());
+                    prop_assert!(force <= most * 1.0001 + 0.01, "{force} of {most} N: {print:?}");
+                    loads += print.load_n;
+                }
+                prop_assert!(loads.is_finite() && drive.ego.motion.position.is_finite());
+                prop_assert!(drive.ego.gear.wheels.iter().all(|wheel| wheel.spin_radps.abs() < 2000.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn braking_in_a_turn_has_one_circle_for_both() {
+    let mut drive = Drive::at(20.0);
+    drive.hold(seconds(1), |car| cruise(car, 20.0, 0.12));
+    let mut most = 0f32;
+    for _ in 0..60 {
+        let before = drive.ego.motion.velocity_mps;
+        drive.step(&Controls::from_fractions(0.3, 0.0, 1.0));
+        most = most.max((drive.ego.motion.velocity_mps - before).truncate().length() * 60.0);
+    }
+    assert!(most > 8.0 && most < 1.06 * 9.81, "{most} m/s^2 at friction 1");
+}
+
+#[test]
+fn the_wheel_pulls_back_to_its_middle_and_grows_light_at_the_limit() {
+    let torque = |steer: f32| {
+        let mut drive = Drive::over(SurfaceKind::Road, 20.0, BARE);
+        drive.hold(90, |car| cruise(car, 20.0, steer));
+        drive.ego.gear.aligning_torque_nm
+    };
+    let pulls = [0.03, 0.06, 0.12, 0.5].map(torque);
+    assert!(pulls.iter().all(|pull| *pull < 0.0), "steered to the right it pulls to the left: {pulls:?}");
+    assert!(pulls[1] < pulls[0] && pulls[3] > pulls[1], "{pulls:?}");
+    assert!((torque(-0.06) + pulls[1]).abs() < 2.0);
+}

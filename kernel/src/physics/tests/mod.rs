@@ -1,0 +1,122 @@
+//! The car against the books, on a plane without lanes. What a test expects is computed in it, from figures of its own.
+
+mod braking;
+mod cornering;
+mod driving;
+mod forces;
+mod standing;
+mod state;
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec3};
+
+use super::{Physics, Statics};
+use crate::car::CarSetup;
+use crate::controls::Controls;
+use crate::ego::Ego;
+use crate::map_data::{MapData, Surface, SurfaceKind};
+use crate::motion::Motion;
+use crate::time::{Tick, seconds};
+
+const HELPED: CarSetup = CarSetup { abs: true, esc: true };
+const BARE: CarSetup = CarSetup { abs: false, esc: false };
+
+/// A square of 4 km of one kind of ground, rising eastwards; paint lies on asphalt.
+fn plain(kind: SurfaceKind, grade: f32) -> MapData {
+    let corner = |x: f32, y: f32| Vec3::new(x, y, grade * x) * 2000.0;
+    let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    let square = |kind, lift: f32| Surface {
+        kind,
+        positions: corners.iter().map(|corner| corner + Vec3::Z * lift).collect(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    };
+    let painted = kind == SurfaceKind::RoadLine;
+    let ground = square(if painted { SurfaceKind::Road } else { kind }, 0.0);
+    MapData {
+        name: String::from("plain"),
+        surfaces: if painted { vec![ground, square(kind, 0.016)] } else { vec![ground] },
+        bounds: [corner(-1.0, -1.0), corner(1.0, 1.0)],
+        ..MapData::default()
+    }
+}
+
+struct Drive {
+    ego: Ego,
+    physics: Physics,
+    setup: CarSetup,
+}
+
+impl Drive {
+    /// Eastwards at a speed on flat ground.
+    fn over(kind: SurfaceKind, speed_mps: f32, setup: CarSetup) -> Self {
+        Self::posed(plain(kind, 0.0), Quat::IDENTITY, speed_mps, setup)
+    }
+
+    /// Eastwards at a speed on flat asphalt, for a second already.
+    fn at(speed_mps: f32) -> Self {
+        let mut drive = Self::over(SurfaceKind::Road, speed_mps, HELPED);
+        drive.hold(seconds(1), |car| if speed_mps > 0.0 { cruise(car, speed_mps, 0.0) } else { Controls::default() });
+        drive
+    }
+
+    fn posed(map: MapData, rotation: Quat, speed_mps: f32, setup: CarSetup) -> Self {
+        let velocity_mps = rotation * Vec3::X * speed_mps;
+        let motion = Motion { position: Vec3::ZERO, rotation, velocity_mps, spin_radps: Vec3::ZERO };
+        let physics = Physics::new(&Arc::new(Statics::new(&map)), &motion);
+        Self { physics, ego: Ego::new(motion), setup }
+    }
+
+    fn step(&mut self, controls: &Controls) {
+        self.physics.step(&mut self.ego, controls, &self.setup);
+    }
+
+    fn hold(&mut self, ticks: Tick, driver: impl Fn(&Ego) -> Controls) {
+        for _ in 0..ticks {
+            let controls = driver(&self.ego);
+            self.step(&controls);
+        }
+    }
+
+    fn upright(&self) -> f32 {
+        (self.ego.motion.rotation * Vec3::Z).z
+    }
+
+    fn yaw_radps(&self) -> f32 {
+        self.ego.motion.spin_radps.z
+    }
+}
+
+/// Keeps a speed.
+fn cruise(car: &Ego, speed_mps: f32, steer: f32) -> Controls {
+    Controls::from_fractions(steer, (speed_mps - car.speed_mps()) * 0.5 + 0.1, 0.0)
+}
+
+fn pedals(throttle: f32, brake: f32) -> Controls {
+    Controls::from_fractions(0.0, throttle, brake)
+}
+
+/// The figures of the car, once more and in f64: mass, kg; wheelbase, track, height of the centre of mass, metres;
+/// gravity; share of the weight on the front wheels.
+const MASS: f64 = 1400.0;
+const BASE: f64 = 2.7;
+const TRACK: f64 = 1.55;
+const HEIGHT: f64 = 0.52;
+const G: f64 = 9.81;
+const FRONT: f64 = 1.5 / 2.7;
+
+/// Greatest force of a tyre under a load, N, by the friction of the ground.
+fn most_n(friction: f64, load_n: f64) -> f64 {
+    friction * load_n / (1.0 + 0.1 * (load_n / (MASS * G / 4.0) - 1.0))
+}
+
+/// Peak and sliding friction.
+fn friction(kind: SurfaceKind) -> [f64; 2] {
+    match kind {
+        SurfaceKind::Road => [1.0, 0.8],
+        SurfaceKind::RoadLine => [0.9, 0.7],
+        SurfaceKind::Sidewalk => [0.9, 0.75],
+        SurfaceKind::Ground => [0.7, 0.58],
+        SurfaceKind::Terrain => [0.45, 0.38],
+    }
+}

@@ -1,0 +1,72 @@
+//! Where vehicles go on at the end of each lane.
+
+use crate::map_data::{Lane, LaneId, LaneKind, Turn};
+use crate::ops;
+use crate::places::Places;
+
+/// A lane that ends goes on in one beside it that comes within this of its end, edge to middle, metres.
+const BESIDE_M: f32 = 2.0;
+/// Such a lane leads on for at least this, metres.
+const ROOM_M: f32 = 10.0;
+/// Lanes that run more aslant than this do not go on in each other, radians.
+const ASLANT_RAD: f32 = 0.5;
+
+/// A lane that follows, and where on it a vehicle arrives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Onward {
+    pub lane: LaneId,
+    /// Metres from its start: 0 but where a lane ends beside one that goes on.
+    pub at_m: f32,
+}
+
+/// For each lane where to go on, and where long vehicles do: these turn right only where there is no
+/// other way. Ways into a junction that never leave it again are left out.
+pub(super) fn onward(places: &Places) -> Vec<[Vec<Onward>; 2]> {
+    let lanes = &places.map.lanes;
+    let mut all: Vec<Vec<Onward>> = lanes.iter().map(|lane| successors(lanes, lane)).collect();
+    for (id, lane) in lanes.iter().enumerate() {
+        if lane.kind == LaneKind::Driving && all[id].is_empty() {
+            all[id].extend(beside_end(places, id as LaneId));
+        }
+    }
+    leave_out_dead_ends(lanes, &mut all);
+    all.into_iter().map(|onward| [onward.clone(), wide(lanes, onward)]).collect()
+}
+
+fn successors(lanes: &[Lane], lane: &Lane) -> Vec<Onward> {
+    let drivable = lane.successors.iter().filter(|next| lanes[**next as usize].kind == LaneKind::Driving);
+    drivable.map(|next| Onward { lane: *next, at_m: 0.0 }).collect()
+}
+
+/// The lane beside the end of one without a successor, in the same direction.
+fn beside_end(places: &Places, id: LaneId) -> Option<Onward> {
+    let lanes = &places.map.lanes;
+    let end = lanes[id as usize].end();
+    let goes_on = |lane: LaneId, s_m: f32| {
+        let other = &lanes[lane as usize];
+        let aslant = ops::wrap_angle(other.at(s_m).heading_rad - end.heading_rad).abs() > ASLANT_RAD;
+        lane != id && other.junction.is_none() && !aslant && other.length_m - s_m > ROOM_M
+    };
+    let near = places.roads().around(end.position, LaneKind::Driving, BESIDE_M);
+    let beside = near.into_iter().filter(|p| goes_on(p.lane, p.s_m));
+    let nearest = beside.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))?;
+    Some(Onward { lane: nearest.lane, at_m: nearest.s_m })
+}
+
+/// Leaves out lanes of junctions that end inside, and those that lead to nothing else.
+fn leave_out_dead_ends(lanes: &[Lane], onward: &mut [Vec<Onward>]) {
+    loop {
+        let leads_on: Vec<bool> =
+            lanes.iter().zip(&*onward).map(|(lane, next)| lane.junction.is_none() || !next.is_empty()).collect();
+        let before: usize = onward.iter().map(Vec::len).sum();
+        onward.iter_mut().for_each(|next| next.retain(|n| leads_on[n.lane as usize]));
+        if onward.iter().map(Vec::len).sum::<usize>() == before {
+            return;
+        }
+    }
+}
+
+fn wide(lanes: &[Lane], onward: Vec<Onward>) -> Vec<Onward> {
+    let no_right: Vec<_> = onward.iter().copied().filter(|n| lanes[n.lane as usize].turn != Turn::Right).collect();
+    if no_right.is_empty() { onward } else { no_right }
+}

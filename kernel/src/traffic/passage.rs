@@ -1,0 +1,117 @@
+//! How vehicles leave the map and enter it again: where it ends, and when the watchdog takes them off.
+
+use glam::Vec3;
+
+use crate::events::EventKind;
+use crate::geometry::rectangles_overlap;
+use crate::map_data::LaneId;
+use crate::rng::{Stream, below};
+use crate::time::seconds;
+
+use super::actors::Actors;
+use super::body::{Body, Surroundings};
+use super::plan::way_end_m;
+use super::poses::walker_body;
+use super::spawn::EGO_CLEARANCE_M;
+use super::vehicle::Vehicle;
+use super::watchdog::{DISSOLVE_S, DISSOLVE_SEEN_S, STUCK_S};
+
+/// Vehicles leave and enter the map no nearer to the ego car than this, metres.
+const UNSEEN_M: f32 = 2.0 * EGO_CLEARANCE_M;
+/// Speed at which they enter it, m/s.
+const ENTRY_MPS: f32 = 3.0;
+/// Free space before a vehicle that enters, metres, and beside it.
+const SPACE_M: f32 = 4.0;
+const ASIDE_M: f32 = 0.5;
+/// Whoever comes from behind keeps at least this time, s.
+const COMES_S: f32 = 3.0;
+/// Vehicles farther away than this are not in the way, metres.
+const FAR_M: f32 = 100.0;
+
+/// What became of a vehicle that the watchdog looks after, with its id.
+pub(super) type Told = (EventKind, u32);
+
+impl Actors {
+    /// Moves vehicles that stand where the map ends, and those that the watchdog takes off the road, to a
+    /// lane on which a road begins. What the watchdog found goes to `told`.
+    pub(super) fn return_to_map(&mut self, around: &Surroundings<'_>, told: &mut Vec<Told>) {
+        for i in 0..self.state.vehicles.len() {
+            let vehicle = self.state.vehicles[i];
+            if around.holds(vehicle.id) {
+                continue;
+            }
+            let id = u32::from(vehicle.id);
+            if self.at_end(i) {
+                self.enter_map(i, around, vehicle.stuck_s >= STUCK_S);
+                continue;
+            }
+            if vehicle.stuck_s == STUCK_S && around.tick.is_multiple_of(seconds(1)) {
+                told.push((EventKind::Stuck, id));
+            }
+            if vehicle.stuck_s >= DISSOLVE_S && self.enter_map(i, around, vehicle.stuck_s >= DISSOLVE_SEEN_S) {
+                told.push((EventKind::Dissolved, id));
+            }
+        }
+    }
+
+    /// Whether a vehicle stands where its way ends.
+    fn at_end(&self, index: usize) -> bool {
+        let vehicle = &self.state.vehicles[index];
+        let lane = vehicle.lane as usize;
+        let end_m = way_end_m(&self.map().lanes[lane]);
+        let near_end = vehicle.s_m > end_m - self.drivers[index].size_m.x * 0.5 - 4.0;
+        self.ways.lanes[lane].onward.is_empty() && near_end && vehicle.speed_mps < 0.5
+    }
+
+    /// Moves a vehicle to where a road begins, drawn anew each tick, if there is room; out of sight of the
+    /// ego car, or `seen` where it was. Whether it did.
+    fn enter_map(&mut self, index: usize, around: &Surroundings<'_>, seen: bool) -> bool {
+        let vehicle = self.state.vehicles[index];
+        let count = self.ways.entries.len() as u32;
+        let pick = below(self.seed, Stream::Spawn, u64::from(vehicle.id), around.tick, count);
+        let Some(&lane) = self.ways.entries.get(pick as usize) else { return false };
+        let unseen = |p: Vec3| p.distance(around.ego.position) > UNSEEN_M;
+        let place = |v: &Vehicle| self.map().lanes[v.lane as usize].straight_on(v.s_m).position;
+        let entry = self.entering(index, lane);
+        if !unseen(place(&entry)) || !(seen || unseen(place(&vehicle))) || !self.is_free(index, &entry, around) {
+            return false;
+        }
+        self.state.vehicles[index] = entry;
+        true
+    }
+
+    fn entering(&self, index: usize, lane: LaneId) -> Vehicle {
+        let (vehicle, driver) = (self.state.vehicles[index], &self.drivers[index]);
+        let (s_m, half_width_m) = (driver.size_m.x * 0.5 + 0.5, self.map().lanes[lane as usize].start().half_width_m);
+        let offset_m = driver.from_right_m.map_or(0.0, |m| (m - half_width_m).min(0.0));
+        let (hops, flags) = (vehicle.hops.wrapping_add(1), vehicle.flags & Vehicle::BRAKING);
+        Vehicle { lane, s_m, offset_m, flags, hops, wait_ticks: 0, stuck_s: 0, speed_mps: ENTRY_MPS, ..vehicle }
+    }
+
+    /// Whether a vehicle has room at a place, and nobody is about to come there.
+    fn is_free(&self, index: usize, entry: &Vehicle, around: &Surroundings<'_>) -> bool {
+        let me = self.vehicle_body(entry, &self.drivers[index]);
+        let (vehicles, walkers) = (self.state.vehicles.iter(), self.state.walkers.iter().zip(&self.walker_traits));
+        let others = vehicles.zip(&self.drivers).filter(|(v, _)| v.id != entry.id && !around.holds(v.id));
+        let near = |body: &Body| body.position.distance_squared(me.position) < FAR_M * FAR_M;
+        let mut others = others.map(|(v, d)| self.vehicle_body(v, d)).filter(near);
+        let mut people = walkers.zip(&self.places).map(|((w, t), place)| walker_body(w, t, place)).filter(near);
+        let loose = |o: &super::body::Obstacle| o.position.distance(me.position) > EGO_CLEARANCE_M;
+        around.loose.iter().all(loose) && others.all(|b| keeps_off(&me, &b)) && people.all(|b| keeps_off(&me, &b))
+    }
+}
+
+/// Whether another leaves room for one who enters, now and until it could come near from behind.
+fn keeps_off(me: &Body, other: &Body) -> bool {
+    let forward = (me.rotation * Vec3::X).truncate();
+    let to = (other.position - me.position).truncate();
+    let axis = (other.rotation * Vec3::X).truncate();
+    let turned = |v: glam::Vec2| glam::Vec2::new(v.dot(forward), forward.perp_dot(v));
+    let comes_m = (other.velocity_mps.truncate().dot(forward) * COMES_S).max(0.0);
+    // From its tail to as far as it comes.
+    let (half, reach) = (me.kind.size_m().truncate() * 0.5, other.kind.size_m().truncate() * 0.5);
+    let grown = half + glam::Vec2::new(SPACE_M + comes_m * 0.5, ASIDE_M);
+    let way = turned(to) + glam::Vec2::new(comes_m * 0.5, 0.0);
+    let level = (other.position.z - me.position.z).abs() > 3.0;
+    level || !rectangles_overlap(grown, way, turned(axis), reach)
+}
