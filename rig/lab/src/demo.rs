@@ -25,6 +25,8 @@ use crate::verify::{self, Checked, verify};
 const CASES: u32 = 3;
 /// Longest simulated time of a run, seconds.
 const RUN_SECONDS: u32 = 180;
+/// People on foot: more than by default, so that three cases do not take long.
+const PEDESTRIANS: u16 = 300;
 
 /// What the demo is made from.
 #[derive(Clone, Debug)]
@@ -75,7 +77,7 @@ pub fn demo(options: &Options, onlooker: &mut impl Onlooker, interrupt: &Interru
     let _folder = OutputFolder::open(&options.out)?;
     let (early, full) = (CheckpointChoice::Bundled("early"), CheckpointChoice::Bundled("full"));
     let drives = options.out.join("drives");
-    say(format_args!("1/4 driving through the early checkpoint until {CASES} corner cases have happened"));
+    say(format_args!("1/4 driving among {PEDESTRIANS} people through the early checkpoint until {CASES} corner cases have happened"));
     let figures = campaign::drive(&campaign_options(options, early.clone(), &drives), interrupt)?;
     let (recordings, cases) = files(&drives, &figures);
     say("2/4 verifying every recording");
@@ -111,7 +113,7 @@ fn campaign_options(options: &Options, checkpoint: CheckpointChoice, out: &Path)
         embed_map: false,
         scenario: None,
         until: Until::Cases(CASES),
-        pedestrians: None,
+        pedestrians: Some(PEDESTRIANS),
         run_seconds: RUN_SECONDS,
         seed: options.seed,
         jobs: options.jobs,
