@@ -77,7 +77,9 @@ pub fn demo(options: &Options, onlooker: &mut impl Onlooker, interrupt: &Interru
     let _folder = OutputFolder::open(&options.out)?;
     let (early, full) = (CheckpointChoice::Bundled("early"), CheckpointChoice::Bundled("full"));
     let drives = options.out.join("drives");
-    say(format_args!("1/4 driving among {PEDESTRIANS} people through the early checkpoint until {CASES} corner cases have happened"));
+    say(format_args!(
+        "1/4 driving among {PEDESTRIANS} people through the early checkpoint until {CASES} corner cases have happened"
+    ));
     let figures = campaign::drive(&campaign_options(options, early.clone(), &drives), interrupt)?;
     let (recordings, cases) = files(&drives, &figures);
     say("2/4 verifying every recording");
