@@ -5,6 +5,7 @@ use crate::map_data::{LaneId, MapData, StopKind};
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
+use super::change;
 use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, Seeker, side, sight};
 use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
@@ -26,6 +27,8 @@ const STOP_S: f32 = 0.25;
 const CONFLICT_M: f32 = 30.0;
 /// How long a vehicle stands at a stop sign.
 const HALT_TICKS: u16 = seconds(1) as u16;
+/// Who waits for so long at an open line gives up his goal for another.
+const RETHINK_TICKS: u16 = seconds(15) as u16;
 /// Braking at most for people at a crosswalk who are not in the way yet, m/s².
 const CROSSWALK_BRAKE_MPS2: f32 = 4.5;
 /// After standing this long people who only wait are not waited for any more, s.
@@ -34,6 +37,8 @@ const HEED_S: u8 = 15;
 const DRIFT: f32 = 0.08;
 /// The same to pass something.
 const PASS_DRIFT: f32 = 0.2;
+/// Distance kept from the edge of a narrow lane, metres.
+pub(super) const EDGE_M: f32 = 0.2;
 /// Distance that one turn of the pedals drives a bicycle, metres.
 const PEDAL_M: f32 = 5.0;
 
@@ -53,6 +58,8 @@ pub(super) struct View<'a> {
     /// The ego car and loose actors first, `free` of them, then people on the road.
     pub hazards: &'a [Hazard],
     pub free: usize,
+    /// Vehicles that are changing lanes, by index.
+    pub changing: &'a [(u32, Hazard)],
     pub claims: &'a [Claim],
     pub tick: Tick,
 }
@@ -79,10 +86,12 @@ impl View<'_> {
         let plan = &self.plans[index];
         let mut next = self.vehicles[index];
         self.decide(index, plan, &mut next);
+        self.wish_to_change(index, plan, &mut next);
         let seeker = self.seeker(index);
         let side = self.side(index, plan, &seeker);
         let accel = self.acceleration(index, plan, &next, &seeker, side);
         self.advance(index, accel, side, &mut next);
+        self.move_over(index, plan, &mut next);
         if self.tick.is_multiple_of(seconds(1)) {
             next.stuck_s = self.stuck_s(index);
         }
@@ -129,6 +138,10 @@ impl View<'_> {
         let at_line = line.hold_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
         if at_line && (sign || signal == Signal::Open) {
             next.wait_ticks = next.wait_ticks.saturating_add(1);
+            if next.wait_ticks.is_multiple_of(RETHINK_TICKS) {
+                // No way through: somewhere else, perhaps by another turn.
+                next.trips = next.trips.wrapping_add(1);
+            }
         } else if !at_line {
             next.wait_ticks = 0;
         }
@@ -143,6 +156,7 @@ impl View<'_> {
         let v = next.speed_mps;
         let mut accel = self.free_acceleration(next, driver, steps).min(self.zip(index, steps, next, seeker.horizon_m));
         let mut follow = |gap_m: f32, speed_mps: f32| accel = accel.min(follow_idm(driver, v, gap_m, speed_mps));
+        self.beside_changes(index, plan, seeker, &mut follow);
         if let Some(leader) = plan.leader {
             follow(leader.gap_m, leader.speed_mps);
         }
@@ -171,13 +185,37 @@ impl View<'_> {
         }
     }
 
-    fn side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
-        let vehicle = &self.vehicles[index];
+    /// Where across its lane a vehicle likes to drive, metres to the left of the middle: where its lane
+    /// ends over the border to the lane beside it, not to oncoming traffic.
+    pub(super) fn likes_m(&self, index: usize) -> f32 {
+        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
         let lane = &self.map.lanes[vehicle.lane as usize];
-        let half_width_m = || lane.points[lane.segment(vehicle.s_m).0].half_width_m;
-        let likes_m = self.drivers[index].from_right_m.map_or(0.0, |m| (m - half_width_m()).min(0.0));
+        let half_m = driver.size_m.x * 0.5;
+        let half_width_m =
+            || lane.at(vehicle.s_m + half_m).half_width_m.min(lane.at(vehicle.s_m - half_m).half_width_m);
+        if let Some(from_right_m) = driver.from_right_m {
+            return (from_right_m - half_width_m()).min(0.0);
+        }
+        if self.ways.lanes[vehicle.lane as usize].ends_m.is_none() {
+            return 0.0;
+        }
+        let over_m = (driver.size_m.y * 0.5 + EDGE_M - half_width_m()).max(0.0);
+        match (lane.left, lane.right) {
+            (None, Some(_)) => -over_m,
+            (Some(_), None) => over_m,
+            _ => 0.0,
+        }
+    }
+
+    fn side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
+        let (vehicle, likes_m) = (&self.vehicles[index], self.likes_m(index));
         let aim_m = side(self.map, self.steps_of(plan), seeker, &self.hazards[..self.free], likes_m);
-        Side { aim_m, drift: if aim_m == likes_m { DRIFT } else { PASS_DRIFT } }
+        let drift = match vehicle.change.abs() {
+            2 => change::drift(vehicle.speed_mps, seeker.half.x),
+            _ if aim_m == likes_m => DRIFT,
+            _ => PASS_DRIFT,
+        };
+        Side { aim_m, drift }
     }
 
     /// Acceleration on an empty road: the model's, and what curves and limits ahead ask for.
@@ -299,7 +337,7 @@ impl View<'_> {
             if next.s_m < length_m {
                 break;
             }
-            let Some(onward) = next_lane(self.ways, self.seed, next, next.hops, next.lane) else {
+            let Some(onward) = next_lane(self.ways, self.seed, next, next.trips, next.lane) else {
                 next.s_m = length_m;
                 next.speed_mps = 0.0;
                 break;
@@ -310,7 +348,7 @@ impl View<'_> {
             next.offset_m = (at - place.position).truncate().dot(place.left());
             next.s_m += onward.at_m - length_m;
             next.lane = onward.lane;
-            next.hops = next.hops.wrapping_add(1);
+            next.trips = self.ways.routes.trips_on(self.seed, next, next.trips, next.lane);
             if self.ways.lanes[next.lane as usize].zone.is_some() {
                 next.flags &= !(Vehicle::GRANTED | Vehicle::HALTED);
                 next.flags |= Vehicle::CROSSING;

@@ -99,7 +99,13 @@ impl Members {
             steps.iter().any(|step| {
                 let conflicts = &ways.lanes[step.lane as usize].conflicts;
                 let theirs = self.lanes_of(other);
-                conflicts.iter().any(|c| theirs.iter().any(|t| t.lane == c.lane && prevents(asking, other, c, t)))
+                let swept = &ways.lanes[step.lane as usize].swept;
+                let long = other.half_m > LONG_HALF_M || asking.half_m > LONG_HALF_M;
+                let sweeps = long && theirs.iter().any(|t| swept.contains(&t.lane));
+                sweeps && (other.holds || !goes_before(asking, other, 0))
+                    || conflicts
+                        .iter()
+                        .any(|c| theirs.iter().any(|t| t.lane == c.lane && prevents(asking, other, c, t)))
             })
         };
         !others.into_iter().any(keeps_out)

@@ -8,6 +8,8 @@ use crate::places::Places;
 const BESIDE_M: f32 = 2.0;
 /// Such a lane leads on for at least this, metres.
 const ROOM_M: f32 = 10.0;
+/// Half the width at which a lane is wide enough for any vehicle, metres.
+pub(super) const LEAST_HALF_M: f32 = 1.2;
 /// Lanes that run more aslant than this do not go on in each other, radians.
 const ASLANT_RAD: f32 = 0.5;
 
@@ -31,6 +33,11 @@ pub(super) fn onward(places: &Places) -> Vec<[Vec<Onward>; 2]> {
     }
     leave_out_dead_ends(lanes, &mut all);
     all.into_iter().map(|onward| [onward.clone(), wide(lanes, onward)]).collect()
+}
+
+/// Whether a lane comes to an end beside another: it becomes too narrow, or leads on into the middle of that.
+pub(super) fn ends_beside(lane: &Lane, onward: &[Onward]) -> bool {
+    lane.end().half_width_m < LEAST_HALF_M && !onward.is_empty() || onward.iter().any(|next| next.at_m > 0.0)
 }
 
 fn successors(lanes: &[Lane], lane: &Lane) -> Vec<Onward> {

@@ -2,12 +2,13 @@
 
 use crate::map_data::{LaneId, MapData};
 
+use super::change;
 use super::links::Onward;
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
 /// A vehicle's place on a lane. One that reaches over an end stands on both lanes, its middle
-/// before the start or beyond the end of the one.
+/// before the start or beyond the end of the one; so does one that changes lanes, until it has left the one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub lane: LaneId,
@@ -48,7 +49,7 @@ impl Lists {
         self.spans.resize(map.lanes.len(), (0, 0));
         for (i, vehicle) in vehicles.iter().enumerate() {
             if present(vehicle.id) {
-                self.add(map, i, vehicle, drivers[i].size_m.x * 0.5, &next_lane);
+                self.add(map, i, vehicle, &drivers[i], &next_lane);
             }
         }
         let key = |e: &Entry| (e.lane, e.s_m, e.id);
@@ -67,9 +68,10 @@ impl Lists {
         map: &MapData,
         index: usize,
         vehicle: &Vehicle,
-        half_m: f32,
+        driver: &Driver,
         next_lane: &impl Fn(&Vehicle) -> Option<Onward>,
     ) {
+        let half_m = driver.size_m.x * 0.5;
         let lane = &map.lanes[vehicle.lane as usize];
         let entry = Entry {
             lane: vehicle.lane,
@@ -80,6 +82,9 @@ impl Lists {
             id: vehicle.id,
         };
         self.entries.push(entry);
+        if let Some(left) = change::reaches_into(map, vehicle, driver) {
+            self.entries.push(Entry { lane: left.lane, s_m: left.s_m, ..entry });
+        }
         if vehicle.s_m < half_m {
             for &before in &lane.predecessors {
                 let s_m = vehicle.s_m + map.lanes[before as usize].length_m;

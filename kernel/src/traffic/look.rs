@@ -42,6 +42,7 @@ pub(super) struct Sight {
     free: usize,
     /// Vehicles, the ego car and loose actors.
     blocks: Vec<Hazard>,
+    changing: Vec<(u32, Hazard)>,
     claims: Vec<Claim>,
     crowd: Crowd,
     jaywalker: Option<usize>,
@@ -56,7 +57,7 @@ impl Sight {
         let groups = 0..map.light_groups.len() as u32;
         self.lights.clear();
         self.lights.extend(groups.map(|g| signals::phase(map, actors.seed, g, around.tick)));
-        let next = |v: &Vehicle| next_lane(&actors.ways, actors.seed, v, v.hops, v.lane);
+        let next = |v: &Vehicle| next_lane(&actors.ways, actors.seed, v, v.trips, v.lane);
         let vehicles = &actors.state.vehicles;
         self.lists.rebuild(map, vehicles, &actors.drivers, next, |id| !around.holds(id));
         let people = &actors.bodies[actors.state.vehicles.len()..];
@@ -82,6 +83,7 @@ impl Sight {
             members: &self.members,
             hazards: &self.hazards,
             free: self.free,
+            changing: &self.changing,
             claims: &self.claims,
             tick: self.tick,
         }
@@ -140,6 +142,9 @@ impl Sight {
         let (driven, walked) = actors.bodies.split_at(vehicles.len());
         let present = vehicles.iter().zip(driven).filter(|(v, _)| !around.holds(v.id));
         self.blocks.extend(present.map(|(_, body)| Hazard::of_body(body)));
+        self.changing.clear();
+        let changing = vehicles.iter().enumerate().filter(|(_, v)| v.change.abs() == 2 && !around.holds(v.id));
+        self.changing.extend(changing.map(|(i, _)| (i as u32, Hazard::of_body(&driven[i]))));
         self.claims.clear();
         for (walker, body) in walkers.iter().zip(walked).filter(|(w, _)| !around.holds(w.id)) {
             let crosswalk = actors.map().walk_edges[walker.edge as usize].crosswalk;

@@ -7,7 +7,8 @@ use crate::map_data::{Lane, LaneId, LaneKind, LanePoint};
 use crate::ops;
 use crate::places::Places;
 
-use super::links::Onward;
+use super::drive::EDGE_M;
+use super::links::{Onward, ends_beside};
 
 /// Lanes whose middles are nearer than this never have room for two wide vehicles, metres.
 const NARROW_M: f32 = 2.5;
@@ -15,6 +16,10 @@ const NARROW_M: f32 = 2.5;
 const WIDE_M: f32 = 2.9;
 /// Between these the lanes' own widths decide, less this, metres.
 const CLEARANCE_M: f32 = 0.6;
+/// Width of the widest vehicle, which leans over the border where its lane ends beside another, metres.
+const WIDEST_M: f32 = 2.5;
+/// Length of the longest, metres.
+const LONGEST_M: f32 = 11.0;
 /// Where it is looked for along a lane, metres.
 const PROBE_M: f32 = 1.0;
 /// A place off the end of a lane by more than this is not beside it, metres.
@@ -45,7 +50,7 @@ pub(super) fn meets(places: &Places, onward: &[[Vec<Onward>; 2]]) -> Vec<Vec<Mee
         if lanes[id as usize].kind != LaneKind::Driving {
             continue;
         }
-        for (other, (mut here, mut there)) in beside(places, id).into_iter().filter(|(other, _)| *other > id) {
+        for (other, (mut here, mut there)) in beside(places, onward, id).into_iter().filter(|(other, _)| *other > id) {
             let shift_m = shift_m(lanes, onward, id, other, (here, there));
             here.sort_by(f32::total_cmp);
             there.sort_by(f32::total_cmp);
@@ -58,8 +63,14 @@ pub(super) fn meets(places: &Places, onward: &[[Vec<Onward>; 2]]) -> Vec<Vec<Mee
 }
 
 /// Lanes beside a lane, and where.
-fn beside(places: &Places, id: LaneId) -> BTreeMap<LaneId, Stretch> {
+fn beside(places: &Places, onward: &[[Vec<Onward>; 2]], id: LaneId) -> BTreeMap<LaneId, Stretch> {
     let lanes = &places.map.lanes;
+    let lean_m = |lane: LaneId, s_m: f32| {
+        let (lane, onward) = (&lanes[lane as usize], &onward[lane as usize][0]);
+        let half_width_m = [-LONGEST_M, LONGEST_M].map(|m| lane.at(s_m + m).half_width_m);
+        let over_m = WIDEST_M * 0.5 + EDGE_M - half_width_m[0].min(half_width_m[1]);
+        if ends_beside(lane, onward) { over_m.max(0.0) } else { 0.0 }
+    };
     let lane = &lanes[id as usize];
     let mut stretches: BTreeMap<LaneId, Stretch> = BTreeMap::new();
     let steps = (lane.length_m / PROBE_M) as u32 + 1;
@@ -68,9 +79,10 @@ fn beside(places: &Places, id: LaneId) -> BTreeMap<LaneId, Stretch> {
         let here = lane.at(s_m);
         for near in places.roads().around(here.position, LaneKind::Driving, NARROW_M) {
             let other = &lanes[near.lane as usize];
+            let there = other.at(near.s_m);
             let is_beside = near.distance_m - near.lateral_m.abs() < BEYOND_M;
-            if is_beside && may_meet(id, lane, near.lane, other) && touches(&here, &other.at(near.s_m), near.distance_m)
-            {
+            let apart_m = near.distance_m - lean_m(id, s_m) - lean_m(near.lane, near.s_m);
+            if is_beside && may_meet(id, lane, near.lane, other) && touches(&here, &there, apart_m) {
                 let stretch = stretches.entry(near.lane).or_insert(([s_m; 2], [near.s_m; 2]));
                 (stretch.0[1], stretch.1[1]) = (s_m, near.s_m);
             }

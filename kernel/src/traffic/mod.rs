@@ -7,6 +7,7 @@
 
 mod actors;
 mod body;
+mod change;
 mod company;
 mod counts;
 mod crosswalk;
@@ -22,6 +23,7 @@ mod meets;
 mod passage;
 mod plan;
 mod poses;
+mod routes;
 mod spawn;
 mod state;
 mod step;

@@ -84,8 +84,9 @@ impl Actors {
         let (vehicle, driver) = (self.state.vehicles[index], &self.drivers[index]);
         let (s_m, half_width_m) = (driver.size_m.x * 0.5 + 0.5, self.map().lanes[lane as usize].start().half_width_m);
         let offset_m = driver.from_right_m.map_or(0.0, |m| (m - half_width_m).min(0.0));
-        let (hops, flags) = (vehicle.hops.wrapping_add(1), vehicle.flags & Vehicle::BRAKING);
-        Vehicle { lane, s_m, offset_m, flags, hops, wait_ticks: 0, stuck_s: 0, speed_mps: ENTRY_MPS, ..vehicle }
+        let (trips, flags) = (vehicle.trips.wrapping_add(1), vehicle.flags & Vehicle::BRAKING);
+        let fresh = Vehicle { wait_ticks: 0, stuck_s: 0, change: 0, change_ticks: 0, ..vehicle };
+        Vehicle { lane, s_m, offset_m, flags, trips, speed_mps: ENTRY_MPS, ..fresh }
     }
 
     /// Whether a vehicle has room at a place, and nobody is about to come there.

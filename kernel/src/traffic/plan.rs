@@ -1,12 +1,12 @@
 //! The way a vehicle will take, as far as it has to look ahead.
 
-use crate::actor::ActorKind;
 use crate::map_data::{Lane, LaneId, MapData};
 use crate::ops;
 use crate::rng::{self, Stream};
 
 use super::links::Onward;
 use super::lists::{Entry, Lists};
+use super::routes::Class;
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
@@ -58,16 +58,20 @@ pub(super) struct Plan {
     pub dead_end_m: Option<f32>,
 }
 
-/// Where a vehicle goes on after `lane`, when it has entered `hops` lanes.
-pub(super) fn next_lane(ways: &Ways, seed: u64, vehicle: &Vehicle, hops: u16, lane: LaneId) -> Option<Onward> {
+/// Where a vehicle goes on after `lane`, when it has begun so many journeys.
+pub(super) fn next_lane(ways: &Ways, seed: u64, vehicle: &Vehicle, trips: u16, lane: LaneId) -> Option<Onward> {
     let way = &ways.lanes[lane as usize];
-    let long = matches!(vehicle.kind, ActorKind::Bus | ActorKind::Truck);
-    match if long { &way.onward_wide } else { &way.onward }.as_slice() {
+    let onward = if Class::of(vehicle.kind) == Class::Long { &way.onward_wide } else { &way.onward };
+    match onward.as_slice() {
         [] => None,
         [only] => Some(*only),
         many => {
-            let pick = rng::below(seed, Stream::Turn, u64::from(vehicle.id), u64::from(hops), many.len() as u32);
-            Some(many[pick as usize])
+            let astray = || {
+                let which = u64::from(trips) << 32 | u64::from(lane);
+                many[rng::below(seed, Stream::Turn, u64::from(vehicle.id), which, many.len() as u32) as usize]
+            };
+            let journey = ways.routes.journey(seed, vehicle.id, vehicle.kind, trips);
+            Some(journey.best(many).unwrap_or_else(astray))
         }
     }
 }
@@ -96,11 +100,12 @@ pub(super) fn plan(
     let mut plan = Plan::default();
     let mut step = Step { lane: vehicle.lane, start_m: -vehicle.s_m, from_m: 0.0 };
     let mut beyond_m = f32::NEG_INFINITY;
+    let mut trips = vehicle.trips;
     for k in 0..MAX_STEPS {
         out.push(step);
         let lane = &map.lanes[step.lane as usize];
         let end_m = step.start_m + lane.length_m;
-        let Some(next) = next_lane(ways, seed, vehicle, vehicle.hops.wrapping_add(k as u16), step.lane) else {
+        let Some(next) = next_lane(ways, seed, vehicle, trips, step.lane) else {
             plan.dead_end_m = Some(step.start_m + way_end_m(lane));
             break;
         };
@@ -117,6 +122,7 @@ pub(super) fn plan(
         if end_m > horizon.max(beyond_m) && !undecided {
             break;
         }
+        trips = ways.routes.trips_on(seed, vehicle, trips, next.lane);
         step = Step { lane: next.lane, start_m: end_m - next.at_m, from_m: next.at_m };
     }
     plan.steps = (first as u32, out.len() as u32);

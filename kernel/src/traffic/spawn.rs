@@ -191,10 +191,12 @@ impl Spawner<'_> {
             s_m,
             offset_m,
             speed_mps,
-            hops: 0,
+            trips: 0,
             wait_ticks: 0,
             phase: bits(self.seed, Stream::Spawn, u64::from(id), TRIES + 1) as u16,
             stuck_s: 0,
+            change: 0,
+            change_ticks: 0,
         });
         true
     }

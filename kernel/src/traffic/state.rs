@@ -33,8 +33,9 @@ impl TrafficState {
         for v in &self.vehicles {
             let lane = map.lanes.get(v.lane as usize).filter(|lane| (0.0..=lane.length_m).contains(&v.s_m));
             let kind = v.kind != ActorKind::Pedestrian;
+            let changes = (-2..=2).contains(&v.change);
             let moves = (0.0..=FASTEST_MPS).contains(&v.speed_mps) && v.offset_m.abs() <= ASIDE_M;
-            if lane.is_none() || !kind || !moves || v.flags & !Vehicle::ALL_FLAGS != 0 {
+            if lane.is_none() || !kind || !moves || !changes || v.flags & !Vehicle::ALL_FLAGS != 0 {
                 return Err(format!("vehicle {}: expected a vehicle on a lane of map {}", v.id, map.name));
             }
         }

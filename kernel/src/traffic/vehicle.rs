@@ -5,7 +5,7 @@ use crate::map_data::LaneId;
 use crate::state;
 
 state! {
-    /// A vehicle on a lane. 27 bytes.
+    /// A vehicle on a lane. 29 bytes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Vehicle {
         /// Id of the actor.
@@ -22,14 +22,18 @@ state! {
         pub offset_m: f32,
         /// Speed, m/s, never negative.
         pub speed_mps: f32,
-        /// Lanes entered so far (wrapping): the counter of its random turns.
-        pub hops: u16,
+        /// Journeys begun after the first (wrapping): the counter of its drawn goals.
+        pub trips: u16,
         /// Ticks it has waited at the line before it, saturating.
         pub wait_ticks: u16,
         /// Phase of pedalling, 2^-16 turns.
         pub phase: u16,
         /// Seconds for which it has stood without a reason, saturating.
         pub stuck_s: u8,
+        /// Change of lane: wished for and signalled to the left (1) or right (-1), being driven (2, -2), or none (0).
+        pub change: i8,
+        /// Ticks for which a change has been wished for, saturating.
+        pub change_ticks: u8,
     }
 }
 

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::links::{Onward, onward};
+use super::links::{LEAST_HALF_M, Onward, ends_beside, onward};
 use super::meets::{Meet, meets};
+use super::routes::Routes;
 use super::walker::Walker;
 use super::zones::zones;
 use crate::map_data::{
-    Conflict, Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, StopKind, WalkEdgeId,
+    Conflict, Crosswalk, Lane, LaneId, LaneKind, LanePoint, LightGroupId, MapData, Place, StopKind, Turn, WalkEdgeId,
 };
 use crate::ops;
 use crate::places::Places;
@@ -23,8 +24,8 @@ const CURVE_FLOOR_MPS: f32 = 2.5;
 /// Sidewalks farther apart than this do not face each other across a road, metres.
 const FACING_M: f32 = 32.0;
 
-/// Half the width at which a lane is wide enough to enter the map on, metres.
-const LEAST_ENTRY_M: f32 = 1.2;
+/// Long vehicles sweep into lanes whose middles come within this, metres.
+const SWEPT_M: f32 = 5.0;
 /// Lanes whose edges come within this of where another begins lie beside it, metres.
 const FROM_BEFORE_M: f32 = 2.0;
 
@@ -72,8 +73,12 @@ pub(super) struct LaneWay {
     pub onward: Vec<Onward>,
     /// Where long vehicles do: no right turns, where there is another way.
     pub onward_wide: Vec<Onward>,
+    /// Where it is wide enough no more, if it ends beside another lane, metres from its start.
+    pub ends_m: Option<f32>,
     /// Lanes of the same junction that overlap it.
     pub conflicts: Vec<LaneConflict>,
+    /// Lanes of the same junction beside it, into which a long vehicle sweeps.
+    pub swept: Vec<LaneId>,
     /// Lanes that it meets outside junctions.
     pub meets: Vec<Meet>,
     /// Its zone: junctions without room to wait between them are one.
@@ -98,6 +103,7 @@ pub struct Ways {
     /// The map with its places.
     pub(super) places: Arc<Places>,
     pub(super) lanes: Vec<LaneWay>,
+    pub(super) routes: Routes,
     pub(super) edges: Vec<EdgeWay>,
     /// Light groups that must be red for each crosswalk; empty for one without.
     pub(super) crosswalk_lights: Vec<Vec<LightGroupId>>,
@@ -109,9 +115,11 @@ impl Ways {
     /// The lookups of a map.
     pub(crate) fn new(places: &Arc<Places>) -> Self {
         let map = &*places.map;
+        let lanes = lane_ways(places);
         let mut ways = Self {
             places: places.clone(),
-            lanes: lane_ways(places),
+            routes: Routes::new(&map.lanes, &lanes),
+            lanes,
             edges: (0..map.walk_edges.len()).map(|e| edge_way(map, e)).collect(),
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
@@ -194,9 +202,17 @@ fn lane_way(map: &MapData, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) 
         let reachable = ops::sqrt(speed_mps[i + 1] * speed_mps[i + 1] + 2.0 * CURVE_BRAKE_MPS2 * ds.max(0.0));
         speed_mps[i] = speed_mps[i].min(reachable);
     }
+    let swept = lane.junction.map_or_else(Vec::new, |junction| swept(map, id, junction));
     let conflicts = lane.conflicts.iter().filter_map(|c| lane_conflict(map, id, c)).collect();
     let forward = directions(lane.points.iter().map(|p| p.position));
-    LaneWay { speed_mps, forward, onward, onward_wide, conflicts, ..LaneWay::default() }
+    let ends_m = ends_beside(lane, &onward).then(|| wide_up_to_m(lane));
+    LaneWay { speed_mps, forward, onward, onward_wide, ends_m, conflicts, swept, ..LaneWay::default() }
+}
+
+/// Where a lane becomes too narrow to drive on to its end, metres from its start.
+fn wide_up_to_m(lane: &Lane) -> f32 {
+    let narrow = lane.points.iter().rev().take_while(|p| p.half_width_m < LEAST_HALF_M).last();
+    narrow.map_or(lane.length_m, |p| p.s_m)
 }
 
 /// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken
@@ -239,6 +255,25 @@ fn lane_conflict(map: &MapData, id: LaneId, conflict: &Conflict) -> Option<LaneC
     })
 }
 
+/// Lanes of a junction that come near a lane without a conflict, where the way of one of them bends.
+fn swept(map: &MapData, id: LaneId, junction: u32) -> Vec<LaneId> {
+    let lane = &map.lanes[id as usize];
+    let chained = |other: &Lane, o: LaneId| lane.successors.contains(&o) || other.successors.contains(&id);
+    let shares = |a: &[LaneId], b: &[LaneId]| a.iter().any(|x| b.contains(x));
+    let near = |other: &Lane| {
+        let middle = |points: &[LanePoint]| points.iter().map(|p| p.position.truncate()).collect::<Vec<_>>();
+        let (here, there) = (middle(&lane.points), middle(&other.points));
+        here.iter().any(|p| there.iter().any(|q| p.distance_squared(*q) < SWEPT_M * SWEPT_M))
+    };
+    let others = map.junctions[junction as usize].lanes.iter().copied().filter(|o| *o != id);
+    let others = others.map(|o| (o, &map.lanes[o as usize])).filter(|(o, other)| {
+        let bends = lane.turn != Turn::Straight || other.turn != Turn::Straight;
+        let together = shares(&lane.predecessors, &other.predecessors) || lane.conflicts.iter().any(|c| c.lane == *o);
+        other.kind == LaneKind::Driving && bends && !together && !chained(other, *o)
+    });
+    others.filter(|(_, other)| near(other)).map(|(o, _)| o).collect()
+}
+
 fn crosswalk_lights(map: &MapData, crosswalk: &Crosswalk) -> Vec<LightGroupId> {
     let mut groups = Vec::new();
     if crosswalk.junction.is_some() {
@@ -271,7 +306,7 @@ fn begins(places: &Places, id: LaneId) -> bool {
         let along = ops::cos(lanes[other as usize].at(s_m).heading_rad - start.heading_rad) > 0.5;
         other != id && along && s_m > 5.0
     };
-    let wide = start.half_width_m > LEAST_ENTRY_M;
+    let wide = start.half_width_m > LEAST_HALF_M;
     let near = || places.roads().around(start.position, LaneKind::Driving, FROM_BEFORE_M);
     lane.predecessors.is_empty() && wide && !near().iter().any(|p| comes_by(p.lane, p.s_m))
 }

@@ -124,7 +124,12 @@ impl<'a> Watcher<'a> {
 
     fn look(&mut self, traffic: &Traffic, tick: Tick) {
         let dissolved = traffic.told().iter().filter(|(kind, _)| *kind == EventKind::Dissolved);
-        self.found.dissolved += dissolved.count() as u32;
+        for (_, id) in dissolved {
+            self.found.dissolved += 1;
+            if std::env::var("AEYE_TRAFFIC_WHO").is_ok() {
+                eprintln!("tick {tick}: dissolved {:?}", self.before.iter().find(|v| u32::from(v.id) == *id));
+            }
+        }
         let vehicles = &traffic.state().vehicles;
         let driven_m: f32 = vehicles.iter().map(|v| v.speed_mps / 60.0).sum();
         self.found.vehicle_km += f64::from(driven_m) / 1000.0;

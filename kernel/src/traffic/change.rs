@@ -1,0 +1,306 @@
+//! Changes of lane: MOBIL (Kesting, Treiber and Helbing 2007). Whoever gains more than the others lose
+//! changes, if nobody has to brake hard for it; a lane that leads to the goal is worth the more the nearer
+//! the next junction is. A change is signalled first. The vehicle then belongs to the other lane, beside
+//! whose middle it starts, and stands in the list of the one it leaves until it is clear of that.
+
+use crate::actor::ActorKind;
+use crate::map_data::{LaneId, MapData, Projection};
+use crate::time::Tick;
+
+use super::body::Body;
+use super::drive::{View, follow_idm};
+use super::hazard::{Hazard, Seeker, sight};
+use super::lists::Entry;
+use super::plan::{Plan, next_lane};
+use super::routes::Class;
+use super::traits::Driver;
+use super::vehicle::Vehicle;
+
+/// How much the others' accelerations count.
+const POLITENESS: f32 = 0.3;
+/// Acceleration that a change has to gain, m/s².
+const THRESHOLD_MPS2: f32 = 0.2;
+/// Nobody has to brake harder for one who changes, m/s².
+const SAFE_MPS2: f32 = 2.5;
+/// A lane that leads to the goal is worth this right before the junction, and nothing so far before it.
+const ROUTE_MPS2: f32 = 3.0;
+const ROUTE_M: f32 = 250.0;
+/// Gap to others that is left at least, metres.
+const GAP_M: f32 = 2.5;
+/// Vehicles think about changes so often.
+const CONSIDER_TICKS: Tick = 30;
+/// They signal for so long before they change.
+const SIGNAL_TICKS: u8 = 60;
+/// Then they look for a gap so often.
+const GAP_TICKS: Tick = 6;
+/// Slower than this nobody changes, m/s.
+const LEAST_MPS: f32 = 1.5;
+/// Sideways by so much for each metre driven at most, and so fast, m/s.
+const STEEPEST: f32 = 0.2;
+const SIDEWAYS_MPS: f32 = 1.0;
+/// The tail of a vehicle swings out by no more than this, metres.
+const SWING_M: f32 = 0.4;
+/// Width of a lane for which a change has room, metres.
+const LANE_M: f32 = 3.5;
+/// A lane narrower than twice this is none to change to, metres.
+const LEAST_HALF_M: f32 = 1.3;
+/// A lane that ends within this beyond the change is none either, metres.
+const LASTING_M: f32 = 60.0;
+/// A change is over at this distance from where the vehicle wants to drive, metres.
+const THERE_M: f32 = 0.2;
+/// How far others are looked for, metres, over so many lanes at most.
+const REACH_M: f32 = 80.0;
+const LANES: usize = 4;
+/// Of vehicles nearer to each other than this, one changes at a time, metres.
+const APART_M: f32 = 30.0;
+
+/// Somebody ahead or behind on a lane.
+#[derive(Clone, Copy)]
+struct Near {
+    /// Index of the vehicle.
+    vehicle: u32,
+    /// From bumper to bumper, metres; negative beside.
+    gap_m: f32,
+    speed_mps: f32,
+}
+
+/// Sideways motion of a change for each metre driven.
+pub(super) fn drift(speed_mps: f32, half_length_m: f32) -> f32 {
+    STEEPEST.min(SIDEWAYS_MPS / speed_mps.max(1.0)).min(SWING_M / half_length_m)
+}
+
+fn beside(map: &MapData, lane: LaneId, to_left: bool) -> Option<LaneId> {
+    let lane = &map.lanes[lane as usize];
+    if to_left { lane.left } else { lane.right }
+}
+
+/// The place on the lane that a vehicle leaves, as long as it reaches into it.
+pub(super) fn reaches_into(map: &MapData, vehicle: &Vehicle, driver: &Driver) -> Option<Projection> {
+    if vehicle.change.abs() < 2 {
+        return None;
+    }
+    let place = map.lanes[vehicle.lane as usize].straight_on(vehicle.s_m);
+    let clear = vehicle.offset_m.abs() + driver.size_m.y * 0.5 <= place.half_width_m;
+    let left = beside(map, vehicle.lane, vehicle.offset_m > 0.0).filter(|_| !clear)?;
+    Some(map.project(left, place.beside(vehicle.offset_m)))
+}
+
+impl View<'_> {
+    /// Whether a vehicle wishes to change lanes, and whether it has done so.
+    pub(super) fn wish_to_change(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
+        let considers = (self.tick + u64::from(next.id)).is_multiple_of(CONSIDER_TICKS);
+        match next.change {
+            0 if considers => {
+                let gains = [1, -1].map(|side| (side, self.gain_mps2(index, plan, side)));
+                let best = gains.into_iter().filter(|(_, gain)| *gain > THRESHOLD_MPS2);
+                let best = best.max_by(|a, b| a.1.total_cmp(&b.1));
+                (next.change, next.change_ticks) = (best.map_or(0, |(side, _)| side), 0);
+            }
+            side @ (1 | -1) => {
+                next.change_ticks = next.change_ticks.saturating_add(1);
+                let pays = !considers || self.gain_mps2(index, plan, side) > THRESHOLD_MPS2 * 0.5;
+                next.change = if pays { side } else { 0 };
+            }
+            2 | -2 => {
+                let likes_m = self.likes_m(index);
+                next.change = if (next.offset_m - likes_m).abs() < THERE_M { 0 } else { next.change };
+            }
+            _ => {}
+        }
+    }
+
+    /// Moves a vehicle that wishes to change to the other lane, if that is safe now.
+    pub(super) fn move_over(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
+        let vehicle = &self.vehicles[index];
+        let turn = (self.tick + u64::from(next.id)).is_multiple_of(GAP_TICKS);
+        if next.change.abs() != 1 || next.change_ticks < SIGNAL_TICKS || !turn || next.lane != vehicle.lane {
+            return;
+        }
+        let Some(there) = self.target(index, plan, next.change).filter(|there| self.is_safe(index, there)) else {
+            return;
+        };
+        let position = self.map.lanes[next.lane as usize].straight_on(next.s_m).beside(next.offset_m);
+        let there = self.map.project(there.lane, position);
+        (next.lane, next.s_m, next.offset_m) = (there.lane, there.s_m, there.lateral_m);
+        (next.change, next.change_ticks, next.wait_ticks) = (2 * next.change, 0, 0);
+        next.flags &= !Vehicle::HALTED;
+    }
+
+    /// Tells `follow` the gap to whoever is in the way of a vehicle while lanes are changed, and its speed: before one
+    /// that changes everybody whose way it reaches into, and before others those who change.
+    pub(super) fn beside_changes(&self, index: usize, plan: &Plan, seeker: &Seeker, follow: &mut impl FnMut(f32, f32)) {
+        let steps = self.steps_of(plan);
+        let mut heed = |hazard: &Hazard| {
+            let seen = sight(self.map, steps, seeker, hazard).filter(|s| s.blocks(seeker.offset_m, seeker.half.y));
+            if let Some(seen) = seen {
+                follow(seen.gap_m, seen.speed_mps);
+            }
+        };
+        if self.vehicles[index].change.abs() < 2 {
+            return self.changing.iter().for_each(|(_, hazard)| heed(hazard));
+        }
+        let reach_m = seeker.horizon_m + 20.0;
+        let near = |body: &Body| body.position.distance_squared(seeker.position) < reach_m * reach_m;
+        let others = self.bodies[..self.vehicles.len()].iter().enumerate();
+        others.filter(|(i, body)| *i != index && near(body)).for_each(|(_, body)| heed(&Hazard::of_body(body)));
+    }
+
+    /// Where a vehicle would be on the lane beside its own, if a change is possible.
+    fn target(&self, index: usize, plan: &Plan, side: i8) -> Option<Projection> {
+        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
+        let lane = beside(self.map, vehicle.lane, side > 0)?;
+        let (from, to) = (&self.ways.lanes[vehicle.lane as usize], &self.ways.lanes[lane as usize]);
+        let busy =
+            vehicle.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0 || from.zone.is_some() || to.zone.is_some();
+        let bound = vehicle.kind == ActorKind::Bicycle && side > 0;
+        if busy
+            || bound
+            || vehicle.speed_mps < LEAST_MPS
+            || !Class::of(vehicle.kind).may_use(&self.map.lanes[lane as usize])
+        {
+            return None;
+        }
+        let needed_m = LANE_M / drift(vehicle.speed_mps, driver.size_m.x * 0.5) + 0.5 * driver.size_m.x;
+        if plan.line.is_some_and(|line| line.hold_m < needed_m) || plan.dead_end_m.is_some_and(|m| m < needed_m) {
+            return None;
+        }
+        let there = self.map.project(lane, self.bodies[index].position);
+        let target = &self.map.lanes[lane as usize];
+        let [here_m, then_m] = [there.s_m, there.s_m + needed_m].map(|s_m| target.at(s_m).half_width_m);
+        let wide = here_m.min(then_m) > LEAST_HALF_M;
+        let leads_on = target.length_m - there.s_m > needed_m || !to.onward.is_empty();
+        let leads_on = leads_on && to.ends_m.is_none_or(|m| m - there.s_m > needed_m + LASTING_M);
+        (wide && leads_on).then_some(there)
+    }
+
+    /// What a change would gain by MOBIL, m/s²; not finite where it is not possible.
+    fn gain_mps2(&self, index: usize, plan: &Plan, side: i8) -> f32 {
+        let Some(there) = self.target(index, plan, side) else { return f32::NEG_INFINITY };
+        let vehicle = &self.vehicles[index];
+        let gap = |near: Option<Near>| near.map(|n| (n.gap_m, n.speed_mps));
+        let ahead = self.ahead(index, there.lane, there.s_m);
+        let here_ahead = plan.leader.map(|l| (l.gap_m, l.speed_mps));
+        let own = self.pace_mps2(index, there.lane, gap(ahead)) - self.pace_mps2(index, vehicle.lane, here_ahead);
+        // Those behind: between whom this one is now, and between whom it would be.
+        let length_m = self.drivers[index].size_m.x;
+        let loses = |behind: Option<Near>, lane: LaneId, ahead: Option<(f32, f32)>| {
+            let Some(behind) = behind else { return 0.0 };
+            let i = behind.vehicle as usize;
+            let without = ahead.map(|(gap_m, mps)| (gap_m + behind.gap_m + length_m, mps));
+            self.pace_mps2(i, lane, without) - self.pace_mps2(i, lane, Some((behind.gap_m, vehicle.speed_mps)))
+        };
+        let new = loses(self.behind(index, there.lane, there.s_m), there.lane, gap(ahead));
+        let old = loses(self.behind(index, vehicle.lane, vehicle.s_m), vehicle.lane, here_ahead);
+        own - POLITENESS * (new - old) + self.route_mps2(vehicle, plan, there.lane)
+    }
+
+    /// What another lane is worth because of the way to the goal, m/s².
+    fn route_mps2(&self, vehicle: &Vehicle, plan: &Plan, lane: LaneId) -> f32 {
+        let journey = self.ways.routes.journey(self.seed, vehicle.id, vehicle.kind, vehicle.trips);
+        let (here_s, there_s) = (journey.seconds(vehicle.lane), journey.seconds(lane));
+        if !there_s.is_finite() {
+            return f32::NEG_INFINITY;
+        }
+        let end_m = self.ways.lanes[vehicle.lane as usize].ends_m.map_or(ROUTE_M, |m| m - vehicle.s_m);
+        let near_m = plan.line.map_or(ROUTE_M, |line| line.hold_m).min(end_m);
+        let near = (1.0 - near_m / ROUTE_M).clamp(0.2, 1.0);
+        ((here_s - there_s) / 8.0).clamp(-1.0, 1.0) * ROUTE_MPS2 * near
+    }
+
+    /// Acceleration of a vehicle on a lane behind somebody, as (gap, speed), m/s².
+    fn pace_mps2(&self, index: usize, lane: LaneId, ahead: Option<(f32, f32)>) -> f32 {
+        let (driver, speed_mps) = (&self.drivers[index], self.vehicles[index].speed_mps);
+        let wish_mps = (self.map.lanes[lane as usize].speed_limit_mps * driver.limit_share).min(driver.top_mps);
+        let ratio = (speed_mps / wish_mps.max(0.1)).min(1.1);
+        let free = driver.accel_mps2 * (1.0 - ratio * ratio * ratio * ratio);
+        ahead.map_or(free, |(gap_m, mps)| free.min(follow_idm(driver, speed_mps, gap_m, mps).max(-8.0)))
+    }
+
+    /// Whether nobody has to brake hard when a vehicle changes to a place now, and nobody else goes there.
+    fn is_safe(&self, index: usize, there: &Projection) -> bool {
+        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
+        let bears = |who: &Driver, mps: f32, gap_m: f32, ahead_mps: f32| {
+            gap_m > GAP_M && follow_idm(who, mps, gap_m, ahead_mps) > -SAFE_MPS2
+        };
+        let ahead = self.ahead(index, there.lane, there.s_m);
+        let behind = self.behind(index, there.lane, there.s_m);
+        let free = ahead.is_none_or(|n| bears(driver, vehicle.speed_mps, n.gap_m, n.speed_mps))
+            && behind.is_none_or(|n| bears(&self.drivers[n.vehicle as usize], n.speed_mps, n.gap_m, vehicle.speed_mps));
+        free && self.is_free_of_hazards(index, there, bears) && self.is_first(index)
+    }
+
+    /// Whether the ego car and loose actors leave room on the other lane.
+    fn is_free_of_hazards(
+        &self,
+        index: usize,
+        there: &Projection,
+        bears: impl Fn(&Driver, f32, f32, f32) -> bool,
+    ) -> bool {
+        let (vehicle, driver, body) = (&self.vehicles[index], &self.drivers[index], &self.bodies[index]);
+        let lane = &self.map.lanes[there.lane as usize];
+        self.hazards[..self.free].iter().all(|hazard| {
+            let apart = hazard.position - body.position;
+            if apart.length_squared() > REACH_M * REACH_M {
+                return true;
+            }
+            let at = self.map.project(there.lane, hazard.position);
+            let place = lane.straight_on(at.s_m);
+            let along_mps = hazard.velocity.dot(place.forward.truncate());
+            let half_m = hazard.half.length() + driver.size_m.x * 0.5;
+            let ahead_m = at.s_m - there.s_m;
+            let gap_m = ahead_m.abs() - half_m;
+            at.distance_m > place.half_width_m + hazard.half.y + 0.5
+                || if ahead_m > 0.0 {
+                    bears(driver, vehicle.speed_mps, gap_m, along_mps)
+                } else {
+                    bears(driver, along_mps, gap_m, vehicle.speed_mps)
+                }
+        })
+    }
+
+    /// Whether no other one near may change lanes in this tick before a vehicle.
+    fn is_first(&self, index: usize) -> bool {
+        let (id, place) = (self.vehicles[index].id, self.bodies[index].position);
+        let others = self.vehicles.iter().zip(self.bodies).take_while(|(v, _)| v.id < id);
+        let mut ready = others.filter(|(v, _)| v.change.abs() == 1 && v.change_ticks + 1 >= SIGNAL_TICKS);
+        !ready.any(|(_, body)| body.position.distance_squared(place) < APART_M * APART_M)
+    }
+
+    /// Who is ahead of a place on a lane and on the way that a vehicle would take from there.
+    fn ahead(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
+        let vehicle = &self.vehicles[index];
+        let (mut lane, mut start_m, mut trips) = (lane, -s_m, vehicle.trips);
+        for _ in 0..LANES {
+            let is_ahead = |e: &&Entry| e.vehicle as usize != index && start_m + e.s_m > 0.0;
+            if let Some(e) = self.lists.on(lane).iter().find(is_ahead) {
+                let gap_m = start_m + e.s_m - e.half_m - self.drivers[index].size_m.x * 0.5;
+                return Some(Near { vehicle: e.vehicle, gap_m, speed_mps: e.speed_mps });
+            }
+            start_m += self.map.lanes[lane as usize].length_m;
+            let next = next_lane(self.ways, self.seed, vehicle, trips, lane).filter(|_| start_m < REACH_M)?;
+            trips = self.ways.routes.trips_on(self.seed, vehicle, trips, next.lane);
+            (lane, start_m) = (next.lane, start_m - next.at_m);
+        }
+        None
+    }
+
+    /// Who is behind a place on a lane: the nearest on it, or on those that lead there.
+    fn behind(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
+        self.behind_within(index, lane, s_m, LANES)
+    }
+
+    fn behind_within(&self, index: usize, lane: LaneId, s_m: f32, lanes: usize) -> Option<Near> {
+        let is_behind = |e: &&Entry| e.vehicle as usize != index && e.s_m <= s_m;
+        if let Some(e) = self.lists.on(lane).iter().rev().find(is_behind) {
+            let gap_m = s_m - e.s_m - e.half_m - self.drivers[index].size_m.x * 0.5;
+            return Some(Near { vehicle: e.vehicle, gap_m, speed_mps: e.speed_mps });
+        }
+        if lanes == 0 || s_m > REACH_M {
+            return None;
+        }
+        let before = self.map.lanes[lane as usize].predecessors.iter();
+        let length_m = |id: LaneId| self.map.lanes[id as usize].length_m;
+        let found = before.filter_map(|&id| self.behind_within(index, id, s_m + length_m(id), lanes - 1));
+        found.min_by(|a, b| a.gap_m.total_cmp(&b.gap_m))
+    }
+}
