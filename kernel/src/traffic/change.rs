@@ -11,6 +11,8 @@ use super::body::Body;
 use super::drive::{View, follow_idm};
 use super::hazard::{Hazard, Seeker, sight};
 use super::lists::Entry;
+use super::manoeuvre::Manoeuvre;
+use super::pass;
 use super::plan::{Plan, next_lane};
 use super::routes::Class;
 use super::traits::Driver;
@@ -36,10 +38,16 @@ const GAP_TICKS: Tick = 6;
 /// Slower than this nobody changes, m/s.
 const LEAST_MPS: f32 = 1.5;
 /// Sideways by so much for each metre driven at most, and so fast, m/s.
-const STEEPEST: f32 = 0.2;
+const STEEPEST: f32 = 0.45;
 const SIDEWAYS_MPS: f32 = 1.0;
-/// The tail of a vehicle swings out by no more than this, metres.
+/// The tail of a vehicle longer than this, from its middle, swings out by no more than that, metres.
+const LONG_M: f32 = 2.5;
 const SWING_M: f32 = 0.4;
+/// Unless it drives slower than this, m/s; then it moves sideways by so much for each metre.
+const SLOW_MPS: f32 = 3.0;
+const SLOW_STEEPEST: f32 = 0.25;
+/// Past what stands in the lane after so much of a change, metres.
+const CLEAR_M: f32 = 2.8;
 /// Width of a lane for which a change has room, metres.
 const LANE_M: f32 = 3.5;
 /// A lane narrower than twice this is none to change to, metres.
@@ -48,6 +56,11 @@ const LEAST_HALF_M: f32 = 1.3;
 const LASTING_M: f32 = 60.0;
 /// A change is over at this distance from where the vehicle wants to drive, metres.
 const THERE_M: f32 = 0.2;
+/// Before those who come the other way one stands so far off, metres.
+const ONCOMING_M: f32 = 8.0;
+/// Who is nearer ahead than this is beside, and kept off so far to the side, metres.
+const BESIDE_M: f32 = 1.0;
+const ASIDE_M: f32 = 0.4;
 /// How far others are looked for, metres, over so many lanes at most.
 const REACH_M: f32 = 80.0;
 const LANES: usize = 4;
@@ -66,7 +79,12 @@ struct Near {
 
 /// Sideways motion of a change for each metre driven.
 pub(super) fn drift(speed_mps: f32, half_length_m: f32) -> f32 {
-    STEEPEST.min(SIDEWAYS_MPS / speed_mps.max(1.0)).min(SWING_M / half_length_m)
+    let swing = match half_length_m > LONG_M {
+        true if speed_mps < SLOW_MPS => SLOW_STEEPEST,
+        true => SWING_M / half_length_m,
+        false => STEEPEST,
+    };
+    swing.min(SIDEWAYS_MPS / speed_mps.max(1.0))
 }
 
 fn beside(map: &MapData, lane: LaneId, to_left: bool) -> Option<LaneId> {
@@ -76,7 +94,7 @@ fn beside(map: &MapData, lane: LaneId, to_left: bool) -> Option<LaneId> {
 
 /// The place on the lane that a vehicle leaves, as long as it reaches into it.
 pub(super) fn reaches_into(map: &MapData, vehicle: &Vehicle, driver: &Driver) -> Option<Projection> {
-    if vehicle.change.abs() < 2 {
+    if !vehicle.manoeuvre.moves() {
         return None;
     }
     let place = map.lanes[vehicle.lane as usize].straight_on(vehicle.s_m);
@@ -86,26 +104,36 @@ pub(super) fn reaches_into(map: &MapData, vehicle: &Vehicle, driver: &Driver) ->
 }
 
 impl View<'_> {
-    /// Whether a vehicle wishes to change lanes, and whether it has done so.
-    pub(super) fn wish_to_change(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
+    /// Whether a vehicle wishes to change lanes or to pass somebody, and whether it has done so.
+    pub(super) fn decide_manoeuvre(&self, index: usize, plan: &Plan, seeker: &Seeker, next: &mut Vehicle) {
         let considers = (self.tick + u64::from(next.id)).is_multiple_of(CONSIDER_TICKS);
-        match next.change {
-            0 if considers => {
-                let gains = [1, -1].map(|side| (side, self.gain_mps2(index, plan, side)));
-                let best = gains.into_iter().filter(|(_, gain)| *gain > THRESHOLD_MPS2);
-                let best = best.max_by(|a, b| a.1.total_cmp(&b.1));
-                (next.change, next.change_ticks) = (best.map_or(0, |(side, _)| side), 0);
+        let side = next.manoeuvre.side();
+        next.manoeuvre = match next.manoeuvre {
+            Manoeuvre::Keep if considers => {
+                next.signal_ticks = 0;
+                self.wish(index, plan, seeker)
             }
-            side @ (1 | -1) => {
-                next.change_ticks = next.change_ticks.saturating_add(1);
-                let pays = !considers || self.gain_mps2(index, plan, side) > THRESHOLD_MPS2 * 0.5;
-                next.change = if pays { side } else { 0 };
+            signal if signal.signals() => {
+                next.signal_ticks = next.signal_ticks.saturating_add(1);
+                let pays = !considers || self.gain_mps2(index, plan, seeker, side) > THRESHOLD_MPS2 * 0.5;
+                if pays { signal } else { Manoeuvre::Keep }
             }
-            2 | -2 => {
-                let likes_m = self.likes_m(index);
-                next.change = if (next.offset_m - likes_m).abs() < THERE_M { 0 } else { next.change };
+            over if over != Manoeuvre::Keep => {
+                next.signal_ticks = next.signal_ticks.saturating_add(1);
+                let passes = over.passes() && self.passed(index, plan, seeker, side).is_some();
+                let is_there = (next.offset_m - self.likes_m(index)).abs() < THERE_M;
+                if is_there && !passes { Manoeuvre::Keep } else { over }
             }
-            _ => {}
+            keep => keep,
+        };
+    }
+
+    fn wish(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Manoeuvre {
+        let gains = [1, -1].map(|side| (side, self.gain_mps2(index, plan, seeker, side)));
+        let best = gains.into_iter().filter(|(_, gain)| *gain > THRESHOLD_MPS2);
+        match best.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((side, _)) => Manoeuvre::signal_to(side),
+            None => self.wish_to_pass(index, plan, seeker).map_or(Manoeuvre::Keep, Manoeuvre::pass_on),
         }
     }
 
@@ -113,36 +141,77 @@ impl View<'_> {
     pub(super) fn move_over(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
         let vehicle = &self.vehicles[index];
         let turn = (self.tick + u64::from(next.id)).is_multiple_of(GAP_TICKS);
-        if next.change.abs() != 1 || next.change_ticks < SIGNAL_TICKS || !turn || next.lane != vehicle.lane {
+        let ready = next.manoeuvre.signals() && next.signal_ticks >= SIGNAL_TICKS;
+        if !ready || !turn || next.lane != vehicle.lane {
             return;
         }
-        let Some(there) = self.target(index, plan, next.change).filter(|there| self.is_safe(index, there)) else {
+        let Some(there) = self.target(index, plan, next.manoeuvre.side()).filter(|there| self.is_safe(index, there))
+        else {
             return;
         };
         let position = self.map.lanes[next.lane as usize].straight_on(next.s_m).beside(next.offset_m);
         let there = self.map.project(there.lane, position);
         (next.lane, next.s_m, next.offset_m) = (there.lane, there.s_m, there.lateral_m);
-        (next.change, next.change_ticks, next.wait_ticks) = (2 * next.change, 0, 0);
+        next.manoeuvre = Manoeuvre::move_to(next.manoeuvre.side());
+        (next.signal_ticks, next.wait_ticks) = (0, 0);
         next.flags &= !Vehicle::HALTED;
     }
 
-    /// Tells `follow` the gap to whoever is in the way of a vehicle while lanes are changed, and its speed: before one
-    /// that changes everybody whose way it reaches into, and before others those who change.
-    pub(super) fn beside_changes(&self, index: usize, plan: &Plan, seeker: &Seeker, follow: &mut impl FnMut(f32, f32)) {
-        let steps = self.steps_of(plan);
+    /// Tells `follow` the gap to whoever is in the way of a vehicle while it or another is between lanes, and its
+    /// speed. `offset_at` tells where across its lane it will be after so many metres.
+    pub(super) fn heed_manoeuvres(
+        &self,
+        index: usize,
+        plan: &Plan,
+        seeker: &Seeker,
+        offset_at: impl Fn(f32) -> f32,
+        follow: &mut impl FnMut(f32, f32),
+    ) {
+        let forward = (self.bodies[index].rotation * glam::Vec3::X).truncate();
         let mut heed = |hazard: &Hazard| {
-            let seen = sight(self.map, steps, seeker, hazard).filter(|s| s.blocks(seeker.offset_m, seeker.half.y));
-            if let Some(seen) = seen {
-                follow(seen.gap_m, seen.speed_mps);
+            let Some(seen) = sight(self.map, self.steps_of(plan), seeker, hazard) else { return };
+            // Who meets one that comes the other way needs room to get back into the lane.
+            let gap_m = if hazard.forward.dot(forward) < -0.3 { seen.gap_m - ONCOMING_M } else { seen.gap_m };
+            if seen.blocks(offset_at(seen.gap_m.max(0.0)), seeker.half.y) {
+                follow(gap_m, seen.speed_mps);
             }
         };
-        if self.vehicles[index].change.abs() < 2 {
-            return self.changing.iter().for_each(|(_, hazard)| heed(hazard));
+        if self.is_between_lanes(index) {
+            self.near(index, seeker).for_each(|hazard| heed(&hazard));
+        } else {
+            self.changing.iter().for_each(|(_, hazard)| heed(hazard));
         }
+    }
+
+    /// Whether a vehicle is moving over to another lane or passing somebody.
+    pub(super) fn is_between_lanes(&self, index: usize) -> bool {
+        let manoeuvre = self.vehicles[index].manoeuvre;
+        manoeuvre.moves() || manoeuvre.passes()
+    }
+
+    /// All other vehicles that may be in the way of one.
+    fn near(&self, index: usize, seeker: &Seeker) -> impl Iterator<Item = Hazard> {
         let reach_m = seeker.horizon_m + 20.0;
-        let near = |body: &Body| body.position.distance_squared(seeker.position) < reach_m * reach_m;
+        let position = seeker.position;
+        let near = move |body: &Body| body.position.distance_squared(position) < reach_m * reach_m;
         let others = self.bodies[..self.vehicles.len()].iter().enumerate();
-        others.filter(|(i, body)| *i != index && near(body)).for_each(|(_, body)| heed(&Hazard::of_body(body)));
+        others.filter(move |(i, body)| *i != index && near(body)).map(|(_, body)| Hazard::of_body(body))
+    }
+
+    /// Where across its lane a vehicle between lanes can drive that wants to be at `aim_m`: it does not move into
+    /// anybody beside it.
+    pub(super) fn beside_others(&self, index: usize, plan: &Plan, seeker: &Seeker, aim_m: f32) -> f32 {
+        let (mut least_m, mut most_m) = (f32::MIN, f32::MAX);
+        let free = self.hazards[..self.free].iter().copied();
+        for hazard in self.near(index, seeker).chain(free) {
+            let Some(seen) = sight(self.map, self.steps_of(plan), seeker, &hazard) else { continue };
+            if seen.gap_m < BESIDE_M && seen.middle_m() < seeker.offset_m {
+                least_m = least_m.max(seen.edge_m(1.0) + seeker.half.y + ASIDE_M);
+            } else if seen.gap_m < BESIDE_M {
+                most_m = most_m.min(seen.edge_m(-1.0) - seeker.half.y - ASIDE_M);
+            }
+        }
+        if least_m < most_m { aim_m.clamp(least_m, most_m) } else { seeker.offset_m }
     }
 
     /// Where a vehicle would be on the lane beside its own, if a change is possible.
@@ -152,12 +221,8 @@ impl View<'_> {
         let (from, to) = (&self.ways.lanes[vehicle.lane as usize], &self.ways.lanes[lane as usize]);
         let busy =
             vehicle.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0 || from.zone.is_some() || to.zone.is_some();
-        let bound = vehicle.kind == ActorKind::Bicycle && side > 0;
-        if busy
-            || bound
-            || vehicle.speed_mps < LEAST_MPS
-            || !Class::of(vehicle.kind).may_use(&self.map.lanes[lane as usize])
-        {
+        let bound = vehicle.kind == ActorKind::Bicycle && side != self.ways.kerb;
+        if busy || bound || !Class::of(vehicle.kind).may_use(&self.map.lanes[lane as usize]) {
             return None;
         }
         let needed_m = LANE_M / drift(vehicle.speed_mps, driver.size_m.x * 0.5) + 0.5 * driver.size_m.x;
@@ -174,24 +239,41 @@ impl View<'_> {
     }
 
     /// What a change would gain by MOBIL, m/s²; not finite where it is not possible.
-    fn gain_mps2(&self, index: usize, plan: &Plan, side: i8) -> f32 {
-        let Some(there) = self.target(index, plan, side) else { return f32::NEG_INFINITY };
+    fn gain_mps2(&self, index: usize, plan: &Plan, seeker: &Seeker, side: i8) -> f32 {
         let vehicle = &self.vehicles[index];
+        let blocked = self.blocked(index, plan, seeker);
+        let clear_m = CLEAR_M / drift(vehicle.speed_mps, seeker.half.x);
+        let moves = blocked.map_or(vehicle.speed_mps >= LEAST_MPS, |(gap_m, _)| gap_m > clear_m);
+        let Some(there) = self.target(index, plan, side).filter(|_| moves) else { return f32::NEG_INFINITY };
+        // Nobody drives up to what stands.
+        let kept_off = blocked.map(|(gap_m, mps)| (gap_m - pass::swing_out_m(&self.drivers[index]), mps));
         let gap = |near: Option<Near>| near.map(|n| (n.gap_m, n.speed_mps));
         let ahead = self.ahead(index, there.lane, there.s_m);
         let here_ahead = plan.leader.map(|l| (l.gap_m, l.speed_mps));
-        let own = self.pace_mps2(index, there.lane, gap(ahead)) - self.pace_mps2(index, vehicle.lane, here_ahead);
+        let here = self.pace_mps2(index, vehicle.lane, here_ahead).min(self.pace_mps2(index, vehicle.lane, kept_off));
+        let own = self.pace_mps2(index, there.lane, gap(ahead)) - here;
         // Those behind: between whom this one is now, and between whom it would be.
         let length_m = self.drivers[index].size_m.x;
         let loses = |behind: Option<Near>, lane: LaneId, ahead: Option<(f32, f32)>| {
             let Some(behind) = behind else { return 0.0 };
             let i = behind.vehicle as usize;
             let without = ahead.map(|(gap_m, mps)| (gap_m + behind.gap_m + length_m, mps));
-            self.pace_mps2(i, lane, without) - self.pace_mps2(i, lane, Some((behind.gap_m, vehicle.speed_mps)))
+            let loss =
+                self.pace_mps2(i, lane, without) - self.pace_mps2(i, lane, Some((behind.gap_m, vehicle.speed_mps)));
+            // Who would have to brake harder than is safe is waited for, not given up.
+            loss.clamp(-SAFE_MPS2, SAFE_MPS2)
         };
         let new = loses(self.behind(index, there.lane, there.s_m), there.lane, gap(ahead));
         let old = loses(self.behind(index, vehicle.lane, vehicle.s_m), vehicle.lane, here_ahead);
         own - POLITENESS * (new - old) + self.route_mps2(vehicle, plan, there.lane)
+    }
+
+    /// What of the ego car and loose actors is in the way of a vehicle, as (gap, speed).
+    fn blocked(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Option<(f32, f32)> {
+        let likes_m = self.likes_m(index);
+        let seen = self.hazards[..self.free].iter().filter_map(|h| sight(self.map, self.steps_of(plan), seeker, h));
+        let blocking = seen.filter(|seen| seen.blocks(likes_m, seeker.half.y));
+        blocking.map(|seen| (seen.gap_m, seen.speed_mps)).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// What another lane is worth because of the way to the goal, m/s².
@@ -204,7 +286,9 @@ impl View<'_> {
         let end_m = self.ways.lanes[vehicle.lane as usize].ends_m.map_or(ROUTE_M, |m| m - vehicle.s_m);
         let near_m = plan.line.map_or(ROUTE_M, |line| line.hold_m).min(end_m);
         let near = (1.0 - near_m / ROUTE_M).clamp(0.2, 1.0);
-        ((here_s - there_s) / 8.0).clamp(-1.0, 1.0) * ROUTE_MPS2 * near
+        // Bicycles change to the kerb alone.
+        let slow_mps2 = if vehicle.kind == ActorKind::Bicycle { ROUTE_MPS2 } else { 0.0 };
+        slow_mps2 + ((here_s - there_s) / 8.0).clamp(-1.0, 1.0) * ROUTE_MPS2 * near
     }
 
     /// Acceleration of a vehicle on a lane behind somebody, as (gap, speed), m/s².
@@ -259,10 +343,11 @@ impl View<'_> {
     }
 
     /// Whether no other one near may change lanes in this tick before a vehicle.
-    fn is_first(&self, index: usize) -> bool {
+    pub(super) fn is_first(&self, index: usize) -> bool {
         let (id, place) = (self.vehicles[index].id, self.bodies[index].position);
         let others = self.vehicles.iter().zip(self.bodies).take_while(|(v, _)| v.id < id);
-        let mut ready = others.filter(|(v, _)| v.change.abs() == 1 && v.change_ticks + 1 >= SIGNAL_TICKS);
+        let mut ready =
+            others.filter(|(v, _)| v.manoeuvre.signals() && v.signal_ticks.saturating_add(1) >= SIGNAL_TICKS);
         !ready.any(|(_, body)| body.position.distance_squared(place) < APART_M * APART_M)
     }
 

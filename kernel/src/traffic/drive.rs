@@ -2,6 +2,7 @@
 
 use crate::light::LightPhase;
 use crate::map_data::{LaneId, MapData, StopKind};
+use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
@@ -10,6 +11,7 @@ use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, Seeker, side, sight};
 use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
 use super::lists::{Entry, Lists};
+use super::pass;
 use super::plan::{self, Line, Plan, next_lane, stopping_speed};
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
@@ -37,6 +39,9 @@ const HEED_S: u8 = 15;
 const DRIFT: f32 = 0.08;
 /// The same to pass something.
 const PASS_DRIFT: f32 = 0.2;
+/// Sideways motion fades out over this, metres and seconds.
+const SWING_M: f32 = 1.5;
+const SWING_S: f32 = 0.5;
 /// Distance kept from the edge of a narrow lane, metres.
 pub(super) const EDGE_M: f32 = 0.2;
 /// Distance that one turn of the pedals drives a bicycle, metres.
@@ -73,6 +78,16 @@ struct Side {
 }
 
 impl Side {
+    /// Drives so many metres ahead, turning to where the vehicle is to be as quickly as it can be steered.
+    fn steer(&self, next: &mut Vehicle, moved_m: f32) {
+        if moved_m > 0.0 {
+            let within_m = SWING_M.max(SWING_S * next.speed_mps);
+            let wanted = ((self.aim_m - next.offset_m) / within_m).clamp(-self.drift, self.drift) * 100.0;
+            next.drift += (ops::round(wanted) as i8 - next.drift).clamp(-1, 1);
+            next.offset_m += f32::from(next.drift) * 0.01 * moved_m;
+        }
+    }
+
     /// Where one that is `offset_m` to the left is after so many metres ahead.
     fn after(&self, offset_m: f32, ahead_m: f32) -> f32 {
         let most_m = self.drift * ahead_m;
@@ -86,8 +101,8 @@ impl View<'_> {
         let plan = &self.plans[index];
         let mut next = self.vehicles[index];
         self.decide(index, plan, &mut next);
-        self.wish_to_change(index, plan, &mut next);
         let seeker = self.seeker(index);
+        self.decide_manoeuvre(index, plan, &seeker, &mut next);
         let side = self.side(index, plan, &seeker);
         let accel = self.acceleration(index, plan, &next, &seeker, side);
         self.advance(index, accel, side, &mut next);
@@ -156,22 +171,27 @@ impl View<'_> {
         let v = next.speed_mps;
         let mut accel = self.free_acceleration(next, driver, steps).min(self.zip(index, steps, next, seeker.horizon_m));
         let mut follow = |gap_m: f32, speed_mps: f32| accel = accel.min(follow_idm(driver, v, gap_m, speed_mps));
-        self.beside_changes(index, plan, seeker, &mut follow);
-        if let Some(leader) = plan.leader {
+        self.heed_manoeuvres(index, plan, seeker, |m| side.after(seeker.offset_m, m), &mut follow);
+        // Who passes looks for everybody where they are.
+        if let Some(leader) = plan.leader.filter(|_| !self.vehicles[index].manoeuvre.passes()) {
             follow(leader.gap_m, leader.speed_mps);
         }
+        let mut room = f32::MAX;
         for hazard in self.hazards {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
             let ahead_m = if hazard.stands() { seen.gap_m.max(0.0) } else { 0.0 };
             let offset_m = side.after(seeker.offset_m, ahead_m);
             if seen.blocks(offset_m, seeker.half.y) {
                 follow(seen.gap_m, seen.speed_mps);
+                if hazard.stands() {
+                    room = room.min(self.room_to_pass(index, plan, v, seen.gap_m));
+                }
             }
         }
         self.conflicts(index, plan, steps, next, &mut follow);
         let wall_m = self.wall(plan, steps, next, driver);
         let stop = (stopping_speed(wall_m, driver.brake_mps2) - v) / STOP_S;
-        accel.min(stop).max(-EMERGENCY_MPS2)
+        accel.min(room).min(stop).max(-EMERGENCY_MPS2)
     }
 
     pub(super) fn seeker(&self, index: usize) -> Seeker {
@@ -193,8 +213,8 @@ impl View<'_> {
         let half_m = driver.size_m.x * 0.5;
         let half_width_m =
             || lane.at(vehicle.s_m + half_m).half_width_m.min(lane.at(vehicle.s_m - half_m).half_width_m);
-        if let Some(from_right_m) = driver.from_right_m {
-            return (from_right_m - half_width_m()).min(0.0);
+        if driver.from_kerb_m.is_some() {
+            return driver.keeps_to_m(half_width_m(), self.ways.kerb);
         }
         if self.ways.lanes[vehicle.lane as usize].ends_m.is_none() {
             return 0.0;
@@ -208,10 +228,25 @@ impl View<'_> {
     }
 
     fn side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
+        let side = self.wanted_side(index, plan, seeker);
+        if self.is_between_lanes(index) {
+            Side { aim_m: self.beside_others(index, plan, seeker, side.aim_m), ..side }
+        } else {
+            side
+        }
+    }
+
+    fn wanted_side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
         let (vehicle, likes_m) = (&self.vehicles[index], self.likes_m(index));
+        let passing = vehicle.manoeuvre.passes().then(|| vehicle.manoeuvre.side());
+        let passed = passing.and_then(|side| self.passed(index, plan, seeker, side));
+        if let Some(passed) = passed {
+            return Side { aim_m: passed.aim_m, drift: pass::drift(vehicle.speed_mps) };
+        }
         let aim_m = side(self.map, self.steps_of(plan), seeker, &self.hazards[..self.free], likes_m);
-        let drift = match vehicle.change.abs() {
-            2 => change::drift(vehicle.speed_mps, seeker.half.x),
+        let drift = match vehicle.manoeuvre {
+            manoeuvre if manoeuvre.moves() => change::drift(vehicle.speed_mps, seeker.half.x),
+            manoeuvre if manoeuvre.passes() => pass::drift(vehicle.speed_mps),
             _ if aim_m == likes_m => DRIFT,
             _ => PASS_DRIFT,
         };
@@ -228,7 +263,7 @@ impl View<'_> {
             let limit = desired(self.map.lanes[step.lane as usize].speed_limit_mps);
             let entry = self.ways.lanes[step.lane as usize].speed_mps[0].min(limit);
             let reachable = entry * entry + 2.0 * driver.brake_mps2 * step.start_m;
-            aim = aim.min(crate::ops::sqrt(reachable));
+            aim = aim.min(ops::sqrt(reachable));
         }
         let ratio = next.speed_mps / aim.max(0.1);
         if ratio <= 1.0 {
@@ -327,7 +362,7 @@ impl View<'_> {
         let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
         next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };
         self.change_lane(driver, next);
-        next.offset_m = side.after(next.offset_m, moved_m);
+        side.steer(next, moved_m);
     }
 
     /// Takes the lanes that follow, and clears what belonged to the junction left behind.
@@ -369,7 +404,7 @@ pub(super) fn follow_idm(driver: &Driver, speed_mps: f32, gap_m: f32, leader_mps
         return -EMERGENCY_MPS2;
     }
     let closing = speed_mps - leader_mps;
-    let root = 2.0 * crate::ops::sqrt(driver.accel_mps2 * driver.brake_mps2);
+    let root = 2.0 * ops::sqrt(driver.accel_mps2 * driver.brake_mps2);
     let wanted = driver.gap_m + (speed_mps * driver.headway_s + speed_mps * closing / root).max(0.0);
     let ratio = wanted / gap_m;
     driver.accel_mps2 * (1.0 - ratio * ratio)

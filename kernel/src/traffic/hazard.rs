@@ -11,8 +11,9 @@ use super::step::Step;
 
 /// Nothing farther than this from the middle of the way matters, metres.
 const REACH_M: f32 = 6.5;
-/// Sideways distance kept, metres.
+/// Sideways distance kept, metres, and from bicycles: the least that most road traffic acts ask for in towns.
 const CLEARANCE_M: f32 = 0.35;
+pub(super) const BICYCLE_M: f32 = 1.5;
 /// How far ahead the crossing of a walker is expected to go on, seconds.
 const WALKER_FORESIGHT_S: f32 = 2.5;
 /// The same for a vehicle.
@@ -33,6 +34,8 @@ pub(super) struct Hazard {
     /// Half of its length and width, metres.
     pub half: Vec2,
     pub walker: bool,
+    /// Sideways distance that vehicles keep from it, metres.
+    pub clearance_m: f32,
 }
 
 impl Hazard {
@@ -44,6 +47,7 @@ impl Hazard {
             forward: direction(obstacle.heading_rad),
             half: obstacle.size_m.truncate() * 0.5,
             walker,
+            clearance_m: CLEARANCE_M,
         }
     }
 
@@ -56,6 +60,7 @@ impl Hazard {
             forward,
             half: body.kind.size_m().truncate() * 0.5,
             walker: body.kind == ActorKind::Pedestrian,
+            clearance_m: if body.kind == ActorKind::Bicycle { BICYCLE_M } else { CLEARANCE_M },
         }
     }
 
@@ -86,6 +91,8 @@ pub(super) struct Seeker {
 pub(super) struct Sighted {
     /// From the vehicle's bumper to its near side, metres; negative beside it.
     pub gap_m: f32,
+    /// Its extent along the way, metres.
+    pub length_m: f32,
     /// Its speed along the way, m/s.
     pub speed_mps: f32,
     /// Its middle is before the vehicle's.
@@ -96,18 +103,34 @@ pub(super) struct Sighted {
     half_m: f32,
     /// Half of the way's width there, metres.
     way_half_m: f32,
+    clearance_m: f32,
 }
 
 impl Sighted {
     /// Whether it is in the way of a vehicle `offset_m` to the left of the middle, half as wide as `half_m`.
     pub fn blocks(&self, offset_m: f32, half_m: f32) -> bool {
-        let reach_m = self.half_m + half_m + CLEARANCE_M;
+        let reach_m = self.half_m + half_m + self.clearance_m;
         self.ahead && self.aside_m[0] - offset_m < reach_m && self.aside_m[1] - offset_m > -reach_m
+    }
+
+    /// The same, also beside it, until the tail has passed.
+    pub fn obstructs(&self, offset_m: f32, half_m: f32) -> bool {
+        Sighted { ahead: true, ..*self }.blocks(offset_m, half_m)
+    }
+
+    /// Its middle, metres to the left of that of the way.
+    pub fn middle_m(&self) -> f32 {
+        0.5 * (self.aside_m[0] + self.aside_m[1])
+    }
+
+    /// Its outermost place to the left (`side` 1) or right (-1), metres to the left of the middle of the way.
+    pub fn edge_m(&self, side: f32) -> f32 {
+        if side > 0.0 { self.aside_m[1] + self.half_m } else { self.aside_m[0] - self.half_m }
     }
 
     /// Where to pass it within the lane, if there is room: the place nearest to `offset_m`.
     fn passed_at(&self, offset_m: f32, half_m: f32) -> Option<f32> {
-        let reach_m = self.half_m + half_m + CLEARANCE_M;
+        let reach_m = self.half_m + half_m + self.clearance_m;
         let room_m = self.way_half_m - half_m;
         let sides = [self.aside_m[1] + reach_m, self.aside_m[0] - reach_m];
         let free = sides.into_iter().filter(|m| m.abs() <= room_m);
@@ -121,9 +144,7 @@ pub(super) fn side(map: &MapData, steps: &[Step], seeker: &Seeker, free: &[Hazar
     let mut aim_m = offset_m;
     for hazard in free.iter().filter(|h| h.stands()) {
         let seen = sight(map, steps, seeker, hazard).filter(|seen| seen.gap_m < PASS_M);
-        // Also beside it, until the tail has passed.
-        let beside = |seen: &Sighted| Sighted { ahead: true, ..*seen }.blocks(aim_m, seeker.half.y);
-        if let Some(seen) = seen.filter(beside) {
+        if let Some(seen) = seen.filter(|seen| seen.obstructs(aim_m, seeker.half.y)) {
             aim_m = seen.passed_at(seeker.offset_m, seeker.half.y).unwrap_or(aim_m);
         }
     }
@@ -153,11 +174,13 @@ pub(super) fn sight(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Haz
     let then_m = now_m + hazard.velocity.dot(left) * foresight_s;
     Some(Sighted {
         gap_m,
+        length_m: 2.0 * half_along_m,
         speed_mps: hazard.velocity.dot(forward),
         ahead: at_m > 0.0,
         aside_m: [now_m.min(then_m), now_m.max(then_m)],
         half_m: hazard.half_along(left),
         way_half_m: place.half_width_m,
+        clearance_m: hazard.clearance_m,
     })
 }
 

@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use crate::light::LightPhase;
 use crate::map_data::{LaneId, MapData, StopKind};
-use crate::time::Tick;
+use crate::time::{TICK_S, Tick};
 
 use super::lists::Lists;
 use super::plan::{Line, Plan, braking_needed};
@@ -148,8 +148,8 @@ fn goes_before(a: &Member, b: &Member, precedence: i8) -> bool {
 pub(super) enum Signal {
     /// Go, as far as the others let.
     Open,
-    /// Stop if it can be done safely.
-    Closing,
+    /// Stop if it can be done safely; closed after so many ticks.
+    Closing(Tick),
     /// Stop.
     Closed,
 }
@@ -157,10 +157,10 @@ pub(super) enum Signal {
 /// What the light or sign at the line of a plan says to a vehicle.
 pub(super) fn signal(map: &MapData, lights: &[(LightPhase, Tick)], vehicle: &Vehicle, approach: LaneId) -> Signal {
     match map.lanes[approach as usize].stop.map(|stop| stop.kind) {
-        Some(StopKind::Light(group)) => match lights[group as usize].0 {
-            LightPhase::Green => Signal::Open,
-            LightPhase::Yellow => Signal::Closing,
-            LightPhase::Red => Signal::Closed,
+        Some(StopKind::Light(group)) => match lights[group as usize] {
+            (LightPhase::Green, _) => Signal::Open,
+            (LightPhase::Yellow, left) => Signal::Closing(left),
+            (LightPhase::Red, _) => Signal::Closed,
         },
         Some(StopKind::Stop) if vehicle.flags & Vehicle::HALTED == 0 => Signal::Closed,
         _ => Signal::Open,
@@ -179,8 +179,9 @@ pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line) -> bool 
     match signal {
         _ if line.passed => false,
         Signal::Open => false,
-        Signal::Closing => needed < YELLOW_BRAKE_MPS2,
-        Signal::Closed => needed < 1.5 * YELLOW_BRAKE_MPS2,
+        // At high speed yellow may be too short to get there.
+        Signal::Closing(left) if line.ahead_m < vehicle.speed_mps * left as f32 * TICK_S => needed < YELLOW_BRAKE_MPS2,
+        Signal::Closing(_) | Signal::Closed => needed < 1.5 * YELLOW_BRAKE_MPS2,
     }
 }
 

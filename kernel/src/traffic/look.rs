@@ -12,7 +12,8 @@ use super::drive::View;
 use super::hazard::{Hazard, Seeker, side, sight};
 use super::jaywalk;
 use super::junction::{self, EGO, Member, Members, Signal, swept_half_m};
-use super::lists::Lists;
+use super::lists::{Entry, Lists};
+use super::pass;
 use super::plan::{self, Line, Plan, next_lane};
 use super::state::TrafficState;
 use super::step::Step;
@@ -124,7 +125,9 @@ impl Sight {
             let (map, ways) = (actors.map(), &actors.ways);
             let mut plan = plan::plan(map, ways, actors.seed, vehicle, driver, &mut self.steps);
             let steps = &self.steps[plan.steps.0 as usize..];
-            plan.leader = plan::leader(&self.lists, steps, i, driver, plan::horizon_m(vehicle.speed_mps, driver));
+            let apart = |entry: &Entry| pass::apart(&actors.state.vehicles, &actors.drivers, i, entry);
+            plan.leader =
+                plan::leader(&self.lists, steps, i, driver, plan::horizon_m(vehicle.speed_mps, driver), apart);
             self.plans.push(plan);
         }
     }
@@ -143,7 +146,10 @@ impl Sight {
         let present = vehicles.iter().zip(driven).filter(|(v, _)| !around.holds(v.id));
         self.blocks.extend(present.map(|(_, body)| Hazard::of_body(body)));
         self.changing.clear();
-        let changing = vehicles.iter().enumerate().filter(|(_, v)| v.change.abs() == 2 && !around.holds(v.id));
+        let changing = vehicles
+            .iter()
+            .enumerate()
+            .filter(|(_, v)| (v.manoeuvre.moves() || v.manoeuvre.passes()) && !around.holds(v.id));
         self.changing.extend(changing.map(|(i, _)| (i as u32, Hazard::of_body(&driven[i]))));
         self.claims.clear();
         for (walker, body) in walkers.iter().zip(walked).filter(|(w, _)| !around.holds(w.id)) {

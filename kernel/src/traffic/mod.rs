@@ -19,7 +19,9 @@ mod junction;
 mod links;
 mod lists;
 mod look;
+mod manoeuvre;
 mod meets;
+mod pass;
 mod passage;
 mod plan;
 mod poses;
@@ -49,6 +51,7 @@ use passage::Told;
 
 pub use body::{Body, Obstacle, Surroundings};
 pub use counts::{Missing, TrafficCounts};
+pub use manoeuvre::Manoeuvre;
 pub use state::TrafficState;
 pub use vehicle::Vehicle;
 pub use walker::{Walker, WalkerMode};

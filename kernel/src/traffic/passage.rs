@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::actor::ActorKind;
 use crate::events::EventKind;
 use crate::geometry::rectangles_overlap;
 use crate::map_data::LaneId;
@@ -10,6 +11,7 @@ use crate::time::seconds;
 
 use super::actors::Actors;
 use super::body::{Body, Surroundings};
+use super::manoeuvre::Manoeuvre;
 use super::plan::way_end_m;
 use super::poses::walker_body;
 use super::spawn::EGO_CLEARANCE_M;
@@ -67,9 +69,10 @@ impl Actors {
     /// ego car, or `seen` where it was. Whether it did.
     fn enter_map(&mut self, index: usize, around: &Surroundings<'_>, seen: bool) -> bool {
         let vehicle = self.state.vehicles[index];
-        let count = self.ways.entries.len() as u32;
-        let pick = below(self.seed, Stream::Spawn, u64::from(vehicle.id), around.tick, count);
-        let Some(&lane) = self.ways.entries.get(pick as usize) else { return false };
+        let bicycle = vehicle.kind == ActorKind::Bicycle;
+        let entries = if bicycle { &self.ways.bicycle_entries } else { &self.ways.entries };
+        let pick = below(self.seed, Stream::Spawn, u64::from(vehicle.id), around.tick, entries.len() as u32);
+        let Some(&lane) = entries.get(pick as usize) else { return false };
         let unseen = |p: Vec3| p.distance(around.ego.position) > UNSEEN_M;
         let place = |v: &Vehicle| self.map().lanes[v.lane as usize].straight_on(v.s_m).position;
         let entry = self.entering(index, lane);
@@ -83,9 +86,10 @@ impl Actors {
     fn entering(&self, index: usize, lane: LaneId) -> Vehicle {
         let (vehicle, driver) = (self.state.vehicles[index], &self.drivers[index]);
         let (s_m, half_width_m) = (driver.size_m.x * 0.5 + 0.5, self.map().lanes[lane as usize].start().half_width_m);
-        let offset_m = driver.from_right_m.map_or(0.0, |m| (m - half_width_m).min(0.0));
+        let offset_m = driver.keeps_to_m(half_width_m, self.ways.kerb);
         let (trips, flags) = (vehicle.trips.wrapping_add(1), vehicle.flags & Vehicle::BRAKING);
-        let fresh = Vehicle { wait_ticks: 0, stuck_s: 0, change: 0, change_ticks: 0, ..vehicle };
+        let fresh =
+            Vehicle { wait_ticks: 0, stuck_s: 0, manoeuvre: Manoeuvre::Keep, signal_ticks: 0, drift: 0, ..vehicle };
         Vehicle { lane, s_m, offset_m, flags, trips, speed_mps: ENTRY_MPS, ..fresh }
     }
 

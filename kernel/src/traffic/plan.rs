@@ -143,12 +143,19 @@ fn line(lane: &Lane, zone: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
     Line { zone, ahead_m, hold_m: ahead_m, passed, approach: k, inside: (k + 1, k + 2) }
 }
 
-/// The nearest vehicle ahead on the planned way.
-pub(super) fn leader(lists: &Lists, steps: &[Step], index: usize, driver: &Driver, horizon_m: f32) -> Option<Leader> {
+/// The nearest vehicle ahead on the planned way, but for those that are `apart` from it.
+pub(super) fn leader(
+    lists: &Lists,
+    steps: &[Step],
+    index: usize,
+    driver: &Driver,
+    horizon_m: f32,
+    apart: impl Fn(&Entry) -> bool,
+) -> Option<Leader> {
     for step in steps.iter().take_while(|step| step.start_m < horizon_m) {
         // Whoever is beside the place where this vehicle joins the lane is for `zipper` to settle.
         let is_ahead = |e: &&Entry| step.start_m + e.s_m > 0.0 && (e.s_m >= step.from_m || step.from_m == 0.0);
-        let ahead = lists.on(step.lane).iter().find(|e| e.vehicle as usize != index && is_ahead(e));
+        let ahead = lists.on(step.lane).iter().find(|e| e.vehicle as usize != index && is_ahead(e) && !apart(e));
         if let Some(entry) = ahead {
             let gap_m = step.start_m + entry.s_m - entry.half_m - driver.size_m.x * 0.5;
             return Some(Leader { vehicle: entry.vehicle, gap_m, speed_mps: entry.speed_mps });

@@ -36,13 +36,15 @@ impl Actors {
     pub(super) fn vehicle_body(&self, vehicle: &Vehicle, driver: &Driver) -> Body {
         let lane = vehicle.lane as usize;
         let place = self.ways.lanes[lane].pose(&self.map().lanes[lane], vehicle.s_m);
+        let aslant = place.left().extend(0.0) * (0.01 * f32::from(vehicle.drift));
+        let forward = (place.forward + aslant).normalize_or(place.forward);
         Body {
             id: u32::from(vehicle.id),
             kind: vehicle.kind,
             variant: driver.variant,
             position: place.beside(vehicle.offset_m),
-            rotation: level_rotation(place.forward),
-            velocity_mps: place.forward * vehicle.speed_mps,
+            rotation: level_rotation(forward),
+            velocity_mps: forward * vehicle.speed_mps,
             phase_rad: f32::from(vehicle.phase) * TURN_RAD,
             braking: vehicle.flags & Vehicle::BRAKING != 0,
         }

@@ -9,6 +9,7 @@ use crate::ops;
 use crate::rng::{Stream, bits, unit};
 
 use super::counts::TrafficCounts;
+use super::manoeuvre::Manoeuvre;
 use super::plan::stopping_speed;
 use super::state::TrafficState;
 use super::traits::{driver, walker_traits};
@@ -170,11 +171,11 @@ impl Spawner<'_> {
             .crosswalks
             .iter()
             .any(|c| s_m + half_m > c.near_m - 1.0 && s_m - half_m < c.far_m + 1.0);
-        if s_m < half_m + 2.0 || s_m > end_m - half_m - 3.0 || on_crosswalk {
+        if !self.ways.may_start(kind, lane) || s_m < half_m + 2.0 || s_m > end_m - half_m - 3.0 || on_crosswalk {
             return false;
         }
         let place = way.straight_on(s_m);
-        let offset_m = driver.from_right_m.map_or(0.0, |m| (m - place.half_width_m).min(0.0));
+        let offset_m = driver.keeps_to_m(place.half_width_m, self.ways.kerb);
         let middle = place.beside(offset_m).truncate();
         let forward = place.forward.truncate().normalize_or(Vec2::X);
         let half = driver.size_m.truncate() * 0.5 + VEHICLE_SPACE_M;
@@ -195,8 +196,9 @@ impl Spawner<'_> {
             wait_ticks: 0,
             phase: bits(self.seed, Stream::Spawn, u64::from(id), TRIES + 1) as u16,
             stuck_s: 0,
-            change: 0,
-            change_ticks: 0,
+            manoeuvre: Manoeuvre::Keep,
+            signal_ticks: 0,
+            drift: 0,
         });
         true
     }

@@ -11,6 +11,9 @@ const FASTEST_MPS: f32 = 150.0;
 /// Nor farther from its lane or way, metres.
 const ASIDE_M: f32 = 100.0;
 
+/// Nor drives more aslant, 1/100.
+const MOST_DRIFT: u8 = 60;
+
 state! {
     /// Steering state of all traffic. Ids are unique over both lists, ascending in each, and start
     /// at 1; vehicles come before people.
@@ -33,9 +36,9 @@ impl TrafficState {
         for v in &self.vehicles {
             let lane = map.lanes.get(v.lane as usize).filter(|lane| (0.0..=lane.length_m).contains(&v.s_m));
             let kind = v.kind != ActorKind::Pedestrian;
-            let changes = (-2..=2).contains(&v.change);
+            let drifts = v.drift.unsigned_abs() <= MOST_DRIFT;
             let moves = (0.0..=FASTEST_MPS).contains(&v.speed_mps) && v.offset_m.abs() <= ASIDE_M;
-            if lane.is_none() || !kind || !moves || !changes || v.flags & !Vehicle::ALL_FLAGS != 0 {
+            if lane.is_none() || !kind || !moves || !drifts || v.flags & !Vehicle::ALL_FLAGS != 0 {
                 return Err(format!("vehicle {}: expected a vehicle on a lane of map {}", v.id, map.name));
             }
         }

@@ -9,7 +9,7 @@ use crate::rng::{Stream, bits, unit};
 /// 2000) around the values of its section on city traffic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Driver {
-    /// Share of the speed limit that is aimed at. CARLA's traffic manager: 0.7.
+    /// Share of the speed limit that is aimed at: about it, as free speeds measured in towns are.
     pub limit_share: f32,
     /// Highest speed at all, m/s.
     pub top_mps: f32,
@@ -23,10 +23,18 @@ pub(super) struct Driver {
     pub gap_m: f32,
     /// Length, width and height, metres.
     pub size_m: Vec3,
-    /// Distance of its middle from the right edge of the lane; cars keep to the middle.
-    pub from_right_m: Option<f32>,
+    /// Distance of its middle from the edge of the lane at the kerb; cars keep to the middle.
+    pub from_kerb_m: Option<f32>,
     /// Selects colour and shape.
     pub variant: u32,
+}
+
+impl Driver {
+    /// Where across a lane of this half width it drives, metres to the left of the middle; the kerb is to the left (1)
+    /// or right (-1).
+    pub fn keeps_to_m(&self, half_width_m: f32, kerb: i8) -> f32 {
+        self.from_kerb_m.map_or(0.0, |m| f32::from(kerb) * (half_width_m - m).max(0.0))
+    }
 }
 
 /// How somebody walks.
@@ -51,11 +59,11 @@ fn between(lo: f32, hi: f32, t: f32) -> f32 {
 /// The driver of vehicle `id`.
 pub(super) fn driver(seed: u64, id: u16, kind: ActorKind) -> Driver {
     let t = |which| trait_unit(seed, id, which);
-    let (limit_share, top_mps, accel_mps2, from_right_m) = match kind {
+    let (limit_share, top_mps, accel_mps2, from_kerb_m) = match kind {
         ActorKind::Bicycle => (1.0, between(3.5, 6.0, t(0)), 0.9, Some(0.6)),
-        ActorKind::Motorcycle => (between(0.7, 0.9, t(0)), 40.0, 2.2, Some(1.2)),
-        ActorKind::Truck | ActorKind::Bus => (between(0.6, 0.7, t(0)), 22.0, 1.0, None),
-        ActorKind::Car | ActorKind::Pedestrian => (between(0.6, 0.8, t(0)), 40.0, between(1.3, 2.0, t(1)), None),
+        ActorKind::Motorcycle => (between(0.9, 1.1, t(0)), 40.0, 2.2, Some(1.2)),
+        ActorKind::Truck | ActorKind::Bus => (between(0.8, 0.95, t(0)), 25.0, 1.0, None),
+        ActorKind::Car | ActorKind::Pedestrian => (between(0.88, 1.06, t(0)), 40.0, between(1.3, 2.0, t(1)), None),
     };
     Driver {
         limit_share,
@@ -65,7 +73,7 @@ pub(super) fn driver(seed: u64, id: u16, kind: ActorKind) -> Driver {
         headway_s: between(1.0, 1.8, t(3)),
         gap_m: between(1.8, 2.8, t(4)),
         size_m: kind.size_m(),
-        from_right_m,
+        from_kerb_m,
         variant: variant(seed, id),
     }
 }

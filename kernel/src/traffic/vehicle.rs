@@ -4,8 +4,10 @@ use crate::actor::ActorKind;
 use crate::map_data::LaneId;
 use crate::state;
 
+use super::manoeuvre::Manoeuvre;
+
 state! {
-    /// A vehicle on a lane. 29 bytes.
+    /// A vehicle on a lane. 30 bytes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Vehicle {
         /// Id of the actor.
@@ -30,10 +32,12 @@ state! {
         pub phase: u16,
         /// Seconds for which it has stood without a reason, saturating.
         pub stuck_s: u8,
-        /// Change of lane: wished for and signalled to the left (1) or right (-1), being driven (2, -2), or none (0).
-        pub change: i8,
-        /// Ticks for which a change has been wished for, saturating.
-        pub change_ticks: u8,
+        /// What it does across its lane.
+        pub manoeuvre: Manoeuvre,
+        /// Ticks for which it has signalled, or moved over or passed since then, saturating.
+        pub signal_ticks: u8,
+        /// Sideways motion to the left for each metre driven, 1/100.
+        pub drift: i8,
     }
 }
 

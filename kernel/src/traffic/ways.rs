@@ -6,9 +6,10 @@ use glam::{Vec2, Vec3};
 
 use super::links::{LEAST_HALF_M, Onward, ends_beside, onward};
 use super::meets::{Meet, meets};
-use super::routes::Routes;
+use super::routes::{Class, Routes};
 use super::walker::Walker;
 use super::zones::zones;
+use crate::actor::ActorKind;
 use crate::map_data::{
     Conflict, Crosswalk, Lane, LaneId, LaneKind, LanePoint, LightGroupId, MapData, Place, StopKind, Turn, WalkEdgeId,
 };
@@ -109,6 +110,10 @@ pub struct Ways {
     pub(super) crosswalk_lights: Vec<Vec<LightGroupId>>,
     /// Lanes with which roads begin, where vehicles that leave the map come back.
     pub(super) entries: Vec<LaneId>,
+    /// Those on which bicycles do; all where there is none.
+    pub(super) bicycle_entries: Vec<LaneId>,
+    /// The side of slow traffic: -1 (right) where one drives on the right, 1 (left) where on the left.
+    pub(super) kerb: i8,
 }
 
 impl Ways {
@@ -123,7 +128,14 @@ impl Ways {
             edges: (0..map.walk_edges.len()).map(|e| edge_way(map, e)).collect(),
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
+            bicycle_entries: Vec::new(),
+            kerb: kerb(places),
         };
+        let cycled = ways.entries.iter().copied().filter(|lane| ways.may_start(ActorKind::Bicycle, *lane));
+        ways.bicycle_entries = cycled.collect();
+        if ways.bicycle_entries.is_empty() {
+            ways.bicycle_entries.clone_from(&ways.entries);
+        }
         ways.add_crosswalks(map);
         ways
     }
@@ -141,6 +153,13 @@ impl Ways {
     /// Where a walker stands.
     pub(super) fn walker_place(&self, walker: &Walker) -> Place {
         self.edge_place(walker.edge, walker.s_m)
+    }
+
+    /// Whether a vehicle of a kind may start on a lane: bicycles do at the kerb, and not on motorways.
+    pub(super) fn may_start(&self, kind: ActorKind, lane: LaneId) -> bool {
+        let lane = &self.places.map.lanes[lane as usize];
+        let beside = if self.kerb > 0 { lane.left } else { lane.right };
+        Class::of(kind).may_use(lane) && (kind != ActorKind::Bicycle || beside.is_none())
     }
 
     /// Whether a light holds traffic at the end of a lane.
@@ -309,6 +328,20 @@ fn begins(places: &Places, id: LaneId) -> bool {
     let wide = start.half_width_m > LEAST_HALF_M;
     let near = || places.roads().around(start.position, LaneKind::Driving, FROM_BEFORE_M);
     lane.predecessors.is_empty() && wide && !near().iter().any(|p| comes_by(p.lane, p.s_m))
+}
+
+/// -1 where most lanes have those for the other direction to their left, 1 where to their right.
+fn kerb(places: &Places) -> i8 {
+    let lanes = &places.map.lanes;
+    let oncoming = |lane: &Lane, side: f32| {
+        let (heading_rad, place) = (lane.at(lane.length_m * 0.5).heading_rad, lane.straight_on(lane.length_m * 0.5));
+        let there = place.beside(side * (place.half_width_m + FROM_BEFORE_M * 0.5));
+        let beside = places.roads().at(there, LaneKind::Driving);
+        beside.iter().any(|p| ops::cos(lanes[p.lane as usize].at(p.s_m).heading_rad - heading_rad) < -0.5)
+    };
+    let roads = || lanes.iter().filter(|lane| lane.kind == LaneKind::Driving && lane.junction.is_none());
+    let count = |side: f32| roads().filter(|lane| oncoming(lane, side)).count();
+    if count(-1.0) > count(1.0) { 1 } else { -1 }
 }
 
 fn edge_way(map: &MapData, index: usize) -> EdgeWay {

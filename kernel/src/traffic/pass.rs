@@ -1,0 +1,266 @@
+//! Passing bicycles, and whatever stands in the lane: over the border of the lane where nobody comes the
+//! other way for as long as that takes.
+
+use glam::Vec2;
+
+use crate::actor::ActorKind;
+use crate::geometry::direction;
+use crate::map_data::LaneKind;
+use crate::ops;
+
+use super::body::Body;
+use super::drive::{View, follow_idm};
+use super::hazard::{BICYCLE_M, Hazard, Seeker, sight};
+use super::lists::Entry;
+use super::plan::Plan;
+use super::step::Step;
+use super::traits::Driver;
+use super::vehicle::Vehicle;
+
+/// Side clearance beyond the least, metres, and to what stands.
+const MORE_M: f32 = 0.1;
+const STANDING_M: f32 = 0.6;
+/// Whom one wants to pass comes into view here, metres.
+const REACH_M: f32 = 45.0;
+/// Passing begins from a gap of so much on, metres and seconds.
+const START_M: f32 = 12.0;
+const START_S: f32 = 2.0;
+/// By then one is beside whom one passes.
+const SWING_OUT_TICKS: u8 = 240;
+/// While passing the next one ahead is passed with the first up to this gap, metres and seconds.
+const NEXT_M: f32 = 4.0;
+const NEXT_S: f32 = 1.0;
+/// Only who is slower than one would like to be by this is passed, m/s.
+const SLOWER_MPS: f32 = 2.5;
+/// Back in front of whom one has passed at this distance, metres.
+const AFTER_M: f32 = 4.0;
+/// Room for that before the next vehicle, metres.
+const ROOM_M: f32 = 12.0;
+/// What takes so much longer than computed is still safe, s.
+const SPARE_S: f32 = 2.0;
+/// Share of the greatest acceleration that is counted with.
+const SPEEDING_UP: f32 = 0.8;
+/// Distance to those who come the other way at the end, metres.
+const SPARE_M: f32 = 15.0;
+/// Nobody passes where the road bends more than this on the way, radians.
+const BEND_RAD: f32 = 0.25;
+/// Distance to swing out from before what stands, of cars and of long vehicles, metres, and braking for that, m/s².
+const SWING_OUT_M: f32 = 6.0;
+const LONG_SWING_OUT_M: f32 = 14.0;
+const SWING_OUT_MPS2: f32 = 2.5;
+/// What stands nearer than this to a junction waits there, metres.
+const QUEUE_M: f32 = 40.0;
+/// Sideways motion for each metre driven at most, and so fast, m/s.
+const STEEPEST: f32 = 0.45;
+const SIDEWAYS_MPS: f32 = 1.2;
+/// The lane for the other direction is met at this distance beyond the border of one's own, metres.
+const ONCOMING_M: f32 = 1.2;
+/// Those who come the other way may be so far to the side, metres.
+const ASIDE_M: f32 = 9.0;
+/// Others who pass are not passed within this, metres.
+const OTHERS_M: f32 = 40.0;
+
+/// Those whom a vehicle passes, as one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passed {
+    /// Where across its lane the vehicle drives beside them, metres to the left of the middle.
+    pub aim_m: f32,
+    /// From its front to the first one's tail, metres.
+    gap_m: f32,
+    /// From its middle to the last one's front, metres.
+    beyond_m: f32,
+    /// Speed of the fastest, m/s.
+    speed_mps: f32,
+}
+
+/// Sideways motion of one who passes for each metre driven.
+pub(super) fn drift(speed_mps: f32) -> f32 {
+    STEEPEST.min(SIDEWAYS_MPS / speed_mps.max(1.0))
+}
+
+/// Whether one of two vehicles passes and is clear of the other's way.
+pub(super) fn apart(vehicles: &[Vehicle], drivers: &[Driver], index: usize, other: &Entry) -> bool {
+    let (me, them) = (&vehicles[index], &vehicles[other.vehicle as usize]);
+    let half_m = (drivers[index].size_m.y + drivers[other.vehicle as usize].size_m.y) * 0.5;
+    (me.manoeuvre.passes() || them.manoeuvre.passes()) && (me.offset_m - them.offset_m).abs() > half_m + 0.3
+}
+
+/// The distance that a vehicle keeps from what stands so that it can swing out, metres.
+pub(super) fn swing_out_m(driver: &Driver) -> f32 {
+    if driver.size_m.x > 5.0 { LONG_SWING_OUT_M } else { SWING_OUT_M }
+}
+
+/// Time and distance in which one who speeds up from `from_mps` to `wish_mps` gains so many metres on another.
+fn catch_up(driver: &Driver, from_mps: f32, wish_mps: f32, other_mps: f32, gain_m: f32) -> (f32, f32) {
+    let accel_mps2 = SPEEDING_UP * driver.accel_mps2;
+    let faster_mps = from_mps - other_mps;
+    let root = ops::sqrt((faster_mps * faster_mps + 2.0 * accel_mps2 * gain_m).max(0.0));
+    let speeding_s = ((root - faster_mps) / accel_mps2).min((wish_mps - from_mps).max(0.0) / accel_mps2);
+    let speeding_m = (from_mps + 0.5 * accel_mps2 * speeding_s) * speeding_s;
+    let top_mps = from_mps + accel_mps2 * speeding_s;
+    let left_m = (gain_m - (speeding_m - other_mps * speeding_s)).max(0.0);
+    let rest_s = left_m / (top_mps - other_mps).max(0.5);
+    (speeding_s + rest_s, speeding_m + top_mps * rest_s)
+}
+
+impl View<'_> {
+    /// The bicycles and standing things that a vehicle passes on a side (1: on their left), or could pass.
+    pub(super) fn passed(&self, index: usize, plan: &Plan, seeker: &Seeker, side: i8) -> Option<Passed> {
+        let side = f32::from(side);
+        let passing = self.vehicles[index].manoeuvre.passes();
+        let reach_m = match self.vehicles[index].signal_ticks {
+            _ if !passing => REACH_M,
+            0..SWING_OUT_TICKS => START_M + START_S * seeker.speed_mps,
+            _ => NEXT_M + NEXT_S * seeker.speed_mps,
+        };
+        let steps = self.steps_of(plan);
+        let mut all: Option<Passed> = None;
+        let mut add = |gap_m: f32, length_m: f32, edge_m: f32, clearance_m: f32, speed_mps: f32| {
+            let aim_m = edge_m + side * (clearance_m + seeker.half.y);
+            let one = Passed { aim_m, gap_m, beyond_m: gap_m + seeker.half.x + length_m, speed_mps };
+            all = Some(all.map_or(one, |a| Passed {
+                aim_m: if side > 0.0 { a.aim_m.max(aim_m) } else { a.aim_m.min(aim_m) },
+                gap_m: a.gap_m.min(gap_m),
+                beyond_m: a.beyond_m.max(one.beyond_m),
+                speed_mps: a.speed_mps.max(speed_mps),
+            }));
+        };
+        let near = |step: &&Step| step.start_m < reach_m + seeker.half.x;
+        for step in steps.iter().take_while(near) {
+            for entry in self.lists.on(step.lane).iter().filter(|e| e.vehicle as usize != index) {
+                let them = &self.vehicles[entry.vehicle as usize];
+                let gap_m = step.start_m + entry.s_m - entry.half_m - seeker.half.x;
+                let is_near = gap_m < reach_m && gap_m + 2.0 * (entry.half_m + seeker.half.x) > -1.0;
+                if them.kind == ActorKind::Bicycle && is_near {
+                    let half_m = self.drivers[entry.vehicle as usize].size_m.y * 0.5;
+                    add(gap_m, 2.0 * entry.half_m, them.offset_m + side * half_m, BICYCLE_M + MORE_M, them.speed_mps);
+                }
+            }
+        }
+        let likes_m = self.likes_m(index);
+        for hazard in self.hazards[..self.free].iter().filter(|h| passing || h.stands()) {
+            let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
+            if seen.gap_m < reach_m && seen.obstructs(likes_m, seeker.half.y) && (hazard.stands() || seen.gap_m < 0.0) {
+                add(seen.gap_m, seen.length_m, seen.edge_m(side), STANDING_M, seen.speed_mps.max(0.0));
+            }
+        }
+        all
+    }
+
+    /// The greatest acceleration behind what stands at `gap_m` where no junction is near: it is kept off so far that it
+    /// can be passed.
+    pub(super) fn room_to_pass(&self, index: usize, plan: &Plan, speed_mps: f32, gap_m: f32) -> f32 {
+        let queues = plan.line.is_some_and(|line| line.hold_m < gap_m + QUEUE_M);
+        let vehicle = &self.vehicles[index];
+        if queues || vehicle.manoeuvre.passes() || vehicle.kind == ActorKind::Bicycle {
+            return f32::MAX;
+        }
+        let driver = &self.drivers[index];
+        follow_idm(driver, speed_mps, gap_m - swing_out_m(driver), 0.0).max(-SWING_OUT_MPS2)
+    }
+
+    /// The side on which a vehicle passes somebody now, if it wishes to and may.
+    pub(super) fn wish_to_pass(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Option<i8> {
+        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
+        let lane = &self.map.lanes[vehicle.lane as usize];
+        let busy = vehicle.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0;
+        // Long vehicles need more of a bend than their lane.
+        let slow = matches!(vehicle.kind, ActorKind::Bicycle | ActorKind::Bus);
+        if slow || busy || self.ways.lanes[vehicle.lane as usize].zone.is_some() {
+            return None;
+        }
+        let wish_mps = (lane.speed_limit_mps * driver.limit_share)
+            .min(driver.top_mps)
+            .min(self.ways.lanes[vehicle.lane as usize].curve_speed(lane, vehicle.s_m));
+        [(1, lane.left), (-1, lane.right)].into_iter().find_map(|(side, neighbour)| {
+            let passed = self.passed(index, plan, seeker, side)?;
+            let near = passed.gap_m < START_M + START_S * vehicle.speed_mps && passed.gap_m > 0.5;
+            let within = passed.aim_m.abs() + seeker.half.y < lane.at(vehicle.s_m).half_width_m;
+            let pays = wish_mps - passed.speed_mps > SLOWER_MPS;
+            let may = || within || neighbour.is_none() && self.has_way(index, plan, seeker, &passed, wish_mps, side);
+            (near && pays && may()).then_some(side)
+        })
+    }
+
+    /// Whether the way is free for passing over the border of the lane.
+    fn has_way(&self, index: usize, plan: &Plan, seeker: &Seeker, passed: &Passed, wish_mps: f32, side: i8) -> bool {
+        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
+        let gain_m = passed.beyond_m + seeker.half.x + AFTER_M;
+        let (past_s, past_m) = catch_up(driver, vehicle.speed_mps, wish_mps, passed.speed_mps, gain_m);
+        let (time_s, way_m) = (past_s + SPARE_S, past_m + wish_mps * SPARE_S);
+        let ends = plan.line.is_some_and(|line| line.ahead_m < way_m) || plan.dead_end_m.is_some_and(|m| m < way_m);
+        let known = self.steps_of(plan).last().map_or(0.0, |s| s.start_m + self.map.lanes[s.lane as usize].length_m);
+        !ends
+            && known >= way_m
+            && self.is_open(plan, way_m, side)
+            && self.has_room_after(index, plan, passed)
+            && self.nobody_comes(index, way_m, time_s, side)
+            && self.is_first(index)
+    }
+
+    /// Whether the road goes about straight on for so far, without crosswalks and beside a lane for the other direction.
+    fn is_open(&self, plan: &Plan, way_m: f32, side: i8) -> bool {
+        let steps = self.steps_of(plan);
+        let lanes = &self.map.lanes;
+        let heading = |step: &Step, ahead_m: f32| lanes[step.lane as usize].at(ahead_m - step.start_m).heading_rad;
+        let first_rad = heading(&steps[0], 0.0);
+        steps.iter().take_while(|step| step.start_m < way_m).all(|step| {
+            let lane = &lanes[step.lane as usize];
+            let to_m = way_m.min(step.start_m + lane.length_m);
+            let from_m = step.start_m.max(0.0);
+            let spans = &self.ways.lanes[step.lane as usize].crosswalks;
+            let crossed = spans.iter().any(|c| (from_m..=to_m).contains(&(step.start_m + c.near_m)));
+            let places = [from_m, 0.5 * (from_m + to_m), to_m];
+            let straight = places.iter().all(|m| ops::wrap_angle(heading(step, *m) - first_rad).abs() < BEND_RAD);
+            let beside = places.iter().all(|m| self.has_oncoming_lane(step, *m, side));
+            !crossed && straight && beside
+        })
+    }
+
+    fn has_oncoming_lane(&self, step: &Step, ahead_m: f32, side: i8) -> bool {
+        let lane = &self.map.lanes[step.lane as usize];
+        let place = lane.straight_on((ahead_m - step.start_m).clamp(0.0, lane.length_m));
+        let forward = place.forward.truncate();
+        let there = place.beside(f32::from(side) * (place.half_width_m + ONCOMING_M));
+        let beside = self.ways.places.roads().at(there, LaneKind::Driving);
+        let comes = |p: &crate::map_data::Projection| {
+            direction(self.map.lanes[p.lane as usize].at(p.s_m).heading_rad).dot(forward) < -0.5
+        };
+        beside.iter().any(comes)
+    }
+
+    /// Whether there is room in the lane again before whom one has passed.
+    fn has_room_after(&self, index: usize, plan: &Plan, passed: &Passed) -> bool {
+        let size_m = self.drivers[index].size_m.x;
+        let stays_m = passed.beyond_m + AFTER_M + size_m + ROOM_M;
+        let in_the_way = |step: &Step, e: &Entry| {
+            let tail_m = step.start_m + e.s_m - e.half_m;
+            let kind = self.vehicles[e.vehicle as usize].kind;
+            e.vehicle as usize != index && kind != ActorKind::Bicycle && tail_m > -size_m && tail_m < stays_m
+        };
+        self.steps_of(plan).iter().all(|step| !self.lists.on(step.lane).iter().any(|e| in_the_way(step, e)))
+    }
+
+    /// Whether nobody comes the other way, crosses or passes within the time that passing takes.
+    fn nobody_comes(&self, index: usize, way_m: f32, time_s: f32, side: i8) -> bool {
+        let me = &self.bodies[index];
+        let forward = (me.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
+        let clear = |other: &Hazard| {
+            let to = (other.position - me.position).truncate();
+            let (ahead_m, aside_m) = (to.dot(forward), f32::from(side) * forward.perp_dot(to));
+            let comes_mps = (-other.velocity.dot(forward)).max(0.0);
+            let same_way = !other.walker && other.forward.dot(forward) > 0.3;
+            let beside =
+                !(-ASIDE_M * 0.5..=ASIDE_M).contains(&aside_m) || (other.position.z - me.position.z).abs() > 4.0;
+            same_way || beside || ahead_m < -5.0 || ahead_m > way_m + comes_mps * time_s + SPARE_M
+        };
+        let passes = |(i, v): (usize, &Vehicle)| {
+            let near = |body: &Body| body.position.distance_squared(me.position) < OTHERS_M * OTHERS_M;
+            i != index && v.manoeuvre.passes() && near(&self.bodies[i])
+        };
+        let others = self.bodies[..self.vehicles.len()].iter().enumerate().filter(|(i, _)| *i != index);
+        self.hazards.iter().all(clear)
+            && others.map(|(_, body)| Hazard::of_body(body)).all(|h| clear(&h))
+            && !self.vehicles.iter().enumerate().any(passes)
+    }
+}

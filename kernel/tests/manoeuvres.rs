@@ -1,0 +1,208 @@
+//! Vehicles change lanes, pass bicycles and whatever stands in their way, and flow as traffic does.
+#![allow(clippy::disallowed_methods, reason = "tests may read files and the environment")]
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+use kernel::RoadNetwork;
+use kernel::map::bake;
+use kernel::scene::ActorKind;
+use kernel::time::{Tick, seconds};
+use kernel::traffic::{Body, Obstacle, Surroundings, Traffic, TrafficCounts};
+
+const LANE_M: f64 = 3.5;
+const NOBODY: TrafficCounts =
+    TrafficCounts { cars: 0, motorcycles: 0, bicycles: 0, pedestrians: 0, jaywalks_per_min: 0.0 };
+const FAR: Vec3 = Vec3::new(1e5, 0.0, 0.0);
+
+/// A road with so many lanes to the left (the other direction) and right, and its geometry.
+fn road(left: i32, right: i32, length_m: f64, geometry: &str, link: &str) -> Arc<RoadNetwork> {
+    let lane = |id: i32| {
+        let next =
+            if link.is_empty() { String::new() } else { format!("<predecessor id=\"{id}\"/><successor id=\"{id}\"/>") };
+        format!(
+            "<lane id=\"{id}\" type=\"driving\"><link>{next}</link>\
+             <width sOffset=\"0\" a=\"{LANE_M}\" b=\"0\" c=\"0\" d=\"0\"/></lane>"
+        )
+    };
+    let side = |name: &str, ids: Vec<i32>| {
+        let lanes: String = ids.into_iter().map(lane).collect();
+        if lanes.is_empty() { lanes } else { format!("<{name}>{lanes}</{name}>") }
+    };
+    let text = format!(
+        "<?xml version=\"1.0\"?><OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>\
+         <road id=\"0\" length=\"{length_m}\" junction=\"-1\">{link}<planView>\
+         <geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"{length_m}\">{geometry}</geometry></planView>\
+         <lanes><laneSection s=\"0\">{}<center><lane id=\"0\" type=\"none\"/></center>{}</laneSection></lanes>\
+         </road></OpenDRIVE>",
+        side("left", (1..=left).rev().collect()),
+        side("right", (1..=right).map(|k| -k).collect()),
+    );
+    Arc::new(bake("road", &text).expect("it bakes"))
+}
+
+fn straight(left: i32, right: i32, length_m: f64) -> Arc<RoadNetwork> {
+    road(left, right, length_m, "<line/>", "")
+}
+
+/// A ring on which traffic goes round for ever.
+fn ring(lanes: i32, length_m: f64) -> Arc<RoadNetwork> {
+    let link = "<link><predecessor elementType=\"road\" elementId=\"0\" contactPoint=\"end\"/>\
+                <successor elementType=\"road\" elementId=\"0\" contactPoint=\"start\"/></link>";
+    let geometry = format!("<arc curvature=\"{}\"/>", std::f64::consts::TAU / length_m);
+    road(0, lanes, length_m, &geometry, link)
+}
+
+fn car_at(position: Vec3) -> Obstacle {
+    Obstacle { id: 0, position, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m: kernel::ego::SIZE_M }
+}
+
+fn drive(traffic: &mut Traffic, ego: Obstacle, ticks: Tick, mut each: impl FnMut(&Traffic, Tick)) {
+    for tick in 1..=ticks {
+        traffic.step(&Surroundings { tick, ego, loose: &[] });
+        each(traffic, tick);
+    }
+}
+
+/// From the middle of one to another in the axes of the first: ahead and to the left, metres.
+fn seen_from(me: &Body, other: Vec3) -> Vec2 {
+    let forward = (me.rotation * Vec3::X).truncate().normalize_or(Vec2::X);
+    let to = (other - me.position).truncate();
+    Vec2::new(to.dot(forward), forward.perp_dot(to))
+}
+
+/// Times that another vehicle came past a bicycle, and the least distance between their sides then, metres.
+fn passes_of_bicycles(network: &Arc<RoadNetwork>, counts: TrafficCounts, seed: u64, minutes: u32) -> (usize, f32) {
+    let mut traffic = Traffic::spawn(&counts, seed, network.ways(), FAR);
+    let (mut passes, mut least_m) = (0, f32::MAX);
+    let mut before: Vec<Vec<f32>> = Vec::new();
+    drive(&mut traffic, car_at(FAR), seconds(60 * minutes), |traffic, _| {
+        let bodies = traffic.bodies();
+        let bicycles = bodies.iter().filter(|b| b.kind == ActorKind::Bicycle);
+        let now: Vec<Vec<f32>> = bicycles
+            .map(|bicycle| {
+                let ahead = |other: &Body| {
+                    let at = seen_from(bicycle, other.position);
+                    let half = (other.kind.size_m() + bicycle.kind.size_m()).truncate() * 0.5;
+                    let along = (other.rotation * Vec3::X).dot(bicycle.rotation * Vec3::X) > 0.5;
+                    if along && other.kind != ActorKind::Bicycle && at.x.abs() < half.x && at.y.abs() < 6.0 {
+                        if std::env::var("DBG").is_ok() && at.y.abs() - half.y < 1.4 {
+                            let v = traffic
+                                .state()
+                                .vehicles
+                                .iter()
+                                .filter(|v| u32::from(v.id) == other.id || u32::from(v.id) == bicycle.id);
+                            println!("near {at} {:?}", v.collect::<Vec<_>>());
+                        }
+                        least_m = least_m.min(at.y.abs() - half.y);
+                    }
+                    if along && at.y.abs() < 6.0 { at.x } else { f32::NAN }
+                };
+                bodies.iter().map(ahead).collect()
+            })
+            .collect();
+        for (was, is) in before.iter().zip(&now) {
+            passes += was.iter().zip(is).filter(|(was, is)| **was < 0.0 && **is >= 0.0 && **is - **was < 1.0).count();
+        }
+        before = now;
+    });
+    (passes, least_m)
+}
+
+#[test]
+fn bicycles_are_passed_with_room_beside_the_oncoming_lane() {
+    let counts = TrafficCounts { cars: 8, motorcycles: 1, bicycles: 2, ..NOBODY };
+    let (mut passes, mut least_m) = (0, f32::MAX);
+    for seed in 1..=4 {
+        let (count, near_m) = passes_of_bicycles(&straight(1, 1, 1500.0), counts, seed, 10);
+        (passes, least_m) = (passes + count, least_m.min(near_m));
+    }
+    println!("{passes} passes, at least {least_m} m");
+    assert!(passes >= 40, "{passes} passes in 40 minutes");
+    assert!(least_m >= 1.5, "{least_m} m between a bicycle and who passed it");
+}
+
+#[test]
+fn bicycles_are_passed_on_the_lane_beside() {
+    let counts = TrafficCounts { cars: 10, motorcycles: 1, bicycles: 2, ..NOBODY };
+    let (passes, least_m) = passes_of_bicycles(&straight(0, 2, 1500.0), counts, 1, 10);
+    println!("{passes} passes, at least {least_m} m");
+    assert!(passes >= 20 && least_m >= 1.5, "{passes} passes at {least_m} m");
+}
+
+/// For each vehicle the seconds from when it came near a car that stands in its lane until it was past, s.
+fn waits_behind(network: &Arc<RoadNetwork>, stands: Vec3, cars: u16, seed: u64) -> Vec<u64> {
+    let counts = TrafficCounts { cars, ..NOBODY };
+    let mut traffic = Traffic::spawn(&counts, seed, network.ways(), stands);
+    let mut since = vec![None; usize::from(cars)];
+    let mut waits = Vec::new();
+    drive(&mut traffic, car_at(stands), seconds(600), |traffic, tick| {
+        if std::env::var("DBG").is_ok() && tick % 120 == 0 {
+            for (v, b) in traffic.state().vehicles.iter().zip(traffic.bodies()) {
+                if (b.rotation * Vec3::X).x > 0.5 && (-40.0..8.0).contains(&(b.position.x - stands.x)) {
+                    println!("{} {:?}", tick / 60, v);
+                }
+            }
+        }
+        for (body, since) in traffic.bodies().iter().zip(&mut since) {
+            let at = body.position - stands;
+            let eastward = (body.rotation * Vec3::X).x > 0.5;
+            let near = eastward && (-40.0..8.0).contains(&at.x);
+            *since = match *since {
+                None if near => Some(tick),
+                Some(then) if !near => {
+                    waits.push((tick - then) / 60);
+                    None
+                }
+                same => same,
+            };
+        }
+    });
+    waits.extend(since.into_iter().flatten().map(|then| seconds(600) / 60 - then / 60));
+    waits
+}
+
+#[test]
+fn a_car_that_stands_is_passed_within_a_minute_where_the_other_lane_is_free() {
+    let stands = Vec3::new(700.0, -1.75, 0.0);
+    for (name, network, cars) in
+        [("oncoming lane", straight(1, 1, 1500.0), 6), ("lane beside", straight(0, 2, 1500.0), 12)]
+    {
+        let waits: Vec<u64> = (1..=4).flat_map(|seed| waits_behind(&network, stands, cars, seed)).collect();
+        let longest = waits.iter().max().copied().unwrap_or(u64::MAX);
+        println!("{name}: {} came by, the longest in {longest} s", waits.len());
+        assert!(waits.len() > 40, "{name}: {} came by", waits.len());
+        assert!(longest <= 60, "{name}: somebody waited {longest} s");
+    }
+}
+
+/// Flow of a ring with so many vehicles: (density a lane, vehicles/km; flow a lane, vehicles/h; mean speed, m/s).
+fn flow(cars: u16, seed: u64) -> (f64, f64, f64) {
+    const LENGTH_M: f64 = 2000.0;
+    let network = ring(2, LENGTH_M);
+    let mut traffic = Traffic::spawn(&TrafficCounts { cars, ..NOBODY }, seed, network.ways(), FAR);
+    assert_eq!(traffic.missing().total(), 0, "{cars} have room");
+    let mut driven_m = 0.0;
+    let (settle, ticks) = (seconds(180), seconds(600));
+    drive(&mut traffic, car_at(FAR), ticks, |traffic, tick| {
+        if tick > settle {
+            driven_m += traffic.state().vehicles.iter().map(|v| f64::from(v.speed_mps)).sum::<f64>() / 60.0;
+        }
+    });
+    let hours = (ticks - settle) as f64 / seconds(3600) as f64;
+    let density = f64::from(cars) / 2.0 / (LENGTH_M / 1000.0);
+    (density, driven_m / hours / LENGTH_M / 2.0, driven_m / hours / 3600.0 / f64::from(cars))
+}
+
+#[test]
+fn the_flow_of_a_lane_has_its_maximum_where_measured_ones_do() {
+    let diagram: Vec<_> = [20, 60, 80, 100, 120, 140, 180, 240, 320].map(|cars| flow(cars, 1)).into();
+    for (density, flow, speed) in &diagram {
+        println!("{density:5.1} vehicles/km: {flow:6.0} vehicles/h at {:5.1} km/h", speed * 3.6);
+    }
+    let most = diagram.iter().map(|point| point.1).fold(0.0, f64::max);
+    assert!((1500.0..=2200.0).contains(&most), "at most {most} vehicles/h and lane");
+    let (first, last) = (diagram[0], diagram[diagram.len() - 1]);
+    assert!(last.1 < 0.9 * most, "dense traffic flows less");
+    assert!(first.2 > last.2 * 2.0, "and slower");
+}
