@@ -45,9 +45,19 @@ state! {
         pub speed_mps: f32,
         /// Phase of its gait or pedalling, radians in [0, 2 pi).
         pub phase_rad: f32,
-        /// Brake lights on.
-        pub braking: bool,
+        /// Its lamps: bit set of [`lamps`].
+        pub lamps: u8,
     }
+}
+
+/// Lamps of a road user, as bits.
+pub mod lamps {
+    /// Brake lights on.
+    pub const BRAKE: u8 = 1;
+    /// Indicates to the left; whoever draws it lets it flash.
+    pub const LEFT: u8 = 2;
+    /// Indicates to the right.
+    pub const RIGHT: u8 = 4;
 }
 
 state! {

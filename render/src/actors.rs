@@ -4,19 +4,24 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use kernel::map::LightHead;
-use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot};
+use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, lamps};
 use kernel::signals::LightPhase;
+use kernel::time::{TICK_HZ, Tick};
 
 use crate::camera::EGO_MIDDLE_M;
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 use crate::mesh::actor::{actor_model, ego_model};
 use crate::mesh::model::{Detail, Model};
-use crate::mesh::{CODE_BRAKE, CODE_LIT, Finish, Mesh, Vertex, signal};
+use crate::mesh::{CODE_BRAKE, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
 use crate::view::View;
 
 /// Actors smaller than this many pixels are left out.
 const SMALLEST_PX: f32 = 1.2;
+
+/// Indicators flash 1.5 times a second (UN regulation 48: 60 to 120 times a minute).
+const FLASH_TICKS: Tick = TICK_HZ as Tick * 2 / 3;
+const AMBER: [u8; 3] = [255, 158, 32];
 
 /// Shadows may reach this far into the picture from actors beside it, metres.
 const SHADOW_M: f32 = 6.0;
@@ -60,7 +65,7 @@ impl Cast {
         for (_, actor) in seen {
             let (centre, radius) = sphere(actor);
             if !horizon.hides(centre, radius + SHADOW_M) {
-                self.pose_actor(actor, view, moving);
+                self.pose_actor(actor, scene.tick, view, moving);
             }
         }
         for head in heads {
@@ -74,11 +79,11 @@ impl Cast {
         let size = ActorKind::Car.size_m();
         moving.shadows.push((frame, size));
         if view.sees(frame.translation.into(), size.length()) {
-            moving.append(ego_model(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, false);
+            moving.append(ego_model(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, 0);
         }
     }
 
-    fn pose_actor(&mut self, actor: &ActorScene, view: &View, moving: &mut Moving) {
+    fn pose_actor(&mut self, actor: &ActorScene, tick: Tick, view: &View, moving: &mut Moving) {
         let size = actor.kind.size_m();
         let (centre, radius) = sphere(actor);
         let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
@@ -95,7 +100,7 @@ impl Cast {
             .entry((actor.kind, actor.variant, detail))
             .or_insert_with(|| actor_model(actor.kind, actor.variant, detail));
         let instance = actor.id.min(u32::from(FIRST_PARKED_INSTANCE) - 1) as u16;
-        moving.append(model, frame, [actor.phase_rad, actor.speed_mps], instance, actor.braking);
+        moving.append(model, frame, [actor.phase_rad, actor.speed_mps], instance, flashing(actor.lamps, tick));
     }
 
     fn pose_head(&mut self, head: &LightHead, phase: LightPhase, view: &View, moving: &mut Moving) {
@@ -106,7 +111,7 @@ impl Cast {
         let detail = view.detail(centre, 1.0);
         let mesh = self.heads.entry((phase, detail)).or_insert_with(|| signal::head(phase, detail));
         let frame = Affine3A::from_rotation_translation(glam::Quat::from_rotation_z(head.facing_rad), centre);
-        moving.append_mesh(mesh, frame, 0, false);
+        moving.append_mesh(mesh, frame, 0, 0);
     }
 }
 
@@ -117,25 +122,34 @@ fn sphere(actor: &ActorScene) -> (Vec3, f32) {
 }
 
 impl Moving {
-    fn append(&mut self, model: &Model, frame: Affine3A, [phase, speed]: [f32; 2], instance: u16, braking: bool) {
+    fn append(&mut self, model: &Model, frame: Affine3A, [phase, speed]: [f32; 2], instance: u16, lamps: u8) {
         for (part, pose) in model.parts.iter().zip(model.pose(phase, speed)) {
-            self.append_mesh(&part.mesh, frame * pose, instance, braking);
+            self.append_mesh(&part.mesh, frame * pose, instance, lamps);
         }
     }
 
-    fn append_mesh(&mut self, mesh: &Mesh, frame: Affine3A, instance: u16, braking: bool) {
+    fn append_mesh(&mut self, mesh: &Mesh, frame: Affine3A, instance: u16, lamps: u8) {
         let first = self.vertices.len() as u32;
-        self.vertices.extend(mesh.vertices.iter().map(|v| posed(v, &frame, instance, braking)));
+        self.vertices.extend(mesh.vertices.iter().map(|v| posed(v, &frame, instance, lamps)));
         let plain = &mesh.triangles[Finish::Plain as usize];
         self.indices.extend(plain.iter().flatten().map(|i| i + first));
     }
 }
 
-fn posed(v: &Vertex, frame: &Affine3A, instance: u16, braking: bool) -> Vertex {
+/// The lamps that shine at a tick: indicators flash.
+fn flashing(lamps: u8, tick: Tick) -> u8 {
+    if tick % FLASH_TICKS < FLASH_TICKS / 2 { lamps } else { lamps & lamps::BRAKE }
+}
+
+fn posed(v: &Vertex, frame: &Affine3A, instance: u16, lamps: u8) -> Vertex {
     let position = frame.transform_point3a(Vec3A::from_array(v.position)).to_array();
     let turn: Mat3A = frame.matrix3;
     let n = (turn * Vec3A::from_array(v.normal.map(f32::from))).round();
-    let lit = braking && v.code == CODE_BRAKE;
-    let (code, colour) = if lit { (CODE_LIT, [255, 44, 36]) } else { (v.code, v.colour) };
+    let (code, colour) = match v.code {
+        CODE_BRAKE if lamps & lamps::BRAKE != 0 => (CODE_LIT, [255, 44, 36]),
+        CODE_LEFT if lamps & lamps::LEFT != 0 => (CODE_LIT, AMBER),
+        CODE_RIGHT if lamps & lamps::RIGHT != 0 => (CODE_LIT, AMBER),
+        code => (code, v.colour),
+    };
     Vertex { position, normal: [n.x as i8, n.y as i8, n.z as i8], instance, code, colour, ..*v }
 }

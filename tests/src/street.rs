@@ -5,7 +5,7 @@ use kernel::map::{
     Junction, LightGroup, LightHead, MapData, Prop, PropKind, RoadNetwork, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD, Surface,
     SurfaceKind,
 };
-use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, Weather, quantise};
+use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, Weather, lamps, quantise};
 use kernel::signals::LightPhase;
 
 /// Half of the street's length, metres.
@@ -138,7 +138,7 @@ pub fn scene(moment: u32) -> SceneSnapshot {
             rotation: Quat::from_rotation_z(heading),
             speed_mps,
             phase_rad: (0.9 * t + id as f32) % core::f32::consts::TAU,
-            braking: id.is_multiple_of(2),
+            lamps: [0, lamps::BRAKE, lamps::BRAKE | lamps::LEFT, lamps::RIGHT][id as usize % 4],
         });
     };
     let back = core::f32::consts::PI;

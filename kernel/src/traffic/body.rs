@@ -49,8 +49,8 @@ pub struct Body {
     pub velocity_mps: Vec3,
     /// Phase of gait or pedalling, radians in [0, 2 pi).
     pub phase_rad: f32,
-    /// Brake lights on.
-    pub braking: bool,
+    /// Its lamps: bit set of [`lamps`](crate::scene::lamps).
+    pub lamps: u8,
 }
 
 impl Surroundings<'_> {

@@ -1,7 +1,7 @@
 //! What a vehicle does in a tick.
 
 use crate::light::LightPhase;
-use crate::map_data::{LaneId, MapData, StopKind};
+use crate::map_data::{LaneId, MapData, StopKind, Turn};
 use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
@@ -31,6 +31,8 @@ const CONFLICT_M: f32 = 30.0;
 const HALT_TICKS: u16 = seconds(1) as u16;
 /// Who waits for so long at an open line gives up his goal for another.
 const RETHINK_TICKS: u16 = seconds(15) as u16;
+/// A turn is indicated from here on, metres.
+const INDICATE_M: f32 = 40.0;
 /// Braking at most for people at a crosswalk who are not in the way yet, m/s².
 const CROSSWALK_BRAKE_MPS2: f32 = 4.5;
 /// After standing this long people who only wait are not waited for any more, s.
@@ -101,6 +103,7 @@ impl View<'_> {
         let plan = &self.plans[index];
         let mut next = self.vehicles[index];
         self.decide(index, plan, &mut next);
+        next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
         let seeker = self.seeker(index);
         self.decide_manoeuvre(index, plan, &seeker, &mut next);
         let side = self.side(index, plan, &seeker);
@@ -115,6 +118,17 @@ impl View<'_> {
 
     pub(super) fn steps_of(&self, plan: &Plan) -> &[Step] {
         &self.steps[plan.steps.0 as usize..plan.steps.1 as usize]
+    }
+
+    /// The flag of the turn that a vehicle takes at the junction right before it, or in it.
+    fn turn(&self, plan: &Plan) -> u8 {
+        let near = self.steps_of(plan).iter().take_while(|step| step.start_m < INDICATE_M);
+        let mut turns = near.map(|step| self.map.lanes[step.lane as usize].turn);
+        match turns.find(|turn| *turn != Turn::Straight) {
+            Some(Turn::Left) => Vehicle::TURNS_LEFT,
+            Some(Turn::Right) => Vehicle::TURNS_RIGHT,
+            _ => 0,
+        }
     }
 
     /// Asks for grants, gives them back, waits and halts.

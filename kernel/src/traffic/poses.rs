@@ -5,6 +5,7 @@ use glam::{Mat3, Quat, Vec3};
 use crate::actor::ActorKind;
 use crate::map_data::Place;
 use crate::ops;
+use crate::scene::lamps;
 
 use super::actors::Actors;
 use super::body::Body;
@@ -46,9 +47,17 @@ impl Actors {
             rotation: level_rotation(forward),
             velocity_mps: forward * vehicle.speed_mps,
             phase_rad: f32::from(vehicle.phase) * TURN_RAD,
-            braking: vehicle.flags & Vehicle::BRAKING != 0,
+            lamps: lamps(vehicle),
         }
     }
+}
+
+fn lamps(vehicle: &Vehicle) -> u8 {
+    let on = |lamp: u8, is_on: bool| if is_on { lamp } else { 0 };
+    let side = vehicle.manoeuvre.side();
+    on(lamps::BRAKE, vehicle.flags & Vehicle::BRAKING != 0)
+        | on(lamps::LEFT, side > 0 || side == 0 && vehicle.flags & Vehicle::TURNS_LEFT != 0)
+        | on(lamps::RIGHT, side < 0 || side == 0 && vehicle.flags & Vehicle::TURNS_RIGHT != 0)
 }
 
 /// Somebody on foot whose way leads over a place.
@@ -66,6 +75,6 @@ pub(super) fn walker_body(walker: &Walker, traits: &WalkerTraits, place: &Place)
         rotation: Quat::from_xyzw(0.0, 0.0, sin, cos),
         velocity_mps: ahead * (sign * walker.speed_mps),
         phase_rad: f32::from(walker.phase) * TURN_RAD,
-        braking: false,
+        lamps: 0,
     }
 }

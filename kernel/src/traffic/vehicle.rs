@@ -50,6 +50,10 @@ impl Vehicle {
     pub const HALTED: u8 = 4;
     /// Is inside a junction, or its rear still is.
     pub const CROSSING: u8 = 8;
+    /// Turns left at the junction before it or in it.
+    pub const TURNS_LEFT: u8 = 16;
+    /// Turns right there.
+    pub const TURNS_RIGHT: u8 = 32;
     /// Every flag with a meaning.
-    pub const ALL_FLAGS: u8 = 15;
+    pub const ALL_FLAGS: u8 = 63;
 }

@@ -21,6 +21,8 @@ const LAST_CHANCE_S: u8 = 5;
 const STANDS_MPS: f32 = 0.1;
 /// It stands behind another at a gap of at most this, metres.
 const BEHIND_M: f32 = 6.0;
+/// And behind the ego car, from which it keeps off to pass it, metres.
+const BEHIND_EGO_M: f32 = 20.0;
 /// It waits at a light no farther from its line than this, metres.
 const AT_LIGHT_M: f32 = 12.0;
 /// Longest queue that is followed, vehicles.
@@ -79,6 +81,6 @@ impl View<'_> {
     fn behind_ego(&self, index: usize, plan: &Plan) -> bool {
         let seeker = self.seeker(index);
         let seen = self.hazards.first().and_then(|ego| sight(self.map, self.steps_of(plan), &seeker, ego));
-        seen.is_some_and(|seen| seen.gap_m < BEHIND_M && seen.blocks(seeker.offset_m, seeker.half.y))
+        seen.is_some_and(|seen| seen.gap_m < BEHIND_EGO_M && seen.blocks(seeker.offset_m, seeker.half.y))
     }
 }

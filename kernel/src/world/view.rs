@@ -80,7 +80,7 @@ impl World {
                 rotation,
                 speed_mps: velocity.dot(rotation * Vec3::X),
                 phase_rad: body.phase_rad,
-                braking: body.braking && loose.is_none(),
+                lamps: if loose.is_none() { body.lamps } else { 0 },
             }
         })
     }

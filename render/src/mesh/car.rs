@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::model::Detail;
 use super::variety::Variety;
-use super::{CODE_BRAKE, Mesh, Paint};
+use super::{CODE_BRAKE, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 
 const LACQUERS: [[u8; 3]; 12] = [
@@ -204,7 +204,7 @@ pub(super) fn wheel(mesh: &mut Mesh, tag: SemanticTag, hub: Vec3, side: f32, rad
     }
 }
 
-/// Head lamps, brake lamps and number plates.
+/// Head lamps, brake lamps, indicators and number plates.
 fn lights(mesh: &mut Mesh, shape: &Shape) {
     let tag = SemanticTag::Vehicles;
     let (front, rear) = (shape.belt[1], shape.belt[shape.belt.len() - 1]);
@@ -215,6 +215,9 @@ fn lights(mesh: &mut Mesh, shape: &Shape) {
         let (y0, y1) = (side * w, side * (w - 0.36));
         facing(mesh, lamp, front.0 + 0.015, [y0, y1], [front.1 - 0.02, front.1 + 0.13]);
         facing(mesh, brake, -(rear.0.abs() + 0.02), [y0, side * (w - 0.28)], [0.68, 0.86]);
+        let amber = Paint::plain(tag, [176, 92, 20]).coded(if side > 0.0 { CODE_LEFT } else { CODE_RIGHT });
+        facing(mesh, amber, front.0 + 0.02, [y0, side * (w - 0.12)], [front.1 - 0.09, front.1 - 0.03]);
+        facing(mesh, amber, -(rear.0.abs() + 0.02), [y0, side * (w - 0.28)], [0.58, 0.67]);
     }
     let plate = Paint::plain(tag, [226, 226, 220]);
     facing(mesh, plate, shape.belt[0].0 + 0.03, [-0.26, 0.26], [0.38, 0.49]);

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::car::{GLASS, facing, wheel};
 use super::model::Detail;
 use super::variety::Variety;
-use super::{CODE_BRAKE, Mesh, Paint};
+use super::{CODE_BRAKE, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 
 const CABS: [[u8; 3]; 6] = [[224, 224, 220], [170, 36, 32], [36, 74, 138], [214, 150, 32], [58, 98, 66], [70, 74, 80]];
@@ -42,6 +42,9 @@ fn lamps(mesh: &mut Mesh, tag: SemanticTag, length: f32, half_width: f32) {
         let y = [side * (half_width - 0.08), side * (half_width - 0.42)];
         facing(mesh, head, end, y, [0.6, 0.8]);
         facing(mesh, brake, -end, y, [0.7, 0.92]);
+        let amber = Paint::plain(tag, [176, 92, 20]).coded(if side > 0.0 { CODE_LEFT } else { CODE_RIGHT });
+        facing(mesh, amber, end, y, [0.48, 0.58]);
+        facing(mesh, amber, -end, y, [0.57, 0.68]);
     }
     facing(mesh, plate, -end, [-0.26, 0.26], [0.5, 0.62]);
 }

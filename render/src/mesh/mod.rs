@@ -43,6 +43,10 @@ pub const FINISHES: usize = 3;
 pub const CODE_LIT: u8 = 255;
 /// [`Vertex::code`] of a brake lamp, which shines while its car brakes.
 pub const CODE_BRAKE: u8 = 254;
+/// [`Vertex::code`] of an indicator on the left, which flashes.
+pub const CODE_LEFT: u8 = 253;
+/// [`Vertex::code`] of an indicator on the right.
+pub const CODE_RIGHT: u8 = 252;
 /// [`Vertex::code`] of a surface with the joints of slabs.
 pub const CODE_SLABS: u8 = 1;
 /// [`Vertex::code`] of grass.
