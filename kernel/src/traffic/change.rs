@@ -13,8 +13,8 @@ use super::hazard::{Hazard, Seeker, sight};
 use super::lists::Entry;
 use super::manoeuvre::Manoeuvre;
 use super::pass;
-use super::plan::{Plan, next_lane};
-use super::routes::Class;
+use super::plan::Plan;
+use super::routes::{Class, Journey};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
@@ -278,7 +278,7 @@ impl View<'_> {
 
     /// What another lane is worth because of the way to the goal, m/s².
     fn route_mps2(&self, vehicle: &Vehicle, plan: &Plan, lane: LaneId) -> f32 {
-        let journey = self.ways.routes.journey(self.seed, vehicle.id, vehicle.kind, vehicle.trips);
+        let journey = Journey::of(self.ways, self.seed, vehicle);
         let (here_s, there_s) = (journey.seconds(vehicle.lane), journey.seconds(lane));
         if !there_s.is_finite() {
             return f32::NEG_INFINITY;
@@ -354,7 +354,8 @@ impl View<'_> {
     /// Who is ahead of a place on a lane and on the way that a vehicle would take from there.
     fn ahead(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
         let vehicle = &self.vehicles[index];
-        let (mut lane, mut start_m, mut trips) = (lane, -s_m, vehicle.trips);
+        let (mut lane, mut start_m) = (lane, -s_m);
+        let mut journey = Journey::of(self.ways, self.seed, vehicle);
         for _ in 0..LANES {
             let is_ahead = |e: &&Entry| e.vehicle as usize != index && start_m + e.s_m > 0.0;
             if let Some(e) = self.lists.on(lane).iter().find(is_ahead) {
@@ -362,8 +363,8 @@ impl View<'_> {
                 return Some(Near { vehicle: e.vehicle, gap_m, speed_mps: e.speed_mps });
             }
             start_m += self.map.lanes[lane as usize].length_m;
-            let next = next_lane(self.ways, self.seed, vehicle, trips, lane).filter(|_| start_m < REACH_M)?;
-            trips = self.ways.routes.trips_on(self.seed, vehicle, trips, next.lane);
+            let next = journey.next_lane(lane).filter(|_| start_m < REACH_M)?;
+            journey.enter(next.lane);
             (lane, start_m) = (next.lane, start_m - next.at_m);
         }
         None

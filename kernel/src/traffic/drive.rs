@@ -12,7 +12,8 @@ use super::hazard::{Hazard, Seeker, side, sight};
 use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
 use super::lists::{Entry, Lists};
 use super::pass;
-use super::plan::{self, Line, Plan, next_lane, stopping_speed};
+use super::plan::{self, Line, Plan, stopping_speed};
+use super::routes::Journey;
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
@@ -33,6 +34,8 @@ const HALT_TICKS: u16 = seconds(1) as u16;
 const RETHINK_TICKS: u16 = seconds(15) as u16;
 /// A turn is indicated from here on, metres.
 const INDICATE_M: f32 = 40.0;
+/// Its indicator is looked after so often.
+const INDICATE_TICKS: Tick = 15;
 /// Braking at most for people at a crosswalk who are not in the way yet, m/s².
 const CROSSWALK_BRAKE_MPS2: f32 = 4.5;
 /// After standing this long people who only wait are not waited for any more, s.
@@ -103,7 +106,9 @@ impl View<'_> {
         let plan = &self.plans[index];
         let mut next = self.vehicles[index];
         self.decide(index, plan, &mut next);
-        next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
+        if (self.tick + Tick::from(next.id)).is_multiple_of(INDICATE_TICKS) {
+            next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
+        }
         let seeker = self.seeker(index);
         self.decide_manoeuvre(index, plan, &seeker, &mut next);
         let side = self.side(index, plan, &seeker);
@@ -224,16 +229,15 @@ impl View<'_> {
     pub(super) fn likes_m(&self, index: usize) -> f32 {
         let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
         let lane = &self.map.lanes[vehicle.lane as usize];
-        let half_m = driver.size_m.x * 0.5;
-        let half_width_m =
-            || lane.at(vehicle.s_m + half_m).half_width_m.min(lane.at(vehicle.s_m - half_m).half_width_m);
         if driver.from_kerb_m.is_some() {
-            return driver.keeps_to_m(half_width_m(), self.ways.kerb);
+            return driver.keeps_to_m(lane.points[lane.segment(vehicle.s_m).0].half_width_m, self.ways.kerb);
         }
         if self.ways.lanes[vehicle.lane as usize].ends_m.is_none() {
             return 0.0;
         }
-        let over_m = (driver.size_m.y * 0.5 + EDGE_M - half_width_m()).max(0.0);
+        let half_m = driver.size_m.x * 0.5;
+        let [tail, front] = [-half_m, half_m].map(|m| lane.at(vehicle.s_m + m).half_width_m);
+        let over_m = (driver.size_m.y * 0.5 + EDGE_M - tail.min(front)).max(0.0);
         match (lane.left, lane.right) {
             (None, Some(_)) => -over_m,
             (Some(_), None) => over_m,
@@ -386,7 +390,8 @@ impl View<'_> {
             if next.s_m < length_m {
                 break;
             }
-            let Some(onward) = next_lane(self.ways, self.seed, next, next.trips, next.lane) else {
+            let mut journey = Journey::of(self.ways, self.seed, next);
+            let Some(onward) = journey.next_lane(next.lane) else {
                 next.s_m = length_m;
                 next.speed_mps = 0.0;
                 break;
@@ -397,7 +402,8 @@ impl View<'_> {
             next.offset_m = (at - place.position).truncate().dot(place.left());
             next.s_m += onward.at_m - length_m;
             next.lane = onward.lane;
-            next.trips = self.ways.routes.trips_on(self.seed, next, next.trips, next.lane);
+            journey.enter(next.lane);
+            next.trips = journey.trips;
             if self.ways.lanes[next.lane as usize].zone.is_some() {
                 next.flags &= !(Vehicle::GRANTED | Vehicle::HALTED);
                 next.flags |= Vehicle::CROSSING;

@@ -152,12 +152,16 @@ pub(super) fn side(map: &MapData, steps: &[Step], seeker: &Seeker, free: &[Hazar
 }
 
 /// How a hazard lies to a vehicle's way; `None` where it does not come near it.
+#[inline]
 pub(super) fn sight(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -> Option<Sighted> {
+    // Most are far away.
     let reach = seeker.horizon_m + REACH_M;
     let apart = hazard.position - seeker.position;
-    if apart.truncate().length_squared() > reach * reach || apart.z.abs() > LEVEL_M + 0.15 * reach {
-        return None;
-    }
+    let far = apart.truncate().length_squared() > reach * reach || apart.z.abs() > LEVEL_M + 0.15 * reach;
+    if far { None } else { sight_near(map, steps, seeker, hazard) }
+}
+
+fn sight_near(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -> Option<Sighted> {
     let (along_m, place) = nearest_on_way(map, steps, seeker.horizon_m, hazard)?;
     let (forward, left) = (place.forward.truncate().normalize_or(Vec2::X), place.left());
     let offset = (hazard.position - place.position).truncate();

@@ -14,7 +14,8 @@ use super::jaywalk;
 use super::junction::{self, EGO, Member, Members, Signal, swept_half_m};
 use super::lists::{Entry, Lists};
 use super::pass;
-use super::plan::{self, Line, Plan, next_lane};
+use super::plan::{self, Line, Plan};
+use super::routes::Journey;
 use super::state::TrafficState;
 use super::step::Step;
 use super::vehicle::Vehicle;
@@ -58,7 +59,7 @@ impl Sight {
         let groups = 0..map.light_groups.len() as u32;
         self.lights.clear();
         self.lights.extend(groups.map(|g| signals::phase(map, actors.seed, g, around.tick)));
-        let next = |v: &Vehicle| next_lane(&actors.ways, actors.seed, v, v.trips, v.lane);
+        let next = |v: &Vehicle| Journey::of(&actors.ways, actors.seed, v).next_lane(v.lane);
         let vehicles = &actors.state.vehicles;
         self.lists.rebuild(map, vehicles, &actors.drivers, next, |id| !around.holds(id));
         let people = &actors.bodies[actors.state.vehicles.len()..];

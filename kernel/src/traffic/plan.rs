@@ -1,12 +1,10 @@
 //! The way a vehicle will take, as far as it has to look ahead.
 
-use crate::map_data::{Lane, LaneId, MapData};
+use crate::map_data::{Lane, MapData};
 use crate::ops;
-use crate::rng::{self, Stream};
 
-use super::links::Onward;
 use super::lists::{Entry, Lists};
-use super::routes::Class;
+use super::routes::Journey;
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
@@ -58,24 +56,6 @@ pub(super) struct Plan {
     pub dead_end_m: Option<f32>,
 }
 
-/// Where a vehicle goes on after `lane`, when it has begun so many journeys.
-pub(super) fn next_lane(ways: &Ways, seed: u64, vehicle: &Vehicle, trips: u16, lane: LaneId) -> Option<Onward> {
-    let way = &ways.lanes[lane as usize];
-    let onward = if Class::of(vehicle.kind) == Class::Long { &way.onward_wide } else { &way.onward };
-    match onward.as_slice() {
-        [] => None,
-        [only] => Some(*only),
-        many => {
-            let astray = || {
-                let which = u64::from(trips) << 32 | u64::from(lane);
-                many[rng::below(seed, Stream::Turn, u64::from(vehicle.id), which, many.len() as u32) as usize]
-            };
-            let journey = ways.routes.journey(seed, vehicle.id, vehicle.kind, trips);
-            Some(journey.best(many).unwrap_or_else(astray))
-        }
-    }
-}
-
 /// Where a lane ends from which no way goes on, metres from its start: at its stop line if it has one.
 pub(super) fn way_end_m(lane: &Lane) -> f32 {
     lane.stop.map_or(lane.length_m, |stop| stop.s_m)
@@ -100,12 +80,12 @@ pub(super) fn plan(
     let mut plan = Plan::default();
     let mut step = Step { lane: vehicle.lane, start_m: -vehicle.s_m, from_m: 0.0 };
     let mut beyond_m = f32::NEG_INFINITY;
-    let mut trips = vehicle.trips;
+    let mut journey = Journey::of(ways, seed, vehicle);
     for k in 0..MAX_STEPS {
         out.push(step);
         let lane = &map.lanes[step.lane as usize];
         let end_m = step.start_m + lane.length_m;
-        let Some(next) = next_lane(ways, seed, vehicle, trips, step.lane) else {
+        let Some(next) = journey.next_lane(step.lane) else {
             plan.dead_end_m = Some(step.start_m + way_end_m(lane));
             break;
         };
@@ -122,7 +102,7 @@ pub(super) fn plan(
         if end_m > horizon.max(beyond_m) && !undecided {
             break;
         }
-        trips = ways.routes.trips_on(seed, vehicle, trips, next.lane);
+        journey.enter(next.lane);
         step = Step { lane: next.lane, start_m: end_m - next.at_m, from_m: next.at_m };
     }
     plan.steps = (first as u32, out.len() as u32);

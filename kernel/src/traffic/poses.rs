@@ -37,8 +37,13 @@ impl Actors {
     pub(super) fn vehicle_body(&self, vehicle: &Vehicle, driver: &Driver) -> Body {
         let lane = vehicle.lane as usize;
         let place = self.ways.lanes[lane].pose(&self.map().lanes[lane], vehicle.s_m);
-        let aslant = place.left().extend(0.0) * (0.01 * f32::from(vehicle.drift));
-        let forward = (place.forward + aslant).normalize_or(place.forward);
+        let forward = match vehicle.drift {
+            0 => place.forward,
+            drift => {
+                let aslant = place.left().extend(0.0) * (0.01 * f32::from(drift));
+                (place.forward + aslant).normalize_or(place.forward)
+            }
+        };
         Body {
             id: u32::from(vehicle.id),
             kind: vehicle.kind,
