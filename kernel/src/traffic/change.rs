@@ -179,7 +179,9 @@ impl View<'_> {
         if self.is_between_lanes(index) {
             self.near(index, seeker).for_each(|hazard| heed(&hazard));
         } else {
-            self.changing.iter().for_each(|(_, hazard)| heed(hazard));
+            let reach_m = seeker.horizon_m + 20.0;
+            let near = |h: &Hazard| h.position.distance_squared(seeker.position) < reach_m * reach_m;
+            self.changing.iter().filter(|(_, hazard)| near(hazard)).for_each(|(_, hazard)| heed(hazard));
         }
     }
 

@@ -192,10 +192,10 @@ impl View<'_> {
         let known = self.steps_of(plan).last().map_or(0.0, |s| s.start_m + self.map.lanes[s.lane as usize].length_m);
         !ends
             && known >= way_m
-            && self.is_open(plan, way_m, side)
             && self.has_room_after(index, plan, passed)
             && self.nobody_comes(index, way_m, time_s, side)
             && self.is_first(index)
+            && self.is_open(plan, way_m, side)
     }
 
     /// Whether the road goes about straight on for so far, without crosswalks and beside a lane for the other direction.
