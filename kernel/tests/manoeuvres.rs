@@ -86,14 +86,6 @@ fn passes_of_bicycles(network: &Arc<RoadNetwork>, counts: TrafficCounts, seed: u
                     let half = (other.kind.size_m() + bicycle.kind.size_m()).truncate() * 0.5;
                     let along = (other.rotation * Vec3::X).dot(bicycle.rotation * Vec3::X) > 0.5;
                     if along && other.kind != ActorKind::Bicycle && at.x.abs() < half.x && at.y.abs() < 6.0 {
-                        if std::env::var("DBG").is_ok() && at.y.abs() - half.y < 1.4 {
-                            let v = traffic
-                                .state()
-                                .vehicles
-                                .iter()
-                                .filter(|v| u32::from(v.id) == other.id || u32::from(v.id) == bicycle.id);
-                            println!("near {at} {:?}", v.collect::<Vec<_>>());
-                        }
                         least_m = least_m.min(at.y.abs() - half.y);
                     }
                     if along && at.y.abs() < 6.0 { at.x } else { f32::NAN }
@@ -137,13 +129,6 @@ fn waits_behind(network: &Arc<RoadNetwork>, stands: Vec3, cars: u16, seed: u64) 
     let mut since = vec![None; usize::from(cars)];
     let mut waits = Vec::new();
     drive(&mut traffic, car_at(stands), seconds(600), |traffic, tick| {
-        if std::env::var("DBG").is_ok() && tick % 120 == 0 {
-            for (v, b) in traffic.state().vehicles.iter().zip(traffic.bodies()) {
-                if (b.rotation * Vec3::X).x > 0.5 && (-40.0..8.0).contains(&(b.position.x - stands.x)) {
-                    println!("{} {:?}", tick / 60, v);
-                }
-            }
-        }
         for (body, since) in traffic.bodies().iter().zip(&mut since) {
             let at = body.position - stands;
             let eastward = (body.rotation * Vec3::X).x > 0.5;
@@ -194,12 +179,54 @@ fn flow(cars: u16, seed: u64) -> (f64, f64, f64) {
     (density, driven_m / hours / LENGTH_M / 2.0, driven_m / hours / 3600.0 / f64::from(cars))
 }
 
+const PLOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/flow.svg");
+
+/// Flow over density as a picture.
+fn plot(diagram: &[(f64, f64, f64)]) -> String {
+    let at = |density: f64, flow: f64| (60.0 + density * 6.0, 260.0 - flow * 0.12);
+    let text = |x: f64, y: f64, anchor: &str, text: &str| {
+        format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n")
+    };
+    let mut svg = String::from(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"620\" height=\"310\" font-family=\"sans-serif\" \
+         font-size=\"12\">\n<rect width=\"620\" height=\"310\" fill=\"white\"/>\n",
+    );
+    for flow in [0.0, 500.0, 1000.0, 1500.0, 2000.0] {
+        let ((x0, y), (x1, _)) = (at(0.0, flow), at(90.0, flow));
+        svg += &format!("<path d=\"M{x0:.1} {y:.1}H{x1:.1}\" stroke=\"#ddd\"/>\n");
+        svg += &text(x0 - 6.0, y + 4.0, "end", &format!("{flow:.0}"));
+    }
+    for density in [0.0, 20.0, 40.0, 60.0, 80.0] {
+        let (x, y) = at(density, 0.0);
+        svg += &text(x, y + 16.0, "middle", &format!("{density:.0}"));
+    }
+    let (x, y) = at(45.0, 0.0);
+    svg += &text(x, y + 36.0, "middle", "density, vehicles a km and lane");
+    svg += &text(10.0, 16.0, "start", "flow, vehicles an hour and lane (mean speed in km/h at the points)");
+    for (density, flow, speed) in diagram {
+        let (x, y) = at(*density, *flow);
+        svg += &format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"#1f77b4\"/>\n");
+        svg += &text(x + 7.0, y - 6.0, "start", &format!("{:.0}", speed * 3.6));
+    }
+    svg + "</svg>\n"
+}
+
+/// The picture in the documentation is the present one; `AEYE_BLESS=1` draws it.
+fn agrees_with_plot(svg: &str) {
+    if std::env::var("AEYE_BLESS").is_ok_and(|bless| bless == "1") {
+        std::fs::write(PLOT, svg).expect("docs can be written");
+    }
+    let golden = std::fs::read_to_string(PLOT).expect("docs/flow.svg is there (AEYE_BLESS=1 draws it)");
+    assert!(golden == svg, "docs/flow.svg shows another flow; AEYE_BLESS=1 draws it anew");
+}
+
 #[test]
 fn the_flow_of_a_lane_has_its_maximum_where_measured_ones_do() {
     let diagram: Vec<_> = [20, 60, 80, 100, 120, 140, 180, 240, 320].map(|cars| flow(cars, 1)).into();
     for (density, flow, speed) in &diagram {
         println!("{density:5.1} vehicles/km: {flow:6.0} vehicles/h at {:5.1} km/h", speed * 3.6);
     }
+    agrees_with_plot(&plot(&diagram));
     let most = diagram.iter().map(|point| point.1).fold(0.0, f64::max);
     assert!((1500.0..=2200.0).contains(&most), "at most {most} vehicles/h and lane");
     let (first, last) = (diagram[0], diagram[diagram.len() - 1]);
