@@ -183,13 +183,13 @@ const PLOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/flow.svg");
 
 /// Flow over density as a picture.
 fn plot(diagram: &[(f64, f64, f64)]) -> String {
-    let at = |density: f64, flow: f64| (60.0 + density * 6.0, 260.0 - flow * 0.12);
+    let at = |density: f64, flow: f64| (60.0 + density * 6.0, 275.0 - flow * 0.12);
     let text = |x: f64, y: f64, anchor: &str, text: &str| {
         format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n")
     };
     let mut svg = String::from(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"620\" height=\"310\" font-family=\"sans-serif\" \
-         font-size=\"12\">\n<rect width=\"620\" height=\"310\" fill=\"white\"/>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"620\" height=\"325\" font-family=\"sans-serif\" \
+         font-size=\"12\">\n<rect width=\"620\" height=\"325\" fill=\"white\"/>\n",
     );
     for flow in [0.0, 500.0, 1000.0, 1500.0, 2000.0] {
         let ((x0, y), (x1, _)) = (at(0.0, flow), at(90.0, flow));

@@ -61,9 +61,10 @@ const ONCOMING_M: f32 = 8.0;
 /// Who is nearer ahead than this is beside, and kept off so far to the side, metres.
 const BESIDE_M: f32 = 1.0;
 const ASIDE_M: f32 = 0.4;
-/// How far others are looked for, metres, over so many lanes at most.
+/// How far others are looked for, metres, over so many lanes at most ahead and behind.
 const REACH_M: f32 = 80.0;
 const LANES: usize = 4;
+const LANES_BEHIND: u32 = 24;
 /// Of vehicles nearer to each other than this, one changes at a time, metres.
 const APART_M: f32 = 30.0;
 
@@ -374,21 +375,25 @@ impl View<'_> {
 
     /// Who is behind a place on a lane: the nearest on it, or on those that lead there.
     fn behind(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
-        self.behind_within(index, lane, s_m, LANES)
+        self.behind_within(index, lane, s_m, &mut { LANES_BEHIND })
     }
 
-    fn behind_within(&self, index: usize, lane: LaneId, s_m: f32, lanes: usize) -> Option<Near> {
+    fn behind_within(&self, index: usize, lane: LaneId, s_m: f32, lanes: &mut u32) -> Option<Near> {
+        *lanes = lanes.checked_sub(1)?;
         let is_behind = |e: &&Entry| e.vehicle as usize != index && e.s_m <= s_m;
         if let Some(e) = self.lists.on(lane).iter().rev().find(is_behind) {
             let gap_m = s_m - e.s_m - e.half_m - self.drivers[index].size_m.x * 0.5;
             return Some(Near { vehicle: e.vehicle, gap_m, speed_mps: e.speed_mps });
         }
-        if lanes == 0 || s_m > REACH_M {
+        if s_m > REACH_M {
             return None;
         }
-        let before = self.map.lanes[lane as usize].predecessors.iter();
         let length_m = |id: LaneId| self.map.lanes[id as usize].length_m;
-        let found = before.filter_map(|&id| self.behind_within(index, id, s_m + length_m(id), lanes - 1));
-        found.min_by(|a, b| a.gap_m.total_cmp(&b.gap_m))
+        let mut nearest: Option<Near> = None;
+        for &before in &self.map.lanes[lane as usize].predecessors {
+            let found = self.behind_within(index, before, s_m + length_m(before), lanes);
+            nearest = found.into_iter().chain(nearest).min_by(|a, b| a.gap_m.total_cmp(&b.gap_m));
+        }
+        nearest
     }
 }
