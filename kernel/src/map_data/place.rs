@@ -2,6 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
+/// Less is no step from one way to the next, metres.
+const STEP_M: f32 = 0.3;
+
 /// A place on a lane or a way of pedestrians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
@@ -17,6 +20,11 @@ impl Place {
     /// Horizontal unit vector to the left.
     pub fn left(&self) -> Vec2 {
         Vec2::new(-self.forward.y, self.forward.x).normalize_or_zero()
+    }
+
+    /// Whether another place is about here, so that a way goes on there without a step.
+    pub fn joins(&self, other: &Self) -> bool {
+        self.position.distance_squared(other.position) < STEP_M * STEP_M
     }
 
     /// The place `offset_m` to the left.

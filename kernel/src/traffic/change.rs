@@ -4,17 +4,19 @@
 //! whose middle it starts, and stands in the list of the one it leaves until it is clear of that.
 
 use crate::actor::ActorKind;
-use crate::map_data::{LaneId, MapData, Projection};
+use crate::map_data::{LaneId, Projection};
 use crate::time::Tick;
 
 use super::body::Body;
 use super::drive::{View, follow_idm};
 use super::hazard::{Hazard, Seeker, sight};
+use super::journey::Journey;
 use super::lists::Entry;
 use super::manoeuvre::Manoeuvre;
 use super::pass;
 use super::plan::Plan;
-use super::routes::{Class, Journey};
+use super::routes::Class;
+use super::sideways::{beside, drift};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
@@ -37,15 +39,6 @@ const SIGNAL_TICKS: u8 = 60;
 const GAP_TICKS: Tick = 6;
 /// Slower than this nobody changes, m/s.
 const LEAST_MPS: f32 = 1.5;
-/// Sideways by so much for each metre driven at most, and so fast, m/s.
-const STEEPEST: f32 = 0.45;
-const SIDEWAYS_MPS: f32 = 1.0;
-/// The tail of a vehicle longer than this, from its middle, swings out by no more than that, metres.
-const LONG_M: f32 = 2.5;
-const SWING_M: f32 = 0.4;
-/// Unless it drives slower than this, m/s; then it moves sideways by so much for each metre.
-const SLOW_MPS: f32 = 3.0;
-const SLOW_STEEPEST: f32 = 0.25;
 /// Past what stands in the lane after so much of a change, metres.
 const CLEAR_M: f32 = 2.8;
 /// Width of a lane for which a change has room, metres.
@@ -76,32 +69,6 @@ struct Near {
     /// From bumper to bumper, metres; negative beside.
     gap_m: f32,
     speed_mps: f32,
-}
-
-/// Sideways motion of a change for each metre driven.
-pub(super) fn drift(speed_mps: f32, half_length_m: f32) -> f32 {
-    let swing = match half_length_m > LONG_M {
-        true if speed_mps < SLOW_MPS => SLOW_STEEPEST,
-        true => SWING_M / half_length_m,
-        false => STEEPEST,
-    };
-    swing.min(SIDEWAYS_MPS / speed_mps.max(1.0))
-}
-
-fn beside(map: &MapData, lane: LaneId, to_left: bool) -> Option<LaneId> {
-    let lane = &map.lanes[lane as usize];
-    if to_left { lane.left } else { lane.right }
-}
-
-/// The place on the lane that a vehicle leaves, as long as it reaches into it.
-pub(super) fn reaches_into(map: &MapData, vehicle: &Vehicle, driver: &Driver) -> Option<Projection> {
-    if !vehicle.manoeuvre.moves() {
-        return None;
-    }
-    let place = map.lanes[vehicle.lane as usize].straight_on(vehicle.s_m);
-    let clear = vehicle.offset_m.abs() + driver.size_m.y * 0.5 <= place.half_width_m;
-    let left = beside(map, vehicle.lane, vehicle.offset_m > 0.0).filter(|_| !clear)?;
-    Some(map.project(left, place.beside(vehicle.offset_m)))
 }
 
 impl View<'_> {
@@ -152,7 +119,8 @@ impl View<'_> {
         };
         let position = self.map.lanes[next.lane as usize].straight_on(next.s_m).beside(next.offset_m);
         let there = self.map.project(there.lane, position);
-        (next.lane, next.s_m, next.offset_m) = (there.lane, there.s_m, there.lateral_m);
+        (next.lane, next.before) = (there.lane, there.lane);
+        (next.s_m, next.offset_m) = (there.s_m, there.lateral_m);
         next.manoeuvre = Manoeuvre::move_to(next.manoeuvre.side());
         (next.signal_ticks, next.wait_ticks) = (0, 0);
         next.flags &= !Vehicle::HALTED;

@@ -6,18 +6,18 @@ use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
-use super::change;
 use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, Seeker, side, sight};
+use super::journey::Journey;
 use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
+use super::lane_way::{ConflictKind, LaneConflict};
 use super::lists::{Entry, Lists};
-use super::pass;
 use super::plan::{self, Line, Plan, stopping_speed};
-use super::routes::Journey;
+use super::sideways::{EDGE_M, drift, pass_drift};
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
-use super::ways::{ConflictKind, LaneConflict, Ways};
+use super::ways::Ways;
 use super::zebra;
 
 /// Hardest braking, m/s².
@@ -47,8 +47,6 @@ const PASS_DRIFT: f32 = 0.2;
 /// Sideways motion fades out over this, metres and seconds.
 const SWING_M: f32 = 1.5;
 const SWING_S: f32 = 0.5;
-/// Distance kept from the edge of a narrow lane, metres.
-pub(super) const EDGE_M: f32 = 0.2;
 /// Distance that one turn of the pedals drives a bicycle, metres.
 const PEDAL_M: f32 = 5.0;
 
@@ -259,12 +257,12 @@ impl View<'_> {
         let passing = vehicle.manoeuvre.passes().then(|| vehicle.manoeuvre.side());
         let passed = passing.and_then(|side| self.passed(index, plan, seeker, side));
         if let Some(passed) = passed {
-            return Side { aim_m: passed.aim_m, drift: pass::drift(vehicle.speed_mps) };
+            return Side { aim_m: passed.aim_m, drift: pass_drift(vehicle.speed_mps) };
         }
         let aim_m = side(self.map, self.steps_of(plan), seeker, &self.hazards[..self.free], likes_m);
         let drift = match vehicle.manoeuvre {
-            manoeuvre if manoeuvre.moves() => change::drift(vehicle.speed_mps, seeker.half.x),
-            manoeuvre if manoeuvre.passes() => pass::drift(vehicle.speed_mps),
+            manoeuvre if manoeuvre.moves() => drift(vehicle.speed_mps, seeker.half.x),
+            manoeuvre if manoeuvre.passes() => pass_drift(vehicle.speed_mps),
             _ if aim_m == likes_m => DRIFT,
             _ => PASS_DRIFT,
         };
@@ -397,10 +395,12 @@ impl View<'_> {
                 break;
             };
             // At the same place in the world, however the lanes join.
-            let at = self.map.lanes[next.lane as usize].straight_on(length_m).beside(next.offset_m);
+            let end = self.map.lanes[next.lane as usize].straight_on(length_m);
+            let at = end.beside(next.offset_m);
             let place = self.map.lanes[onward.lane as usize].straight_on(onward.at_m);
             next.offset_m = (at - place.position).truncate().dot(place.left());
             next.s_m += onward.at_m - length_m;
+            next.before = if end.joins(&place) { next.lane } else { onward.lane };
             next.lane = onward.lane;
             journey.enter(next.lane);
             next.trips = journey.trips;

@@ -11,12 +11,13 @@ use crate::light::LightPhase;
 use crate::map_data::{LaneId, MapData, StopKind};
 use crate::time::{TICK_S, Tick};
 
+use super::lane_way::{ConflictKind, LaneConflict};
 use super::lists::Lists;
 use super::plan::{Line, Plan, braking_needed};
 use super::step::Step;
 use super::traits::Driver;
 use super::vehicle::Vehicle;
-use super::ways::{ConflictKind, LaneConflict, Ways};
+use super::ways::Ways;
 use super::zebra;
 
 /// After this long at a line a vehicle goes before those that have the right of way.

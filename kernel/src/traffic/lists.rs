@@ -2,8 +2,8 @@
 
 use crate::map_data::{LaneId, MapData};
 
-use super::change;
 use super::links::Onward;
+use super::sideways::reaches_into;
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
@@ -82,7 +82,7 @@ impl Lists {
             id: vehicle.id,
         };
         self.entries.push(entry);
-        if let Some(left) = change::reaches_into(map, vehicle, driver) {
+        if let Some(left) = reaches_into(map, vehicle, driver) {
             self.entries.push(Entry { lane: left.lane, s_m: left.s_m, ..entry });
         }
         if vehicle.s_m < half_m {

@@ -7,8 +7,8 @@ use crate::map_data::{Lane, LaneId, LaneKind, LanePoint};
 use crate::ops;
 use crate::places::Places;
 
-use super::drive::EDGE_M;
 use super::links::{Onward, ends_beside};
+use super::sideways::EDGE_M;
 
 /// Lanes whose middles are nearer than this never have room for two wide vehicles, metres.
 const NARROW_M: f32 = 2.5;

@@ -50,9 +50,6 @@ const LONG_SWING_OUT_M: f32 = 14.0;
 const SWING_OUT_MPS2: f32 = 2.5;
 /// What stands nearer than this to a junction waits there, metres.
 const QUEUE_M: f32 = 40.0;
-/// Sideways motion for each metre driven at most, and so fast, m/s.
-const STEEPEST: f32 = 0.45;
-const SIDEWAYS_MPS: f32 = 1.2;
 /// The lane for the other direction is met at this distance beyond the border of one's own, metres.
 const ONCOMING_M: f32 = 1.2;
 /// Those who come the other way may be so far to the side, metres.
@@ -71,11 +68,6 @@ pub(super) struct Passed {
     beyond_m: f32,
     /// Speed of the fastest, m/s.
     speed_mps: f32,
-}
-
-/// Sideways motion of one who passes for each metre driven.
-pub(super) fn drift(speed_mps: f32) -> f32 {
-    STEEPEST.min(SIDEWAYS_MPS / speed_mps.max(1.0))
 }
 
 /// Whether one of two vehicles passes and is clear of the other's way.

@@ -90,7 +90,7 @@ impl Actors {
         let (trips, flags) = (vehicle.trips.wrapping_add(1), vehicle.flags & Vehicle::BRAKING);
         let fresh =
             Vehicle { wait_ticks: 0, stuck_s: 0, manoeuvre: Manoeuvre::Keep, signal_ticks: 0, drift: 0, ..vehicle };
-        Vehicle { lane, s_m, offset_m, flags, trips, speed_mps: ENTRY_MPS, ..fresh }
+        Vehicle { lane, before: lane, s_m, offset_m, flags, trips, speed_mps: ENTRY_MPS, ..fresh }
     }
 
     /// Whether a vehicle has room at a place, and nobody is about to come there.

@@ -3,8 +3,8 @@
 use crate::map_data::{Lane, MapData};
 use crate::ops;
 
+use super::journey::Journey;
 use super::lists::{Entry, Lists};
-use super::routes::Journey;
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;

@@ -3,18 +3,24 @@
 use glam::{Mat3, Quat, Vec3};
 
 use crate::actor::ActorKind;
-use crate::map_data::Place;
+use crate::map_data::{LaneId, Place};
 use crate::ops;
 use crate::scene::lamps;
 
 use super::actors::Actors;
 use super::body::Body;
+use super::journey::Journey;
 use super::traits::{Driver, WalkerTraits};
 use super::vehicle::Vehicle;
 use super::walker::{Walker, WalkerMode};
 
 /// Radians in 2^-16 turns.
 const TURN_RAD: f32 = core::f32::consts::TAU / 65536.0;
+
+/// Vehicles longer than this have their axles on the way, metres; shorter ones their middle.
+const LONG_M: f32 = 5.0;
+/// From the middle to an axle, as a share of the length.
+const AXLE: f32 = 0.28;
 
 /// Rotation whose x axis is `forward` and whose y axis is level.
 fn level_rotation(forward: Vec3) -> Quat {
@@ -34,21 +40,56 @@ impl Actors {
         self.bodies = bodies;
     }
 
+    /// The middle of a vehicle and the direction of its way there. A long one has both axles on the way, so that in
+    /// bends its middle is inside of it and its tail swings out little.
+    fn vehicle_place(&self, vehicle: &Vehicle, driver: &Driver) -> (Vec3, Vec3) {
+        let to_axle_m = AXLE * driver.size_m.x;
+        if driver.size_m.x < LONG_M {
+            let place = self.lane_place(vehicle.lane, vehicle.s_m);
+            return (place.beside(vehicle.offset_m), place.forward);
+        }
+        let (rear_m, front_m) = (vehicle.s_m - to_axle_m, vehicle.s_m + to_axle_m);
+        let lanes = &self.map().lanes;
+        let rear = match lanes[vehicle.before as usize].length_m {
+            length_m if rear_m < 0.0 && vehicle.before != vehicle.lane => {
+                self.lane_place(vehicle.before, (length_m + rear_m).max(0.0))
+            }
+            _ => self.lane_place(vehicle.lane, rear_m),
+        };
+        let over_m = front_m - lanes[vehicle.lane as usize].length_m;
+        let next = || Journey::of(&self.ways, self.seed, vehicle).next_lane(vehicle.lane);
+        let front = match if over_m > 0.0 { next() } else { None } {
+            Some(next) if self.lane_end(vehicle.lane).joins(&self.lane_place(next.lane, next.at_m)) => {
+                self.lane_place(next.lane, next.at_m + over_m)
+            }
+            _ => self.lane_place(vehicle.lane, front_m),
+        };
+        let [rear, front] = [rear, front].map(|place| place.beside(vehicle.offset_m));
+        ((rear + front) * 0.5, (front - rear).normalize_or(Vec3::X))
+    }
+
+    fn lane_end(&self, lane: LaneId) -> Place {
+        self.lane_place(lane, self.map().lanes[lane as usize].length_m)
+    }
+
+    fn lane_place(&self, lane: LaneId, s_m: f32) -> Place {
+        self.ways.lanes[lane as usize].pose(&self.map().lanes[lane as usize], s_m)
+    }
+
     pub(super) fn vehicle_body(&self, vehicle: &Vehicle, driver: &Driver) -> Body {
-        let lane = vehicle.lane as usize;
-        let place = self.ways.lanes[lane].pose(&self.map().lanes[lane], vehicle.s_m);
+        let (middle, ahead) = self.vehicle_place(vehicle, driver);
         let forward = match vehicle.drift {
-            0 => place.forward,
+            0 => ahead,
             drift => {
-                let aslant = place.left().extend(0.0) * (0.01 * f32::from(drift));
-                (place.forward + aslant).normalize_or(place.forward)
+                let left = Vec3::new(-ahead.y, ahead.x, 0.0).normalize_or(Vec3::Y);
+                (ahead + left * (0.01 * f32::from(drift))).normalize_or(ahead)
             }
         };
         Body {
             id: u32::from(vehicle.id),
             kind: vehicle.kind,
             variant: driver.variant,
-            position: place.beside(vehicle.offset_m),
+            position: middle,
             rotation: level_rotation(forward),
             velocity_mps: forward * vehicle.speed_mps,
             phase_rad: f32::from(vehicle.phase) * TURN_RAD,

@@ -8,11 +8,8 @@ use std::collections::BinaryHeap;
 
 use crate::actor::ActorKind;
 use crate::map_data::{Lane, LaneId, LaneKind};
-use crate::rng::{self, Stream};
 
-use super::links::Onward;
-use super::vehicle::Vehicle;
-use super::ways::{LaneWay, Ways};
+use super::lane_way::LaneWay;
 
 /// Goals inside the map, and where roads leave it.
 const GOALS: usize = 24;
@@ -59,76 +56,10 @@ impl Class {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Routes {
     /// How many there are.
-    goals: usize,
+    pub goals: usize,
     /// Seconds from the start of a lane to a goal, by class, goal and lane.
-    seconds: [Vec<f32>; 3],
-    lanes: usize,
-}
-
-/// A vehicle's way to its present goal, and from there on.
-#[derive(Clone, Copy)]
-pub(super) struct Journey<'a> {
-    ways: &'a Ways,
-    seed: u64,
-    id: u16,
-    class: Class,
-    /// Journeys before this one.
-    pub trips: u16,
-    /// Seconds from the start of each lane.
-    seconds: &'a [f32],
-}
-
-impl<'a> Journey<'a> {
-    /// That of a vehicle.
-    pub fn of(ways: &'a Ways, seed: u64, vehicle: &Vehicle) -> Self {
-        let class = Class::of(vehicle.kind);
-        let start = Self { ways, seed, id: vehicle.id, class, trips: vehicle.trips, seconds: &[] };
-        Self { seconds: start.table(), ..start }
-    }
-
-    fn table(&self) -> &'a [f32] {
-        let routes = &self.ways.routes;
-        let goal = rng::below(self.seed, Stream::Turn, u64::from(self.id), u64::from(self.trips), routes.goals as u32);
-        let first = goal as usize * routes.lanes;
-        routes.seconds[self.class as usize].get(first..first + routes.lanes).unwrap_or(&[])
-    }
-
-    /// Where it goes on at the end of a lane.
-    pub fn next_lane(&self, lane: LaneId) -> Option<Onward> {
-        let way = &self.ways.lanes[lane as usize];
-        let onward = if self.class == Class::Long { &way.onward_wide } else { &way.onward };
-        match onward.as_slice() {
-            [] => None,
-            [only] => Some(*only),
-            many => {
-                let astray = || {
-                    let which = u64::from(self.trips) << 32 | u64::from(lane);
-                    many[rng::below(self.seed, Stream::Turn, u64::from(self.id), which, many.len() as u32) as usize]
-                };
-                Some(self.best(many).unwrap_or_else(astray))
-            }
-        }
-    }
-
-    /// Enters a lane: at the goal, or where no way leads there, the next journey begins.
-    pub fn enter(&mut self, lane: LaneId) {
-        let seconds = self.seconds(lane);
-        if seconds <= 0.0 || !seconds.is_finite() {
-            self.trips = self.trips.wrapping_add(1);
-            self.seconds = self.table();
-        }
-    }
-
-    /// Seconds from the start of a lane to the goal; 0 on it, infinite where no way leads there.
-    pub fn seconds(&self, lane: LaneId) -> f32 {
-        self.seconds.get(lane as usize).copied().unwrap_or(f32::INFINITY)
-    }
-
-    /// The quickest way on, if one leads to the goal.
-    fn best(&self, onward: &[Onward]) -> Option<Onward> {
-        let best = onward.iter().min_by(|a, b| self.seconds(a.lane).total_cmp(&self.seconds(b.lane)))?;
-        Some(*best).filter(|best| self.seconds(best.lane).is_finite())
-    }
+    pub seconds: [Vec<f32>; 3],
+    pub lanes: usize,
 }
 
 impl Routes {

@@ -189,6 +189,7 @@ impl Spawner<'_> {
             kind,
             flags: 0,
             lane,
+            before: lane,
             s_m,
             offset_m,
             speed_mps,

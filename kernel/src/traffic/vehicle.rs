@@ -7,7 +7,7 @@ use crate::state;
 use super::manoeuvre::Manoeuvre;
 
 state! {
-    /// A vehicle on a lane. 30 bytes.
+    /// A vehicle on a lane. 34 bytes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Vehicle {
         /// Id of the actor.
@@ -18,6 +18,8 @@ state! {
         pub flags: u8,
         /// Lane under its middle.
         pub lane: LaneId,
+        /// Lane from which it came there, where its tail may still be; the same lane if it did not come from another.
+        pub before: LaneId,
         /// Its middle, metres from the start of the lane.
         pub s_m: f32,
         /// Its middle, metres to the left of the lane's centre line.

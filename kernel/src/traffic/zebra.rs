@@ -1,8 +1,9 @@
 //! Crosswalks are kept clear: nobody drives onto one without room behind it.
 
+use super::lane_way::CrosswalkSpan;
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
-use super::ways::{CrosswalkSpan, Ways};
+use super::ways::Ways;
 
 /// Where a vehicle that has to stop at `stop_m` stops so that it stands on no crosswalk; both from
 /// its front, metres. A crosswalk that its front is over already counts no more.

@@ -182,7 +182,7 @@ fn state_is_small_and_resumes() {
     let mut traffic = start(&network, 60, 4);
     run(&mut traffic, 1..MINUTE, |_, _| {});
     let bytes = traffic.actors.state.to_bytes();
-    assert!(bytes.len() <= 30 * traffic.actors.bodies.len() + 8, "{} bytes", bytes.len());
+    assert!(bytes.len() <= 31 * traffic.actors.bodies.len() + 8, "{} bytes", bytes.len());
     let state = TrafficState::from_bytes(&bytes).expect("own bytes are read back");
     let mut resumed = Traffic::resume(&counts(60), 4, network.ways(), state).expect("own state fits the map");
     assert_eq!(traffic.actors.bodies, resumed.actors.bodies);
@@ -223,7 +223,7 @@ fn everybody_starts_with_room() {
 fn lone_car(network: &Arc<RoadNetwork>) -> Traffic {
     let mut traffic = start(network, 4, 1);
     let first = traffic.actors.state.vehicles[0];
-    let vehicle = Vehicle { lane: 0, s_m: 80.0, speed_mps: 8.0, ..first };
+    let vehicle = Vehicle { lane: 0, before: 0, s_m: 80.0, speed_mps: 8.0, ..first };
     traffic.actors.state = TrafficState { vehicles: vec![vehicle], walkers: Vec::new() };
     traffic.actors.drivers.truncate(1);
     traffic.actors.walker_traits.clear();

@@ -1,0 +1,194 @@
+//! What traffic looks up of a lane, made once: curve speeds, what follows, where it conflicts and meets others.
+
+use glam::Vec3;
+
+use crate::map_data::{Conflict, Lane, LaneId, LaneKind, LanePoint, MapData, Place, Turn};
+use crate::ops;
+use crate::places::Places;
+
+use super::links::{LEAST_HALF_M, Onward, ends_beside, onward};
+use super::meets::{Meet, meets};
+use super::zones::zones;
+
+/// Sideways acceleration that drivers accept in curves, m/s² (comfort limit of road design).
+const CURVE_ACCEL_MPS2: f32 = 2.0;
+/// Braking before curves, m/s².
+const CURVE_BRAKE_MPS2: f32 = 1.8;
+/// Nobody drives slower than this because of a curve, m/s.
+const CURVE_FLOOR_MPS: f32 = 2.5;
+/// Long vehicles sweep into lanes whose middles come within this, metres.
+const SWEPT_M: f32 = 5.0;
+
+/// How two lanes of a junction conflict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ConflictKind {
+    /// They leave the same lane.
+    Diverge,
+    /// They enter the same lane.
+    Merge,
+    /// They cross.
+    Cross,
+}
+
+/// A conflict seen from one lane, with the other lane's side of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LaneConflict {
+    pub lane: LaneId,
+    pub kind: ConflictKind,
+    /// Stretch of this lane, metres.
+    pub here: [f32; 2],
+    /// Stretch of the other lane, metres.
+    pub there: [f32; 2],
+    /// 1 when traffic here goes first, -1 when the other does, 0 when neither has a right.
+    pub precedence: i8,
+}
+
+/// A crosswalk on a lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CrosswalkSpan {
+    pub crosswalk: u32,
+    /// Its near edge, metres from the lane's start.
+    pub near_m: f32,
+    /// Its far edge.
+    pub far_m: f32,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct LaneWay {
+    /// Highest speed at each point: curves, and braking for those ahead on the lane. m/s.
+    pub speed_mps: Vec<f32>,
+    /// Direction of travel from each point to the next.
+    pub forward: Vec<Vec3>,
+    /// Where vehicles go on.
+    pub onward: Vec<Onward>,
+    /// Where long vehicles do: no right turns, where there is another way.
+    pub onward_wide: Vec<Onward>,
+    /// Where it is wide enough no more, if it ends beside another lane, metres from its start.
+    pub ends_m: Option<f32>,
+    /// Lanes of the same junction that overlap it.
+    pub conflicts: Vec<LaneConflict>,
+    /// Lanes of the same junction beside it, into which a long vehicle sweeps.
+    pub swept: Vec<LaneId>,
+    /// Lanes that it meets outside junctions.
+    pub meets: Vec<Meet>,
+    /// Its zone: junctions without room to wait between them are one.
+    pub zone: Option<u32>,
+    /// Crosswalks on it, in the direction of travel.
+    pub crosswalks: Vec<CrosswalkSpan>,
+}
+
+impl LaneWay {
+    /// Like [`Lane::straight_on`], the direction turning smoothly between the points.
+    pub fn pose(&self, lane: &Lane, s_m: f32) -> Place {
+        lane.straight_on_facing(s_m, |i, share| {
+            let here = self.forward[i];
+            if share < 0.5 && i > 0 {
+                self.forward[i - 1].lerp(here, (share + 0.5).max(0.0)).normalize_or(here)
+            } else if share > 0.5 && i + 1 < self.forward.len() {
+                here.lerp(self.forward[i + 1], (share - 0.5).min(0.5)).normalize_or(here)
+            } else {
+                here
+            }
+        })
+    }
+
+    /// The highest speed at `s_m`, interpolated between the points. m/s.
+    pub fn curve_speed(&self, lane: &Lane, s_m: f32) -> f32 {
+        let (i, t) = lane.segment(s_m);
+        let (a, b) = (self.speed_mps[i], self.speed_mps[i + 1]);
+        a + (b - a) * t.clamp(0.0, 1.0)
+    }
+}
+
+pub(super) fn lane_ways(places: &Places) -> Vec<LaneWay> {
+    let map = &*places.map;
+    let onward = onward(places);
+    let (meets, zones) = (meets(places, &onward), zones(map));
+    let ways = onward.into_iter().zip(meets).zip(zones).enumerate();
+    ways.map(|(id, ((onward, meets), zone))| LaneWay { meets, zone, ..lane_way(map, id as LaneId, onward) }).collect()
+}
+
+fn lane_way(map: &MapData, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) -> LaneWay {
+    let lane = &map.lanes[id as usize];
+    let mut speed_mps = curve_speeds(lane);
+    for i in (0..speed_mps.len().saturating_sub(1)).rev() {
+        let ds = lane.points[i + 1].s_m - lane.points[i].s_m;
+        let reachable = ops::sqrt(speed_mps[i + 1] * speed_mps[i + 1] + 2.0 * CURVE_BRAKE_MPS2 * ds.max(0.0));
+        speed_mps[i] = speed_mps[i].min(reachable);
+    }
+    let swept = lane.junction.map_or_else(Vec::new, |junction| swept(map, id, junction));
+    let conflicts = lane.conflicts.iter().filter_map(|c| lane_conflict(map, id, c)).collect();
+    let forward = directions(lane.points.iter().map(|p| p.position));
+    let ends_m = ends_beside(lane, &onward).then(|| wide_up_to_m(lane));
+    LaneWay { speed_mps, forward, onward, onward_wide, ends_m, conflicts, swept, ..LaneWay::default() }
+}
+
+/// Where a lane becomes too narrow to drive on to its end, metres from its start.
+fn wide_up_to_m(lane: &Lane) -> f32 {
+    let narrow = lane.points.iter().rev().take_while(|p| p.half_width_m < LEAST_HALF_M).last();
+    narrow.map_or(lane.length_m, |p| p.s_m)
+}
+
+/// Speed at which the curve through each point asks for [`CURVE_ACCEL_MPS2`]; curvature is taken
+/// over 3 m each way, so that single bends of the baked line do not count.
+fn curve_speeds(lane: &Lane) -> Vec<f32> {
+    let heading = |s: f32| {
+        let forward = lane.straight_on(s.clamp(0.0, lane.length_m)).forward;
+        ops::atan2(forward.y, forward.x)
+    };
+    let at = |s: f32| {
+        let (from, to) = ((s - 3.0).max(0.0), (s + 3.0).min(lane.length_m));
+        let turned = ops::wrap_angle(heading(to) - heading(from)).abs();
+        let curvature = turned / (to - from).max(3.0);
+        ops::sqrt(CURVE_ACCEL_MPS2 / curvature.max(1e-4)).max(CURVE_FLOOR_MPS)
+    };
+    lane.points.iter().map(|p| at(p.s_m)).collect()
+}
+
+fn lane_conflict(map: &MapData, id: LaneId, conflict: &Conflict) -> Option<LaneConflict> {
+    let lane = &map.lanes[id as usize];
+    let other = &map.lanes[conflict.lane as usize];
+    let mirrored = other.conflicts.iter().find(|c| c.lane == id);
+    let shares = |a: &[LaneId], b: &[LaneId]| a.iter().any(|x| b.contains(x));
+    let kind = if shares(&lane.successors, &other.successors) {
+        ConflictKind::Merge
+    } else if shares(&lane.predecessors, &other.predecessors) {
+        ConflictKind::Diverge
+    } else {
+        ConflictKind::Cross
+    };
+    let there = mirrored.map_or([0.0, other.length_m], |c| [c.from_m, c.to_m]);
+    let gives_way = mirrored.is_some_and(|c| c.other_first);
+    let precedence = i8::from(gives_way) - i8::from(conflict.other_first);
+    (other.kind == LaneKind::Driving).then_some(LaneConflict {
+        lane: conflict.lane,
+        kind,
+        here: [conflict.from_m, conflict.to_m],
+        there,
+        precedence,
+    })
+}
+
+/// Lanes of a junction that come near a lane without a conflict, where the way of one of them bends.
+fn swept(map: &MapData, id: LaneId, junction: u32) -> Vec<LaneId> {
+    let lane = &map.lanes[id as usize];
+    let chained = |other: &Lane, o: LaneId| lane.successors.contains(&o) || other.successors.contains(&id);
+    let shares = |a: &[LaneId], b: &[LaneId]| a.iter().any(|x| b.contains(x));
+    let near = |other: &Lane| {
+        let middle = |points: &[LanePoint]| points.iter().map(|p| p.position.truncate()).collect::<Vec<_>>();
+        let (here, there) = (middle(&lane.points), middle(&other.points));
+        here.iter().any(|p| there.iter().any(|q| p.distance_squared(*q) < SWEPT_M * SWEPT_M))
+    };
+    let others = map.junctions[junction as usize].lanes.iter().copied().filter(|o| *o != id);
+    let others = others.map(|o| (o, &map.lanes[o as usize])).filter(|(o, other)| {
+        let bends = lane.turn != Turn::Straight || other.turn != Turn::Straight;
+        let together = shares(&lane.predecessors, &other.predecessors) || lane.conflicts.iter().any(|c| c.lane == *o);
+        other.kind == LaneKind::Driving && bends && !together && !chained(other, *o)
+    });
+    others.filter(|(_, other)| near(other)).map(|(o, _)| o).collect()
+}
+
+/// Directions from each point to the next.
+pub(super) fn directions(points: impl Iterator<Item = Vec3> + Clone) -> Vec<Vec3> {
+    points.clone().zip(points.skip(1)).map(|(a, b)| (b - a).normalize_or(Vec3::X)).collect()
+}
