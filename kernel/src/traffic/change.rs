@@ -7,7 +7,6 @@ use crate::actor::ActorKind;
 use crate::map_data::{LaneId, Projection};
 use crate::time::Tick;
 
-use super::body::Body;
 use super::drive::{View, follow_idm};
 use super::hazard::{Hazard, Seeker, sight};
 use super::journey::Journey;
@@ -15,7 +14,7 @@ use super::lists::Entry;
 use super::manoeuvre::Manoeuvre;
 use super::pass;
 use super::plan::Plan;
-use super::routes::Class;
+use super::routes::{CHANGE_S, Class};
 use super::sideways::{beside, drift};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
@@ -26,7 +25,7 @@ const POLITENESS: f32 = 0.3;
 const THRESHOLD_MPS2: f32 = 0.2;
 /// Nobody has to brake harder for one who changes, m/s².
 const SAFE_MPS2: f32 = 2.5;
-/// A lane that leads to the goal is worth this right before the junction, and nothing so far before it.
+/// A lane that leads to the goal is worth this right before the junction, and a fifth of it so far before it.
 const ROUTE_MPS2: f32 = 3.0;
 const ROUTE_M: f32 = 250.0;
 /// Gap to others that is left at least, metres.
@@ -37,8 +36,9 @@ const CONSIDER_TICKS: Tick = 30;
 const SIGNAL_TICKS: u8 = 60;
 /// Then they look for a gap so often.
 const GAP_TICKS: Tick = 6;
-/// Slower than this nobody changes, m/s.
+/// Slower than this nobody changes, and no long vehicle, m/s.
 const LEAST_MPS: f32 = 1.5;
+const LONG_LEAST_MPS: f32 = 4.0;
 /// Past what stands in the lane after so much of a change, metres.
 const CLEAR_M: f32 = 2.8;
 /// Width of a lane for which a change has room, metres.
@@ -109,7 +109,9 @@ impl View<'_> {
     pub(super) fn move_over(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
         let vehicle = &self.vehicles[index];
         let turn = (self.tick + u64::from(next.id)).is_multiple_of(GAP_TICKS);
-        let ready = next.manoeuvre.signals() && next.signal_ticks >= SIGNAL_TICKS;
+        // A grant is for the way from this lane.
+        let granted = next.flags & Vehicle::GRANTED != 0;
+        let ready = next.manoeuvre.signals() && next.signal_ticks >= SIGNAL_TICKS && !granted;
         if !ready || !turn || next.lane != vehicle.lane {
             return;
         }
@@ -137,7 +139,7 @@ impl View<'_> {
         follow: &mut impl FnMut(f32, f32),
     ) {
         let forward = (self.bodies[index].rotation * glam::Vec3::X).truncate();
-        let mut heed = |hazard: &Hazard| {
+        let heed = |hazard: &Hazard| {
             let Some(seen) = sight(self.map, self.steps_of(plan), seeker, hazard) else { return };
             // Who meets one that comes the other way needs room to get back into the lane.
             let gap_m = if hazard.forward.dot(forward) < -0.3 { seen.gap_m - ONCOMING_M } else { seen.gap_m };
@@ -145,37 +147,29 @@ impl View<'_> {
                 follow(gap_m, seen.speed_mps);
             }
         };
-        if self.is_between_lanes(index) {
-            self.near(index, seeker).for_each(|hazard| heed(&hazard));
+        if self.vehicles[index].manoeuvre.is_between_lanes() {
+            self.near(index, seeker).for_each(heed);
         } else {
             let reach_m = seeker.horizon_m + 20.0;
-            let near = |h: &Hazard| h.position.distance_squared(seeker.position) < reach_m * reach_m;
-            self.changing.iter().filter(|(_, hazard)| near(hazard)).for_each(|(_, hazard)| heed(hazard));
+            let near = |h: &&Hazard| h.position.distance_squared(seeker.position) < reach_m * reach_m;
+            self.changing.iter().filter(near).for_each(heed);
         }
     }
 
-    /// Whether a vehicle is moving over to another lane or passing somebody.
-    pub(super) fn is_between_lanes(&self, index: usize) -> bool {
-        let manoeuvre = self.vehicles[index].manoeuvre;
-        manoeuvre.moves() || manoeuvre.passes()
-    }
-
     /// All other vehicles that may be in the way of one.
-    fn near(&self, index: usize, seeker: &Seeker) -> impl Iterator<Item = Hazard> {
+    fn near(&self, index: usize, seeker: &Seeker) -> impl Iterator<Item = &Hazard> {
         let reach_m = seeker.horizon_m + 20.0;
         let position = seeker.position;
-        let near = move |body: &Body| body.position.distance_squared(position) < reach_m * reach_m;
-        let others = self.bodies[..self.vehicles.len()].iter().enumerate();
-        others.filter(move |(i, body)| *i != index && near(body)).map(|(_, body)| Hazard::of_body(body))
+        let near = move |h: &Hazard| h.position.distance_squared(position) < reach_m * reach_m;
+        self.driven.iter().filter(move |(i, hazard)| *i as usize != index && near(hazard)).map(|(_, hazard)| hazard)
     }
 
     /// Where across its lane a vehicle between lanes can drive that wants to be at `aim_m`: it does not move into
     /// anybody beside it.
     pub(super) fn beside_others(&self, index: usize, plan: &Plan, seeker: &Seeker, aim_m: f32) -> f32 {
         let (mut least_m, mut most_m) = (f32::MIN, f32::MAX);
-        let free = self.hazards[..self.free].iter().copied();
-        for hazard in self.near(index, seeker).chain(free) {
-            let Some(seen) = sight(self.map, self.steps_of(plan), seeker, &hazard) else { continue };
+        for hazard in self.near(index, seeker).chain(&self.hazards[..self.free]) {
+            let Some(seen) = sight(self.map, self.steps_of(plan), seeker, hazard) else { continue };
             if seen.gap_m < BESIDE_M && seen.middle_m() < seeker.offset_m {
                 least_m = least_m.max(seen.edge_m(1.0) + seeker.half.y + ASIDE_M);
             } else if seen.gap_m < BESIDE_M {
@@ -213,16 +207,20 @@ impl View<'_> {
     fn gain_mps2(&self, index: usize, plan: &Plan, seeker: &Seeker, side: i8) -> f32 {
         let vehicle = &self.vehicles[index];
         let blocked = self.blocked(index, plan, seeker);
+        let least_mps = if Class::of(vehicle.kind) == Class::Long { LONG_LEAST_MPS } else { LEAST_MPS };
         let clear_m = CLEAR_M / drift(vehicle.speed_mps, seeker.half.x);
-        let moves = blocked.map_or(vehicle.speed_mps >= LEAST_MPS, |(gap_m, _)| gap_m > clear_m);
+        let moves = blocked.map_or(vehicle.speed_mps >= least_mps, |(gap_m, _)| gap_m > clear_m);
         let Some(there) = self.target(index, plan, side).filter(|_| moves) else { return f32::NEG_INFINITY };
         // Nobody drives up to what stands.
-        let kept_off = blocked.map(|(gap_m, mps)| (gap_m - pass::swing_out_m(&self.drivers[index]), mps));
+        let kept_m = |mps: f32| if mps < LEAST_MPS { pass::swing_out_m(&self.drivers[index]) } else { 0.0 };
+        let kept_off = blocked.map(|(gap_m, mps)| (gap_m - kept_m(mps), mps));
         let gap = |near: Option<Near>| near.map(|n| (n.gap_m, n.speed_mps));
         let ahead = self.ahead(index, there.lane, there.s_m);
         let here_ahead = plan.leader.map(|l| (l.gap_m, l.speed_mps));
         let here = self.pace_mps2(index, vehicle.lane, here_ahead).min(self.pace_mps2(index, vehicle.lane, kept_off));
-        let own = self.pace_mps2(index, there.lane, gap(ahead)) - here;
+        let meets = self.hazard_ahead(index, &there).map(|(gap_m, mps)| (gap_m - kept_m(mps), mps));
+        let then = self.pace_mps2(index, there.lane, gap(ahead)).min(self.pace_mps2(index, there.lane, meets));
+        let own = then - here;
         // Those behind: between whom this one is now, and between whom it would be.
         let length_m = self.drivers[index].size_m.x;
         let loses = |behind: Option<Near>, lane: LaneId, ahead: Option<(f32, f32)>| {
@@ -247,19 +245,37 @@ impl View<'_> {
         blocking.map(|seen| (seen.gap_m, seen.speed_mps)).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// What of the ego car and loose actors is ahead of a place on another lane, as (gap, speed).
+    fn hazard_ahead(&self, index: usize, there: &Projection) -> Option<(f32, f32)> {
+        let half_m = self.drivers[index].size_m.x * 0.5;
+        let lane = &self.map.lanes[there.lane as usize];
+        let ahead = self.hazards[..self.free].iter().filter_map(|hazard| {
+            let near = hazard.position.distance_squared(self.bodies[index].position) < REACH_M * REACH_M;
+            let at = near.then(|| self.map.project(there.lane, hazard.position))?;
+            let place = lane.straight_on(at.s_m);
+            let on_it = at.distance_m < place.half_width_m + hazard.half.y && at.s_m > there.s_m;
+            let gap_m = at.s_m - there.s_m - half_m - hazard.half.x;
+            on_it.then(|| (gap_m, hazard.velocity.dot(place.forward.truncate())))
+        });
+        ahead.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     /// What another lane is worth because of the way to the goal, m/s².
     fn route_mps2(&self, vehicle: &Vehicle, plan: &Plan, lane: LaneId) -> f32 {
         let journey = Journey::of(self.ways, self.seed, vehicle);
         let (here_s, there_s) = (journey.seconds(vehicle.lane), journey.seconds(lane));
-        if !there_s.is_finite() {
-            return f32::NEG_INFINITY;
-        }
+        let worth = match (here_s.is_finite(), there_s.is_finite()) {
+            (true, false) => return f32::NEG_INFINITY,
+            (true, true) => ((here_s - there_s) / CHANGE_S).clamp(-1.0, 1.0),
+            // No way leads to the goal from here, so that any lane is as good.
+            (false, _) => 0.0,
+        };
         let end_m = self.ways.lanes[vehicle.lane as usize].ends_m.map_or(ROUTE_M, |m| m - vehicle.s_m);
         let near_m = plan.line.map_or(ROUTE_M, |line| line.hold_m).min(end_m);
         let near = (1.0 - near_m / ROUTE_M).clamp(0.2, 1.0);
         // Bicycles change to the kerb alone.
         let slow_mps2 = if vehicle.kind == ActorKind::Bicycle { ROUTE_MPS2 } else { 0.0 };
-        slow_mps2 + ((here_s - there_s) / 8.0).clamp(-1.0, 1.0) * ROUTE_MPS2 * near
+        slow_mps2 + worth * ROUTE_MPS2 * near
     }
 
     /// Acceleration of a vehicle on a lane behind somebody, as (gap, speed), m/s².
@@ -315,11 +331,13 @@ impl View<'_> {
 
     /// Whether no other one near may change lanes in this tick before a vehicle.
     pub(super) fn is_first(&self, index: usize) -> bool {
-        let (id, place) = (self.vehicles[index].id, self.bodies[index].position);
-        let others = self.vehicles.iter().zip(self.bodies).take_while(|(v, _)| v.id < id);
-        let mut ready =
-            others.filter(|(v, _)| v.manoeuvre.signals() && v.signal_ticks.saturating_add(1) >= SIGNAL_TICKS);
-        !ready.any(|(_, body)| body.position.distance_squared(place) < APART_M * APART_M)
+        let place = self.bodies[index].position;
+        let ready = |(i, hazard): &(u32, Hazard)| {
+            let other = &self.vehicles[*i as usize];
+            let ready = other.manoeuvre.signals() && other.signal_ticks.saturating_add(1) >= SIGNAL_TICKS;
+            ready && hazard.position.distance_squared(place) < APART_M * APART_M
+        };
+        !self.driven.iter().take_while(|(i, _)| (*i as usize) < index).any(ready)
     }
 
     /// Who is ahead of a place on a lane and on the way that a vehicle would take from there.

@@ -66,8 +66,10 @@ pub(super) struct View<'a> {
     /// The ego car and loose actors first, `free` of them, then people on the road.
     pub hazards: &'a [Hazard],
     pub free: usize,
-    /// Vehicles that are changing lanes, by index.
-    pub changing: &'a [(u32, Hazard)],
+    /// Vehicles that drive, by index.
+    pub driven: &'a [(u32, Hazard)],
+    /// Those of them that are between lanes.
+    pub changing: &'a [Hazard],
     pub claims: &'a [Claim],
     pub tick: Tick,
 }
@@ -126,8 +128,8 @@ impl View<'_> {
     /// The flag of the turn that a vehicle takes at the junction right before it, or in it.
     fn turn(&self, plan: &Plan) -> u8 {
         let near = self.steps_of(plan).iter().take_while(|step| step.start_m < INDICATE_M);
-        let mut turns = near.map(|step| self.map.lanes[step.lane as usize].turn);
-        match turns.find(|turn| *turn != Turn::Straight) {
+        let mut inside = near.map(|step| &self.map.lanes[step.lane as usize]).filter(|lane| lane.junction.is_some());
+        match inside.next().map(|lane| lane.turn) {
             Some(Turn::Left) => Vehicle::TURNS_LEFT,
             Some(Turn::Right) => Vehicle::TURNS_RIGHT,
             _ => 0,
@@ -170,7 +172,7 @@ impl View<'_> {
         let at_line = line.hold_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
         if at_line && (sign || signal == Signal::Open) {
             next.wait_ticks = next.wait_ticks.saturating_add(1);
-            if next.wait_ticks.is_multiple_of(RETHINK_TICKS) {
+            if next.wait_ticks.is_multiple_of(RETHINK_TICKS) && next.flags & Vehicle::GRANTED == 0 {
                 // No way through: somewhere else, perhaps by another turn.
                 next.trips = next.trips.wrapping_add(1);
             }
@@ -245,7 +247,7 @@ impl View<'_> {
 
     fn side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
         let side = self.wanted_side(index, plan, seeker);
-        if self.is_between_lanes(index) {
+        if self.vehicles[index].manoeuvre.is_between_lanes() {
             Side { aim_m: self.beside_others(index, plan, seeker, side.aim_m), ..side }
         } else {
             side

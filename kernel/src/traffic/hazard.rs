@@ -11,9 +11,9 @@ use super::step::Step;
 
 /// Nothing farther than this from the middle of the way matters, metres.
 const REACH_M: f32 = 6.5;
-/// Sideways distance kept, metres, and from bicycles: the least that most road traffic acts ask for in towns.
+/// Sideways distance kept, metres, and from bicycles: more than the 1.5 m of most road traffic acts.
 const CLEARANCE_M: f32 = 0.35;
-pub(super) const BICYCLE_M: f32 = 1.5;
+pub(super) const BICYCLE_M: f32 = 1.55;
 /// How far ahead the crossing of a walker is expected to go on, seconds.
 const WALKER_FORESIGHT_S: f32 = 2.5;
 /// The same for a vehicle.

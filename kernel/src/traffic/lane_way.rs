@@ -100,15 +100,17 @@ impl LaneWay {
     }
 }
 
-pub(super) fn lane_ways(places: &Places) -> Vec<LaneWay> {
+pub(super) fn lane_ways(places: &Places, kerb: i8) -> Vec<LaneWay> {
     let map = &*places.map;
-    let onward = onward(places);
+    let onward = onward(places, kerb);
     let (meets, zones) = (meets(places, &onward), zones(map));
     let ways = onward.into_iter().zip(meets).zip(zones).enumerate();
-    ways.map(|(id, ((onward, meets), zone))| LaneWay { meets, zone, ..lane_way(map, id as LaneId, onward) }).collect()
+    ways.map(|(id, ((onward, meets), zone))| LaneWay { meets, zone, ..lane_way(places, id as LaneId, onward) })
+        .collect()
 }
 
-fn lane_way(map: &MapData, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) -> LaneWay {
+fn lane_way(places: &Places, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) -> LaneWay {
+    let map = &*places.map;
     let lane = &map.lanes[id as usize];
     let mut speed_mps = curve_speeds(lane);
     for i in (0..speed_mps.len().saturating_sub(1)).rev() {
@@ -116,7 +118,7 @@ fn lane_way(map: &MapData, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) 
         let reachable = ops::sqrt(speed_mps[i + 1] * speed_mps[i + 1] + 2.0 * CURVE_BRAKE_MPS2 * ds.max(0.0));
         speed_mps[i] = speed_mps[i].min(reachable);
     }
-    let swept = lane.junction.map_or_else(Vec::new, |junction| swept(map, id, junction));
+    let swept = swept(places, id);
     let conflicts = lane.conflicts.iter().filter_map(|c| lane_conflict(map, id, c)).collect();
     let forward = directions(lane.points.iter().map(|p| p.position));
     let ends_m = ends_beside(lane, &onward).then(|| wide_up_to_m(lane));
@@ -169,23 +171,27 @@ fn lane_conflict(map: &MapData, id: LaneId, conflict: &Conflict) -> Option<LaneC
     })
 }
 
-/// Lanes of a junction that come near a lane without a conflict, where the way of one of them bends.
-fn swept(map: &MapData, id: LaneId, junction: u32) -> Vec<LaneId> {
-    let lane = &map.lanes[id as usize];
-    let chained = |other: &Lane, o: LaneId| lane.successors.contains(&o) || other.successors.contains(&id);
+/// Lanes of its junction that come near a lane without a conflict, where the way of one of them bends.
+fn swept(places: &Places, id: LaneId) -> Vec<LaneId> {
+    let lanes = &places.map.lanes;
+    let lane = &lanes[id as usize];
+    if lane.junction.is_none() || lane.kind != LaneKind::Driving {
+        return Vec::new();
+    }
     let shares = |a: &[LaneId], b: &[LaneId]| a.iter().any(|x| b.contains(x));
-    let near = |other: &Lane| {
-        let middle = |points: &[LanePoint]| points.iter().map(|p| p.position.truncate()).collect::<Vec<_>>();
-        let (here, there) = (middle(&lane.points), middle(&other.points));
-        here.iter().any(|p| there.iter().any(|q| p.distance_squared(*q) < SWEPT_M * SWEPT_M))
-    };
-    let others = map.junctions[junction as usize].lanes.iter().copied().filter(|o| *o != id);
-    let others = others.map(|o| (o, &map.lanes[o as usize])).filter(|(o, other)| {
+    let beside = |o: LaneId| {
+        let other = &lanes[o as usize];
         let bends = lane.turn != Turn::Straight || other.turn != Turn::Straight;
-        let together = shares(&lane.predecessors, &other.predecessors) || lane.conflicts.iter().any(|c| c.lane == *o);
-        other.kind == LaneKind::Driving && bends && !together && !chained(other, *o)
-    });
-    others.filter(|(_, other)| near(other)).map(|(o, _)| o).collect()
+        let together = shares(&lane.predecessors, &other.predecessors) || lane.conflicts.iter().any(|c| c.lane == o);
+        let chained = lane.successors.contains(&o) || other.successors.contains(&id);
+        o != id && other.junction == lane.junction && bends && !together && !chained
+    };
+    let near = |p: &LanePoint| places.roads().around(p.position, LaneKind::Driving, SWEPT_M);
+    let near = lane.points.iter().flat_map(near).filter(|p| p.distance_m < SWEPT_M && beside(p.lane));
+    let mut found: Vec<LaneId> = near.map(|p| p.lane).collect();
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// Directions from each point to the next.

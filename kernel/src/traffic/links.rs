@@ -21,9 +21,9 @@ pub(super) struct Onward {
     pub at_m: f32,
 }
 
-/// For each lane where to go on, and where long vehicles do: these turn right only where there is no
+/// For each lane where to go on, and where long vehicles do: these turn to the kerb only where there is no
 /// other way. Ways into a junction that never leave it again are left out.
-pub(super) fn onward(places: &Places) -> Vec<[Vec<Onward>; 2]> {
+pub(super) fn onward(places: &Places, kerb: i8) -> Vec<[Vec<Onward>; 2]> {
     let lanes = &places.map.lanes;
     let mut all: Vec<Vec<Onward>> = lanes.iter().map(|lane| successors(lanes, lane)).collect();
     for (id, lane) in lanes.iter().enumerate() {
@@ -32,7 +32,7 @@ pub(super) fn onward(places: &Places) -> Vec<[Vec<Onward>; 2]> {
         }
     }
     leave_out_dead_ends(lanes, &mut all);
-    all.into_iter().map(|onward| [onward.clone(), wide(lanes, onward)]).collect()
+    all.into_iter().map(|onward| [onward.clone(), wide(lanes, onward, kerb)]).collect()
 }
 
 /// Whether a lane comes to an end beside another: it becomes too narrow, or leads on into the middle of that.
@@ -73,7 +73,8 @@ fn leave_out_dead_ends(lanes: &[Lane], onward: &mut [Vec<Onward>]) {
     }
 }
 
-fn wide(lanes: &[Lane], onward: Vec<Onward>) -> Vec<Onward> {
-    let no_right: Vec<_> = onward.iter().copied().filter(|n| lanes[n.lane as usize].turn != Turn::Right).collect();
-    if no_right.is_empty() { onward } else { no_right }
+fn wide(lanes: &[Lane], onward: Vec<Onward>, kerb: i8) -> Vec<Onward> {
+    let tight = if kerb > 0 { Turn::Left } else { Turn::Right };
+    let easy: Vec<_> = onward.iter().copied().filter(|n| lanes[n.lane as usize].turn != tight).collect();
+    if easy.is_empty() { onward } else { easy }
 }

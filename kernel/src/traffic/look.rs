@@ -44,7 +44,8 @@ pub(super) struct Sight {
     free: usize,
     /// Vehicles, the ego car and loose actors.
     blocks: Vec<Hazard>,
-    changing: Vec<(u32, Hazard)>,
+    driven: Vec<(u32, Hazard)>,
+    changing: Vec<Hazard>,
     claims: Vec<Claim>,
     crowd: Crowd,
     jaywalker: Option<usize>,
@@ -85,6 +86,7 @@ impl Sight {
             members: &self.members,
             hazards: &self.hazards,
             free: self.free,
+            driven: &self.driven,
             changing: &self.changing,
             claims: &self.claims,
             tick: self.tick,
@@ -144,14 +146,13 @@ impl Sight {
         self.blocks.clear();
         self.blocks.extend(self.hazards.iter().filter(|h| !h.walker));
         let (driven, walked) = actors.bodies.split_at(vehicles.len());
-        let present = vehicles.iter().zip(driven).filter(|(v, _)| !around.holds(v.id));
-        self.blocks.extend(present.map(|(_, body)| Hazard::of_body(body)));
+        let present = vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !around.holds(v.id));
+        self.driven.clear();
+        self.driven.extend(present.map(|(i, (_, body))| (i as u32, Hazard::of_body(body))));
+        self.blocks.extend(self.driven.iter().map(|(_, hazard)| *hazard));
         self.changing.clear();
-        let changing = vehicles
-            .iter()
-            .enumerate()
-            .filter(|(_, v)| (v.manoeuvre.moves() || v.manoeuvre.passes()) && !around.holds(v.id));
-        self.changing.extend(changing.map(|(i, _)| (i as u32, Hazard::of_body(&driven[i]))));
+        let changing = self.driven.iter().filter(|(i, _)| vehicles[*i as usize].manoeuvre.is_between_lanes());
+        self.changing.extend(changing.map(|(_, hazard)| *hazard));
         self.claims.clear();
         for (walker, body) in walkers.iter().zip(walked).filter(|(w, _)| !around.holds(w.id)) {
             let crosswalk = actors.map().walk_edges[walker.edge as usize].crosswalk;

@@ -47,6 +47,11 @@ impl Manoeuvre {
         matches!(self, Self::PassLeft | Self::PassRight)
     }
 
+    /// Between two lanes, or over the border of its own.
+    pub fn is_between_lanes(self) -> bool {
+        self.moves() || self.passes()
+    }
+
     pub(super) fn signal_to(side: i8) -> Self {
         if side > 0 { Self::SignalLeft } else { Self::SignalRight }
     }

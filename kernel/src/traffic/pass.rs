@@ -8,7 +8,6 @@ use crate::geometry::direction;
 use crate::map_data::LaneKind;
 use crate::ops;
 
-use super::body::Body;
 use super::drive::{View, follow_idm};
 use super::hazard::{BICYCLE_M, Hazard, Seeker, sight};
 use super::lists::Entry;
@@ -28,8 +27,8 @@ const START_S: f32 = 2.0;
 /// By then one is beside whom one passes.
 const SWING_OUT_TICKS: u8 = 240;
 /// While passing the next one ahead is passed with the first up to this gap, metres and seconds.
-const NEXT_M: f32 = 4.0;
-const NEXT_S: f32 = 1.0;
+const NEXT_M: f32 = 2.0;
+const NEXT_S: f32 = 0.3;
 /// Only who is slower than one would like to be by this is passed, m/s.
 const SLOWER_MPS: f32 = 2.5;
 /// Back in front of whom one has passed at this distance, metres.
@@ -46,7 +45,7 @@ const SPARE_M: f32 = 15.0;
 const BEND_RAD: f32 = 0.25;
 /// Distance to swing out from before what stands, of cars and of long vehicles, metres, and braking for that, m/s².
 const SWING_OUT_M: f32 = 6.0;
-const LONG_SWING_OUT_M: f32 = 14.0;
+const LONG_SWING_OUT_M: f32 = 20.0;
 const SWING_OUT_MPS2: f32 = 2.5;
 /// What stands nearer than this to a junction waits there, metres.
 const QUEUE_M: f32 = 40.0;
@@ -54,6 +53,10 @@ const QUEUE_M: f32 = 40.0;
 const ONCOMING_M: f32 = 1.2;
 /// Those who come the other way may be so far to the side, metres.
 const ASIDE_M: f32 = 9.0;
+/// And farther by so much for each metre beyond the way that is looked along.
+const BENDS: f32 = 0.5;
+/// Roads farther apart in height pass over each other, metres.
+const LEVEL_M: f32 = 4.0;
 /// Others who pass are not passed within this, metres.
 const OTHERS_M: f32 = 40.0;
 
@@ -75,6 +78,18 @@ pub(super) fn apart(vehicles: &[Vehicle], drivers: &[Driver], index: usize, othe
     let (me, them) = (&vehicles[index], &vehicles[other.vehicle as usize]);
     let half_m = (drivers[index].size_m.y + drivers[other.vehicle as usize].size_m.y) * 0.5;
     (me.manoeuvre.passes() || them.manoeuvre.passes()) && (me.offset_m - them.offset_m).abs() > half_m + 0.3
+}
+
+impl Passed {
+    /// Both as one; `side` as of [`Manoeuvre::side`](super::manoeuvre::Manoeuvre::side).
+    fn with(self, next: &Self, side: f32) -> Self {
+        Self {
+            aim_m: if side > 0.0 { self.aim_m.max(next.aim_m) } else { self.aim_m.min(next.aim_m) },
+            gap_m: self.gap_m.min(next.gap_m),
+            beyond_m: self.beyond_m.max(next.beyond_m),
+            speed_mps: self.speed_mps.max(next.speed_mps),
+        }
+    }
 }
 
 /// The distance that a vehicle keeps from what stands so that it can swing out, metres.
@@ -106,37 +121,47 @@ impl View<'_> {
             _ => NEXT_M + NEXT_S * seeker.speed_mps,
         };
         let steps = self.steps_of(plan);
-        let mut all: Option<Passed> = None;
-        let mut add = |gap_m: f32, length_m: f32, edge_m: f32, clearance_m: f32, speed_mps: f32| {
-            let aim_m = edge_m + side * (clearance_m + seeker.half.y);
-            let one = Passed { aim_m, gap_m, beyond_m: gap_m + seeker.half.x + length_m, speed_mps };
-            all = Some(all.map_or(one, |a| Passed {
-                aim_m: if side > 0.0 { a.aim_m.max(aim_m) } else { a.aim_m.min(aim_m) },
-                gap_m: a.gap_m.min(gap_m),
-                beyond_m: a.beyond_m.max(one.beyond_m),
-                speed_mps: a.speed_mps.max(speed_mps),
-            }));
-        };
-        let near = |step: &&Step| step.start_m < reach_m + seeker.half.x;
-        for step in steps.iter().take_while(near) {
-            for entry in self.lists.on(step.lane).iter().filter(|e| e.vehicle as usize != index) {
-                let them = &self.vehicles[entry.vehicle as usize];
-                let gap_m = step.start_m + entry.s_m - entry.half_m - seeker.half.x;
-                let is_near = gap_m < reach_m && gap_m + 2.0 * (entry.half_m + seeker.half.x) > -1.0;
-                if them.kind == ActorKind::Bicycle && is_near {
-                    let half_m = self.drivers[entry.vehicle as usize].size_m.y * 0.5;
-                    add(gap_m, 2.0 * entry.half_m, them.offset_m + side * half_m, BICYCLE_M + MORE_M, them.speed_mps);
-                }
-            }
-        }
+        let mut found = self.bicycles_ahead(index, steps, seeker, reach_m, side);
         let likes_m = self.likes_m(index);
         for hazard in self.hazards[..self.free].iter().filter(|h| passing || h.stands()) {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
             if seen.gap_m < reach_m && seen.obstructs(likes_m, seeker.half.y) && (hazard.stands() || seen.gap_m < 0.0) {
-                add(seen.gap_m, seen.length_m, seen.edge_m(side), STANDING_M, seen.speed_mps.max(0.0));
+                found.push(Passed {
+                    aim_m: seen.edge_m(side) + side * (STANDING_M + seeker.half.y),
+                    gap_m: seen.gap_m,
+                    beyond_m: seen.gap_m + seeker.half.x + seen.length_m,
+                    speed_mps: seen.speed_mps.max(0.0),
+                });
             }
         }
-        all
+        found.sort_unstable_by(|a, b| a.gap_m.total_cmp(&b.gap_m));
+        // Before those who leave room one gets back into the lane.
+        let joined = |all: Passed, next: &Passed| {
+            let leaves_room = next.gap_m + seeker.half.x > all.beyond_m + 2.0 * seeker.half.x + ROOM_M;
+            if leaves_room { all } else { all.with(next, side) }
+        };
+        let (first, rest) = found.split_first()?;
+        Some(rest.iter().fold(*first, joined))
+    }
+
+    fn bicycles_ahead(&self, index: usize, steps: &[Step], seeker: &Seeker, reach_m: f32, side: f32) -> Vec<Passed> {
+        let near = |step: &&Step| step.start_m < reach_m + seeker.half.x;
+        let entries = steps.iter().take_while(near).flat_map(|s| self.lists.on(s.lane).iter().map(move |e| (s, e)));
+        let bicycle = |(step, entry): (&Step, &Entry)| {
+            let them = &self.vehicles[entry.vehicle as usize];
+            let gap_m = step.start_m + entry.s_m - entry.half_m - seeker.half.x;
+            let is_near = gap_m < reach_m && gap_m + 2.0 * (entry.half_m + seeker.half.x) > -1.0;
+            let half_m = self.drivers[entry.vehicle as usize].size_m.y * 0.5;
+            let passed = Passed {
+                aim_m: them.offset_m + side * (half_m + BICYCLE_M + MORE_M + seeker.half.y),
+                gap_m,
+                beyond_m: gap_m + seeker.half.x + 2.0 * entry.half_m,
+                speed_mps: them.speed_mps,
+            };
+            let other = entry.vehicle as usize != index && them.kind == ActorKind::Bicycle;
+            (other && is_near).then_some(passed)
+        };
+        entries.filter_map(bicycle).collect()
     }
 
     /// The greatest acceleration behind what stands at `gap_m` where no junction is near: it is kept off so far that it
@@ -242,17 +267,17 @@ impl View<'_> {
             let (ahead_m, aside_m) = (to.dot(forward), f32::from(side) * forward.perp_dot(to));
             let comes_mps = (-other.velocity.dot(forward)).max(0.0);
             let same_way = !other.walker && other.forward.dot(forward) > 0.3;
-            let beside =
-                !(-ASIDE_M * 0.5..=ASIDE_M).contains(&aside_m) || (other.position.z - me.position.z).abs() > 4.0;
+            // Beyond the way the road may bend.
+            let bend_m = (ahead_m - way_m).max(0.0) * BENDS;
+            let near = -ASIDE_M * 0.5 - bend_m..=ASIDE_M + bend_m;
+            let beside = !near.contains(&aside_m) || (other.position.z - me.position.z).abs() > LEVEL_M + bend_m;
             same_way || beside || ahead_m < -5.0 || ahead_m > way_m + comes_mps * time_s + SPARE_M
         };
-        let passes = |(i, v): (usize, &Vehicle)| {
-            let near = |body: &Body| body.position.distance_squared(me.position) < OTHERS_M * OTHERS_M;
-            i != index && v.manoeuvre.passes() && near(&self.bodies[i])
+        let passes = |i: u32, other: &Hazard| {
+            let near = other.position.distance_squared(me.position) < OTHERS_M * OTHERS_M;
+            near && self.vehicles[i as usize].manoeuvre.passes()
         };
-        let others = self.bodies[..self.vehicles.len()].iter().enumerate().filter(|(i, _)| *i != index);
-        self.hazards.iter().all(clear)
-            && others.map(|(_, body)| Hazard::of_body(body)).all(|h| clear(&h))
-            && !self.vehicles.iter().enumerate().any(passes)
+        let mut others = self.driven.iter().filter(|(i, _)| *i as usize != index);
+        self.hazards.iter().all(clear) && others.all(|(i, other)| clear(other) && !passes(*i, other))
     }
 }

@@ -14,8 +14,10 @@ use super::lane_way::LaneWay;
 /// Goals inside the map, and where roads leave it.
 const GOALS: usize = 24;
 const EXITS: usize = 16;
+/// Goals inside, and exits, times lanes are at most this but for the least of four each.
+const TABLE: usize = 1_000_000;
 /// A change of lane is worth this detour, s.
-const CHANGE_S: f32 = 8.0;
+pub(super) const CHANGE_S: f32 = 8.0;
 /// Lanes shorter than this are none to change on, metres.
 const CHANGE_M: f32 = 30.0;
 /// Crossing a junction without the right of way takes this much longer, s.
@@ -64,12 +66,14 @@ pub(super) struct Routes {
 
 impl Routes {
     /// Those of a map.
-    pub fn new(lanes: &[Lane], ways: &[LaneWay]) -> Self {
+    pub fn new(lanes: &[Lane], ways: &[LaneWay], kerb: i8) -> Self {
         let goals = goals(lanes, ways);
         let times: Vec<f32> = lanes.iter().zip(ways).map(|(lane, way)| time_s(lane, way)).collect();
         let seconds = Class::ALL.map(|class| {
-            let graph = Graph::new(lanes, ways, &times, class);
-            goals.iter().flat_map(|goal| graph.seconds_to(*goal)).collect()
+            let graph = Graph::new(lanes, ways, &times, class, kerb);
+            let mut table = Vec::with_capacity(goals.len() * lanes.len());
+            goals.iter().for_each(|goal| table.extend(graph.seconds_to(*goal)));
+            table
         });
         Self { goals: goals.len(), seconds, lanes: lanes.len() }
     }
@@ -80,17 +84,23 @@ fn goals(lanes: &[Lane], ways: &[LaneWay]) -> Vec<LaneId> {
     let open = |(_, lane): &(usize, &Lane)| lane.kind == LaneKind::Driving && lane.junction.is_none();
     let roads = || lanes.iter().enumerate().filter(open);
     let total_m: f32 = roads().map(|(_, lane)| lane.length_m).sum();
+    // Large maps have fewer, so that the tables stay small.
+    let most = (TABLE / lanes.len().max(1)).max(4);
+    let (inside, exits_most) = (GOALS.min(most), EXITS.min(most));
     let (mut found, mut passed_m, mut next) = (Vec::new(), 0.0, 0);
     for (id, lane) in roads() {
         passed_m += lane.length_m;
-        if passed_m >= (next as f32 + 0.5) * total_m / GOALS as f32 {
+        let due = |next: usize| passed_m >= (next as f32 + 0.5) * total_m / inside as f32;
+        if due(next) {
             found.push(id as LaneId);
+        }
+        while next < inside && due(next) {
             next += 1;
         }
     }
     let exits: Vec<LaneId> =
         roads().filter(|(id, _)| ways[*id].onward.is_empty()).map(|(id, _)| id as LaneId).collect();
-    let stride = exits.len().div_ceil(EXITS).max(1);
+    let stride = exits.len().div_ceil(exits_most).max(1);
     found.extend(exits.into_iter().step_by(stride));
     found.sort_unstable();
     found.dedup();
@@ -113,7 +123,7 @@ struct Graph<'a> {
 }
 
 impl<'a> Graph<'a> {
-    fn new(lanes: &'a [Lane], ways: &[LaneWay], times: &[f32], class: Class) -> Self {
+    fn new(lanes: &'a [Lane], ways: &[LaneWay], times: &[f32], class: Class, kerb: i8) -> Self {
         let mut before = vec![Vec::new(); lanes.len()];
         let usable = |id: LaneId| class.may_use(&lanes[id as usize]);
         for (id, lane) in lanes.iter().enumerate().filter(|(id, _)| usable(*id as LaneId)) {
@@ -124,7 +134,10 @@ impl<'a> Graph<'a> {
                 before[next.lane as usize].push((id as LaneId, times[id] + merge_s));
             }
             if ways[id].zone.is_none() && lane.length_m > CHANGE_M {
-                for beside in [lane.left, lane.right].into_iter().flatten().filter(|beside| usable(*beside)) {
+                // Bicycles change to the kerb alone.
+                let to = |side: i8| class != Class::Bicycle || side == kerb;
+                let sides = [(lane.left, 1), (lane.right, -1)].into_iter().filter(|(_, side)| to(*side));
+                for beside in sides.filter_map(|(lane, _)| lane).filter(|beside| usable(*beside)) {
                     before[beside as usize].push((id as LaneId, CHANGE_S));
                 }
             }

@@ -13,7 +13,7 @@ const LONG_M: f32 = 2.5;
 const SWING_M: f32 = 0.4;
 /// Unless it drives slower than this, m/s; then it moves sideways by so much for each metre.
 const SLOW_MPS: f32 = 3.0;
-const SLOW_STEEPEST: f32 = 0.25;
+const SLOW_STEEPEST: f32 = 0.15;
 /// Sideways motion for each metre driven at most, and so fast, m/s.
 const PASS_STEEPEST: f32 = 0.45;
 const PASS_SIDEWAYS_MPS: f32 = 1.2;

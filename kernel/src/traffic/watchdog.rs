@@ -22,7 +22,7 @@ const STANDS_MPS: f32 = 0.1;
 /// It stands behind another at a gap of at most this, metres.
 const BEHIND_M: f32 = 6.0;
 /// And behind the ego car, from which it keeps off to pass it, metres.
-const BEHIND_EGO_M: f32 = 20.0;
+const BEHIND_EGO_M: f32 = 26.0;
 /// It waits at a light no farther from its line than this, metres.
 const AT_LIGHT_M: f32 = 12.0;
 /// Longest queue that is followed, vehicles.

@@ -16,6 +16,8 @@ use crate::places::Places;
 /// Sidewalks farther apart than this do not face each other across a road, metres.
 const FACING_M: f32 = 32.0;
 
+/// Distances beyond the border of a lane at which one for the other direction may lie, metres.
+const MEDIANS_M: [f32; 4] = [1.0, 3.0, 6.0, 12.0];
 /// Lanes whose edges come within this of where another begins lie beside it, metres.
 const FROM_BEFORE_M: f32 = 2.0;
 
@@ -51,16 +53,17 @@ impl Ways {
     /// The lookups of a map.
     pub(crate) fn new(places: &Arc<Places>) -> Self {
         let map = &*places.map;
-        let lanes = lane_ways(places);
+        let kerb = kerb(places);
+        let lanes = lane_ways(places, kerb);
         let mut ways = Self {
             places: places.clone(),
-            routes: Routes::new(&map.lanes, &lanes),
+            routes: Routes::new(&map.lanes, &lanes, kerb),
             lanes,
             edges: (0..map.walk_edges.len()).map(|e| edge_way(map, e)).collect(),
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
             bicycle_entries: Vec::new(),
-            kerb: kerb(places),
+            kerb,
         };
         let cycled = ways.entries.iter().copied().filter(|lane| ways.may_start(ActorKind::Bicycle, *lane));
         ways.bicycle_entries = cycled.collect();
@@ -155,9 +158,12 @@ fn kerb(places: &Places) -> i8 {
     let lanes = &places.map.lanes;
     let oncoming = |lane: &Lane, side: f32| {
         let (heading_rad, place) = (lane.at(lane.length_m * 0.5).heading_rad, lane.straight_on(lane.length_m * 0.5));
-        let there = place.beside(side * (place.half_width_m + FROM_BEFORE_M * 0.5));
-        let beside = places.roads().at(there, LaneKind::Driving);
-        beside.iter().any(|p| ops::cos(lanes[p.lane as usize].at(p.s_m).heading_rad - heading_rad) < -0.5)
+        let against = |id: LaneId, s_m: f32| ops::cos(lanes[id as usize].at(s_m).heading_rad - heading_rad) < -0.5;
+        // Other lanes of this direction and a median may be between.
+        MEDIANS_M.iter().any(|m| {
+            let there = place.beside(side * (place.half_width_m + m));
+            places.roads().at(there, LaneKind::Driving).iter().any(|p| against(p.lane, p.s_m))
+        })
     };
     let roads = || lanes.iter().filter(|lane| lane.kind == LaneKind::Driving && lane.junction.is_none());
     let count = |side: f32| roads().filter(|lane| oncoming(lane, side)).count();

@@ -182,7 +182,7 @@ fn state_is_small_and_resumes() {
     let mut traffic = start(&network, 60, 4);
     run(&mut traffic, 1..MINUTE, |_, _| {});
     let bytes = traffic.actors.state.to_bytes();
-    assert!(bytes.len() <= 31 * traffic.actors.bodies.len() + 8, "{} bytes", bytes.len());
+    assert!(bytes.len() <= 32 * traffic.actors.bodies.len() + 8, "{} bytes", bytes.len());
     let state = TrafficState::from_bytes(&bytes).expect("own bytes are read back");
     let mut resumed = Traffic::resume(&counts(60), 4, network.ways(), state).expect("own state fits the map");
     assert_eq!(traffic.actors.bodies, resumed.actors.bodies);
