@@ -9,7 +9,7 @@ use base::failure::sentence;
 use clap::Parser;
 use drivers::Driver;
 use drivers::checkpoint::CheckpointChoice;
-use drivers::safety::SafetyBot;
+use drivers::safety::{LOOK_TICKS, SafetyBot};
 use kernel::arbiter::{Intervention, Outcome, Phase};
 use kernel::events::EventKind;
 use kernel::{Controls, TickInput, World};
@@ -80,7 +80,11 @@ fn a_collision_follows_a_hazard() {
     let (mut collisions, mut named) = (0, 0);
     for seed in 1..=8 {
         let scene = city(seed);
-        let recording = drive(&scene, follow_route);
+        let mut stood = 0;
+        let recording = drive(&scene, |world| {
+            stood = if world.scene().ego.speed_mps < 0.5 { world.tick() } else { stood };
+            follow_route(world)
+        });
         let log = recording.log();
         if log.summary.as_ref().and_then(|s| s.outcome) != Some(Outcome::Missed) {
             continue;
@@ -88,7 +92,9 @@ fn a_collision_follows_a_hazard() {
         let measures = measures(&recording, &scene);
         let last = &measures.hazards.last().expect("a hazard").episode;
         assert_eq!(last.end, log.last_tick(), "seed {seed}: {last:?}");
-        assert!(last.onset + 60 < log.last_tick(), "seed {seed}: {last:?}");
+        // Or since it moves at all: who stands touches nobody.
+        let just_started = last.onset <= stood + 2 * LOOK_TICKS;
+        assert!(last.onset + 60 < log.last_tick() || just_started, "seed {seed}: {last:?}");
         let hit =
             log.events.iter().find(|(_, event)| event.kind == EventKind::CollisionActor).expect("somebody was hit");
         named += u32::from(last.what.contains(&format!(" {}, 2.0 s before contact", hit.1.actor)));
