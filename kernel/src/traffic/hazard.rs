@@ -14,6 +14,8 @@ const REACH_M: f32 = 6.5;
 /// Sideways distance kept, metres, and from bicycles: more than the 1.5 m of most road traffic acts.
 const CLEARANCE_M: f32 = 0.35;
 pub(super) const BICYCLE_M: f32 = 1.55;
+/// What is passed within the lane is passed at so much more, metres.
+const STEERED_M: f32 = 0.05;
 /// How far ahead the crossing of a walker is expected to go on, seconds.
 const WALKER_FORESIGHT_S: f32 = 2.5;
 /// The same for a vehicle.
@@ -130,7 +132,8 @@ impl Sighted {
 
     /// Where to pass it within the lane, if there is room: the place nearest to `offset_m`.
     fn passed_at(&self, offset_m: f32, half_m: f32) -> Option<f32> {
-        let reach_m = self.half_m + half_m + self.clearance_m;
+        // Steering comes close to its aim, not to the millimetre.
+        let reach_m = self.half_m + half_m + self.clearance_m + STEERED_M;
         let room_m = self.way_half_m - half_m;
         let sides = [self.aside_m[1] + reach_m, self.aside_m[0] - reach_m];
         let free = sides.into_iter().filter(|m| m.abs() <= room_m);

@@ -291,6 +291,21 @@ fn vehicles_pass_what_stands_beside_their_lane() {
 }
 
 #[test]
+fn vehicles_pass_within_their_lane_whatever_leaves_room_there() {
+    let network = crossroads(Signs::Yield);
+    for k in 0..=24 {
+        let aside_m = 1.6 + 0.05 * k as f32;
+        let mut traffic = lone_car(&network);
+        let beside = network.lanes[0].points[60].position + Vec3::Y * aside_m;
+        for tick in 1..1800 {
+            traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[] });
+        }
+        let vehicle = traffic.actors.state.vehicles[0];
+        assert!(vehicle.lane != 0 || vehicle.s_m > 130.0, "{aside_m} m aside: {vehicle:?}");
+    }
+}
+
+#[test]
 fn loose_actors_keep_their_state() {
     let network = crossroads(Signs::Yield);
     let mut traffic = start(&network, 40, 6);
