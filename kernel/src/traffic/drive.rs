@@ -44,6 +44,8 @@ const HEED_S: u8 = 15;
 const DRIFT: f32 = 0.08;
 /// The same to pass something.
 const PASS_DRIFT: f32 = 0.2;
+/// Right before what stands one creeps by, metres.
+const CREEP_M: f32 = 1.5;
 /// Sideways motion fades out over this, metres and seconds.
 const SWING_M: f32 = 1.5;
 const SWING_S: f32 = 0.5;
@@ -200,7 +202,10 @@ impl View<'_> {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
             let ahead_m = if hazard.stands() { seen.gap_m.max(0.0) } else { 0.0 };
             let offset_m = side.after(seeker.offset_m, ahead_m);
-            if seen.blocks(offset_m, seeker.half.y) {
+            let creeps = hazard.stands() && seen.gap_m < CREEP_M;
+            let blocks =
+                if creeps { seen.blocks_at(offset_m, seeker.half.y, v) } else { seen.blocks(offset_m, seeker.half.y) };
+            if blocks {
                 follow(seen.gap_m, seen.speed_mps);
                 if hazard.stands() {
                     room = room.min(self.room_to_pass(index, plan, v, seen.gap_m));

@@ -14,6 +14,9 @@ const REACH_M: f32 = 6.5;
 /// Sideways distance kept, metres, and from bicycles: more than the 1.5 m of most road traffic acts.
 const CLEARANCE_M: f32 = 0.35;
 pub(super) const BICYCLE_M: f32 = 1.55;
+/// Sideways distance at a walking pace, metres, and so much more for each m/s, s.
+const CREEPING_M: f32 = 0.12;
+const CREEPING_S: f32 = 0.1;
 /// What is passed within the lane is passed at so much more, metres.
 const STEERED_M: f32 = 0.05;
 /// How far ahead the crossing of a walker is expected to go on, seconds.
@@ -113,6 +116,12 @@ impl Sighted {
     pub fn blocks(&self, offset_m: f32, half_m: f32) -> bool {
         let reach_m = self.half_m + half_m + self.clearance_m;
         self.ahead && self.aside_m[0] - offset_m < reach_m && self.aside_m[1] - offset_m > -reach_m
+    }
+
+    /// Whether it is in the way of one that comes by what stands so slowly: at a walking pace a hand's breadth is enough.
+    pub fn blocks_at(&self, offset_m: f32, half_m: f32, speed_mps: f32) -> bool {
+        let clearance_m = self.clearance_m.min(CREEPING_M + CREEPING_S * speed_mps);
+        Sighted { clearance_m, ..*self }.blocks(offset_m, half_m)
     }
 
     /// The same, also beside it, until the tail has passed.
