@@ -179,6 +179,78 @@ fn flow(cars: u16, seed: u64) -> (f64, f64, f64) {
     (density, driven_m / hours / LENGTH_M / 2.0, driven_m / hours / 3600.0 / f64::from(cars))
 }
 
+/// A ring of two lanes, one of which ends after 1.4 km, over 100 m, and begins anew 400 m farther on.
+fn narrowing_ring() -> Arc<RoadNetwork> {
+    let lane = |id: i32, links: [bool; 2], a: f64, b: f64| {
+        let link = |tag: &str, there: bool| if there { format!("<{tag} id=\"{id}\"/>") } else { String::new() };
+        format!(
+            "<lane id=\"{id}\" type=\"driving\"><link>{}{}</link>\
+             <width sOffset=\"0\" a=\"{a}\" b=\"{b}\" c=\"0\" d=\"0\"/></lane>",
+            link("predecessor", links[0]),
+            link("successor", links[1])
+        )
+    };
+    let through = || lane(-1, [true, true], LANE_M, 0.0);
+    let section = |s: f64, second: String| {
+        let center = "<center><lane id=\"0\" type=\"none\"/></center>";
+        format!("<laneSection s=\"{s}\">{center}<right>{}{second}</right></laneSection>", through())
+    };
+    let sections = [
+        section(0.0, lane(-2, [true, true], LANE_M, 0.0)),
+        section(1400.0, lane(-2, [true, false], LANE_M, -LANE_M / 100.0)),
+        section(1500.0, String::new()),
+        section(1900.0, lane(-2, [false, true], 0.0, LANE_M / 100.0)),
+    ];
+    let text = format!(
+        "<?xml version=\"1.0\"?><OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>\
+         <road id=\"0\" length=\"2000\" junction=\"-1\"><link>\
+         <predecessor elementType=\"road\" elementId=\"0\" contactPoint=\"end\"/>\
+         <successor elementType=\"road\" elementId=\"0\" contactPoint=\"start\"/></link><planView>\
+         <geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"2000\"><arc curvature=\"{}\"/></geometry></planView>\
+         <lanes>{}</lanes></road></OpenDRIVE>",
+        std::f64::consts::TAU / 2000.0,
+        sections.concat()
+    );
+    Arc::new(bake("narrowing", &text).expect("it bakes"))
+}
+
+#[test]
+fn two_lanes_with_1200_vehicles_an_hour_merge_into_one() {
+    let network = narrowing_ring();
+    let counts = TrafficCounts { cars: 60, ..NOBODY };
+    for seed in 9001..9004 {
+        let mut traffic = Traffic::spawn(&counts, seed, network.ways(), FAR);
+        let (mut passed, mut slowest_s) = (0, 0);
+        let mut before: Vec<f32> = Vec::new();
+        let mut stands_s = vec![0; 60];
+        let (settle, ticks) = (seconds(300), seconds(900));
+        // Where there is one lane only, told by the angle around the middle of the ring.
+        let radius_m = 2000.0 / std::f32::consts::TAU;
+        let gate_rad = 1700.0 / radius_m;
+        let along = |body: &Body| {
+            let from = (body.position.truncate() - Vec2::new(0.0, radius_m)).perp();
+            (from.y.atan2(from.x)).rem_euclid(std::f32::consts::TAU)
+        };
+        drive(&mut traffic, car_at(FAR), ticks, |traffic, tick| {
+            let now: Vec<f32> = traffic.bodies().iter().map(along).collect();
+            if tick > settle {
+                passed += before.iter().zip(&now).filter(|(was, is)| **was < gate_rad && **is >= gate_rad).count();
+            }
+            before = now;
+            if tick.is_multiple_of(60) {
+                for (vehicle, stands_s) in traffic.state().vehicles.iter().zip(&mut stands_s) {
+                    *stands_s = if vehicle.speed_mps < 0.1 { *stands_s + 1 } else { 0 };
+                    slowest_s = slowest_s.max(*stands_s);
+                }
+            }
+        });
+        let per_hour = passed as f64 / ((ticks - settle) as f64 / seconds(3600) as f64);
+        println!("seed {seed}: {per_hour:.0} vehicles/h through one lane, nobody stands longer than {slowest_s} s");
+        assert!(per_hour >= 1200.0, "seed {seed}: {per_hour} vehicles/h");
+        assert!(slowest_s <= 20, "seed {seed}: somebody stood {slowest_s} s");
+    }
+}
+
 const PLOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/flow.svg");
 
 /// Flow over density as a picture.

@@ -5,4 +5,5 @@ pub mod recordings;
 pub mod roads;
 pub mod scenes;
 pub mod street;
+pub mod town;
 pub mod toy;

@@ -1,6 +1,7 @@
 //! Invariants of traffic, on a crossroads built in code and on the bundled maps.
 
 mod crossroads;
+mod free_road;
 
 use std::sync::Arc;
 
