@@ -123,7 +123,8 @@ impl Arbiter {
     }
 
     /// A takeover lasts; before arming, and after a run that ended without one, the safety driver
-    /// acts on the car for as long as a threshold is passed.
+    /// acts on the car for as long as a threshold is passed. Horn, lights and wipers are those of whoever has the
+    /// pedals, the indicators those of whoever steers.
     fn mix(&mut self, input: &TickInput, wants: Wish) -> Applied {
         let taken = self.intervention.is_some();
         self.safety_steers = wants.steer || (taken && self.safety_steers);
@@ -135,7 +136,9 @@ impl Arbiter {
             Seat::Safety => override_pedals(semantic, safety, taken),
         };
         controls.steer = if self.safety_steers { safety.steer } else { semantic.steer };
+        let of = |seat| if seat == Seat::Safety { safety.flags } else { semantic.flags };
         controls.flags &= Controls::HAND_BRAKE | Controls::REVERSE;
+        controls.flags |= of(pedals) & Controls::SIGNALS | of(steering) & Controls::INDICATORS;
         Applied { controls, steering, pedals }
     }
 
@@ -217,6 +220,21 @@ mod tests {
         let released = decide(&mut arbiter, 11, curve, Controls::default());
         assert_eq!(released.applied.controls, curve);
         assert_eq!(arbiter.phase, Phase::Arming);
+    }
+
+    #[test]
+    fn indicators_go_with_the_wheel_and_horn_lights_and_wipers_with_the_pedals() {
+        let flagged = |flags, controls: Controls| Controls { flags, ..controls };
+        let semantic = flagged(Controls::ALL_FLAGS & !Controls::HAND_BRAKE, controls(0.3, 0.5, 0.0));
+        let safety = |flags, steer, brake| flagged(flags, controls(steer, 0.0, brake));
+        let mut arbiter = Arbiter::new();
+        let mut flags = |safety| decide(&mut arbiter, 200, semantic, safety).applied.controls.flags;
+        let (left, right) = (Controls::INDICATE_LEFT, Controls::INDICATE_RIGHT);
+        let driven = Controls::REVERSE | Controls::INDICATORS | Controls::SIGNALS;
+        assert_eq!(flags(safety(left | Controls::HORN, 0.0, 0.0)), driven, "nobody took over");
+        let braked = flags(safety(left | Controls::HORN, 0.0, 1.0));
+        assert_eq!(braked, Controls::INDICATORS | Controls::HORN, "the semantic driver still steers");
+        assert_eq!(flags(safety(right | Controls::LIGHTS | Controls::SEEN, 0.5, 0.0)), right | Controls::LIGHTS);
     }
 
     #[test]

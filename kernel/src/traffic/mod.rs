@@ -6,14 +6,17 @@
 //! Poses follow from the map's geometry, individual differences from stateless random numbers.
 
 mod actors;
+mod asking;
 mod body;
 mod change;
 mod company;
 mod counts;
+mod courtesy;
 mod crosswalk;
 mod crowd;
 mod drive;
 mod hazard;
+mod horn;
 mod jaywalk;
 mod journey;
 mod junction;

@@ -141,7 +141,8 @@ impl World {
             velocity_mps: car.motion.velocity_mps,
             size_m: ego::SIZE_M,
         };
-        self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, loose: obstacles });
+        let ego_flags = self.parts.output.applied.controls.flags;
+        self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, ego_flags, loose: obstacles });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
         self.traffic.told().iter().for_each(|(kind, actor)| log.with(*kind, *actor));
         bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
