@@ -16,6 +16,8 @@ const ACTORS_PER_KM: f32 = 12.0;
 const MAX_SPEED_KMH: f32 = 50.0;
 /// Longest run, seconds.
 const MAX_SECONDS: u32 = 600;
+/// Longest time after a takeover, seconds: enough to leave a junction and stop.
+const TAKEOVER_S: u32 = 10;
 /// Cloudiness and wind in percent and height of the sun in degrees (paper, section 3).
 const CLOUDS_PCT: [f32; 2] = [0.0, 30.0];
 const WIND_PCT: [f32; 2] = [0.0, 50.0];
@@ -48,6 +50,8 @@ impl Scenario {
                 max_seconds: MAX_SECONDS,
                 brake_threshold: 0.1,
                 steer_threshold: 0.1,
+                least_intervention_kmh: 0.0,
+                takeover_s: TAKEOVER_S,
             },
         }
     }

@@ -67,6 +67,8 @@ struct Rules {
     max_seconds: Given<u32>,
     brake_threshold: Given<f32>,
     steer_threshold: Given<f32>,
+    least_intervention_kmh: Given<f32>,
+    takeover_s: Given<u32>,
 }
 
 impl Scenario {
@@ -165,7 +167,10 @@ fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(
     reader.take("rules.max_speed_kmh", given.max_speed_kmh, 5.0..=130.0, &mut to.max_speed_kmh)?;
     reader.take("rules.max_seconds", given.max_seconds, 4..=86_400, &mut to.max_seconds)?;
     reader.take("rules.brake_threshold", given.brake_threshold, threshold.clone(), &mut to.brake_threshold)?;
-    reader.take("rules.steer_threshold", given.steer_threshold, threshold, &mut to.steer_threshold)
+    reader.take("rules.steer_threshold", given.steer_threshold, threshold, &mut to.steer_threshold)?;
+    let least = given.least_intervention_kmh;
+    reader.take("rules.least_intervention_kmh", least, 0.0..=130.0, &mut to.least_intervention_kmh)?;
+    reader.take("rules.takeover_s", given.takeover_s, 1..=60, &mut to.takeover_s)
 }
 
 /// Every key, so that the text still says the same when a default changes.
@@ -179,7 +184,8 @@ fn print(scenario: &Scenario) -> String {
          [weather]\ncloudiness_pct = {:?}\nwind_pct = {:?}\nsun_altitude_deg = {:?}\nsun_azimuth_deg = {:?}\n\n\
          [ego]\n{lane}s_m = {:?}\n\n\
          [car]\nabs = {}\nesc = {}\n\n\
-         [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n",
+         [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n\
+         least_intervention_kmh = {:?}\ntakeover_s = {}\n",
         traffic.cars,
         traffic.motorcycles,
         traffic.bicycles,
@@ -196,6 +202,8 @@ fn print(scenario: &Scenario) -> String {
         rules.max_seconds,
         rules.brake_threshold,
         rules.steer_threshold,
+        rules.least_intervention_kmh,
+        rules.takeover_s,
     )
 }
 
@@ -228,6 +236,7 @@ mod tests {
         for seed in [0, 1, 7, u64::MAX / 2, u64::MAX] {
             let mut scenario = Scenario::default_for("a \"map\" of its own", seed);
             scenario.car.abs = seed % 2 == 0;
+            (scenario.rules.least_intervention_kmh, scenario.rules.takeover_s) = (7.5, 1 + (seed % 60) as u32);
             assert_eq!(Scenario::from_toml(&scenario.to_toml()), Ok(scenario));
         }
     }
@@ -238,6 +247,10 @@ mod tests {
         assert!(unit.starts_with("line 5: unknown field `sun_altitude_rad`, expected"), "{unit}");
         let range = refused("= 30", "= 95");
         assert_eq!(range, "line 5: weather.sun_altitude_deg is 95, expected at least -90 and at most 90");
+        let takeover = refused("[ego]", "[rules]\ntakeover_s = 0\n\n[ego]");
+        assert_eq!(takeover, "line 8: rules.takeover_s is 0, expected at least 1 and at most 60");
+        let least = refused("[ego]", "[rules]\nleast_intervention_kmh = -1\n\n[ego]");
+        assert_eq!(least, "line 8: rules.least_intervention_kmh is -1, expected at least 0 and at most 130");
         let kind = refused("= 30", "= \"high\"");
         assert!(kind.starts_with("line 5: ") && !kind.contains('\n'), "{kind}");
         let number = refused("= 4.5", "= nan");

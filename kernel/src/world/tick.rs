@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::arbiter::After;
 use crate::controls::{Controls, TickInput};
 use crate::ego;
 use crate::events::EventKind;
@@ -168,7 +169,9 @@ impl World {
         let limit_mps = ego.route.limit_mps(network, &self.scenario);
         let wrong_way = watch::wrong_way(network, car, tick);
         run.watch.rules(limit_mps, self.physics.off_road(), wrong_way, &mut log);
-        if run.arbiter.judge(tick, collided, speed_mps, &self.scenario.rules) {
+        let in_junction = network.lanes[ego.route.lanes[0] as usize].junction.is_some();
+        let after = After { collided, in_junction, speed_mps };
+        if run.arbiter.judge(tick, &after, &self.scenario.rules) {
             log.note(EventKind::Ended);
         }
     }

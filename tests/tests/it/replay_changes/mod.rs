@@ -262,6 +262,8 @@ fn a_changed_world_diverges_although_everything_fits() {
         ("limit", |log| log.manifest.scenario.rules.max_speed_kmh -= 1.0),
         ("brake threshold", |log| log.manifest.scenario.rules.brake_threshold += 0.01),
         ("steering threshold", |log| log.manifest.scenario.rules.steer_threshold += 0.01),
+        ("least speed", |log| log.manifest.scenario.rules.least_intervention_kmh += 1.0),
+        ("takeover", |log| log.manifest.scenario.rules.takeover_s += 1),
         ("time", |log| log.manifest.scenario.rules.max_seconds += 1),
         ("jaywalks", |log| log.manifest.scenario.traffic.jaywalks_per_min += 0.5),
         ("seed", |log| log.manifest.scenario.seed += 1),
