@@ -7,12 +7,18 @@ use glam::{Vec2, Vec3};
 use kernel::map::bake;
 use kernel::scene::ActorKind;
 use kernel::time::{Tick, seconds};
-use kernel::traffic::{Body, Obstacle, Surroundings, Traffic, TrafficCounts};
+use kernel::traffic::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts};
 use kernel::{Controls, RoadNetwork};
 
 const LANE_M: f64 = 3.5;
-const NOBODY: TrafficCounts =
-    TrafficCounts { cars: 0, motorcycles: 0, bicycles: 0, pedestrians: 0, jaywalks_per_min: 0.0 };
+const NOBODY: TrafficCounts = TrafficCounts {
+    cars: 0,
+    motorcycles: 0,
+    bicycles: 0,
+    pedestrians: 0,
+    jaywalks_per_min: 0.0,
+    drivers: Population::USUAL,
+};
 const FAR: Vec3 = Vec3::new(1e5, 0.0, 0.0);
 
 /// A road with so many lanes to the left (the other direction) and right, and its geometry.

@@ -3,7 +3,7 @@
 use crate::car::CarSetup;
 use crate::map::{self, LaneKind};
 use crate::rng::{self, Stream};
-use crate::traffic::TrafficCounts;
+use crate::traffic::{Population, TrafficCounts};
 use crate::weather::Weather;
 
 use super::fields::{EgoStart, Rules, Scenario};
@@ -70,5 +70,5 @@ fn counts(actors: f32, jaywalks_per_min: f32) -> TrafficCounts {
     let share = |share: f32| (actors * share) as u16;
     let (motorcycles, bicycles, pedestrians) = (share(0.05), share(0.1), share(0.4));
     let cars = actors as u16 - motorcycles - bicycles - pedestrians;
-    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min }
+    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min, drivers: Population::USUAL }
 }

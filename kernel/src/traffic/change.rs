@@ -19,8 +19,6 @@ use super::sideways::{beside, drift};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
-/// How much the others' accelerations count.
-const POLITENESS: f32 = 0.3;
 /// Acceleration that a change has to gain, m/s².
 const THRESHOLD_MPS2: f32 = 0.2;
 /// Nobody has to brake harder for one who changes, m/s².
@@ -234,7 +232,7 @@ impl View<'_> {
         };
         let new = loses(self.behind(index, there.lane, there.s_m), there.lane, gap(ahead));
         let old = loses(self.behind(index, vehicle.lane, vehicle.s_m), vehicle.lane, here_ahead);
-        own - POLITENESS * (new - old) + self.route_mps2(vehicle, plan, there.lane)
+        own - self.politeness * (new - old) + self.route_mps2(vehicle, plan, there.lane)
     }
 
     /// What of the ego car and loose actors is in the way of a vehicle, as (gap, speed).

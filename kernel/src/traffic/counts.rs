@@ -5,6 +5,8 @@ use std::fmt;
 use crate::actor::ActorKind;
 use crate::state;
 
+use super::population::Population;
+
 state! {
     /// How many actors of each kind there are, and how they behave.
     #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +21,8 @@ state! {
         pub pedestrians: u16,
         /// Mean number of times a minute that anyone walking beside a road steps onto it, of all together.
         pub jaywalks_per_min: f32,
+        /// What drivers are like.
+        pub drivers: Population,
     }
 }
 

@@ -59,6 +59,8 @@ pub(super) struct View<'a> {
     pub map: &'a MapData,
     pub ways: &'a Ways,
     pub seed: u64,
+    /// How much the others count for who changes lanes.
+    pub politeness: f32,
     pub lights: &'a [(LightPhase, Tick)],
     pub vehicles: &'a [Vehicle],
     pub drivers: &'a [Driver],

@@ -83,6 +83,7 @@ impl Sight {
             map: actors.map(),
             ways: &actors.ways,
             seed: actors.seed,
+            politeness: actors.counts.drivers.politeness,
             lights: &self.lights,
             vehicles: &actors.state.vehicles,
             drivers: &actors.drivers,

@@ -163,7 +163,7 @@ impl Spawner<'_> {
 
     fn vehicle(&mut self, kind: ActorKind, most_mps: f32, (lane, s_m): (u32, f32)) -> bool {
         let id = self.next_id();
-        let driver = driver(self.seed, id, kind);
+        let driver = driver(&self.counts.drivers, self.seed, id, kind);
         let half_m = driver.size_m.x * 0.5;
         let way = &self.map.lanes[lane as usize];
         let end_m = way.stop.map_or(way.length_m, |stop| stop.s_m.min(way.length_m));

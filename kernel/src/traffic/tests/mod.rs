@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Body, Obstacle, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, WalkerMode};
+use super::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, WalkerMode};
 use crate::controls::Controls;
 use crate::events::EventKind;
 use crate::map::{RoadNetwork, StopKind, bundled};
@@ -22,7 +22,7 @@ fn counts(actors: u16) -> TrafficCounts {
     let share = |pct: u16| actors * pct / 100;
     let (motorcycles, bicycles, pedestrians) = (share(5), share(10), share(40));
     let cars = actors - motorcycles - bicycles - pedestrians;
-    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min: 2.0 }
+    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min: 2.0, drivers: Population::USUAL }
 }
 
 fn car_at(position: Vec3, heading_rad: f32) -> Obstacle {

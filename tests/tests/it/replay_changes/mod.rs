@@ -266,6 +266,7 @@ fn a_changed_world_diverges_although_everything_fits() {
         ("takeover", |log| log.manifest.scenario.rules.takeover_s += 1),
         ("time", |log| log.manifest.scenario.rules.max_seconds += 1),
         ("jaywalks", |log| log.manifest.scenario.traffic.jaywalks_per_min += 0.5),
+        ("headway", |log| log.manifest.scenario.traffic.drivers.headway_s[1] += 0.1),
         ("seed", |log| log.manifest.scenario.seed += 1),
         ("start", |log| log.manifest.scenario.ego.s_m += 0.5),
         ("helpers of the car", |log| log.manifest.scenario.car.esc = false),
