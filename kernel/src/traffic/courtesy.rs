@@ -18,6 +18,8 @@ const GIVE_MPS2: f32 = 1.5;
 /// Who signals is let in from a gap of so much on, metres and seconds.
 const ASKED_M: f32 = 6.0;
 const ASKED_S: f32 = 1.2;
+/// Nobody stands longer for it, s.
+const PATIENT_S: u8 = 10;
 /// Nobody slows down by more than this for it, m/s.
 const SLOWER_MPS: f32 = 5.0;
 
@@ -26,7 +28,7 @@ impl View<'_> {
     pub(super) fn lets_in(&self, index: usize, plan: &Plan) -> f32 {
         let vehicle = &self.vehicles[index];
         let busy = vehicle.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0 || vehicle.manoeuvre != Manoeuvre::Keep;
-        if self.asking.is_empty() || busy {
+        if self.asking.is_empty() || busy || vehicle.stuck_s >= PATIENT_S {
             return f32::MAX;
         }
         let driver = &self.drivers[index];
