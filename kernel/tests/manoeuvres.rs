@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use kernel::map::bake;
-use kernel::scene::ActorKind;
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts};
 use kernel::{Controls, RoadNetwork};
@@ -84,14 +83,14 @@ fn passes_of_bicycles(network: &Arc<RoadNetwork>, counts: TrafficCounts, seed: u
     let mut before: Vec<Vec<f32>> = Vec::new();
     drive(&mut traffic, car_at(FAR), seconds(60 * minutes), |traffic, _| {
         let bodies = traffic.bodies();
-        let bicycles = bodies.iter().filter(|b| b.kind == ActorKind::Bicycle);
+        let bicycles = bodies.iter().filter(|b| b.kind.is_pedalled());
         let now: Vec<Vec<f32>> = bicycles
             .map(|bicycle| {
                 let ahead = |other: &Body| {
                     let at = seen_from(bicycle, other.position);
                     let half = (other.kind.size_m() + bicycle.kind.size_m()).truncate() * 0.5;
                     let along = (other.rotation * Vec3::X).dot(bicycle.rotation * Vec3::X) > 0.5;
-                    if along && other.kind != ActorKind::Bicycle && at.x.abs() < half.x && at.y.abs() < 6.0 {
+                    if along && !other.kind.is_pedalled() && at.x.abs() < half.x && at.y.abs() < 6.0 {
                         least_m = least_m.min(at.y.abs() - half.y);
                     }
                     if along && at.y.abs() < 6.0 { at.x } else { f32::NAN }

@@ -66,9 +66,16 @@ pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKin
     let more = cars - drawn(Population::USUAL.speed_share, 0);
     let (limit_share, top_mps, accel_mps2, from_kerb_m) = match kind {
         ActorKind::Bicycle => (1.0, between(3.5, 6.0, t(0)), 0.9, Some(0.6)),
+        // The load makes it slower off the mark.
+        ActorKind::CargoBike => (1.0, between(3.5, 5.5, t(0)), 0.7, Some(0.65)),
+        // 125 cm³.
+        ActorKind::Scooter => (between(0.85, 1.05, t(0)) + more, 26.0, 1.8, Some(1.1)),
         ActorKind::Motorcycle => (between(0.9, 1.1, t(0)) + more, 40.0, 2.2, Some(1.2)),
         ActorKind::Truck | ActorKind::Bus => (between(0.8, 0.95, t(0)) + more, 25.0, 1.0, None),
-        ActorKind::Car | ActorKind::Pedestrian => (cars, 40.0, between(1.3, 2.0, t(1)), None),
+        ActorKind::Van => (cars, 38.0, between(1.1, 1.6, t(1)), None),
+        ActorKind::Car | ActorKind::Suv | ActorKind::Emergency | ActorKind::Pedestrian => {
+            (cars, 40.0, between(1.3, 2.0, t(1)), None)
+        }
     };
     Driver {
         limit_share,
@@ -101,8 +108,18 @@ fn variant(seed: u64, id: u16) -> u32 {
 mod tests {
     use super::*;
 
-    const KINDS: [ActorKind; 5] =
-        [ActorKind::Car, ActorKind::Truck, ActorKind::Bus, ActorKind::Motorcycle, ActorKind::Bicycle];
+    const KINDS: [ActorKind; 10] = [
+        ActorKind::Car,
+        ActorKind::Truck,
+        ActorKind::Bus,
+        ActorKind::Motorcycle,
+        ActorKind::Bicycle,
+        ActorKind::Van,
+        ActorKind::Suv,
+        ActorKind::Scooter,
+        ActorKind::CargoBike,
+        ActorKind::Emergency,
+    ];
 
     #[test]
     fn drivers_are_drawn_from_the_ranges_of_their_population() {
@@ -114,7 +131,7 @@ mod tests {
                 let (usual, hasty) = (driver(&Population::USUAL, 7, id, kind), driver(&hasty, 7, id, kind));
                 assert!((1.0..=1.8).contains(&usual.headway_s) && (0.5..=0.8).contains(&hasty.headway_s));
                 let faster = hasty.limit_share - usual.limit_share;
-                assert!(kind == ActorKind::Bicycle && faster == 0.0 || faster > 0.15, "{kind:?}: {faster}");
+                assert!(kind.is_pedalled() && faster == 0.0 || faster > 0.15, "{kind:?}: {faster}");
             }
         }
     }

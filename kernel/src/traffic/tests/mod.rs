@@ -342,7 +342,7 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
     let mut traffic = start(&network, 50, 2);
     let (mut gone, mut asked) = (0, 0);
     for tick in 1..3 * MINUTE {
-        let waiting = traffic.state().walkers.iter().find(|w| w.mode == WalkerMode::Wait).filter(|_| tick % 60 == 0);
+        let waiting = traffic.state().walkers.iter().find(|w| w.mode == WalkerMode::Wait).filter(|_| tick % 10 == 0);
         if let Some(id) = waiting.map(|w| w.id) {
             let body = traffic.bodies().iter().find(|b| b.id == u32::from(id)).expect("it is there");
             let ego = behind(body.position, body.rotation * Vec3::Y, 8.0);
