@@ -9,7 +9,7 @@ state_enum! {
     pub enum ActorKind {
         /// Passenger car.
         Car = 0,
-        /// Lorry or van.
+        /// Lorry or large van.
         Truck = 1,
         /// Bus.
         Bus = 2,
@@ -19,6 +19,16 @@ state_enum! {
         Bicycle = 4,
         /// Person on foot.
         Pedestrian = 5,
+        /// Van or people carrier.
+        Van = 6,
+        /// Sport utility vehicle.
+        Suv = 7,
+        /// Motor scooter with its rider.
+        Scooter = 8,
+        /// Bicycle with a box before its rider.
+        CargoBike = 9,
+        /// Patrol car or ambulance on a van's body, without siren.
+        Emergency = 10,
     }
 }
 
@@ -32,6 +42,53 @@ impl ActorKind {
             Self::Motorcycle => Vec3::new(2.1, 0.8, 1.6),
             Self::Bicycle => Vec3::new(1.8, 0.6, 1.75),
             Self::Pedestrian => Vec3::new(0.5, 0.6, 1.75),
+            Self::Van => Vec3::new(4.9, 1.9, 2.0),
+            Self::Suv => Vec3::new(4.5, 1.9, 1.65),
+            Self::Scooter => Vec3::new(1.9, 0.75, 1.6),
+            Self::CargoBike => Vec3::new(2.5, 0.7, 1.75),
+            Self::Emergency => Vec3::new(4.9, 1.9, 2.25),
         }
+    }
+
+    /// Mass with whom it carries, kg.
+    pub fn mass_kg(self) -> f32 {
+        match self {
+            Self::Car => 1400.0,
+            Self::Truck => 7000.0,
+            Self::Bus => 12000.0,
+            Self::Motorcycle => 280.0,
+            Self::Bicycle => 90.0,
+            Self::Pedestrian => 75.0,
+            Self::Van => 2100.0,
+            Self::Suv => 1850.0,
+            Self::Scooter => 200.0,
+            Self::CargoBike => 150.0,
+            Self::Emergency => 2800.0,
+        }
+    }
+
+    /// On foot, not in traffic's lanes.
+    pub fn is_on_foot(self) -> bool {
+        self == Self::Pedestrian
+    }
+
+    /// Pedalled: keeps to the kerb, is passed with room, and is not on motorways.
+    pub fn is_pedalled(self) -> bool {
+        matches!(self, Self::Bicycle | Self::CargoBike)
+    }
+
+    /// A motorcycle of any kind.
+    pub fn is_motorcycle(self) -> bool {
+        matches!(self, Self::Motorcycle | Self::Scooter)
+    }
+
+    /// Lorry or bus: long and heavy.
+    pub fn is_heavy(self) -> bool {
+        matches!(self, Self::Truck | Self::Bus)
+    }
+
+    /// A motor vehicle with four wheels or more.
+    pub fn is_car_or_heavier(self) -> bool {
+        !self.is_on_foot() && !self.is_pedalled() && !self.is_motorcycle()
     }
 }

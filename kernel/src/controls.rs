@@ -34,8 +34,22 @@ impl Controls {
     pub const REVERSE: u8 = 2;
     /// The "I see the hazard" button.
     pub const SEEN: u8 = 4;
-    /// Every flag with a meaning; others are refused when a log is read.
-    pub const ALL_FLAGS: u8 = 7;
+    /// Indicates to the left.
+    pub const INDICATE_LEFT: u8 = 8;
+    /// Indicates to the right; together with the left one the hazard lights.
+    pub const INDICATE_RIGHT: u8 = 16;
+    /// Sounds the horn.
+    pub const HORN: u8 = 32;
+    /// Headlights on.
+    pub const LIGHTS: u8 = 64;
+    /// Wipers on.
+    pub const WIPERS: u8 = 128;
+    /// What belongs to the steering wheel.
+    pub const INDICATORS: u8 = Self::INDICATE_LEFT | Self::INDICATE_RIGHT;
+    /// What belongs to whoever has the pedals, beside hand brake and gear.
+    pub const SIGNALS: u8 = Self::HORN | Self::LIGHTS | Self::WIPERS;
+    /// Every flag with a meaning: all bits of a byte.
+    pub const ALL_FLAGS: u8 = u8::MAX;
 
     /// From fractions: steer in [-1, 1] positive to the right, pedals in [0, 1]; values beyond are
     /// clamped and NaN counts as 0.

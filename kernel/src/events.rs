@@ -69,7 +69,8 @@ state! {
         pub speed_mps: f32,
         /// Speed limit, m/s; at most [`Rules::max_speed_kmh`](crate::scenario::Rules).
         pub limit_mps: f32,
-        /// Phase of the next traffic light within 50 m on the route.
+        /// Phase of the next traffic light on the route, within 50 m or from where people have to be able to see it:
+        /// 84 m at 50 km/h.
         pub light: Option<LightPhase>,
         /// Distance to its stop line in whole metres; 0 when there is none.
         pub light_distance_m: u16,

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::ego;
 use crate::events::{Hud, RouteArrow};
-use crate::map::{LaneId, LaneKind, LightGroupId, RoadNetwork, StopKind, Turn};
+use crate::map::{LaneId, LaneKind, LightGroupId, Projection, RoadNetwork, StopKind, Turn};
 use crate::rng::{self, Stream};
 use crate::scenario::Scenario;
 use crate::time::Tick;
@@ -14,14 +14,22 @@ use crate::{ops, signals, state};
 pub const HORIZON_M: f32 = 250.0;
 /// How far from the edge of its lane the car may be until the route is planned anew, metres.
 const STRAY_M: f32 = 0.6;
-/// How far from the edge of its lane the car may be while the nearest one leads the other way, metres.
+/// Lanes that lead where the car heads are looked for within this from their edges, metres: over the lanes for the other
+/// direction, on which it may be. Where there are none the nearest one is taken, but not before the car is so far from
+/// the edge of its own.
 const LOST_M: f32 = 8.0;
 /// Radius in which a new lane is looked for, metres.
 const SEARCH_M: f32 = 50.0;
 /// Distance of the place that the HUD's arrow points to, metres.
 const ARROW_M: f32 = 12.0;
-/// Distance within which the HUD shows a light, metres.
+/// The HUD shows a light within this, metres.
 const LIGHT_M: f32 = 50.0;
+/// And from farther away where people have to be able to see it: the least sight distances of the MUTCD (2009, table
+/// 4D-2: 82 m at 48 km/h, 165 m at 80 km/h) are the way in this time, s, and that of braking by so much, m/s².
+const READ_S: f32 = 3.8;
+const READ_BRAKE_MPS2: f32 = 3.05;
+/// Then the line is not farther to the side than this angle, radians: 30 degrees.
+const SIGHT_RAD: f32 = core::f32::consts::FRAC_PI_6;
 /// From the middle of the car to its front bumper, metres.
 const NOSE_M: f32 = ego::FRONT_M - ego::CENTRE_M.x;
 
@@ -75,14 +83,16 @@ impl Route {
         strayed
     }
 
-    /// Goes on from the nearest lane, unless that leads the other way and the car may come back.
+    /// Goes on from the nearest lane that leads where the car heads, if that is nearer than its own, so that it may leave
+    /// its lane for the one of the other direction and come back; else from the nearest one of all.
     fn plan_anew(&mut self, network: &RoadNetwork, middle: Vec3, heading_rad: f32, stray_m: f32) -> bool {
-        let nearest = network.nearest_lane(middle, LaneKind::Driving, Some(heading_rad), SEARCH_M);
-        let Some(place) = nearest.filter(|place| place.lane != self.lanes[0]) else { return false };
-        let direction = network.lane_point(place.lane, place.s_m).heading_rad;
-        if ops::cos(direction - heading_rad) < 0.5 && stray_m < LOST_M {
-            return false;
-        }
+        let beyond_m = |p: &Projection| p.distance_m - network.lane_point(p.lane, p.s_m).half_width_m;
+        let found = match network.nearest_leading(middle, heading_rad, LOST_M) {
+            Some(place) => Some(place).filter(|place| beyond_m(place) < stray_m),
+            None if stray_m < LOST_M => None,
+            None => network.nearest_lane(middle, LaneKind::Driving, Some(heading_rad), SEARCH_M),
+        };
+        let Some(place) = found.filter(|place| place.lane != self.lanes[0]) else { return false };
         self.lanes.clear();
         self.lanes.push(place.lane);
         self.s_m = place.s_m;
@@ -161,14 +171,27 @@ impl Route {
 
     /// What the HUD shows to a driver at `middle`.
     pub fn hud(&self, network: &RoadNetwork, scenario: &Scenario, tick: Tick, car: &ego::Ego) -> Hud {
-        let light = self.light_ahead(network).filter(|light| light.distance_m <= LIGHT_M);
+        let limit_mps = self.limit_mps(network, scenario);
+        let read_m = limit_mps * READ_S + limit_mps * limit_mps / (2.0 * READ_BRAKE_MPS2);
+        let shown = |light: &LightAhead| {
+            light.distance_m <= LIGHT_M || light.distance_m <= read_m && self.is_in_sight(network, light, car)
+        };
+        let light = self.light_ahead(network).filter(shown);
         Hud {
             speed_mps: car.speed_mps(),
-            limit_mps: self.limit_mps(network, scenario),
+            limit_mps,
             light: light.map(|light| signals::phase(network, scenario.seed, light.group, tick).0),
             light_distance_m: light.map_or(0, |light| light.distance_m as u16),
             arrow: self.arrow(network, car),
         }
+    }
+
+    /// Whether a light is that of the next junction and the way there about straight on.
+    fn is_in_sight(&self, network: &RoadNetwork, light: &LightAhead, car: &ego::Ego) -> bool {
+        let mut before = self.lanes.iter().take_while(|lane| **lane != light.lane);
+        let next = before.all(|lane| network.lanes[*lane as usize].junction.is_none());
+        let to = self.point(network, light.distance_m + NOSE_M) - car.middle();
+        next && ops::wrap_angle(ops::atan2(to.y, to.x) - car.heading_rad()).abs() <= SIGHT_RAD
     }
 
     fn arrow(&self, network: &RoadNetwork, car: &ego::Ego) -> RouteArrow {
@@ -182,3 +205,6 @@ impl Route {
         RouteArrow { turn, distance_m: distance_m as u16, bearing_deg }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -24,6 +24,8 @@ state! {
         pub speed_mps: f32,
         /// Mean angle of the front wheels, radians, positive to the right.
         pub wheel_angle_rad: f32,
+        /// Its lamps: bit set of [`lamps`].
+        pub lamps: u8,
     }
 }
 
@@ -56,8 +58,10 @@ pub mod lamps {
     pub const BRAKE: u8 = 1;
     /// Indicates to the left; whoever draws it lets it flash.
     pub const LEFT: u8 = 2;
-    /// Indicates to the right.
+    /// Indicates to the right; both sides are the hazard lights.
     pub const RIGHT: u8 = 4;
+    /// Headlights on.
+    pub const HEADLIGHTS: u8 = 8;
 }
 
 state! {

@@ -115,7 +115,7 @@ fn the_hud_leads_to_the_light_and_shows_it() {
         assert!(next.arrow.distance_m <= hud.arrow.distance_m);
         assert!(next.arrow.bearing_deg % 5 == 0 && next.arrow.bearing_deg.abs() <= 15, "{next:?}");
         if next.light.is_some() && next.light_distance_m > 0 {
-            assert!(next.light_distance_m <= 50 && next.arrow.distance_m.abs_diff(next.light_distance_m) <= 3);
+            assert!(next.light_distance_m <= 85 && next.arrow.distance_m.abs_diff(next.light_distance_m) <= 3);
             shown += 1;
         }
         hud = next;

@@ -4,15 +4,20 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use kernel::RoadNetwork;
 use kernel::map::bake;
-use kernel::scene::ActorKind;
 use kernel::time::{Tick, seconds};
-use kernel::traffic::{Body, Obstacle, Surroundings, Traffic, TrafficCounts};
+use kernel::traffic::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts};
+use kernel::{Controls, RoadNetwork};
 
 const LANE_M: f64 = 3.5;
-const NOBODY: TrafficCounts =
-    TrafficCounts { cars: 0, motorcycles: 0, bicycles: 0, pedestrians: 0, jaywalks_per_min: 0.0 };
+const NOBODY: TrafficCounts = TrafficCounts {
+    cars: 0,
+    motorcycles: 0,
+    bicycles: 0,
+    pedestrians: 0,
+    jaywalks_per_min: 0.0,
+    drivers: Population::USUAL,
+};
 const FAR: Vec3 = Vec3::new(1e5, 0.0, 0.0);
 
 /// A road with so many lanes to the left (the other direction) and right, and its geometry.
@@ -59,7 +64,7 @@ fn car_at(position: Vec3) -> Obstacle {
 
 fn drive(traffic: &mut Traffic, ego: Obstacle, ticks: Tick, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in 1..=ticks {
-        traffic.step(&Surroundings { tick, ego, loose: &[] });
+        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[] });
         each(traffic, tick);
     }
 }
@@ -78,14 +83,14 @@ fn passes_of_bicycles(network: &Arc<RoadNetwork>, counts: TrafficCounts, seed: u
     let mut before: Vec<Vec<f32>> = Vec::new();
     drive(&mut traffic, car_at(FAR), seconds(60 * minutes), |traffic, _| {
         let bodies = traffic.bodies();
-        let bicycles = bodies.iter().filter(|b| b.kind == ActorKind::Bicycle);
+        let bicycles = bodies.iter().filter(|b| b.kind.is_pedalled());
         let now: Vec<Vec<f32>> = bicycles
             .map(|bicycle| {
                 let ahead = |other: &Body| {
                     let at = seen_from(bicycle, other.position);
                     let half = (other.kind.size_m() + bicycle.kind.size_m()).truncate() * 0.5;
                     let along = (other.rotation * Vec3::X).dot(bicycle.rotation * Vec3::X) > 0.5;
-                    if along && other.kind != ActorKind::Bicycle && at.x.abs() < half.x && at.y.abs() < 6.0 {
+                    if along && !other.kind.is_pedalled() && at.x.abs() < half.x && at.y.abs() < 6.0 {
                         least_m = least_m.min(at.y.abs() - half.y);
                     }
                     if along && at.y.abs() < 6.0 { at.x } else { f32::NAN }
@@ -120,6 +125,44 @@ fn bicycles_are_passed_on_the_lane_beside() {
     let (passes, least_m) = passes_of_bicycles(&straight(0, 2, 1500.0), counts, 1, 10);
     println!("{passes} passes, at least {least_m} m");
     assert!(passes >= 20 && least_m >= 1.5, "{passes} passes at {least_m} m");
+}
+
+/// By how much a lone car falls back behind the ego car, which drives at its speed beside and ahead of it, in five
+/// seconds, metres.
+fn falls_back_m(seed: u64, indicates: bool) -> f32 {
+    let network = straight(0, 2, 1500.0);
+    let mut traffic = Traffic::spawn(&TrafficCounts { cars: 1, ..NOBODY }, seed, network.ways(), FAR);
+    let place = |traffic: &Traffic| traffic.bodies()[0].position;
+    let mut tick = 0;
+    let mut step = |traffic: &mut Traffic, ego, ego_flags| {
+        tick += 1;
+        traffic.step(&Surroundings { tick, ego, ego_flags, loose: &[] });
+    };
+    while traffic.bodies()[0].velocity_mps.x < 8.0 || place(&traffic).x > 1000.0 {
+        step(&mut traffic, car_at(FAR), 0);
+    }
+    let on_left = place(&traffic).y > -LANE_M as f32;
+    let (aside_m, flag) = if on_left { (-LANE_M, Controls::INDICATE_LEFT) } else { (LANE_M, Controls::INDICATE_RIGHT) };
+    let velocity_mps = Vec3::X * traffic.bodies()[0].velocity_mps.x;
+    let mut ego = Obstacle { velocity_mps, ..car_at(place(&traffic) + Vec3::new(8.0, aside_m as f32, 0.0)) };
+    for _ in 0..seconds(5) {
+        step(&mut traffic, ego, if indicates { flag } else { 0 });
+        ego.position += velocity_mps / 60.0;
+    }
+    ego.position.x - place(&traffic).x - 8.0
+}
+
+#[test]
+fn about_every_second_opens_a_gap_for_the_ego_car_that_indicates() {
+    let mut courteous = 0;
+    for seed in 0..60 {
+        let (silent_m, asked_m) = (falls_back_m(seed, false), falls_back_m(seed, true));
+        assert!(asked_m >= silent_m - 0.01, "{silent_m} {asked_m}");
+        courteous += u32::from(asked_m > silent_m + 3.0);
+    }
+    println!("{courteous} of 60 open a gap");
+    // Half of them, or a little more where a new one is drawn within these seconds; of 60 with 99.9 %.
+    assert!((18..=53).contains(&courteous), "{courteous} of 60");
 }
 
 /// For each vehicle the seconds from when it came near a car that stands in its lane until it was past, s.

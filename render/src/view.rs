@@ -70,7 +70,8 @@ mod tests {
     use super::*;
 
     fn view() -> View {
-        let ego = EgoScene { position: Vec3::ZERO, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0 };
+        let ego =
+            EgoScene { position: Vec3::ZERO, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0, lamps: 0 };
         View::new(&Camera::driver(256, 128), &ego)
     }
 

@@ -4,8 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
-use kernel::arbiter::TAKEOVER_TICKS;
-use kernel::time::{CLIP_FRAMES, CLIP_STRIDE_TICKS, CLIP_TICKS, Tick};
+use kernel::time::{CLIP_FRAMES, CLIP_STRIDE_TICKS, CLIP_TICKS, Tick, seconds};
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::{CaseInfo, Error, Log, Mark, Recording, Replayer, RunSummary};
@@ -35,7 +34,7 @@ impl Case {
         let (from, to) = (*window.start(), *window.end());
         let mut replayer = Replayer::new(log, network.clone())?;
         replayer.seek(start_of(log, from, to))?;
-        let end = log.last_tick().min(to + TAKEOVER_TICKS);
+        let end = log.last_tick().min(to + seconds(log.manifest.scenario.rules.takeover_s));
         let scenes = scenes(&mut replayer, window)?;
         replayer.run_to(end)?;
         let info = CaseInfo { source: recording.source(), from, to };

@@ -9,7 +9,7 @@
 use kernel::time::{TICK_HZ, Tick};
 
 /// Version of the layout that is written; the names of all schemas end with it.
-pub const FORMAT_VERSION: u16 = 2;
+pub const FORMAT_VERSION: u16 = 3;
 /// The oldest version that is read: it has no seals, holds a foreign map in its manifest, and names its kernel by a
 /// number.
 pub(crate) const OLDEST_VERSION: u16 = 1;

@@ -239,7 +239,10 @@ impl Log {
                 self.notes.extend(message.parse(Channel::Notes, wire::notes)?);
                 self.in_order(self.notes.iter().map(|note| note.tick), before, message)?;
             }
-            Channel::Scenes => self.scenes = message.parse(Channel::Scenes, wire::scenes)?,
+            Channel::Scenes => {
+                let format = self.manifest.format;
+                self.scenes = message.parse(Channel::Scenes, |payload| wire::scenes(payload, format))?;
+            }
             Channel::End => {
                 (self.annotation, self.summary) = message.parse(Channel::End, wire::end)?;
                 if self.summary.is_none() {

@@ -62,6 +62,11 @@ struct ManifestWire {
     case: Option<([u8; 32], Tick, Tick)>,
 }
 
+/// The version of the layout since which a snapshot has the ego car's lamps, and where: after the tick, position, rotation,
+/// speed and wheel angle.
+const EGO_LAMPS_SINCE: u16 = 3;
+const EGO_LAMPS_AT: usize = 8 + 9 * 4;
+
 /// As version 1 of the layout had it.
 #[derive(Encode, Decode)]
 struct ManifestWire1 {
@@ -361,15 +366,20 @@ pub(crate) fn scenes_bytes(scenes: &[SceneSnapshot]) -> Vec<u8> {
     encode((lengths, columns::stack(&rows)))
 }
 
-pub(crate) fn scenes(bytes: &[u8]) -> Result<Vec<SceneSnapshot>, Wrong> {
+pub(crate) fn scenes(bytes: &[u8], format: u16) -> Result<Vec<SceneSnapshot>, Wrong> {
     let (lengths, stacked): (Vec<usize>, Vec<u8>) = decode(bytes)?;
-    columns::unstack(&lengths, &stacked)?.iter().map(|row| state("scene", row)).collect()
+    let mut rows = columns::unstack(&lengths, &stacked)?;
+    if format < EGO_LAMPS_SINCE {
+        rows.iter_mut().filter(|row| row.len() > EGO_LAMPS_AT).for_each(|row| row.insert(EGO_LAMPS_AT, 0));
+    }
+    rows.iter().map(|row| state("scene", row)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::FORMAT_VERSION;
+    use kernel::scene::EgoScene;
     use proptest::prelude::*;
 
     #[test]
@@ -420,11 +430,31 @@ mod tests {
                 bytes.iter_mut().for_each(|b| *b &= 7);
             }
             for format in [OLDEST_VERSION, FORMAT_VERSION] {
-                let _ = (manifest(&bytes, format), keyframe(&bytes, b"before", format));
+                let _ = (manifest(&bytes, format), keyframe(&bytes, b"before", format), scenes(&bytes, format));
             }
             let _ = (block(&bytes), happenings(&bytes));
-            let _ = (masks(&bytes), end(&bytes), scenes(&bytes), notes(&bytes));
+            let _ = (masks(&bytes), end(&bytes), notes(&bytes));
         }
+    }
+
+    #[test]
+    fn before_version_3_the_ego_car_had_no_lamps() {
+        let ego = EgoScene {
+            position: [1.0, 2.0, 3.0].into(),
+            rotation: Default::default(),
+            speed_mps: 4.0,
+            wheel_angle_rad: 0.5,
+            lamps: 7,
+        };
+        let weather = kernel::Scenario::default_for("field", 1).weather;
+        let scene = SceneSnapshot { tick: 9, ego, actors: Vec::new(), lights: Vec::new(), weather };
+        assert_eq!(scenes(&scenes_bytes(&[scene.clone()]), FORMAT_VERSION), Ok(vec![scene.clone()]));
+        let mut row = scene.to_bytes();
+        assert_eq!(row.remove(EGO_LAMPS_AT), 7);
+        let old = encode((vec![row.len()], columns::stack(&[row])));
+        let dark = SceneSnapshot { ego: EgoScene { lamps: 0, ..ego }, ..scene };
+        assert_eq!(scenes(&old, 2), Ok(vec![dark]));
+        assert!(scenes(&old, FORMAT_VERSION).is_err());
     }
 
     #[test]
@@ -461,6 +491,6 @@ mod tests {
         let mut log = crate::testing::sample(1);
         log.manifest.format = FORMAT_VERSION + 1;
         let said = manifest(&manifest_bytes(&log.manifest), FORMAT_VERSION).expect_err("another version");
-        assert_eq!(said, "layout version 3; its schemas are of version 2");
+        assert_eq!(said, "layout version 4; its schemas are of version 3");
     }
 }

@@ -116,7 +116,7 @@ def intervention(state):
 def scene(data):
     state = State(data)
     tick = state.take("Q")
-    state.take("3f4f2f")
+    state.take("3f4f2fB")
     actors = state.list(lambda: state.take("IBI3f4f2fB"))
     lights = state.list(lambda: state.take("B"))
     state.take("4f")

@@ -162,6 +162,7 @@ pub fn scene(moment: u32) -> SceneSnapshot {
             rotation: Quat::from_rotation_z(0.04 * (t % 5.0) - 0.08),
             speed_mps: 8.0,
             wheel_angle_rad: 0.0,
+            lamps: 0,
         },
         actors,
         lights: vec![LightPhase::ALL[moment as usize % 3]],

@@ -72,6 +72,12 @@ impl RoadNetwork {
         self.places().roads().nearest(position, kind, heading_rad, radius_m)
     }
 
+    /// The driving lane nearest to `position` within `radius_m` that leads about where `heading_rad` does (within 60
+    /// degrees).
+    pub fn nearest_leading(&self, position: Vec3, heading_rad: f32, radius_m: f32) -> Option<Projection> {
+        self.places().roads().leading(position, heading_rad, radius_m)
+    }
+
     /// The lanes of `kind` whose area holds `position`, in ascending order of their ids.
     pub fn lanes_at(&self, position: Vec3, kind: LaneKind) -> Vec<Projection> {
         self.places().roads().at(position, kind)

@@ -35,14 +35,7 @@ pub(super) fn free(motion: &Motion) -> RigidBodyBuilder {
 
 /// A solid box of the kind's size and mass.
 pub(super) fn mass(kind: ActorKind) -> MassProperties {
-    let kg = match kind {
-        ActorKind::Car => 1400.0,
-        ActorKind::Truck => 7000.0,
-        ActorKind::Bus => 12000.0,
-        ActorKind::Motorcycle => 280.0,
-        ActorKind::Bicycle => 90.0,
-        ActorKind::Pedestrian => 75.0,
-    };
+    let kg = kind.mass_kg();
     let size = kind.size_m();
     let square = size * size;
     let inertia = Vec3::new(square.y + square.z, square.x + square.z, square.x + square.y) * (kg / 12.0);

@@ -14,6 +14,8 @@ const LONG: usize = 256;
 const CELL_M: f32 = 10.0;
 /// Distances that differ by less tie, and direction decides, metres.
 const TIE_M: f32 = 0.5;
+/// A lane leads where one looks up to this cosine of the angle between them.
+const LEADS_COS: f32 = 0.5;
 
 /// A grid over the lines of lanes.
 #[derive(Debug)]
@@ -62,7 +64,17 @@ impl Roads<'_> {
         heading_rad: Option<f32>,
         radius_m: f32,
     ) -> Option<Projection> {
-        let found = self.around(position, kind, radius_m);
+        self.best(self.around(position, kind, radius_m), heading_rad)
+    }
+
+    /// The driving lane nearest to `position` within `radius_m` that leads about where `heading_rad` does.
+    pub fn leading(&self, position: Vec3, heading_rad: f32, radius_m: f32) -> Option<Projection> {
+        let mut found = self.around(position, LaneKind::Driving, radius_m);
+        found.retain(|p| ops::cos(self.point(p).heading_rad - heading_rad) >= LEADS_COS);
+        self.best(found, Some(heading_rad))
+    }
+
+    fn best(&self, found: Vec<Projection>, heading_rad: Option<f32>) -> Option<Projection> {
         let nearest = found.iter().map(|p| self.beyond_edge(p)).fold(f32::MAX, f32::min);
         let misfit = |p: &Projection| match heading_rad {
             Some(h) => ops::wrap_angle(self.point(p).heading_rad - h).abs(),

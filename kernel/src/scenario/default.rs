@@ -3,7 +3,7 @@
 use crate::car::CarSetup;
 use crate::map::{self, LaneKind};
 use crate::rng::{self, Stream};
-use crate::traffic::TrafficCounts;
+use crate::traffic::{Population, TrafficCounts};
 use crate::weather::Weather;
 
 use super::fields::{EgoStart, Rules, Scenario};
@@ -16,6 +16,8 @@ const ACTORS_PER_KM: f32 = 12.0;
 const MAX_SPEED_KMH: f32 = 50.0;
 /// Longest run, seconds.
 const MAX_SECONDS: u32 = 600;
+/// Longest time after a takeover, seconds: enough to leave a junction and stop.
+const TAKEOVER_S: u32 = 10;
 /// Cloudiness and wind in percent and height of the sun in degrees (paper, section 3).
 const CLOUDS_PCT: [f32; 2] = [0.0, 30.0];
 const WIND_PCT: [f32; 2] = [0.0, 50.0];
@@ -48,6 +50,8 @@ impl Scenario {
                 max_seconds: MAX_SECONDS,
                 brake_threshold: 0.1,
                 steer_threshold: 0.1,
+                least_intervention_kmh: 0.0,
+                takeover_s: TAKEOVER_S,
             },
         }
     }
@@ -66,5 +70,5 @@ fn counts(actors: f32, jaywalks_per_min: f32) -> TrafficCounts {
     let share = |share: f32| (actors * share) as u16;
     let (motorcycles, bicycles, pedestrians) = (share(0.05), share(0.1), share(0.4));
     let cars = actors as u16 - motorcycles - bicycles - pedestrians;
-    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min }
+    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min, drivers: Population::USUAL }
 }

@@ -20,6 +20,10 @@ state! {
         pub brake_threshold: f32,
         /// Steering fraction of the safety driver above which it takes over, (0, 1).
         pub steer_threshold: f32,
+        /// Speed below which the safety driver acts on the car but does not intervene, km/h.
+        pub least_intervention_kmh: f32,
+        /// Longest time that a run goes on after a takeover, seconds.
+        pub takeover_s: u32,
     }
 }
 

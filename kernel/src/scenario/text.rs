@@ -1,6 +1,6 @@
 //! Scenarios as text.
 
-use std::ops::{Bound, RangeBounds};
+use std::ops::{Bound, RangeBounds, RangeInclusive};
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -35,6 +35,9 @@ struct Traffic {
     bicycles: Given<u16>,
     pedestrians: Given<u16>,
     jaywalks_per_min: Given<f32>,
+    speed_share: Given<[f32; 2]>,
+    headway_s: Given<[f32; 2]>,
+    politeness: Given<f32>,
 }
 
 #[derive(Default, Deserialize)]
@@ -67,6 +70,8 @@ struct Rules {
     max_seconds: Given<u32>,
     brake_threshold: Given<f32>,
     steer_threshold: Given<f32>,
+    least_intervention_kmh: Given<f32>,
+    takeover_s: Given<u32>,
 }
 
 impl Scenario {
@@ -104,6 +109,25 @@ impl Reader<'_> {
             return Err(ScenarioError(format!("line {line}: {key} is {value}, expected {range}")));
         }
         *to = value;
+        Ok(())
+    }
+
+    /// Two numbers, the lower one first.
+    fn take_range(
+        &self,
+        key: &str,
+        given: Given<[f32; 2]>,
+        range: RangeInclusive<f32>,
+        to: &mut [f32; 2],
+    ) -> Result<(), ScenarioError> {
+        let Some(given) = given else { return Ok(()) };
+        let [low, high] = *given.get_ref();
+        if !(low <= high && range.contains(&low) && range.contains(&high)) {
+            let (line, range) = (self.line(given.span().start), words(&range));
+            let asked = "expected the lower one first";
+            return Err(ScenarioError(format!("line {line}: {key} is [{low}, {high}], {asked}, each {range}")));
+        }
+        *to = [low, high];
         Ok(())
     }
 }
@@ -148,7 +172,11 @@ fn traffic(reader: &Reader<'_>, given: Traffic, scenario: &mut Scenario) -> Resu
     reader.take("traffic.motorcycles", given.motorcycles, count.clone(), &mut to.motorcycles)?;
     reader.take("traffic.bicycles", given.bicycles, count.clone(), &mut to.bicycles)?;
     reader.take("traffic.pedestrians", given.pedestrians, count, &mut to.pedestrians)?;
-    reader.take("traffic.jaywalks_per_min", given.jaywalks_per_min, 0.0..=60.0, &mut to.jaywalks_per_min)
+    reader.take("traffic.jaywalks_per_min", given.jaywalks_per_min, 0.0..=60.0, &mut to.jaywalks_per_min)?;
+    let drivers = &mut to.drivers;
+    reader.take_range("traffic.speed_share", given.speed_share, 0.5..=1.5, &mut drivers.speed_share)?;
+    reader.take_range("traffic.headway_s", given.headway_s, 0.5..=4.0, &mut drivers.headway_s)?;
+    reader.take("traffic.politeness", given.politeness, 0.0..=1.0, &mut drivers.politeness)
 }
 
 fn weather(reader: &Reader<'_>, given: Weather, scenario: &mut Scenario) -> Result<(), ScenarioError> {
@@ -165,7 +193,10 @@ fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(
     reader.take("rules.max_speed_kmh", given.max_speed_kmh, 5.0..=130.0, &mut to.max_speed_kmh)?;
     reader.take("rules.max_seconds", given.max_seconds, 4..=86_400, &mut to.max_seconds)?;
     reader.take("rules.brake_threshold", given.brake_threshold, threshold.clone(), &mut to.brake_threshold)?;
-    reader.take("rules.steer_threshold", given.steer_threshold, threshold, &mut to.steer_threshold)
+    reader.take("rules.steer_threshold", given.steer_threshold, threshold, &mut to.steer_threshold)?;
+    let least = given.least_intervention_kmh;
+    reader.take("rules.least_intervention_kmh", least, 0.0..=130.0, &mut to.least_intervention_kmh)?;
+    reader.take("rules.takeover_s", given.takeover_s, 1..=60, &mut to.takeover_s)
 }
 
 /// Every key, so that the text still says the same when a default changes.
@@ -175,16 +206,21 @@ fn print(scenario: &Scenario) -> String {
     let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));
     format!(
         "map = {map}\nseed = {seed}\n\n\
-         [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\n\
+         [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\
+         speed_share = {:?}\nheadway_s = {:?}\npoliteness = {:?}\n\n\
          [weather]\ncloudiness_pct = {:?}\nwind_pct = {:?}\nsun_altitude_deg = {:?}\nsun_azimuth_deg = {:?}\n\n\
          [ego]\n{lane}s_m = {:?}\n\n\
          [car]\nabs = {}\nesc = {}\n\n\
-         [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n",
+         [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n\
+         least_intervention_kmh = {:?}\ntakeover_s = {}\n",
         traffic.cars,
         traffic.motorcycles,
         traffic.bicycles,
         traffic.pedestrians,
         traffic.jaywalks_per_min,
+        traffic.drivers.speed_share,
+        traffic.drivers.headway_s,
+        traffic.drivers.politeness,
         weather.cloudiness_pct,
         weather.wind_pct,
         weather.sun_altitude_deg,
@@ -196,6 +232,8 @@ fn print(scenario: &Scenario) -> String {
         rules.max_seconds,
         rules.brake_threshold,
         rules.steer_threshold,
+        rules.least_intervention_kmh,
+        rules.takeover_s,
     )
 }
 
@@ -203,6 +241,7 @@ fn print(scenario: &Scenario) -> String {
 mod tests {
     use super::*;
     use crate::car::CarSetup;
+    use crate::traffic::Population;
 
     /// A map that is not bundled, so that no map has to be baked.
     const TEXT: &str = "map = \"field\"\nseed = 7\n\n[weather]\nsun_altitude_deg = 30\n\n[ego]\nlane = 2\ns_m = 4.5\n";
@@ -228,6 +267,8 @@ mod tests {
         for seed in [0, 1, 7, u64::MAX / 2, u64::MAX] {
             let mut scenario = Scenario::default_for("a \"map\" of its own", seed);
             scenario.car.abs = seed % 2 == 0;
+            scenario.traffic.drivers = Population { speed_share: [0.7, 0.7], headway_s: [0.9, 2.5], politeness: 0.1 };
+            (scenario.rules.least_intervention_kmh, scenario.rules.takeover_s) = (7.5, 1 + (seed % 60) as u32);
             assert_eq!(Scenario::from_toml(&scenario.to_toml()), Ok(scenario));
         }
     }
@@ -238,6 +279,15 @@ mod tests {
         assert!(unit.starts_with("line 5: unknown field `sun_altitude_rad`, expected"), "{unit}");
         let range = refused("= 30", "= 95");
         assert_eq!(range, "line 5: weather.sun_altitude_deg is 95, expected at least -90 and at most 90");
+        let takeover = refused("[ego]", "[rules]\ntakeover_s = 0\n\n[ego]");
+        assert_eq!(takeover, "line 8: rules.takeover_s is 0, expected at least 1 and at most 60");
+        let least = refused("[ego]", "[rules]\nleast_intervention_kmh = -1\n\n[ego]");
+        assert_eq!(least, "line 8: rules.least_intervention_kmh is -1, expected at least 0 and at most 130");
+        let order = refused("[ego]", "[traffic]\nheadway_s = [2, 1]\n\n[ego]");
+        let each = "expected the lower one first, each at least 0.5 and at most 4";
+        assert_eq!(order, format!("line 8: traffic.headway_s is [2, 1], {each}"));
+        let far = refused("[ego]", "[traffic]\nheadway_s = [1, nan]\n\n[ego]");
+        assert_eq!(far, format!("line 8: traffic.headway_s is [1, NaN], {each}"));
         let kind = refused("= 30", "= \"high\"");
         assert!(kind.starts_with("line 5: ") && !kind.contains('\n'), "{kind}");
         let number = refused("= 4.5", "= nan");

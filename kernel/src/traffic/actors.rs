@@ -31,7 +31,7 @@ impl Actors {
             ways: ways.clone(),
             seed,
             counts: *counts,
-            drivers: state.vehicles.iter().map(|v| driver(seed, v.id, v.kind)).collect(),
+            drivers: state.vehicles.iter().map(|v| driver(&counts.drivers, seed, v.id, v.kind)).collect(),
             walker_traits: state.walkers.iter().map(|w| walker_traits(seed, w.id)).collect(),
             places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),
             state,

@@ -27,6 +27,8 @@ pub struct Surroundings<'a> {
     pub tick: Tick,
     /// The ego car.
     pub ego: Obstacle,
+    /// Its controls' flags: traffic sees the indicators and hears the horn.
+    pub ego_flags: u8,
     /// Actors that physics has made loose, by ascending id: they decide nothing, their state stays
     /// as it was, and others see them at these poses.
     pub loose: &'a [Obstacle],

@@ -3,7 +3,6 @@
 //! the next junction is. A change is signalled first. The vehicle then belongs to the other lane, beside
 //! whose middle it starts, and stands in the list of the one it leaves until it is clear of that.
 
-use crate::actor::ActorKind;
 use crate::map_data::{LaneId, Projection};
 use crate::time::Tick;
 
@@ -19,8 +18,6 @@ use super::sideways::{beside, drift};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
-/// How much the others' accelerations count.
-const POLITENESS: f32 = 0.3;
 /// Acceleration that a change has to gain, m/s².
 const THRESHOLD_MPS2: f32 = 0.2;
 /// Nobody has to brake harder for one who changes, m/s².
@@ -186,7 +183,7 @@ impl View<'_> {
         let (from, to) = (&self.ways.lanes[vehicle.lane as usize], &self.ways.lanes[lane as usize]);
         let busy =
             vehicle.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0 || from.zone.is_some() || to.zone.is_some();
-        let bound = vehicle.kind == ActorKind::Bicycle && side != self.ways.kerb;
+        let bound = vehicle.kind.is_pedalled() && side != self.ways.kerb;
         if busy || bound || !Class::of(vehicle.kind).may_use(&self.map.lanes[lane as usize]) {
             return None;
         }
@@ -234,7 +231,7 @@ impl View<'_> {
         };
         let new = loses(self.behind(index, there.lane, there.s_m), there.lane, gap(ahead));
         let old = loses(self.behind(index, vehicle.lane, vehicle.s_m), vehicle.lane, here_ahead);
-        own - POLITENESS * (new - old) + self.route_mps2(vehicle, plan, there.lane)
+        own - self.politeness * (new - old) + self.route_mps2(vehicle, plan, there.lane)
     }
 
     /// What of the ego car and loose actors is in the way of a vehicle, as (gap, speed).
@@ -274,7 +271,7 @@ impl View<'_> {
         let near_m = plan.line.map_or(ROUTE_M, |line| line.hold_m).min(end_m);
         let near = (1.0 - near_m / ROUTE_M).clamp(0.2, 1.0);
         // Bicycles change to the kerb alone.
-        let slow_mps2 = if vehicle.kind == ActorKind::Bicycle { ROUTE_MPS2 } else { 0.0 };
+        let slow_mps2 = if vehicle.kind.is_pedalled() { ROUTE_MPS2 } else { 0.0 };
         slow_mps2 + worth * ROUTE_MPS2 * near
     }
 

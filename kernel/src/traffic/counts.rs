@@ -5,31 +5,35 @@ use std::fmt;
 use crate::actor::ActorKind;
 use crate::state;
 
+use super::population::Population;
+
 state! {
     /// How many actors of each kind there are, and how they behave.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct TrafficCounts {
-        /// Cars, lorries and buses.
+        /// Cars, vans, lorries and buses.
         pub cars: u16,
-        /// Motorcycles.
+        /// Motorcycles and scooters.
         pub motorcycles: u16,
-        /// Bicycles.
+        /// Bicycles, with and without a box.
         pub bicycles: u16,
         /// Pedestrians.
         pub pedestrians: u16,
         /// Mean number of times a minute that anyone walking beside a road steps onto it, of all together.
         pub jaywalks_per_min: f32,
+        /// What drivers are like.
+        pub drivers: Population,
     }
 }
 
 /// Actors that were asked for and found no room on the map: how many of how many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Missing {
-    /// Cars, lorries and buses.
+    /// Cars, vans, lorries and buses.
     pub cars: [u16; 2],
-    /// Motorcycles.
+    /// Motorcycles and scooters.
     pub motorcycles: [u16; 2],
-    /// Bicycles.
+    /// Bicycles, with and without a box.
     pub bicycles: [u16; 2],
     /// Pedestrians.
     pub pedestrians: [u16; 2],
@@ -38,15 +42,15 @@ pub struct Missing {
 impl TrafficCounts {
     /// Who is missing among those who are there.
     pub(super) fn missing(&self, present: impl Iterator<Item = ActorKind> + Clone) -> Missing {
-        let of = |asked: u16, kinds: &[ActorKind]| {
-            let there = present.clone().filter(|kind| kinds.contains(kind)).count();
+        let of = |asked: u16, is: fn(ActorKind) -> bool| {
+            let there = present.clone().filter(|kind| is(*kind)).count();
             [asked.saturating_sub(there as u16), asked]
         };
         Missing {
-            cars: of(self.cars, &[ActorKind::Car, ActorKind::Truck, ActorKind::Bus]),
-            motorcycles: of(self.motorcycles, &[ActorKind::Motorcycle]),
-            bicycles: of(self.bicycles, &[ActorKind::Bicycle]),
-            pedestrians: of(self.pedestrians, &[ActorKind::Pedestrian]),
+            cars: of(self.cars, ActorKind::is_car_or_heavier),
+            motorcycles: of(self.motorcycles, ActorKind::is_motorcycle),
+            bicycles: of(self.bicycles, ActorKind::is_pedalled),
+            pedestrians: of(self.pedestrians, ActorKind::is_on_foot),
         }
     }
 }

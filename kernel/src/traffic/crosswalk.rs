@@ -8,6 +8,7 @@ use crate::rng::{Stream, unit};
 use crate::time::{TICK_HZ, Tick};
 
 use super::hazard::Hazard;
+use super::horn::{Horn, PEOPLE_ASIDE_M};
 use super::lists::{Entry, Lists};
 use super::walker::Walker;
 use super::ways::Ways;
@@ -61,11 +62,16 @@ pub(super) struct Gaps<'a> {
     pub lights: &'a [(LightPhase, Tick)],
     /// The ego car and loose actors.
     pub free: &'a [Hazard],
+    pub horn: Option<Horn>,
 }
 
 impl Gaps<'_> {
     /// Whether a walker at `position` starts over a crosswalk that takes it `time_s` to cross.
     pub fn may_cross(&self, crosswalk: u32, walker: &Walker, position: Vec2, time_s: f32) -> bool {
+        // Who hears a horn waits.
+        if self.horn.is_some_and(|horn| horn.is_for(position, PEOPLE_ASIDE_M)) {
+            return false;
+        }
         let lights = &self.ways.crosswalk_lights[crosswalk as usize];
         let needed = ((time_s + 1.0) * TICK_HZ as f32) as Tick;
         let red = |group: &u32| {

@@ -5,9 +5,11 @@ use crate::map_data::{LaneId, MapData, StopKind, Turn};
 use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
+use super::asking::Asking;
 use super::body::Body;
 use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, Seeker, side, sight};
+use super::horn::Horn;
 use super::journey::Journey;
 use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
 use super::lane_way::{ConflictKind, LaneConflict};
@@ -57,6 +59,8 @@ pub(super) struct View<'a> {
     pub map: &'a MapData,
     pub ways: &'a Ways,
     pub seed: u64,
+    /// How much the others count for who changes lanes.
+    pub politeness: f32,
     pub lights: &'a [(LightPhase, Tick)],
     pub vehicles: &'a [Vehicle],
     pub drivers: &'a [Driver],
@@ -73,6 +77,9 @@ pub(super) struct View<'a> {
     /// Those of them that are between lanes.
     pub changing: &'a [Hazard],
     pub claims: &'a [Claim],
+    /// Those who signal to another lane.
+    pub asking: &'a [Asking],
+    pub horn: Option<Horn>,
     pub tick: Tick,
 }
 
@@ -157,7 +164,7 @@ impl View<'_> {
         {
             next.flags |= Vehicle::GRANTED;
         }
-        self.wait(line, signal, steps, next);
+        self.wait(index, line, signal, steps, next);
     }
 
     /// Whether one that stands before the line with a grant has no room beyond the junction any more.
@@ -168,12 +175,15 @@ impl View<'_> {
         waits && !has_room(known, plan, line, steps, index, driver, f32::MAX)
     }
 
-    fn wait(&self, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
+    fn wait(&self, index: usize, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
         let stop = self.map.lanes[steps[line.approach].lane as usize].stop;
         let sign = stop.is_some_and(|stop| stop.kind == StopKind::Stop);
         let at_line = line.hold_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
         if at_line && (sign || signal == Signal::Open) {
             next.wait_ticks = next.wait_ticks.saturating_add(1);
+            if signal == Signal::Open && self.is_honked_at(index) {
+                next.wait_ticks = next.wait_ticks.max(junction::PATIENCE_TICKS + 1);
+            }
             if next.wait_ticks.is_multiple_of(RETHINK_TICKS) && next.flags & Vehicle::GRANTED == 0 {
                 // No way through: somewhere else, perhaps by another turn.
                 next.trips = next.trips.wrapping_add(1);
@@ -213,7 +223,8 @@ impl View<'_> {
             }
         }
         self.conflicts(index, plan, steps, next, &mut follow);
-        let wall_m = self.wall(plan, steps, next, driver);
+        accel = accel.min(self.lets_in(index, plan));
+        let wall_m = self.wall(index, plan, steps, next);
         let stop = (stopping_speed(wall_m, driver.brake_mps2) - v) / STOP_S;
         accel.min(room).min(stop).max(-EMERGENCY_MPS2)
     }
@@ -297,10 +308,11 @@ impl View<'_> {
     }
 
     /// Distance from the front to the first place at which the vehicle must not go on, metres.
-    fn wall(&self, plan: &Plan, steps: &[Step], next: &Vehicle, driver: &Driver) -> f32 {
+    fn wall(&self, index: usize, plan: &Plan, steps: &[Step], next: &Vehicle) -> f32 {
+        let driver = &self.drivers[index];
         let front_m = driver.size_m.x * 0.5;
         let crossing = next.flags & Vehicle::CROSSING != 0;
-        let heeds_waiting = !crossing && next.stuck_s < HEED_S;
+        let heeds_waiting = !crossing && next.stuck_s < HEED_S && !self.is_honked_at(index);
         let mut wall_m = plan.dead_end_m.map_or(f32::MAX, |m| m - front_m - 1.0);
         if let Some(line) = plan.line.filter(|_| next.flags & Vehicle::GRANTED == 0) {
             wall_m = wall_m.min(line.ahead_m - LINE_MARGIN_M);

@@ -2,7 +2,6 @@
 
 use glam::Vec2;
 
-use crate::actor::ActorKind;
 use crate::geometry::direction;
 use crate::map_data::{MapData, Place};
 
@@ -64,8 +63,8 @@ impl Hazard {
             velocity: body.velocity_mps.truncate(),
             forward,
             half: body.kind.size_m().truncate() * 0.5,
-            walker: body.kind == ActorKind::Pedestrian,
-            clearance_m: if body.kind == ActorKind::Bicycle { BICYCLE_M } else { CLEARANCE_M },
+            walker: body.kind.is_on_foot(),
+            clearance_m: if body.kind.is_pedalled() { BICYCLE_M } else { CLEARANCE_M },
         }
     }
 

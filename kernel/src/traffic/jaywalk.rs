@@ -9,6 +9,7 @@ use crate::time::TICK_HZ;
 
 use super::actors::Actors;
 use super::body::{Body, Obstacle, Surroundings};
+use super::horn::{Horn, PEOPLE_ASIDE_M};
 use super::traits::WalkerTraits;
 use super::walker::{Walker, WalkerMode};
 use super::ways::Ways;
@@ -56,7 +57,12 @@ pub(super) fn starter(actors: &Actors, around: &Surroundings<'_>) -> Option<usiz
         let far = !(seek_ego && is_before(ego, place));
         (far, bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
     };
-    let may = |i: &usize| beside_road(map, &walkers[*i]) && !around.holds(walkers[*i].id);
+    let horn = Horn::of(around);
+    let hears = |w: &Walker| horn.is_some_and(|h| h.is_for(ways.walker_place(w).position.truncate(), PEOPLE_ASIDE_M));
+    let may = |i: &usize| {
+        let walker = &walkers[*i];
+        beside_road(map, walker) && !around.holds(walker.id) && !hears(walker)
+    };
     let mut candidates: Vec<usize> = (0..walkers.len()).filter(may).collect();
     candidates.sort_by_cached_key(rank);
     candidates.into_iter().take(TRIES).find(|i| {

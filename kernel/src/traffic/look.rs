@@ -1,15 +1,18 @@
 //! What everybody sees in a tick, gathered once for all.
 
-use crate::map_data::{LaneKind, Place, Projection, StopKind};
+use crate::controls::Controls;
+use crate::map_data::{LaneKind, Place, Projection, StopKind, Turn};
 use crate::signals::{self, LightPhase};
 use crate::time::Tick;
 
 use super::actors::Actors;
+use super::asking::{self, Asking};
 use super::body::Surroundings;
 use super::crosswalk::{Claim, Gaps};
 use super::crowd::Crowd;
 use super::drive::View;
 use super::hazard::{Hazard, Seeker, side, sight};
+use super::horn::Horn;
 use super::jaywalk;
 use super::journey::Journey;
 use super::junction::{self, EGO, Member, Members, Signal, swept_half_m};
@@ -47,6 +50,8 @@ pub(super) struct Sight {
     driven: Vec<(u32, Hazard)>,
     changing: Vec<Hazard>,
     claims: Vec<Claim>,
+    asking: Vec<Asking>,
+    horn: Option<Horn>,
     crowd: Crowd,
     jaywalker: Option<usize>,
     tick: Tick,
@@ -67,6 +72,8 @@ impl Sight {
         self.crowd.rebuild(people, |id| !around.holds(id as u16));
         self.plan(actors);
         self.gather_hazards(actors, around);
+        asking::gather(actors, around, &mut self.asking);
+        self.horn = Horn::of(around);
         self.gather_members(actors, around);
         self.jaywalker = jaywalk::starter(actors, around);
     }
@@ -76,6 +83,7 @@ impl Sight {
             map: actors.map(),
             ways: &actors.ways,
             seed: actors.seed,
+            politeness: actors.counts.drivers.politeness,
             lights: &self.lights,
             vehicles: &actors.state.vehicles,
             drivers: &actors.drivers,
@@ -89,6 +97,8 @@ impl Sight {
             driven: &self.driven,
             changing: &self.changing,
             claims: &self.claims,
+            asking: &self.asking,
+            horn: self.horn,
             tick: self.tick,
         }
     }
@@ -118,6 +128,7 @@ impl Sight {
             lists: &self.lists,
             lights: &self.lights,
             free: &self.hazards[..self.free],
+            horn: self.horn,
         }
     }
 
@@ -249,7 +260,7 @@ impl Sight {
         blocking.map(|seen| seen.gap_m + half.x).fold(f32::MAX, f32::min)
     }
 
-    /// The ego car counts as crossing where it is, and as asking for every way it may take.
+    /// The ego car counts as crossing where it is, and as asking for every way it may take: those that it indicates.
     fn add_ego(&self, actors: &Actors, around: &Surroundings<'_>, members: &mut Members) {
         let (map, ego) = (actors.map(), &around.ego);
         let speed = ego.velocity_mps.truncate().length();
@@ -277,7 +288,16 @@ impl Sight {
         let ways = &actors.ways.lanes;
         let next = ways[place.lane as usize].onward.iter();
         let next = next.filter_map(|onward| Some((onward.lane, ways[onward.lane as usize].zone?)));
-        let lanes = next.clone().map(|(lane, _)| Step { lane, start_m: ahead_m, from_m: 0.0 });
+        // Where it indicates, it goes nowhere else.
+        let indicated = match around.ego_flags & Controls::INDICATORS {
+            Controls::INDICATE_LEFT => Some(Turn::Left),
+            Controls::INDICATE_RIGHT => Some(Turn::Right),
+            _ => None,
+        };
+        let turns = |lane: u32| indicated.is_none_or(|turn| map.lanes[lane as usize].turn == turn);
+        let none_turns = !next.clone().any(|(lane, _)| turns(lane));
+        let taken = next.clone().filter(|(lane, _)| none_turns || turns(*lane));
+        let lanes = taken.map(|(lane, _)| Step { lane, start_m: ahead_m, from_m: 0.0 });
         if let Some((_, zone)) = next.clone().next().filter(|_| expected && !closed) {
             members.push(member(zone, false), lanes);
         }

@@ -6,14 +6,17 @@
 //! Poses follow from the map's geometry, individual differences from stateless random numbers.
 
 mod actors;
+mod asking;
 mod body;
 mod change;
 mod company;
 mod counts;
+mod courtesy;
 mod crosswalk;
 mod crowd;
 mod drive;
 mod hazard;
+mod horn;
 mod jaywalk;
 mod journey;
 mod junction;
@@ -26,6 +29,7 @@ mod meets;
 mod pass;
 mod passage;
 mod plan;
+mod population;
 mod poses;
 mod routes;
 mod sideways;
@@ -55,6 +59,7 @@ use passage::Told;
 pub use body::{Body, Obstacle, Surroundings};
 pub use counts::{Missing, TrafficCounts};
 pub use manoeuvre::Manoeuvre;
+pub use population::Population;
 pub use state::TrafficState;
 pub use vehicle::Vehicle;
 pub use walker::{Walker, WalkerMode};

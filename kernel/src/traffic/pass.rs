@@ -158,7 +158,7 @@ impl View<'_> {
                 beyond_m: gap_m + seeker.half.x + 2.0 * entry.half_m,
                 speed_mps: them.speed_mps,
             };
-            let other = entry.vehicle as usize != index && them.kind == ActorKind::Bicycle;
+            let other = entry.vehicle as usize != index && them.kind.is_pedalled();
             (other && is_near).then_some(passed)
         };
         entries.filter_map(bicycle).collect()
@@ -169,7 +169,7 @@ impl View<'_> {
     pub(super) fn room_to_pass(&self, index: usize, plan: &Plan, speed_mps: f32, gap_m: f32) -> f32 {
         let queues = plan.line.is_some_and(|line| line.hold_m < gap_m + QUEUE_M);
         let vehicle = &self.vehicles[index];
-        if queues || vehicle.manoeuvre.passes() || vehicle.kind == ActorKind::Bicycle {
+        if queues || vehicle.manoeuvre.passes() || vehicle.kind.is_pedalled() {
             return f32::MAX;
         }
         let driver = &self.drivers[index];
@@ -182,7 +182,7 @@ impl View<'_> {
         let lane = &self.map.lanes[vehicle.lane as usize];
         let busy = vehicle.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0;
         // Long vehicles need more of a bend than their lane.
-        let slow = matches!(vehicle.kind, ActorKind::Bicycle | ActorKind::Bus);
+        let slow = vehicle.kind.is_pedalled() || vehicle.kind == ActorKind::Bus;
         if slow || busy || self.ways.lanes[vehicle.lane as usize].zone.is_some() {
             return None;
         }
@@ -253,7 +253,7 @@ impl View<'_> {
         let in_the_way = |step: &Step, e: &Entry| {
             let tail_m = step.start_m + e.s_m - e.half_m;
             let kind = self.vehicles[e.vehicle as usize].kind;
-            e.vehicle as usize != index && kind != ActorKind::Bicycle && tail_m > -size_m && tail_m < stays_m
+            e.vehicle as usize != index && !kind.is_pedalled() && tail_m > -size_m && tail_m < stays_m
         };
         self.steps_of(plan).iter().all(|step| !self.lists.on(step.lane).iter().any(|e| in_the_way(step, e)))
     }

@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use crate::actor::ActorKind;
 use crate::events::EventKind;
 use crate::geometry::rectangles_overlap;
 use crate::map_data::LaneId;
@@ -69,7 +68,7 @@ impl Actors {
     /// ego car, or `seen` where it was. Whether it did.
     fn enter_map(&mut self, index: usize, around: &Surroundings<'_>, seen: bool) -> bool {
         let vehicle = self.state.vehicles[index];
-        let bicycle = vehicle.kind == ActorKind::Bicycle;
+        let bicycle = vehicle.kind.is_pedalled();
         let entries = if bicycle { &self.ways.bicycle_entries } else { &self.ways.entries };
         let pick = below(self.seed, Stream::Spawn, u64::from(vehicle.id), around.tick, entries.len() as u32);
         let Some(&lane) = entries.get(pick as usize) else { return false };

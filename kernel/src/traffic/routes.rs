@@ -42,8 +42,8 @@ impl Class {
     /// That of a kind of vehicle.
     pub fn of(kind: ActorKind) -> Self {
         match kind {
-            ActorKind::Bus | ActorKind::Truck => Self::Long,
-            ActorKind::Bicycle => Self::Bicycle,
+            heavy if heavy.is_heavy() => Self::Long,
+            pedalled if pedalled.is_pedalled() => Self::Bicycle,
             _ => Self::Light,
         }
     }

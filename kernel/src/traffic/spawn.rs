@@ -35,9 +35,16 @@ const LEAST_HALF_M: f32 = 1.2;
 const CROWDED_MPS: f32 = 2.0;
 /// Highest speed at the start, m/s.
 const START_MPS: f32 = 6.0;
-/// Of 100 cars so many are lorries, and so many buses.
-const TRUCKS_PCT: u32 = 8;
-const BUSES_PCT: u32 = 4;
+/// Of 100 cars so many are lorries, and so many buses; vans and sport utilities as in the stock of the Kraftfahrt-Bundesamt
+/// (2024: a sixth of all cars are SUVs or off-road vehicles); patrol cars and ambulances are an assumption.
+const TRUCKS_PCT: u64 = 8;
+const BUSES_PCT: u64 = 4;
+const VANS_PCT: u64 = 8;
+const SUVS_PCT: u64 = 15;
+const EMERGENCY_PCT: u64 = 1;
+/// Of 100 motorcycles so many are scooters, and of 100 bicycles so many carry a box (assumptions).
+const SCOOTERS_PCT: u64 = 30;
+const CARGO_PCT: u64 = 6;
 
 /// A stretch on which actors may start: an index, its length, and the sum of lengths up to its end.
 struct Stretch {
@@ -141,7 +148,7 @@ impl Spawner<'_> {
         let mut full: Vec<ActorKind> = Vec::new();
         for (number, kind) in wanted.enumerate() {
             let number = number as u64;
-            let kind = if kind == ActorKind::Car { self.car(number) } else { kind };
+            let kind = self.kind(kind, number);
             let t = |attempt| unit(self.seed, Stream::Spawn, number, attempt);
             let (drawn, from): (Vec<f32>, f32) = ((0..TRIES).map(t).collect(), t(TRIES + 2));
             let found = full.contains(&kind)
@@ -153,17 +160,32 @@ impl Spawner<'_> {
         }
     }
 
-    fn car(&self, number: u64) -> ActorKind {
-        match bits(self.seed, Stream::Spawn, number, TRIES) % 100 {
-            n if n < u64::from(TRUCKS_PCT) => ActorKind::Truck,
-            n if n < u64::from(TRUCKS_PCT + BUSES_PCT) => ActorKind::Bus,
-            _ => ActorKind::Car,
+    /// What a car, motorcycle or bicycle is exactly.
+    fn kind(&self, kind: ActorKind, number: u64) -> ActorKind {
+        let rarer: &[(u64, ActorKind)] = match kind {
+            ActorKind::Car => &[
+                (TRUCKS_PCT, ActorKind::Truck),
+                (BUSES_PCT, ActorKind::Bus),
+                (VANS_PCT, ActorKind::Van),
+                (SUVS_PCT, ActorKind::Suv),
+                (EMERGENCY_PCT, ActorKind::Emergency),
+            ],
+            ActorKind::Motorcycle => &[(SCOOTERS_PCT, ActorKind::Scooter)],
+            _ => &[(CARGO_PCT, ActorKind::CargoBike)],
+        };
+        let mut drawn = bits(self.seed, Stream::Spawn, number, TRIES) % 100;
+        for (pct, rarer) in rarer {
+            if drawn < *pct {
+                return *rarer;
+            }
+            drawn -= pct;
         }
+        kind
     }
 
     fn vehicle(&mut self, kind: ActorKind, most_mps: f32, (lane, s_m): (u32, f32)) -> bool {
         let id = self.next_id();
-        let driver = driver(self.seed, id, kind);
+        let driver = driver(&self.counts.drivers, self.seed, id, kind);
         let half_m = driver.size_m.x * 0.5;
         let way = &self.map.lanes[lane as usize];
         let end_m = way.stop.map_or(way.length_m, |stop| stop.s_m.min(way.length_m));

@@ -2,7 +2,6 @@
 
 use super::vehicle::Vehicle;
 use super::walker::Walker;
-use crate::actor::ActorKind;
 use crate::map_data::MapData;
 use crate::state;
 
@@ -36,7 +35,7 @@ impl TrafficState {
         for v in &self.vehicles {
             let lane = map.lanes.get(v.lane as usize).filter(|lane| (0.0..=lane.length_m).contains(&v.s_m));
             let before = map.lanes.len() > v.before as usize;
-            let kind = v.kind != ActorKind::Pedestrian;
+            let kind = !v.kind.is_on_foot();
             let drifts = v.drift.unsigned_abs() <= MOST_DRIFT;
             let moves = (0.0..=FASTEST_MPS).contains(&v.speed_mps) && v.offset_m.abs() <= ASIDE_M;
             if lane.is_none() || !before || !kind || !moves || !drifts || v.flags & !Vehicle::ALL_FLAGS != 0 {

@@ -5,6 +5,8 @@ use glam::Vec3;
 use crate::actor::ActorKind;
 use crate::rng::{Stream, bits, unit};
 
+use super::population::Population;
+
 /// How somebody drives. Parameters of the intelligent driver model (Treiber, Hennecke and Helbing
 /// 2000) around the values of its section on city traffic.
 #[derive(Clone, Copy, Debug)]
@@ -56,21 +58,31 @@ fn between(lo: f32, hi: f32, t: f32) -> f32 {
     lo + (hi - lo) * t
 }
 
-/// The driver of vehicle `id`.
-pub(super) fn driver(seed: u64, id: u16, kind: ActorKind) -> Driver {
+/// The driver of vehicle `id` in a population.
+pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKind) -> Driver {
     let t = |which| trait_unit(seed, id, which);
+    let drawn = |[low, high]: [f32; 2], which| between(low, high, t(which));
+    let cars = drawn(population.speed_share, 0);
+    let more = cars - drawn(Population::USUAL.speed_share, 0);
     let (limit_share, top_mps, accel_mps2, from_kerb_m) = match kind {
         ActorKind::Bicycle => (1.0, between(3.5, 6.0, t(0)), 0.9, Some(0.6)),
-        ActorKind::Motorcycle => (between(0.9, 1.1, t(0)), 40.0, 2.2, Some(1.2)),
-        ActorKind::Truck | ActorKind::Bus => (between(0.8, 0.95, t(0)), 25.0, 1.0, None),
-        ActorKind::Car | ActorKind::Pedestrian => (between(0.88, 1.06, t(0)), 40.0, between(1.3, 2.0, t(1)), None),
+        // The load makes it slower off the mark.
+        ActorKind::CargoBike => (1.0, between(3.5, 5.5, t(0)), 0.7, Some(0.65)),
+        // 125 cm³.
+        ActorKind::Scooter => (between(0.85, 1.05, t(0)) + more, 26.0, 1.8, Some(1.1)),
+        ActorKind::Motorcycle => (between(0.9, 1.1, t(0)) + more, 40.0, 2.2, Some(1.2)),
+        ActorKind::Truck | ActorKind::Bus => (between(0.8, 0.95, t(0)) + more, 25.0, 1.0, None),
+        ActorKind::Van => (cars, 38.0, between(1.1, 1.6, t(1)), None),
+        ActorKind::Car | ActorKind::Suv | ActorKind::Emergency | ActorKind::Pedestrian => {
+            (cars, 40.0, between(1.3, 2.0, t(1)), None)
+        }
     };
     Driver {
         limit_share,
         top_mps,
         accel_mps2,
         brake_mps2: between(1.8, 2.4, t(2)),
-        headway_s: between(1.0, 1.8, t(3)),
+        headway_s: drawn(population.headway_s, 3),
         gap_m: between(1.8, 2.8, t(4)),
         size_m: kind.size_m(),
         from_kerb_m,
@@ -90,4 +102,44 @@ pub(super) fn walker_traits(seed: u64, id: u16) -> WalkerTraits {
 
 fn variant(seed: u64, id: u16) -> u32 {
     bits(seed, Stream::Trait, u64::from(id), 16) as u32 & 0xffff
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KINDS: [ActorKind; 10] = [
+        ActorKind::Car,
+        ActorKind::Truck,
+        ActorKind::Bus,
+        ActorKind::Motorcycle,
+        ActorKind::Bicycle,
+        ActorKind::Van,
+        ActorKind::Suv,
+        ActorKind::Scooter,
+        ActorKind::CargoBike,
+        ActorKind::Emergency,
+    ];
+
+    #[test]
+    fn drivers_are_drawn_from_the_ranges_of_their_population() {
+        let hasty = Population { speed_share: [1.1, 1.3], headway_s: [0.5, 0.8], politeness: 0.0 };
+        for id in 1..400 {
+            let car = driver(&hasty, 7, id, ActorKind::Car);
+            assert!((1.1..=1.3).contains(&car.limit_share), "{}", car.limit_share);
+            for kind in KINDS {
+                let (usual, hasty) = (driver(&Population::USUAL, 7, id, kind), driver(&hasty, 7, id, kind));
+                assert!((1.0..=1.8).contains(&usual.headway_s) && (0.5..=0.8).contains(&hasty.headway_s));
+                let faster = hasty.limit_share - usual.limit_share;
+                assert!(kind.is_pedalled() && faster == 0.0 || faster > 0.15, "{kind:?}: {faster}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_usual_population_fills_its_ranges() {
+        let shares = (1..2000).map(|id| driver(&Population::USUAL, 1, id, ActorKind::Car).limit_share);
+        let (low, high) = shares.fold((f32::MAX, f32::MIN), |(low, high), s| (low.min(s), high.max(s)));
+        assert!((0.88..0.882).contains(&low) && (1.058..=1.06).contains(&high), "{low} {high}");
+    }
 }

@@ -93,7 +93,7 @@ impl Ways {
     pub(super) fn may_start(&self, kind: ActorKind, lane: LaneId) -> bool {
         let lane = &self.places.map.lanes[lane as usize];
         let beside = if self.kerb > 0 { lane.left } else { lane.right };
-        Class::of(kind).may_use(lane) && (kind != ActorKind::Bicycle || beside.is_none())
+        Class::of(kind).may_use(lane) && (!kind.is_pedalled() || beside.is_none())
     }
 
     /// Whether a light holds traffic at the end of a lane.

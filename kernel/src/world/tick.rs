@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::arbiter::After;
 use crate::controls::{Controls, TickInput};
 use crate::ego;
 use crate::events::EventKind;
@@ -141,7 +142,8 @@ impl World {
             velocity_mps: car.motion.velocity_mps,
             size_m: ego::SIZE_M,
         };
-        self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, loose: obstacles });
+        let ego_flags = self.parts.output.applied.controls.flags;
+        self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, ego_flags, loose: obstacles });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
         self.traffic.told().iter().for_each(|(kind, actor)| log.with(*kind, *actor));
         bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
@@ -167,7 +169,9 @@ impl World {
         let limit_mps = ego.route.limit_mps(network, &self.scenario);
         let wrong_way = watch::wrong_way(network, car, tick);
         run.watch.rules(limit_mps, self.physics.off_road(), wrong_way, &mut log);
-        if run.arbiter.judge(tick, collided, speed_mps, &self.scenario.rules) {
+        let in_junction = network.lanes[ego.route.lanes[0] as usize].junction.is_some();
+        let after = After { collided, in_junction, speed_mps };
+        if run.arbiter.judge(tick, &after, &self.scenario.rules) {
             log.note(EventKind::Ended);
         }
     }

@@ -6,10 +6,11 @@ use glam::Vec3;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::arbiter::Arbiter;
+use crate::controls::Controls;
 use crate::events::{Event, Hud};
 use crate::map::RoadNetwork;
 use crate::scenario::Scenario;
-use crate::scene::{ActorScene, EgoScene, SceneSnapshot, quantise};
+use crate::scene::{ActorScene, EgoScene, SceneSnapshot, lamps, quantise};
 use crate::signals;
 use crate::traffic::Missing;
 use crate::watch::Watch;
@@ -58,6 +59,7 @@ impl World {
                 rotation: car.motion.rotation,
                 speed_mps: car.speed_mps(),
                 wheel_angle_rad: car.gear.wheel_angle_rad,
+                lamps: lamps_of(&self.parts.output.applied.controls),
             },
             actors: self.actors().collect(),
             lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
@@ -125,4 +127,15 @@ impl World {
     pub fn last_events(&self) -> &[Event] {
         &self.parts.output.events
     }
+}
+
+/// The lamps that burn when a car is driven so.
+fn lamps_of(controls: &Controls) -> u8 {
+    let brake = if controls.brake > 0 { lamps::BRAKE } else { 0 };
+    let flags = [
+        (Controls::INDICATE_LEFT, lamps::LEFT),
+        (Controls::INDICATE_RIGHT, lamps::RIGHT),
+        (Controls::LIGHTS, lamps::HEADLIGHTS),
+    ];
+    flags.iter().filter(|(flag, _)| controls.has(*flag)).fold(brake, |on, (_, lamp)| on | lamp)
 }

@@ -91,7 +91,7 @@ impl Drive {
         let mut traffic = Traffic::spawn(&self.counts, self.seed, self.network.ways(), place);
         let mut watcher = Watcher::new(self, &traffic);
         for tick in 1..=seconds(60 * self.minutes) {
-            traffic.step(&Surroundings { tick, ego, loose: &[] });
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[] });
             watcher.look(&traffic, tick);
         }
         watcher.found

@@ -15,6 +15,11 @@ pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
         ActorKind::Bus => Model::rigid(heavy::bus(variant, detail)),
         ActorKind::Motorcycle => two_wheeler::motorcycle(variant, detail),
         ActorKind::Bicycle => two_wheeler::bicycle(variant, detail),
+        ActorKind::Van => Model::rigid(heavy::van(variant, detail)),
+        ActorKind::Suv => Model::rigid(car::suv(variant, detail)),
+        ActorKind::Emergency => Model::rigid(heavy::emergency(detail)),
+        ActorKind::Scooter => two_wheeler::scooter(variant, detail),
+        ActorKind::CargoBike => two_wheeler::cargo_bike(variant, detail),
         ActorKind::Pedestrian => person::walker(variant, detail),
     }
 }

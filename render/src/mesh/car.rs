@@ -89,6 +89,17 @@ const CLEARANCE_M: f32 = 0.22;
 pub fn car(variant: u32, detail: Detail) -> Mesh {
     let mut variety = Variety::of(variant);
     let shape = &SHAPES[variety.bits() as usize % SHAPES.len()];
+    shaped(&mut variety, shape, detail)
+}
+
+/// A sport utility vehicle of class Vehicles, a little larger than the cars of that shape.
+pub fn suv(variant: u32, detail: Detail) -> Mesh {
+    let mut mesh = shaped(&mut Variety::of(variant), &SHAPES[3], detail);
+    mesh.scale(Vec3::new(1.02, 1.03, 1.03));
+    mesh
+}
+
+fn shaped(variety: &mut Variety, shape: &Shape, detail: Detail) -> Mesh {
     let lacquer = Paint::plain(SemanticTag::Vehicles, variety.colour(&LACQUERS)).glossy(110);
     let mut mesh = Mesh::default();
     if detail == Detail::Rough {

@@ -65,7 +65,7 @@ pub fn truck(variant: u32, detail: Detail) -> Mesh {
     let cargo = Paint::plain(tag, variety.colour(&BOXES)).glossy(30);
     let mut mesh = Mesh::default();
     if variety.one_in(3) {
-        van(&mut mesh, cab);
+        van_body(&mut mesh, cab);
         wheels(&mut mesh, tag, &[2.1, -1.9], 1.1, detail);
     } else {
         lorry(&mut mesh, cab, cargo);
@@ -86,7 +86,37 @@ fn lorry(mesh: &mut Mesh, cab: Paint, cargo: Paint) {
     facing(mesh, cargo.shaded(0.7), -3.512, [-0.02, 0.02], [1.0, 2.95]);
 }
 
-fn van(mesh: &mut Mesh, paint: Paint) {
+/// A van of class Vehicles, 4.9 m long.
+pub fn van(variant: u32, detail: Detail) -> Mesh {
+    let mut variety = Variety::of(variant);
+    small_van(Paint::plain(SemanticTag::Vehicles, variety.colour(&CABS)).glossy(90), detail)
+}
+
+/// A patrol car or ambulance of class Vehicles: a white van with a red band, and a blue bar on its roof.
+pub fn emergency(detail: Detail) -> Mesh {
+    let tag = SemanticTag::Vehicles;
+    let mut mesh = small_van(Paint::plain(tag, [236, 236, 232]).glossy(90), detail);
+    side_windows(&mut mesh, Paint::plain(tag, [196, 30, 34]), [-2.3, 2.3], 0.955, [0.62, 0.82]);
+    mesh.cuboid(Paint::plain(tag, [60, 60, 64]), Vec3::new(0.75, -0.6, 1.98), Vec3::new(1.05, 0.6, 2.06));
+    mesh.cuboid(
+        Paint::plain(tag, [24, 70, 210]).glossy(160),
+        Vec3::new(0.72, -0.62, 2.06),
+        Vec3::new(1.08, 0.62, 2.22),
+    );
+    mesh
+}
+
+/// The large van made smaller.
+fn small_van(paint: Paint, detail: Detail) -> Mesh {
+    let mut mesh = Mesh::default();
+    van_body(&mut mesh, paint);
+    wheels(&mut mesh, paint.tag, &[2.1, -1.9], 1.1, detail);
+    lamps(&mut mesh, paint.tag, 7.0, 1.1);
+    mesh.scale(Vec3::new(0.695, 0.855, 0.735));
+    mesh
+}
+
+fn van_body(mesh: &mut Mesh, paint: Paint) {
     let glass = Paint::plain(paint.tag, GLASS).glossy(230);
     hull(mesh, paint, Vec3::new(-3.5, -1.1, 0.35), Vec3::new(3.5, 1.1, 1.3), 0.12);
     let floor = [(-3.45, -1.08), (2.9, -1.08), (2.9, 1.08), (-3.45, 1.08)].map(|(x, y)| Vec3::new(x, y, 1.25));

@@ -133,6 +133,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Makes it larger or smaller by a factor along each axis.
+    pub fn scale(&mut self, factor: Vec3) {
+        for vertex in &mut self.vertices {
+            vertex.position = (Vec3::from(vertex.position) * factor).to_array();
+            let normal = Vec3::from(vertex.normal.map(f32::from)) / factor;
+            vertex.normal = (normal.normalize_or_zero() * 127.0).round().to_array().map(|n| n as i8);
+        }
+    }
+
     /// Appends a vertex and gives its index.
     pub fn vertex(&mut self, paint: Paint, position: Vec3, normal: Vec3, uv: Vec2) -> u32 {
         let n = (normal * 127.0).round();

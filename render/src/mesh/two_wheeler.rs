@@ -76,14 +76,42 @@ pub fn motorcycle(variant: u32, detail: Detail) -> Model {
     model
 }
 
+/// A scooter of class Motorcycle under a rider of class Rider: a smaller motorcycle.
+pub fn scooter(variant: u32, detail: Detail) -> Model {
+    let mut model = motorcycle(variant, detail);
+    model.parts[0].mesh.scale(Vec3::new(0.9, 0.9, 0.96));
+    model
+}
+
 /// A bicycle of class Bicycle under a pedalling rider of class Rider.
 pub fn bicycle(variant: u32, detail: Detail) -> Model {
+    pedalled(variant, detail, false)
+}
+
+/// A bicycle with a box before its rider.
+pub fn cargo_bike(variant: u32, detail: Detail) -> Model {
+    pedalled(variant, detail, true)
+}
+
+/// The box of a cargo bike, on a longer frame with a smaller front wheel.
+fn cargo(mesh: &mut Mesh, variety: &mut Variety, detail: Detail) {
+    let tag = SemanticTag::Bicycle;
+    let dark = Paint::plain(tag, RUBBER);
+    let hub = Vec3::new(0.99, 0.0, 0.25);
+    ring(mesh, dark, hub, 0.25, 0.05, sides(detail));
+    let paint = Paint::plain(tag, variety.colour(&FRAMES));
+    mesh.cuboid(paint.shaded(0.8), Vec3::new(0.42, -0.32, 0.3), Vec3::new(1.1, 0.32, 0.75));
+    mesh.tube(dark, Vec3::new(-0.06, 0.0, 0.3), hub, 0.03, 0.03, 5);
+    mesh.tube(dark, Vec3::new(0.38, 0.0, 0.88), Vec3::new(0.4, 0.0, 0.3), 0.022, 0.022, 5);
+}
+
+fn pedalled(variant: u32, detail: Detail, carries: bool) -> Model {
     let mut variety = Variety::of(variant);
     let tag = SemanticTag::Bicycle;
     let frame = Paint::plain(tag, variety.colour(&FRAMES)).glossy(80);
     let mut mesh = Mesh::default();
     let hubs = [Vec3::new(0.54, 0.0, 0.35), Vec3::new(-0.54, 0.0, 0.35)];
-    for hub in hubs {
+    for &hub in &hubs[usize::from(carries)..] {
         ring(&mut mesh, Paint::plain(tag, RUBBER), hub, 0.35, 0.05, sides(detail) + 2);
     }
     let (crank, seat, head) = (Vec3::new(-0.06, 0.0, 0.3), Vec3::new(-0.22, 0.0, 0.9), Vec3::new(0.38, 0.0, 0.88));
@@ -93,7 +121,7 @@ pub fn bicycle(variant: u32, detail: Detail) -> Model {
         (seat - Vec3::Z * 0.12, head),
         (hubs[1], crank),
         (hubs[1], seat - Vec3::Z * 0.12),
-        (head, hubs[0]),
+        (head, if carries { crank } else { hubs[0] }),
     ] {
         mesh.tube(frame, a, b, 0.022, 0.022, 5);
     }
@@ -101,6 +129,9 @@ pub fn bicycle(variant: u32, detail: Detail) -> Model {
     mesh.tube(dark, head, head + Vec3::new(-0.02, 0.0, 0.14), 0.018, 0.018, 5);
     mesh.rod(dark, Vec3::new(0.36, -0.28, 1.02), Vec3::new(0.36, 0.28, 1.02), 0.018, 5);
     mesh.ellipsoid(dark, seat + Vec3::Z * 0.03, Vec3::new(0.14, 0.08, 0.04), 4, 6);
+    if carries {
+        cargo(&mut mesh, &mut { variety }, detail);
+    }
     let mut model = Model::rigid(mesh);
     let look = Look::of(&mut variety, SemanticTag::Rider, detail);
     let seat = Seat {

@@ -29,6 +29,11 @@ pub fn road_user(kind: ActorKind) -> &'static str {
         ActorKind::Motorcycle => "motorcycle",
         ActorKind::Bicycle => "bicycle",
         ActorKind::Pedestrian => "pedestrian",
+        ActorKind::Van => "van",
+        ActorKind::Suv => "SUV",
+        ActorKind::Scooter => "scooter",
+        ActorKind::CargoBike => "cargo bike",
+        ActorKind::Emergency => "emergency vehicle",
     }
 }
 

@@ -8,7 +8,7 @@ use kernel::scene::{ActorScene, EgoScene};
 use kernel::signals::LightPhase;
 use kernel::{Controls, World, ego, ops};
 
-use crate::{Driver, single_track};
+use crate::{Driver, indicate, single_track};
 
 /// How far the route is looked at, metres.
 const SIGHT_M: f32 = 60.0;
@@ -52,7 +52,8 @@ impl Driver<World> for Expert {
             .map(|leader| follow(speed_mps, wanted_mps, leader))
             .fold(free(speed_mps, wanted_mps), f32::min);
         let (throttle, brake) = pedals(acceleration, speed_mps);
-        Controls::from_fractions(route.steer(&scene.ego), throttle, brake)
+        let flags = indicate::turn(&hud.arrow);
+        Controls { flags, ..Controls::from_fractions(route.steer(&scene.ego), throttle, brake) }
     }
 }
 

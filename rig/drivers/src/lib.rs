@@ -5,6 +5,7 @@ pub mod crew;
 pub mod expert;
 pub mod film;
 pub mod footprint;
+mod indicate;
 pub mod pictures;
 pub mod recorded_eye;
 pub mod safety;

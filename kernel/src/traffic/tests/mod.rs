@@ -7,7 +7,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Body, Obstacle, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, WalkerMode};
+use super::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, WalkerMode};
+use crate::controls::Controls;
 use crate::events::EventKind;
 use crate::map::{RoadNetwork, StopKind, bundled};
 use crate::signals::{LightPhase, phase};
@@ -22,7 +23,7 @@ fn counts(actors: u16) -> TrafficCounts {
     let share = |pct: u16| actors * pct / 100;
     let (motorcycles, bicycles, pedestrians) = (share(5), share(10), share(40));
     let cars = actors - motorcycles - bicycles - pedestrians;
-    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min: 2.0 }
+    TrafficCounts { cars, motorcycles, bicycles, pedestrians, jaywalks_per_min: 2.0, drivers: Population::USUAL }
 }
 
 fn car_at(position: Vec3, heading_rad: f32) -> Obstacle {
@@ -40,7 +41,7 @@ fn start(network: &Arc<RoadNetwork>, actors: u16, seed: u64) -> Traffic {
 
 fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in ticks {
-        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &[] });
+        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] });
         each(traffic, tick);
     }
 }
@@ -243,7 +244,7 @@ fn vehicles_stop_behind_whatever_stands_in_their_lane() {
         let loose = [there];
         for tick in 1..1200 {
             let (ego, loose) = if ego { (there, &loose[..0]) } else { (nowhere(), &loose[..]) };
-            traffic.step(&Surroundings { tick, ego, loose });
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         let gap_m = 120.0 - vehicle.s_m - 2.25;
@@ -261,7 +262,7 @@ fn who_stands_without_a_reason_is_told_and_then_taken_off_the_road() {
         let mut traffic = lone_car(&network);
         let mut told = Vec::new();
         for tick in 1..4 * MINUTE {
-            traffic.step(&Surroundings { tick, ego, loose });
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose });
             told.extend(traffic.told().iter().map(|(kind, id)| (*kind, *id, tick / 60)));
         }
         let id = u32::from(traffic.state().vehicles[0].id);
@@ -286,7 +287,7 @@ fn vehicles_pass_what_stands_beside_their_lane() {
     let mut traffic = lone_car(&network);
     let beside = network.lanes[0].points[60].position + Vec3::Y * 3.5;
     for tick in 1..1200 {
-        traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[] });
+        traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), ego_flags: 0, loose: &[] });
     }
     assert!(traffic.actors.state.vehicles[0].lane != 0, "{:?}", traffic.actors.state.vehicles[0]);
 }
@@ -299,11 +300,72 @@ fn vehicles_pass_within_their_lane_whatever_leaves_room_there() {
         let mut traffic = lone_car(&network);
         let beside = network.lanes[0].points[60].position + Vec3::Y * aside_m;
         for tick in 1..1800 {
-            traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[] });
+            traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), ego_flags: 0, loose: &[] });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         assert!(vehicle.lane != 0 || vehicle.s_m > 130.0, "{aside_m} m aside: {vehicle:?}");
     }
+}
+
+/// The ego car, standing so far behind a place that it looks at.
+fn behind(place: Vec3, forward: Vec3, away_m: f32) -> Obstacle {
+    car_at(place - forward * away_m, crate::ops::atan2(forward.y, forward.x))
+}
+
+#[test]
+fn who_waits_at_an_open_line_hears_the_horn_of_the_car_behind() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = start(&network, 50, 2);
+    let mut heard = 0;
+    for tick in 1..5 * MINUTE {
+        let waits = |v: &&Vehicle| (10..60).contains(&v.wait_ticks) && v.flags & Vehicle::GRANTED == 0;
+        let waiting = traffic.state().vehicles.iter().filter(waits).map(|v| v.id).next().filter(|_| tick % 60 == 0);
+        if let Some(id) = waiting {
+            let body = traffic.bodies().iter().find(|b| b.id == u32::from(id)).expect("it is there");
+            let ego = behind(body.position, body.rotation * Vec3::X, 9.0);
+            let after = |ego_flags: u8| {
+                let mut fork = traffic.clone();
+                fork.step(&Surroundings { tick, ego, ego_flags, loose: &[] });
+                fork.state().vehicles.iter().find(|v| v.id == id).map_or(0, |v| v.wait_ticks)
+            };
+            let (silent, honked) = (after(0), after(Controls::HORN));
+            assert!(silent < 62 && (honked == 0 || honked > 240), "{silent} {honked}");
+            heard += usize::from(honked > 240);
+        }
+        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] });
+    }
+    assert!(heard > 3, "{heard}");
+}
+
+#[test]
+fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = start(&network, 50, 2);
+    let (mut gone, mut asked) = (0, 0);
+    for tick in 1..3 * MINUTE {
+        let waiting = traffic.state().walkers.iter().find(|w| w.mode == WalkerMode::Wait).filter(|_| tick % 10 == 0);
+        if let Some(id) = waiting.map(|w| w.id) {
+            let body = traffic.bodies().iter().find(|b| b.id == u32::from(id)).expect("it is there");
+            let ego = behind(body.position, body.rotation * Vec3::Y, 8.0);
+            let goes = |ego_flags: u8| {
+                let mut fork = traffic.clone();
+                for tick in tick..tick + 240 {
+                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[] });
+                    let walker = fork.state().walkers.iter().find(|w| w.id == id).expect("it is there");
+                    let edge = &network.walk_edges[walker.edge as usize];
+                    if walker.mode != WalkerMode::Wait && edge.crosswalk.is_some() {
+                        return true;
+                    }
+                }
+                false
+            };
+            asked += 1;
+            gone += usize::from(goes(0));
+            assert!(!goes(Controls::HORN), "walker {id} at tick {tick}");
+        }
+        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] });
+    }
+    assert!(asked > 20 && gone > 5, "{gone} of {asked}");
 }
 
 #[test]
@@ -314,7 +376,7 @@ fn loose_actors_keep_their_state() {
     let lie = |id: u16| Obstacle { id: u32::from(id), ..car_at(Vec3::new(0.0, 300.0, 0.0), 0.0) };
     let loose = [lie(vehicle.id), lie(walker.id)];
     for tick in 1..600 {
-        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &loose });
+        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &loose });
     }
     assert_eq!((traffic.actors.state.vehicles[2], traffic.actors.state.walkers[2]), (vehicle, walker));
 }

@@ -63,7 +63,7 @@ pub fn driven_m(speed_mps: f32, acceleration_mps2: f32, t_s: f32) -> f32 {
 pub fn actor_after(network: &RoadNetwork, actor: &ActorScene, driven_m: f32) -> Footprint {
     let now = Footprint::of_actor(actor);
     let straight = || Footprint { centre: now.centre + driven_m * now.forward, ..now };
-    if actor.kind == ActorKind::Pedestrian || actor.speed_mps < 0.5 {
+    if actor.kind.is_on_foot() || actor.speed_mps < 0.5 {
         return straight();
     }
     let heading = ops::atan2(now.forward.y, now.forward.x);

@@ -138,12 +138,12 @@ fn of_actor(id: u32, kind: ActorKind, t_s: f32) -> Hazard {
 
 /// What it is called to overlook an actor.
 pub fn label_of(kind: ActorKind) -> Label {
-    if kind == ActorKind::Pedestrian { Label::Walker } else { Label::Vehicle }
+    if kind.is_on_foot() { Label::Walker } else { Label::Vehicle }
 }
 
 /// Whether braking for an actor makes sense: people must be on the road, and vehicles not follow.
 fn matters(world: &World, scene: &SceneSnapshot, actor: &ActorScene) -> bool {
-    if actor.kind == ActorKind::Pedestrian {
+    if actor.kind.is_on_foot() {
         return world.network().on_road(actor.position);
     }
     let ahead_m = (actor.position.truncate() - middle(&scene.ego)).dot(forward(&scene.ego));

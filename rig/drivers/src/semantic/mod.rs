@@ -13,7 +13,7 @@ use kernel::map::Turn;
 use kernel::time::TICK_S;
 
 use super::{Driver, SemanticView};
-use crate::single_track;
+use crate::{indicate, single_track};
 use arc::Arc;
 use memory::{Moved, Patience, Tracks, Trail};
 use sight::{Contact, Sight};
@@ -47,7 +47,8 @@ impl Driver<SemanticView<'_>> for SemanticBot {
         let (arc, wish) = self.decide(&sight, view);
         self.steer = follow(self.steer, single_track::steering(arc.curvature));
         let (throttle, brake) = pedals(view.hud.speed_mps, &wish);
-        Controls::from_fractions(self.steer, throttle, brake)
+        let flags = indicate::turn(&view.hud.arrow);
+        Controls { flags, ..Controls::from_fractions(self.steer, throttle, brake) }
     }
 }
 

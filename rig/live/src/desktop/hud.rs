@@ -1,10 +1,10 @@
 //! What is written over both drivers' pictures, and where. Sizes and places are fractions of the
 //! picture's height and of its width and height, so that they hold on every screen.
 
-use kernel::Seat;
 use kernel::events::{Hud, RouteArrow};
 use kernel::map::Turn;
 use kernel::signals::LightPhase;
+use kernel::{Controls, Seat};
 
 /// Height of the speed's digits, fraction of the picture's height.
 pub const SPEED_SIZE: f32 = 0.10;
@@ -32,6 +32,8 @@ pub struct HudText {
     pub limit: String,
     /// `D` or `R`.
     pub gear: char,
+    /// Arrows of the indicators that are on, left and right.
+    pub indicators: [&'static str; 2],
     /// Who is in control.
     pub control: String,
     /// Phase of the traffic light ahead.
@@ -45,12 +47,14 @@ pub struct HudText {
 }
 
 impl HudText {
-    /// What the kernel says, who steers and who has the pedals; nothing is to be done.
-    pub fn new(hud: &Hud, steering: Seat, pedals: Seat, is_reverse: bool) -> Self {
+    /// What the kernel says, who steers and who has the pedals, and the flags of the car's controls; nothing is to be done.
+    pub fn new(hud: &Hud, steering: Seat, pedals: Seat, flags: u8) -> Self {
+        let arrow = |flag: u8, arrow| if flags & flag != 0 { arrow } else { "" };
         Self {
             speed: kmh(hud.speed_mps.abs()),
             limit: kmh(hud.limit_mps),
-            gear: if is_reverse { 'R' } else { 'D' },
+            gear: if flags & Controls::REVERSE != 0 { 'R' } else { 'D' },
+            indicators: [arrow(Controls::INDICATE_LEFT, "\u{25c0} "), arrow(Controls::INDICATE_RIGHT, " \u{25b6}")],
             control: control(steering, pedals).into(),
             light: hud.light,
             arrow_rad: arrow_rad(&hud.arrow),

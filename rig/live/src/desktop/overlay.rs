@@ -22,7 +22,9 @@ pub fn paint(painter: &Painter, rect: Rect, hud: &HudText) {
         painter.galley(box_.min, galley, WHITE);
     };
     write(hud::SPEED_AT, Align2::CENTER_CENTER, &format!("{} km/h", hud.speed), hud::SPEED_SIZE);
-    write(hud::GEAR_AT, Align2::LEFT_CENTER, &format!("{}   {}", hud.gear, hud.control), hud::TEXT_SIZE);
+    let [left, right] = hud.indicators;
+    let gear = format!("{left}{}{right}   {}", hud.gear, hud.control);
+    write(hud::GEAR_AT, Align2::LEFT_CENTER, &gear, hud::TEXT_SIZE);
     if !hud.note.is_empty() {
         write(hud::NOTE_AT, Align2::CENTER_CENTER, &hud.note, hud::TEXT_SIZE);
     }

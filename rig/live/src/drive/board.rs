@@ -84,8 +84,8 @@ pub struct Status {
     pub steering: Seat,
     /// Who has the pedals.
     pub pedals: Seat,
-    /// Whether the car's reverse gear is engaged.
-    pub is_reverse: bool,
+    /// Flags of the controls that reach the car.
+    pub flags: u8,
     /// Both drivers' controls.
     pub input: TickInput,
     /// Distance driven in this run, millimetres.

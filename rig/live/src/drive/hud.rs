@@ -8,7 +8,7 @@ use crate::desktop::HudText;
 
 /// That of a session's status.
 pub fn text(status: &Status) -> HudText {
-    let text = HudText::new(&status.hud, status.steering, status.pedals, status.is_reverse);
+    let text = HudText::new(&status.hud, status.steering, status.pedals, status.flags);
     HudText { note: note(&status.stage, status.phase, status.units_note.as_deref()).into(), ..text }
 }
 

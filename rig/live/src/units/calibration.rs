@@ -6,6 +6,7 @@ use anyhow::anyhow;
 use base::files::{self, most};
 use base::json::Typed;
 use base::toml_text;
+use kernel::Controls;
 use serde::{Deserialize, Serialize};
 
 /// How a fraction of the travel becomes a fraction of the control.
@@ -140,6 +141,34 @@ pub struct Buttons {
     /// "I see the hazard".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seen: Option<u16>,
+    /// Switches the left indicator on and off; with the right one held, the hazard lights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub indicate_left: Option<u16>,
+    /// Switches the right indicator on and off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub indicate_right: Option<u16>,
+    /// Sounds the horn while it is held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub horn: Option<u16>,
+    /// Switches the headlights on and off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lights: Option<u16>,
+    /// Switches the wipers on and off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wipers: Option<u16>,
+}
+
+impl Buttons {
+    /// The buttons of switches, each with its flag of [`Controls`].
+    pub(super) fn switches(&self) -> [(Option<u16>, u8); 5] {
+        [
+            (self.indicate_left, Controls::INDICATE_LEFT),
+            (self.indicate_right, Controls::INDICATE_RIGHT),
+            (self.horn, Controls::HORN),
+            (self.lights, Controls::LIGHTS),
+            (self.wipers, Controls::WIPERS),
+        ]
+    }
 }
 
 /// What the raw values of a device mean. Pedals that share an axis ("combined pedals") have their

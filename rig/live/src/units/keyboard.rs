@@ -3,6 +3,8 @@
 use kernel::time::TICK_HZ;
 use kernel::{Controls, Seat};
 
+use super::switches::Switches;
+
 /// Full travels per second: of the wheel away from and back to its centre, and of a pedal down and up.
 const STEER_PER_S: f32 = 1.2;
 const CENTRE_PER_S: f32 = 2.5;
@@ -30,6 +32,16 @@ pub enum Key {
     R,
     /// Semantic driver: "I see the hazard".
     E,
+    /// Semantic driver: indicate left.
+    Z,
+    /// Semantic driver: indicate right.
+    C,
+    /// Semantic driver: horn.
+    V,
+    /// Semantic driver: lights.
+    T,
+    /// Semantic driver: wipers.
+    G,
     /// Safety driver: accelerate.
     Up,
     /// Safety driver: brake.
@@ -44,6 +56,16 @@ pub enum Key {
     RightShift,
     /// Safety driver: change between forward and reverse, at standstill.
     PageDown,
+    /// Safety driver: indicate left.
+    Delete,
+    /// Safety driver: indicate right.
+    End,
+    /// Safety driver: horn.
+    Home,
+    /// Safety driver: lights.
+    Insert,
+    /// Safety driver: wipers.
+    PageUp,
 }
 
 /// What a key does.
@@ -56,6 +78,8 @@ enum Action {
     HandBrake,
     Gear,
     Seen,
+    /// Works a switch: one of the flags of [`Switches`].
+    Switch(u8),
 }
 
 impl Key {
@@ -68,6 +92,11 @@ impl Key {
             Self::Space => (Seat::Semantic, Action::HandBrake),
             Self::R => (Seat::Semantic, Action::Gear),
             Self::E => (Seat::Semantic, Action::Seen),
+            Self::Z => (Seat::Semantic, Action::Switch(Controls::INDICATE_LEFT)),
+            Self::C => (Seat::Semantic, Action::Switch(Controls::INDICATE_RIGHT)),
+            Self::V => (Seat::Semantic, Action::Switch(Controls::HORN)),
+            Self::T => (Seat::Semantic, Action::Switch(Controls::LIGHTS)),
+            Self::G => (Seat::Semantic, Action::Switch(Controls::WIPERS)),
             Self::Up => (Seat::Safety, Action::Throttle),
             Self::Down => (Seat::Safety, Action::Brake),
             Self::Left => (Seat::Safety, Action::Left),
@@ -75,6 +104,11 @@ impl Key {
             Self::RightCtrl => (Seat::Safety, Action::HandBrake),
             Self::RightShift => (Seat::Safety, Action::Seen),
             Self::PageDown => (Seat::Safety, Action::Gear),
+            Self::Delete => (Seat::Safety, Action::Switch(Controls::INDICATE_LEFT)),
+            Self::End => (Seat::Safety, Action::Switch(Controls::INDICATE_RIGHT)),
+            Self::Home => (Seat::Safety, Action::Switch(Controls::HORN)),
+            Self::Insert => (Seat::Safety, Action::Switch(Controls::LIGHTS)),
+            Self::PageUp => (Seat::Safety, Action::Switch(Controls::WIPERS)),
         }
     }
 }
@@ -92,6 +126,7 @@ pub struct Keyboard {
     /// "I see it" went down since the last tick.
     seen_asked: bool,
     reverse: bool,
+    switches: Switches,
     steer: f32,
     throttle: f32,
     brake: f32,
@@ -108,6 +143,7 @@ impl Keyboard {
             gear_asked: false,
             seen_asked: false,
             reverse: false,
+            switches: Switches::default(),
             steer: 0.0,
             throttle: 0.0,
             brake: 0.0,
@@ -135,10 +171,13 @@ impl Keyboard {
     /// Its keys, for people to read.
     pub fn keys(&self) -> &'static str {
         match self.half {
-            Seat::Semantic => "W throttle, S brake, A and D steer, hand brake Space, gear R, hazard seen E",
+            Seat::Semantic => {
+                "W throttle, S brake, A and D steer, hand brake Space, gear R, hazard seen E, indicators Z and C, horn V, \
+                 lights T, wipers G"
+            }
             Seat::Safety => {
                 "up throttle, down brake, left and right steer, hand brake right Ctrl, gear Page Down, \
-                 hazard seen right Shift"
+                 hazard seen right Shift, indicators Delete and End, horn Home, lights Insert, wipers Page Up"
             }
         }
     }
@@ -148,6 +187,9 @@ impl Keyboard {
         let (half, action) = key.meaning();
         if half != self.half {
             return;
+        }
+        if let Action::Switch(flag) = action {
+            return self.switches.press(flag, pressed);
         }
         let held = self.is_held(action);
         self.held.retain(|a| *a != action);
@@ -162,6 +204,7 @@ impl Keyboard {
     /// All keys went up, as when the window loses the keyboard.
     pub fn release(&mut self) {
         self.held.clear();
+        self.switches.release();
     }
 
     /// Gear D.
@@ -185,7 +228,8 @@ impl Keyboard {
         let flag = |on: bool, flag: u8| if on { flag } else { 0 };
         controls.flags = flag(self.is_held(Action::HandBrake), Controls::HAND_BRAKE)
             | flag(self.reverse, Controls::REVERSE)
-            | flag(self.is_held(Action::Seen) || seen_asked, Controls::SEEN);
+            | flag(self.is_held(Action::Seen) || seen_asked, Controls::SEEN)
+            | self.switches.tick(self.steer);
         controls
     }
 
@@ -257,6 +301,23 @@ mod tests {
         }
         assert!(hold(&mut safety, Key::RightShift, 1, 0.0).has(Controls::SEEN));
         assert!(hold(&mut safety, Key::RightCtrl, 1, 0.0).has(Controls::HAND_BRAKE));
+    }
+
+    #[test]
+    fn each_half_has_a_key_for_every_switch() {
+        let flags =
+            [Controls::INDICATE_LEFT, Controls::INDICATE_RIGHT, Controls::HORN, Controls::LIGHTS, Controls::WIPERS];
+        let keys = [
+            (Seat::Semantic, [Key::Z, Key::C, Key::V, Key::T, Key::G]),
+            (Seat::Safety, [Key::Delete, Key::End, Key::Home, Key::Insert, Key::PageUp]),
+        ];
+        for (seat, keys) in keys {
+            for (key, flag) in keys.into_iter().zip(flags) {
+                let other = if seat == Seat::Safety { Seat::Semantic } else { Seat::Safety };
+                assert_eq!(hold(&mut Keyboard::new(seat), key, 1, 0.0).flags, flag, "{key:?}");
+                assert_eq!(hold(&mut Keyboard::new(other), key, 1, 0.0).flags, 0, "{key:?}");
+            }
+        }
     }
 
     #[test]

@@ -24,4 +24,10 @@ pub struct Layout {
     pub east: Option<u16>,
     /// The left one (X, or a square).
     pub west: Option<u16>,
+    /// The upper one (Y, or a triangle).
+    pub north: Option<u16>,
+    /// Above the triggers, left and right, where these are no pedals.
+    pub shoulders: [Option<u16>; 2],
+    /// The small ones in the middle: select (back) and start.
+    pub middle: [Option<u16>; 2],
 }

@@ -48,6 +48,9 @@ struct Elements {
     south: Option<u32>,
     east: Option<u32>,
     west: Option<u32>,
+    north: Option<u32>,
+    shoulders: [Option<u32>; 2],
+    middle: [Option<u32>; 2],
 }
 
 impl Elements {
@@ -68,6 +71,9 @@ impl Elements {
             south: button(Button::South),
             east: button(Button::East),
             west: button(Button::West),
+            north: button(Button::North),
+            shoulders: [Button::LeftTrigger, Button::RightTrigger].map(button),
+            middle: [Button::Select, Button::Start].map(button),
         })
     }
 
@@ -77,10 +83,14 @@ impl Elements {
             |codes: &[u32], code: Option<u32>| code.filter(|code| codes.contains(code)).map(|code| code as u16);
         let (axis, button) = (|code| one_of(axes, code), |code| one_of(buttons, code));
         let trigger = |code| axis(code).map(Trigger::Axis).or(button(code).map(Trigger::Button));
+        let pedals = [self.right_trigger, self.left_trigger];
         Some(Layout {
             left_stick_x: axis(self.left_stick_x)?,
             right_trigger: trigger(self.right_trigger)?,
             left_trigger: trigger(self.left_trigger)?,
+            north: button(self.north),
+            shoulders: self.shoulders.map(|code| button(code.filter(|_| !pedals.contains(&code)))),
+            middle: self.middle.map(button),
             south: button(self.south),
             east: button(self.east),
             west: button(self.west),
@@ -99,7 +109,17 @@ mod tests {
     fn elements() -> Elements {
         let [left_stick_x, left_trigger, _] = AXES.map(Some);
         let [south, right_trigger] = BUTTONS.map(Some);
-        Elements { left_stick_x, right_trigger, left_trigger, south, east: Some(0x1_0132), west: None }
+        Elements {
+            left_stick_x,
+            right_trigger,
+            left_trigger,
+            south,
+            east: Some(0x1_0132),
+            west: None,
+            north: None,
+            shoulders: [None, right_trigger],
+            middle: [south, None],
+        }
     }
 
     #[test]
@@ -111,6 +131,9 @@ mod tests {
             south: Some(0x131),
             east: None,
             west: None,
+            north: None,
+            shoulders: [None; 2],
+            middle: [Some(0x131), None],
         };
         assert_eq!(elements().layout(&AXES, &BUTTONS), Some(expected));
     }

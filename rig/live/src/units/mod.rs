@@ -19,6 +19,7 @@ pub mod presets;
 mod slot;
 pub mod source;
 pub mod status;
+mod switches;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod wizard;

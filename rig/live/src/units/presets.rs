@@ -25,12 +25,16 @@ const WHEELS: [Preset; 4] =
 
 /// Logitech G29.
 pub fn g29() -> Calibration {
-    wheel("Logitech G29 Driving Force Racing Wheel", 900.0, 255, ABS_Z, ABS_RZ)
+    let wheel = wheel("Logitech G29 Driving Force Racing Wheel", 900.0, 255, ABS_Z, ABS_RZ);
+    // Paddles, triangle, share and options.
+    with_switches(wheel, [0x125, 0x124, 0x123, 0x128, 0x129])
 }
 
 /// Logitech G920.
 pub fn g920() -> Calibration {
-    wheel("Logitech G920 Driving Force Racing Wheel", 900.0, 255, ABS_Y, ABS_Z)
+    let wheel = wheel("Logitech G920 Driving Force Racing Wheel", 900.0, 255, ABS_Y, ABS_Z);
+    // Paddles, Y, menu and view.
+    with_switches(wheel, [0x125, 0x124, 0x123, 0x126, 0x127])
 }
 
 /// Thrustmaster T150.
@@ -57,8 +61,24 @@ pub fn gamepad(layout: &Layout) -> Calibration {
         steering: Axis { dead_zone: STICK_DEAD_ZONE, curve: Curve::Square, ..axis(layout.left_stick_x, 128) },
         throttle: pedal(layout.right_trigger),
         brake: pedal(layout.left_trigger),
-        buttons: Buttons { hand_brake: layout.south, reverse: layout.east, seen: layout.west },
+        buttons: Buttons {
+            hand_brake: layout.south,
+            reverse: layout.east,
+            seen: layout.west,
+            indicate_left: layout.shoulders[0],
+            indicate_right: layout.shoulders[1],
+            horn: layout.north,
+            lights: layout.middle[1],
+            wipers: layout.middle[0],
+        },
     }
+}
+
+/// The same wheel with these buttons for the indicators (left, right), horn, lights and wipers.
+fn with_switches(mut wheel: Calibration, buttons: [u16; 5]) -> Calibration {
+    let [indicate_left, indicate_right, horn, lights, wipers] = buttons.map(Some);
+    wheel.buttons = Buttons { indicate_left, indicate_right, horn, lights, wipers, ..wheel.buttons };
+    wheel
 }
 
 /// A wheel whose pedals give their greatest value when released, as all of these do.
@@ -80,7 +100,12 @@ fn wheel(device: &str, rotation_deg: f32, pedal_max: i32, throttle: u16, brake: 
         steering: Axis { rest: 32_768, max: 65_535, invert: false, dead_zone: 0.0, ..pedal(ABS_X) },
         throttle: pedal(throttle),
         brake: pedal(brake),
-        buttons: Buttons { hand_brake: Some(BTN_TRIGGER), reverse: Some(BTN_THUMB), seen: Some(BTN_THUMB2) },
+        buttons: Buttons {
+            hand_brake: Some(BTN_TRIGGER),
+            reverse: Some(BTN_THUMB),
+            seen: Some(BTN_THUMB2),
+            ..Buttons::default()
+        },
     }
 }
 

@@ -11,6 +11,9 @@ pub(crate) const LAYOUT: Layout = Layout {
     south: Some(0x130),
     east: Some(0x131),
     west: Some(0x134),
+    north: Some(0x133),
+    shoulders: [Some(0x136), Some(0x137)],
+    middle: [Some(0x13a), Some(0x13b)],
 };
 
 /// A wheel with the axes of a G29, of no known make, that passes for a gamepad.

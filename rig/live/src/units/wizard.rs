@@ -45,6 +45,11 @@ pub fn calibrate(
             hand_brake: wizard.button("the hand brake")?,
             reverse: wizard.button("changing into reverse and back")?,
             seen: wizard.button("\"I see the hazard\"")?,
+            indicate_left: wizard.button("the left indicator")?,
+            indicate_right: wizard.button("the right indicator")?,
+            horn: wizard.button("the horn")?,
+            lights: wizard.button("the headlights")?,
+            wipers: wizard.button("the wipers")?,
         },
     };
     if let Some(problem) = calibration.problem() {
@@ -188,13 +193,27 @@ mod tests {
             (vec![(0x121, 1), (0x121, 0)], ""),
             (vec![], ""),
             (vec![(0x123, 1)], ""),
+            (vec![(0x125, 1)], ""),
+            (vec![(0x124, 1)], ""),
+            (vec![(0x126, 1)], ""),
+            (vec![], ""),
+            (vec![(0x128, 1)], ""),
         ];
         let wheel = run(answers).unwrap();
         assert_eq!([wheel.steering, wheel.throttle, wheel.brake].map(|a| a.axis), [0, 2, 5]);
         assert_eq!((wheel.rotation_deg, wheel.used_deg), (1080.0, 540.0));
         assert_eq!([0, 32_700, 65_535].map(|raw| wheel.steer(raw)), [-1.0, 0.0, 1.0]);
         assert_eq!((wheel.throttle.pressed(255), wheel.throttle.pressed(0), wheel.brake.pressed(0)), (0.0, 1.0, 1.0));
-        let buttons = Buttons { hand_brake: Some(0x121), reverse: None, seen: Some(0x123) };
+        let buttons = Buttons {
+            hand_brake: Some(0x121),
+            reverse: None,
+            seen: Some(0x123),
+            indicate_left: Some(0x125),
+            indicate_right: Some(0x124),
+            horn: Some(0x126),
+            lights: None,
+            wipers: Some(0x128),
+        };
         assert_eq!(wheel.buttons, buttons);
     }
 
@@ -210,7 +229,7 @@ mod tests {
         let pedals = [(vec![(0, 32_700), (1, 0)], ""), (vec![(1, 255)], "")];
         let mut answers = vec![(both, ""), (vec![(0, 100)], "")];
         answers.extend(pedals);
-        answers.extend((0..5).map(|_| (vec![], "")));
+        answers.extend((0..10).map(|_| (vec![], "")));
         let wheel = run(answers).unwrap();
         assert_eq!((wheel.throttle.axis, wheel.brake.axis), (1, 1));
         assert_eq!((wheel.throttle.pressed(0), wheel.brake.pressed(0)), (1.0, 0.0));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use kernel::{Controls, Seat};
+use kernel::Seat;
 
 use super::display::Display;
 use super::pace::Pace;
@@ -43,7 +43,7 @@ impl Parts<'_> {
             phase: world.arbiter().phase,
             steering: seat(applied.map(|a| a.steering)),
             pedals: seat(applied.map(|a| a.pedals)),
-            is_reverse: applied.is_some_and(|a| a.controls.has(Controls::REVERSE)),
+            flags: applied.map_or(0, |a| a.controls.flags),
             input: display.input,
             odometer_mm: world.odometer_mm(),
             totals: runs.totals(),

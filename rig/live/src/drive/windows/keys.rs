@@ -18,6 +18,11 @@ pub fn seat_key(key: PhysicalKey) -> Option<Key> {
         KeyCode::Space => Key::Space,
         KeyCode::KeyR => Key::R,
         KeyCode::KeyE => Key::E,
+        KeyCode::KeyZ => Key::Z,
+        KeyCode::KeyC => Key::C,
+        KeyCode::KeyV => Key::V,
+        KeyCode::KeyT => Key::T,
+        KeyCode::KeyG => Key::G,
         KeyCode::ArrowUp => Key::Up,
         KeyCode::ArrowDown => Key::Down,
         KeyCode::ArrowLeft => Key::Left,
@@ -25,6 +30,11 @@ pub fn seat_key(key: PhysicalKey) -> Option<Key> {
         KeyCode::ControlRight => Key::RightCtrl,
         KeyCode::ShiftRight => Key::RightShift,
         KeyCode::PageDown => Key::PageDown,
+        KeyCode::Delete => Key::Delete,
+        KeyCode::End => Key::End,
+        KeyCode::Home => Key::Home,
+        KeyCode::Insert => Key::Insert,
+        KeyCode::PageUp => Key::PageUp,
         _ => return None,
     })
 }
@@ -86,7 +96,7 @@ mod tests {
     use super::*;
     use crate::drive::stage::{Dialog, Stage, Wish};
 
-    const SEATS: [KeyCode; 14] = [
+    const SEATS: [KeyCode; 24] = [
         KeyCode::KeyW,
         KeyCode::KeyA,
         KeyCode::KeyS,
@@ -101,6 +111,16 @@ mod tests {
         KeyCode::ControlRight,
         KeyCode::ShiftRight,
         KeyCode::PageDown,
+        KeyCode::KeyZ,
+        KeyCode::KeyC,
+        KeyCode::KeyV,
+        KeyCode::KeyT,
+        KeyCode::KeyG,
+        KeyCode::Delete,
+        KeyCode::End,
+        KeyCode::Home,
+        KeyCode::Insert,
+        KeyCode::PageUp,
     ];
 
     fn wish(stage: &mut Stage, text: &str, code: KeyCode) -> Wish {
@@ -130,7 +150,7 @@ mod tests {
         assert_eq!(wish("a", KeyCode::KeyQ), Wish::Quit, "AZERTY: the letter is at a seat's key");
         assert_eq!((wish("x", KeyCode::KeyB), wish("q", KeyCode::KeyX)), (Wish::Swap, Wish::Quit), "Dvorak: by letter");
         assert_eq!((wish("т", KeyCode::KeyN), wish("", KeyCode::KeyF)), (Wish::Start, Wish::Force), "other scripts");
-        assert_eq!((wish("t", KeyCode::KeyT), wish("", KeyCode::ShiftLeft)), (Wish::Nothing, Wish::Nothing));
+        assert_eq!((wish("y", KeyCode::KeyY), wish("", KeyCode::ShiftLeft)), (Wish::Nothing, Wish::Nothing));
     }
 
     #[test]

@@ -83,7 +83,7 @@ fn paint_actors(painter: &Painter, view: &Projection, scene: &SceneSnapshot) {
     let ahead = |rotation: glam::Quat| (rotation * Vec3::X).xy().normalize_or(Place::X);
     for actor in &scene.actors {
         let (at, size_m) = (actor.position.xy(), actor.kind.size_m());
-        if actor.kind == ActorKind::Pedestrian {
+        if actor.kind.is_on_foot() {
             painter.circle_filled(view.at(at), (0.6 * view.points_per_m).max(2.0), PERSON);
         } else {
             let (forward, left) =

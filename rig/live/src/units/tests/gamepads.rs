@@ -14,16 +14,30 @@ const LEFT: u16 = 17;
 const SOUTH: u16 = 0x121;
 const EAST: u16 = 0x122;
 const WEST: u16 = 0x123;
+const NORTH: u16 = 0x120;
+const SHOULDERS: [u16; 2] = [0x124, 0x125];
+const MIDDLE: [u16; 2] = [0x128, 0x129];
 const TRIGGERS: [u16; 2] = [0x127, 0x126];
 
 /// A pad whose elements are elsewhere than those of others.
 fn pad(id: usize, [right_trigger, left_trigger]: [Trigger; 2]) -> DeviceInfo {
     let axis = |code, min, max| AxisRange { code, min, max };
-    let [south, east, west] = [SOUTH, EAST, WEST].map(Some);
+    let [south, east, west, north] = [SOUTH, EAST, WEST, NORTH].map(Some);
+    let [shoulders, middle] = [SHOULDERS, MIDDLE].map(|codes| codes.map(Some));
     DeviceInfo {
         name: "odd pad".into(),
         axes: vec![axis(STICK, -100, 100), axis(RIGHT, 0, 1023), axis(LEFT, 0, 1023)],
-        layout: Some(Layout { left_stick_x: STICK, right_trigger, left_trigger, south, east, west }),
+        layout: Some(Layout {
+            left_stick_x: STICK,
+            right_trigger,
+            left_trigger,
+            south,
+            east,
+            west,
+            north,
+            shoulders,
+            middle,
+        }),
         ..device(id, PATH)
     }
 }
@@ -85,7 +99,11 @@ fn a_pad_that_only_sdl_knows_is_armed_and_drives() {
     axis(&devices, 0, LEFT, 1023);
     [SOUTH, EAST, WEST].into_iter().for_each(|code| button(&devices, 0, code, true));
     let controls = semantic(&mut seats);
-    assert_eq!((controls.brake, controls.flags), (65_535, Controls::ALL_FLAGS));
+    assert_eq!((controls.brake, controls.flags), (65_535, Controls::HAND_BRAKE | Controls::REVERSE | Controls::SEEN));
+    [NORTH, MIDDLE[0], MIDDLE[1], SHOULDERS[0], SHOULDERS[1]]
+        .into_iter()
+        .for_each(|code| button(&devices, 0, code, true));
+    assert_eq!(semantic(&mut seats).flags, Controls::ALL_FLAGS);
 }
 
 #[test]
