@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test matrix bench oracles kills fuzz check-long headless setup tools build
+.PHONY: demo test matrix bench oracles peers kills fuzz check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -41,6 +41,11 @@ bench: setup
 oracles: PACKAGES += python3-venv
 oracles: build
 	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
+
+## Drives the same towns with SUMO (PyPI), and says how fast either is.
+peers: PACKAGES += python3-venv
+peers: build
+	benches/peers/run.sh $(dir $(AEYE))world_speed $(dir $(AEYE))../peers
 
 ## Kills the program 200 times in everything that takes long; what was finished must stay.
 kills: setup

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use benches::scenes::{BusyDrive, STEP_S, recorded};
+use benches::scenes::{BusyDrive, SCALE_S, STEP_S, recorded, town};
 use benches::{Against, Budget, check, mean_seconds};
 use criterion::{BatchSize, Criterion};
 use kernel::RoadNetwork;
@@ -23,9 +23,11 @@ const SIZE: (u32, u32) = (256, 128);
 
 /// The budgets of the rig. Real-time factors hold on one core of a desktop machine; the ratios to
 /// references hold wherever both run.
-const BUDGETS: [Budget; 7] = [
+const BUDGETS: [Budget; 8] = [
     Budget { bench: "kernel/step", against: Against::RealTime(STEP_S as f64), at_least: 150.0 },
     Budget { bench: "replay/verify", against: Against::RealTime(STEP_S as f64), at_least: 100.0 },
+    // Road users cost no more each where there are more of them.
+    Budget { bench: "kernel/scale_1000", against: Against::Reference("kernel/scale_150"), at_least: 150.0 / 1000.0 },
     // Keyframes are 7 s apart: what lies between two is driven again.
     Budget { bench: "replay/seek", against: Against::RealTime(KEYFRAMES_S), at_least: 100.0 },
     // Four times the roads take four times as long, and a little more.
@@ -61,6 +63,7 @@ fn run() -> Result<bool, String> {
         .warm_up_time(Duration::from_secs(1))
         .measurement_time(Duration::from_secs(4));
     kernel_step(&mut criterion, &drive);
+    let towns = kernel_scale(&mut criterion);
     kernel_bake(&mut criterion);
     replay_verify(&mut criterion, &drive)?;
     replay_seek(&mut criterion, &drive)?;
@@ -69,9 +72,14 @@ fn run() -> Result<bool, String> {
     sight.render(&mut criterion, &drive);
     sight.infer(&mut criterion, &drive);
     sight.whole_frame(&mut criterion, &drive);
-    let checked = check(&BUDGETS, |name| {
+    let seconds_of = |name: &str| {
         mean_seconds(&fs::read_to_string(results.join(name.replace('/', "_")).join("new/estimates.json")).ok()?)
-    })?;
+    };
+    let checked = check(&BUDGETS, seconds_of)?;
+    for (name, placed) in towns {
+        let seconds = seconds_of(name).ok_or_else(|| format!("{name}: not measured"))?;
+        println!("{name:18} {placed} road users: {:.0} agent-seconds a second", f64::from(placed * SCALE_S) / seconds);
+    }
     checked.iter().for_each(|line| println!("{line}"));
     Ok(checked.iter().all(benches::Checked::kept))
 }
@@ -90,6 +98,21 @@ fn kernel_step(criterion: &mut Criterion, drive: &BusyDrive) {
             BatchSize::LargeInput,
         )
     });
+}
+
+/// Towns with room for all; gives the road users of each.
+fn kernel_scale(criterion: &mut Criterion) -> [(&'static str, u32); 2] {
+    [("kernel/scale_150", 150, 6, 5), ("kernel/scale_1000", 1000, 16, 13)].map(|(name, actors, columns, rows)| {
+        let drive = town(actors, columns, rows);
+        criterion.bench_function(name, |b| {
+            b.iter_batched_ref(
+                || drive.world.clone(),
+                |world| drive.inputs.iter().for_each(|input| drop(world.step(input))),
+                BatchSize::LargeInput,
+            )
+        });
+        (name, drive.placed)
+    })
 }
 
 fn kernel_bake(criterion: &mut Criterion) {

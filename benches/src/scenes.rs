@@ -4,12 +4,14 @@
 use std::fs;
 use std::io::Cursor;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{SceneSnapshot, TickInput, World};
 use replay::{Log, Manifest, Provenance, Recorder, Recording};
 
 use ::tests::scenes::{Scene, busy_hamlet, follow_route};
+use ::tests::town::Town;
 
 /// Ticks of driving before measuring starts: traffic has spread by then.
 pub const WARM_UP_TICKS: Tick = seconds(20);
@@ -53,6 +55,40 @@ impl BusyDrive {
         ])?;
         Ok(Self { scene, world, inputs, snapshot })
     }
+}
+
+/// Simulated seconds of one iteration of `kernel/scale`.
+pub const SCALE_S: u32 = 10;
+
+/// A town in traffic, and the inputs that drive it on.
+pub struct TownDrive {
+    /// The world after [`WARM_UP_TICKS`].
+    pub world: World,
+    /// Inputs of the next [`SCALE_S`] seconds.
+    pub inputs: Vec<TickInput>,
+    /// Road users that found room.
+    pub placed: u32,
+}
+
+/// A town of so many junctions with about so many road users, 45 % of them cars, 40 % people on foot.
+pub fn town(actors: u16, columns: usize, rows: usize) -> TownDrive {
+    let share = |pct: u32| u32::from(actors) * pct / 100;
+    let (motorcycles, bicycles, people) = (share(5), share(10), share(40));
+    let cars = u32::from(actors) - motorcycles - bicycles - people;
+    let scenario = format!(
+        "map = \"town\"\nseed = 1\n[traffic]\ncars = {cars}\nmotorcycles = {motorcycles}\nbicycles = {bicycles}\n\
+         pedestrians = {people}\n"
+    );
+    let text = Town { columns, rows, pitch_m: 130.0 }.text();
+    let network = Arc::new(kernel::map::bake("town", &text).expect("the town bakes"));
+    let scenario = kernel::Scenario::from_toml(&scenario).expect("a valid scenario");
+    let world = Scene { scenario, network }.world_after(WARM_UP_TICKS);
+    let (mut end, mut inputs) = (world.clone(), Vec::new());
+    for _ in 0..SCALE_S * TICK_HZ {
+        inputs.push(follow_route(&end));
+        end.step(&inputs[inputs.len() - 1]);
+    }
+    TownDrive { placed: world.scene().actors.len() as u32, world, inputs }
 }
 
 /// The log of the first seconds of a scene, driven by [`follow_route`].

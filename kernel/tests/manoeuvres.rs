@@ -260,12 +260,12 @@ fn narrowing_ring() -> Arc<RoadNetwork> {
 #[test]
 fn two_lanes_with_1200_vehicles_an_hour_merge_into_one() {
     let network = narrowing_ring();
-    let counts = TrafficCounts { cars: 60, ..NOBODY };
+    let counts = TrafficCounts { cars: 80, ..NOBODY };
     for seed in 9001..9004 {
         let mut traffic = Traffic::spawn(&counts, seed, network.ways(), FAR);
         let (mut passed, mut slowest_s) = (0, 0);
         let mut before: Vec<f32> = Vec::new();
-        let mut stands_s = vec![0; 60];
+        let mut stands_s = vec![0; 80];
         let (settle, ticks) = (seconds(300), seconds(900));
         // Where there is one lane only, told by the angle around the middle of the ring.
         let radius_m = 2000.0 / std::f32::consts::TAU;

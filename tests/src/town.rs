@@ -78,9 +78,8 @@ impl Town {
     fn street(&self, node: usize, way: usize, other: usize) -> String {
         let (id, length) = (Self::street_id(node, way), self.pitch_m - 2.0 * SETBACK_M);
         let plan = geometry(0.0, self.mouth(node, way), length, "<line/>");
-        let end = |tag: &str, node| {
-            format!("<{tag} elementType=\"junction\" elementId=\"{}\"/>", Self::junction_id(node))
-        };
+        let end =
+            |tag: &str, node| format!("<{tag} elementType=\"junction\" elementId=\"{}\"/>", Self::junction_id(node));
         let both = [lane(2, "sidewalk", SIDEWALK_M), lane(1, "driving", LANE_M)].concat();
         let right = [lane(-1, "driving", LANE_M), lane(-2, "sidewalk", SIDEWALK_M)].concat();
         let mark = "<roadMark sOffset=\"0\" type=\"broken\" width=\"0.12\"/>";

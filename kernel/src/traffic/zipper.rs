@@ -12,7 +12,11 @@ use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
 
-/// Braking before a place where lanes meet, m/s²: early, so that gaps open while both roll.
+/// Braking from afar for one who goes first, m/s², so that gaps open while both roll.
+const EARLY_MPS2: f32 = 1.0;
+/// The gap to that one may still be shorter by so much for each metre before that place.
+const GAP_OPENS: f32 = 0.2;
+/// Braking before a place where lanes meet, m/s².
 const BRAKE_MPS2: f32 = 1.2;
 /// Time in which that speed is taken up, s.
 const ADAPT_S: f32 = 0.3;
@@ -70,8 +74,9 @@ impl Approach<'_> {
         let lead_m = between_m + other.half_m - self.driver.size_m.x * 0.5;
         let ahead = lead_m > 0.0 || (lead_m == 0.0 && other.id < self.vehicle.id);
         let gap_m = between_m - other.half_m - self.driver.size_m.x * 0.5;
-        let follow = follow_idm(self.driver, self.vehicle.speed_mps, gap_m, other.speed_mps);
-        ahead.then(|| if self.line_m > 0.0 { follow.max(self.stop()) } else { follow })
+        let opens_m = GAP_OPENS * self.line_m.max(0.0);
+        let follow = follow_idm(self.driver, self.vehicle.speed_mps, gap_m + opens_m, other.speed_mps);
+        ahead.then(|| if self.line_m > 0.0 { follow.max(self.stop().min(-EARLY_MPS2)) } else { follow })
     }
 
     /// Before one on a lane that crosses.
