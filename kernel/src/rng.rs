@@ -29,6 +29,8 @@ pub enum Stream {
     Scenario = 9,
     /// What stands beside the roads of a map.
     Dressing = 10,
+    /// Mistakes of people at the wheel.
+    Lapse = 14,
 }
 
 fn mix(z: u64) -> u64 {

@@ -1,6 +1,8 @@
 //! Invariants of traffic, on a crossroads built in code and on the bundled maps.
 
 mod crossroads;
+mod encroachment;
+mod mistakes;
 
 use std::sync::Arc;
 
