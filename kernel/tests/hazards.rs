@@ -9,8 +9,8 @@ use common::script;
 use glam::Vec3;
 use kernel::events::EventKind;
 use kernel::map::bundled;
-use kernel::scene::SceneSnapshot;
 use kernel::scenario::{HazardRates, Scenario};
+use kernel::scene::SceneSnapshot;
 use kernel::time::seconds;
 use kernel::{Controls, TickInput, World};
 
@@ -92,6 +92,7 @@ fn every_file_shows_its_hazard() {
 #[test]
 fn there_is_a_test_for_every_file() {
     let files = std::fs::read_dir(folder()).expect("the folder is there");
-    let tomls = files.filter(|file| file.as_ref().is_ok_and(|file| file.path().extension().is_some_and(|e| e == "toml")));
+    let tomls =
+        files.filter(|file| file.as_ref().is_ok_and(|file| file.path().extension().is_some_and(|e| e == "toml")));
     assert_eq!(tomls.count(), 7);
 }

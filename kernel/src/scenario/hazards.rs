@@ -27,7 +27,8 @@ impl Hazards {
         if let Some(level) = self.level {
             let named = HazardLevel::named(level.get_ref());
             let refused = || {
-                let (line, names) = (reader.line(level.span().start), HazardLevel::ALL.map(HazardLevel::name).join(", "));
+                let (line, names) =
+                    (reader.line(level.span().start), HazardLevel::ALL.map(HazardLevel::name).join(", "));
                 ScenarioError(format!("line {line}: hazards.level is {:?}, expected one of {names}", level.get_ref()))
             };
             *to = named.ok_or_else(refused)?.rates();
@@ -37,7 +38,12 @@ impl Hazards {
         reader.take("hazards.rolling_stops", self.rolling_stops, share.clone(), &mut to.rolling_stops)?;
         reader.take("hazards.tailgaters", self.tailgaters, share, &mut to.tailgaters)?;
         reader.take("hazards.cut_ins_per_h", self.cut_ins_per_h, per_h.clone(), &mut to.cut_ins_per_h)?;
-        reader.take("hazards.hard_brakings_per_h", self.hard_brakings_per_h, per_h.clone(), &mut to.hard_brakings_per_h)?;
+        reader.take(
+            "hazards.hard_brakings_per_h",
+            self.hard_brakings_per_h,
+            per_h.clone(),
+            &mut to.hard_brakings_per_h,
+        )?;
         reader.take("hazards.pull_outs_per_h", self.pull_outs_per_h, per_h, &mut to.pull_outs_per_h)?;
         reader.take("hazards.inattention", self.inattention, 0.0..=2.0, &mut to.inattention)
     }

@@ -21,7 +21,13 @@ impl Reader<'_> {
     }
 
     /// Takes over a value, if one is given, or refuses it by line and key.
-    pub fn take<T>(&self, key: &str, given: Given<T>, range: impl RangeBounds<T>, to: &mut T) -> Result<(), ScenarioError>
+    pub fn take<T>(
+        &self,
+        key: &str,
+        given: Given<T>,
+        range: impl RangeBounds<T>,
+        to: &mut T,
+    ) -> Result<(), ScenarioError>
     where
         T: PartialOrd + Copy + std::fmt::Display,
     {

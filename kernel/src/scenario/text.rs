@@ -1,9 +1,9 @@
 //! Scenarios as text.
 
-use serde::Deserialize;
 use super::fields::{MOST_OF_A_KIND, Scenario, ScenarioError};
 use super::hazards::{Hazards, print_hazards};
 use super::reader::{Given, Reader};
+use serde::Deserialize;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

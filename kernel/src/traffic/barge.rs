@@ -53,7 +53,9 @@ impl View<'_> {
     /// Changes lanes at once, if that is still possible.
     pub(super) fn barge_in(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
         let granted = next.flags & Vehicle::GRANTED != 0;
-        if let Some((side, there)) = self.cut_in(index, plan).filter(|_| !granted && next.lane == self.vehicles[index].lane) {
+        if let Some((side, there)) =
+            self.cut_in(index, plan).filter(|_| !granted && next.lane == self.vehicles[index].lane)
+        {
             next.manoeuvre = Manoeuvre::signal_to(side);
             self.take_lane(&there, next);
         }
@@ -64,7 +66,8 @@ impl View<'_> {
         let (vehicle, seeker, plan) = (&self.vehicles[index], self.seeker(index), &self.plans[index]);
         let likes_m = self.likes_m(index);
         let steps = self.steps_of(plan);
-        let mut seen = self.near(index, &seeker).chain(&self.hazards[..1]).filter_map(|h| sight(self.map, steps, &seeker, h));
+        let mut seen =
+            self.near(index, &seeker).chain(&self.hazards[..1]).filter_map(|h| sight(self.map, steps, &seeker, h));
         let beside = seen.any(|seen| seen.gap_m < BESIDE_M && seen.obstructs(likes_m, seeker.half.y));
         let stops = |mps: f32, gap_m: f32| braking_needed(mps, gap_m - LEFT_M) < PULL_OUT_MPS2;
         let behind = self.behind(index, vehicle.lane, vehicle.s_m);

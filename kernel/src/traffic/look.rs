@@ -149,7 +149,8 @@ impl Sight {
         self.blocks.clear();
         self.blocks.extend(self.hazards.iter().filter(|h| !h.walker));
         let (driven, walked) = actors.bodies.split_at(vehicles.len());
-        let present = vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !v.is_aside() && !around.holds(v.id));
+        let present =
+            vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !v.is_aside() && !around.holds(v.id));
         self.driven.clear();
         self.driven.extend(present.map(|(i, (_, body))| (i as u32, Hazard::of_body(body))));
         self.blocks.extend(self.driven.iter().map(|(_, hazard)| *hazard));

@@ -22,8 +22,11 @@ use super::vehicle::Vehicle;
 
 /// Whoever would be at the line this long after the light has turned red may run it, s.
 const RUN_S: f32 = 2.0;
-/// Slower than this nobody runs a light, nor goes on with it, m/s.
-const RUN_LEAST_MPS: f32 = 3.0;
+/// Slower than this nobody begins to run a light, nor goes on with it, m/s.
+const RUN_LEAST_MPS: f32 = 4.0;
+const RUNS_ON_MPS: f32 = 1.0;
+/// Half of the acceleration with which others speed up before a light, m/s².
+const SPEEDING_UP_MPS2: f32 = 0.8;
 /// So near to its line a stop sign is rolled over, metres: at about 9 km/h.
 const ROLL_M: f32 = 1.5;
 /// Hard braking for no reason, of cars and of long vehicles, m/s².
@@ -41,6 +44,8 @@ const HALT_MPS2: f32 = 1.5;
 const HALT_FROM_MPS: [f32; 2] = [3.0, 15.0];
 /// The way ahead on which no junction or crosswalk is, metres.
 const HALT_CLEAR_M: f32 = 60.0;
+/// Nor so far behind, metres.
+const HALT_BEHIND_M: f32 = 15.0;
 /// Least and most time of a halt, tenths of a second.
 const HALTS_DS: [u8; 2] = [40, 120];
 /// Ticks in a tenth of a second.
@@ -97,7 +102,7 @@ impl View<'_> {
                 end_if(next.lapse_left == 0, next);
             }
             Lapse::RunsRed => {
-                let goes = plan.line.is_some_and(|_| next.speed_mps >= RUN_LEAST_MPS);
+                let goes = plan.line.is_some_and(|_| next.speed_mps >= RUNS_ON_MPS);
                 end_if(!goes, next);
             }
             Lapse::Rolls => end_if(plan.line.is_none() || next.speed_mps < 0.3, next),
@@ -151,9 +156,12 @@ impl View<'_> {
         let approach = self.steps_of(plan)[line.approach].lane;
         let Signal::Closing(left) = junction::signal(self.map, self.lights, next, approach) else { return None };
         let v = next.speed_mps;
-        let (there_s, red_s) = (line.ahead_m / v.max(0.1), left as f32 * TICK_S);
+        let red_s = left as f32 * TICK_S;
+        // Who speeds up may be there before that.
+        let limit_mps = self.map.lanes[next.lane as usize].speed_limit_mps.max(v);
+        let most_m = (v * red_s + SPEEDING_UP_MPS2 * red_s * red_s).min(limit_mps * red_s);
         let first = plan.leader.is_none_or(|leader| leader.gap_m > line.ahead_m);
-        let meets = there_s > red_s && there_s < red_s + RUN_S && v > RUN_LEAST_MPS && !line.passed;
+        let meets = line.ahead_m > most_m && line.ahead_m < v * (red_s + RUN_S) && v > RUN_LEAST_MPS && !line.passed;
         let could_stop = braking_needed(v, line.ahead_m) < YELLOW_BRAKE_MPS2;
         (meets && first && could_stop && next.kind != ActorKind::Bicycle).then_some(self.tick + left)
     }
@@ -190,12 +198,20 @@ impl View<'_> {
         let [least, most] = HALT_FROM_MPS;
         let steps = self.steps_of(plan);
         let ways = &self.ways.lanes;
-        let near = steps.iter().take_while(|step| step.start_m < HALT_CLEAR_M);
-        let clear = near.clone().all(|s| ways[s.lane as usize].zone.is_none() && ways[s.lane as usize].crosswalks.is_empty());
+        let mut near = steps.iter().take_while(|step| step.start_m < HALT_CLEAR_M);
+        let ahead = |m: f32| (-HALT_BEHIND_M..HALT_CLEAR_M).contains(&m);
+        let clear = near.all(|step| {
+            let way = &ways[step.lane as usize];
+            way.zone.is_none() && !way.crosswalks.iter().any(|c| ahead(step.start_m + c.near_m))
+        });
         let lane = &self.map.lanes[next.lane as usize];
         let kerb = if self.ways.kerb > 0 { lane.left } else { lane.right };
         let drives = next.kind == ActorKind::Car && (least..most).contains(&next.speed_mps) && next.late_ticks == 0;
-        drives && clear && kerb.is_none() && next.manoeuvre == Manoeuvre::Keep && plan.dead_end_m.is_none()
+        drives
+            && clear
+            && kerb.is_none()
+            && next.manoeuvre == Manoeuvre::Keep
+            && plan.dead_end_m.is_none_or(|m| m > HALT_CLEAR_M)
     }
 
     /// Where across its lane a vehicle halts at the kerb, metres to the left of the middle.
