@@ -4,11 +4,12 @@
 mod common;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use common::script;
 use glam::Vec3;
 use kernel::events::EventKind;
-use kernel::map::bundled;
+use kernel::map::{RoadNetwork, bake, bundled};
 use kernel::scenario::{HazardRates, Scenario};
 use kernel::scene::SceneSnapshot;
 use kernel::time::seconds;
@@ -48,10 +49,19 @@ fn careful(world: &World) -> Controls {
     }
 }
 
+/// A bundled map, or one that lies beside the scenario, and the scenario on it.
+fn on_its_map(scenario: &Scenario) -> (Scenario, Arc<RoadNetwork>) {
+    let Some(name) = scenario.map.strip_suffix(".xodr") else {
+        return (scenario.clone(), bundled(&scenario.map).expect("a bundled map"));
+    };
+    let text = std::fs::read_to_string(folder().join(&scenario.map)).expect("the map is there");
+    (Scenario { map: name.to_owned(), ..scenario.clone() }, Arc::new(bake(name, &text).expect("it bakes")))
+}
+
 /// Drives a scenario; what happened of the kind, and the world at the end.
 fn drive(scenario: &Scenario, kind: Option<EventKind>) -> (usize, World) {
-    let network = bundled(&scenario.map).expect("a bundled map");
-    let mut world = World::new(scenario, &network).expect("the scenario fits");
+    let (scenario, network) = on_its_map(scenario);
+    let mut world = World::new(&scenario, &network).expect("the scenario fits");
     let mut found = 0;
     for _ in 0..seconds(DRIVE_S) {
         let output = world.step(&TickInput { semantic: careful(&world), ..TickInput::default() });

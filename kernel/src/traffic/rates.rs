@@ -71,7 +71,7 @@ impl HazardLevel {
                 rolling_stops: 0.8,
                 tailgaters: 0.4,
                 cut_ins_per_h: 120.0,
-                hard_brakings_per_h: 20.0,
+                hard_brakings_per_h: 40.0,
                 pull_outs_per_h: 30.0,
                 inattention: 1.5,
             },

@@ -112,18 +112,19 @@ fn encroachments(seed: u64, minutes: Tick, level: HazardLevel) -> (u32, f64) {
     (found, driven_m / 1000.0)
 }
 
-/// Tuned on seeds 1001 to 1003; these are others.
+/// The rates were set on seeds 1 to 3 (0.20 a km with natural ones, 0.66 with raised ones and half of the hard braking that
+/// they have now); these are others.
 #[test]
 fn raised_hazards_make_three_times_as_many_encroachments() {
     let per_km = |level: HazardLevel| {
         let (mut found, mut km) = (0, 0.0);
-        for seed in 1..=3 {
-            let (more, driven_km) = encroachments(seed, 10, level);
+        for seed in 11..=12 {
+            let (more, driven_km) = encroachments(seed, 8, level);
             (found, km) = (found + more, km + driven_km);
         }
         println!("{}: {found} in {km:.0} km, {:.3} a km", level.name(), f64::from(found) / km);
         f64::from(found) / km
     };
-    let [none, natural, raised] = HazardLevel::ALL.map(per_km);
-    assert!(raised >= 3.0 * natural && natural >= none, "{none:.3}, {natural:.3}, {raised:.3} a km");
+    let [natural, raised] = [HazardLevel::Natural, HazardLevel::Raised].map(per_km);
+    assert!(natural > 0.0 && raised >= 3.0 * natural, "{natural:.3}, {raised:.3} a km");
 }
