@@ -23,28 +23,22 @@ impl Actors {
     /// Whoever makes a mistake and touches another vehicle stands from then on, and so does that. The watchdog takes
     /// them off the road after a minute.
     pub(super) fn crash(&mut self, around: &Surroundings<'_>, told: &mut Vec<Told>) {
-        let first = told.len();
         let vehicles = &self.state.vehicles;
         let endangers = |v: &Vehicle| v.lapse != Lapse::None && v.lapse != Lapse::Crashed && !around.holds(v.id);
+        let mut crashed = Vec::new();
         for (i, _) in vehicles.iter().enumerate().filter(|(_, v)| endangers(v)) {
-            for (k, other) in vehicles.iter().enumerate() {
-                let meets = k != i && !around.holds(other.id) && touches(&self.bodies[i], &self.bodies[k]);
-                if meets {
-                    told.extend([i, k].map(|at| (EventKind::HazardCollision, u32::from(vehicles[at].id))));
-                }
+            let meets = |k: usize| k != i && !around.holds(vehicles[k].id) && touches(&self.bodies[i], &self.bodies[k]);
+            crashed.extend((0..vehicles.len()).filter(|k| meets(*k)).flat_map(|k| [i, k]));
+        }
+        crashed.sort_unstable();
+        crashed.dedup();
+        for i in crashed {
+            let vehicle = &mut self.state.vehicles[i];
+            if vehicle.lapse != Lapse::Crashed {
+                (vehicle.lapse, vehicle.stuck_s) = (Lapse::Crashed, STUCK_S + 1);
+                told.push((EventKind::HazardCollision, u32::from(vehicle.id)));
             }
         }
-        for at in first..told.len() {
-            let id = told[at].1;
-            if let Some(vehicle) = self.state.vehicles.iter_mut().find(|v| u32::from(v.id) == id) {
-                vehicle.stuck_s = if vehicle.lapse == Lapse::Crashed { vehicle.stuck_s } else { STUCK_S + 1 };
-                vehicle.lapse = Lapse::Crashed;
-            }
-        }
-        let found = told.split_off(first);
-        let new = found.iter().enumerate().filter(|(k, one)| !found[..*k].contains(one));
-        told.extend(new.map(|(_, one)| *one));
-        told[first..].sort_unstable_by_key(|(_, id)| *id);
     }
 }
 

@@ -53,8 +53,9 @@ pub struct Census {
     pub dissolved: u32,
     /// Vehicles that were in a collision because of a mistake, which is told.
     pub collided: u32,
-    /// Mistakes of drivers that began.
+    /// Mistakes of drivers that began, and those among them who run a light.
     pub mistakes: u32,
+    pub runners: u32,
 }
 
 impl Census {
@@ -69,6 +70,7 @@ impl Census {
         self.dissolved += other.dissolved;
         self.collided += other.collided;
         self.mistakes += other.mistakes;
+        self.runners += other.runners;
     }
 }
 
@@ -143,6 +145,7 @@ impl<'a> Watcher<'a> {
         let collided = |kind: &EventKind| *kind == EventKind::HazardCollision;
         let kinds = || traffic.told().iter().map(|(kind, _)| *kind);
         self.found.collided += kinds().filter(collided).count() as u32;
+        self.found.runners += kinds().filter(|kind| *kind == EventKind::HazardRedLight).count() as u32;
         let mistake = |kind: &EventKind| *kind > EventKind::Dissolved && !collided(kind);
         self.found.mistakes += kinds().filter(mistake).count() as u32;
         let vehicles = &traffic.state().vehicles;

@@ -292,3 +292,33 @@ fn mistakes_depend_on_no_order_and_resume() {
     watch(&mut resumed, 2, |_| {}, |_, _| {});
     assert_eq!(traffic.state(), resumed.state());
 }
+
+#[test]
+fn two_that_touch_because_of_a_mistake_stand_and_are_taken_off_the_road() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = start(&network, 20, 4, HazardRates::NONE);
+    let vehicles = &mut traffic.actors.state.vehicles;
+    let (first, second) = (vehicles[0], vehicles[1]);
+    vehicles[0] =
+        Vehicle { lane: 0, before: 0, s_m: 80.0, speed_mps: 8.0, lapse: Lapse::BrakesHard, lapse_left: 60, ..first };
+    vehicles[1] = Vehicle { lane: 0, before: 0, s_m: 77.0, speed_mps: 9.0, ..second };
+    traffic.actors.place_bodies();
+    let mut collided = Vec::new();
+    let mut gone_s = [0; 2];
+    watch(
+        &mut traffic,
+        2,
+        |_| {},
+        |t, tick| {
+            assert_eq!(told(t, EventKind::Dissolved), 0, "a collision is no failure");
+            let found = t.told().iter().filter(|(kind, _)| *kind == EventKind::HazardCollision);
+            collided.extend(found.map(|(_, id)| (tick, *id)));
+            for (gone_s, vehicle) in gone_s.iter_mut().zip(&t.state().vehicles) {
+                assert!(vehicle.lapse != Lapse::Crashed || tick == 1 || vehicle.speed_mps == 0.0, "tick {tick}");
+                *gone_s = if vehicle.lapse != Lapse::Crashed && *gone_s == 0 { tick / 60 } else { *gone_s };
+            }
+        },
+    );
+    assert_eq!(collided, [(1, u32::from(first.id)), (1, u32::from(second.id))]);
+    assert!(gone_s.iter().all(|s| (55..80).contains(s)), "{gone_s:?}");
+}
