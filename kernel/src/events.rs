@@ -31,11 +31,23 @@ state_enum! {
         Stuck = 10,
         /// It was taken off the road because of that and enters the map elsewhere; `actor` names it. Counts as a failure.
         Dissolved = 11,
+        /// A vehicle began to drive through a light that turns red; `actor` names it, as in those that follow.
+        HazardRedLight = 12,
+        /// It rolls over the line of a stop sign.
+        HazardRollingStop = 13,
+        /// It brakes hard for no reason.
+        HazardBraking = 14,
+        /// It changes lanes right before somebody.
+        HazardCutIn = 15,
+        /// It drives off from the kerb without a look.
+        HazardPullOut = 16,
+        /// It ran into another vehicle, or that into it.
+        HazardCollision = 17,
     }
 }
 
 state! {
-    /// An event of the ego car, or one that the watchdog over traffic tells.
+    /// An event of the ego car, or one of other vehicles: what the watchdog tells, and their mistakes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Event {
         /// What happened.

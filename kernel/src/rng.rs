@@ -31,6 +31,8 @@ pub enum Stream {
     Dressing = 10,
     /// Who lets whom into its lane.
     Courtesy = 20,
+    /// Mistakes of people at the wheel.
+    Lapse = 14,
 }
 
 fn mix(z: u64) -> u64 {

@@ -3,7 +3,7 @@
 //! `AEYE_TRAFFIC=20x40 cargo test -p kernel --release --test traffic -- --nocapture` drives 20 seeds of 40
 //! minutes on each bundled map, with the default counts and with 400 people, and 10 minutes of each file in
 //! `../shared/maps` (or `AEYE_REAL_MAPS`), where that is; `AEYE_TRAFFIC_SEED` is the first seed, `AEYE_TRAFFIC_MAP` a part of a
-//! map's name, `AEYE_TRAFFIC_WHO` names those who stand or overlap.
+//! map's name, `AEYE_TRAFFIC_WHO` names those who stand or overlap, `AEYE_TRAFFIC_HAZARDS` is the level of hazards.
 #![allow(clippy::disallowed_methods, reason = "tests may read files and the environment")]
 
 #[path = "common/census.rs"]
@@ -17,7 +17,7 @@ use glam::Vec3;
 use kernel::RoadNetwork;
 use kernel::map::{bake, bundled};
 use kernel::scenario::Scenario;
-use kernel::traffic::{Population, Traffic, TrafficCounts};
+use kernel::traffic::{HazardLevel, HazardRates, Population, Traffic, TrafficCounts};
 
 /// Seeds of the short set; those that anything was tuned on begin at 1000.
 const SEED: u64 = 1;
@@ -32,7 +32,7 @@ fn crowded(counts: TrafficCounts) -> TrafficCounts {
 
 fn on(name: &str, seed: u64, minutes: u32) -> Drive {
     let network = bundled(name).expect("it is bundled");
-    Drive { network, counts: default_counts(name, seed), seed, minutes }
+    Drive { network, counts: default_counts(name, seed), hazards: HazardRates::NONE, seed, minutes }
 }
 
 fn with_people(drive: Drive) -> Drive {
@@ -61,6 +61,20 @@ fn traffic_lives_among_people() {
 #[test]
 fn traffic_lives_in_the_country() {
     is_sound("rural", &on("rural", SEED, 10));
+}
+
+/// With people at the wheel who make mistakes traffic lives too: they make some, nobody is hurt, nobody stands.
+#[test]
+fn traffic_lives_with_natural_hazards() {
+    for name in ["city", "rural"] {
+        let drive = Drive { hazards: HazardLevel::Natural.rates(), ..on(name, SEED, 10) };
+        let census = drive.census();
+        println!("{name:24} seed {:5}: {census}", drive.seed);
+        let [vehicles, with_person, _] = census.overlaps;
+        assert_eq!((census.stood, vehicles, with_person, census.dissolved), (0, 0, 0, 0), "{name}: {census}");
+        assert!(census.mistakes > 0 && census.collided == 0, "{name}: {census}");
+        assert!(census.red <= census.runners, "{name}: {census}, {} of them run a light", census.runners);
+    }
 }
 
 /// A lane of a one-way road, with its width as (at the start, a metre).
@@ -103,7 +117,8 @@ fn a_lane_that_ends_merges_into_the_one_beside_it() {
         jaywalks_per_min: 0.0,
         drivers: Population::USUAL,
     };
-    is_sound("lane_drop", &Drive { network: lane_drop(), counts, seed: SEED, minutes: 10 });
+    let hazards = HazardRates::NONE;
+    is_sound("lane_drop", &Drive { network: lane_drop(), counts, hazards, seed: SEED, minutes: 10 });
 }
 
 #[test]
@@ -166,10 +181,13 @@ fn traffic_lives_for_long_where_that_is_asked_for() {
                     drivers: Population::USUAL,
                 };
             }
-            Drive { network: network.clone(), counts, seed, minutes }
+            Drive { network: network.clone(), counts, hazards: HazardRates::NONE, seed, minutes }
         };
         drives.push((name.clone(), (first..first + seeds.min(3)).map(drive).collect()));
     }
+    let level = std::env::var("AEYE_TRAFFIC_HAZARDS").unwrap_or_else(|_| "none".into());
+    let hazards = HazardLevel::named(&level).expect("a level of hazards").rates();
+    drives.iter_mut().flat_map(|(_, runs)| runs).for_each(|drive| drive.hazards = hazards);
     drives.retain(|(name, _)| name.contains(&wanted));
     for (name, runs) in drives {
         let mut all = Census::default();

@@ -19,6 +19,7 @@ import zstandard
 VERSION = 2
 EVENTS = ["CollisionActor", "CollisionScenery", "RedLight", "Speeding", "OffRoad", "WrongWay", "Armed", "Intervention"]
 EVENTS += ["Seen", "Ended", "Stuck", "Dissolved"]
+EVENTS += ["HazardRedLight", "HazardRollingStop", "HazardBraking", "HazardCutIn", "HazardPullOut", "HazardCollision"]
 NOTES = ["unit bound", "unit armed", "unit lost", "unit returned"]
 
 

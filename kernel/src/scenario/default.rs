@@ -3,7 +3,7 @@
 use crate::car::CarSetup;
 use crate::map::{self, LaneKind};
 use crate::rng::{self, Stream};
-use crate::traffic::{Population, TrafficCounts};
+use crate::traffic::{HazardLevel, Population, TrafficCounts};
 use crate::weather::Weather;
 
 use super::fields::{EgoStart, Rules, Scenario};
@@ -37,6 +37,7 @@ impl Scenario {
             map: map.to_owned(),
             seed,
             traffic: counts(actors_on(map), draw(4, [0.5, 2.0])),
+            hazards: HazardLevel::Natural.rates(),
             weather: Weather {
                 cloudiness_pct: draw(0, CLOUDS_PCT),
                 wind_pct: draw(1, WIND_PCT),

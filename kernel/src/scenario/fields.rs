@@ -2,7 +2,7 @@
 
 use crate::car::CarSetup;
 use crate::state;
-use crate::traffic::TrafficCounts;
+use crate::traffic::{HazardRates, TrafficCounts};
 use crate::weather::Weather;
 
 /// Most actors of one kind.
@@ -48,6 +48,8 @@ state! {
         pub seed: u64,
         /// Other road users.
         pub traffic: TrafficCounts,
+        /// How often people at the wheel endanger others.
+        pub hazards: HazardRates,
         /// Weather.
         pub weather: Weather,
         /// Start of the ego car.

@@ -1,11 +1,10 @@
 //! Scenarios as text.
 
-use std::ops::{Bound, RangeBounds, RangeInclusive};
-
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::fields::{MOST_OF_A_KIND, Scenario, ScenarioError};
+use super::hazards::{Hazards, print_hazards};
+use super::reader::{Given, Reader};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -16,6 +15,8 @@ struct Text {
     #[serde(default)]
     traffic: Traffic,
     #[serde(default)]
+    hazards: Hazards,
+    #[serde(default)]
     weather: Weather,
     #[serde(default)]
     ego: Ego,
@@ -24,8 +25,6 @@ struct Text {
     #[serde(default)]
     rules: Rules,
 }
-
-type Given<T> = Option<Spanned<T>>;
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -88,63 +87,6 @@ impl Scenario {
     }
 }
 
-/// Takes over given values, checked.
-struct Reader<'a> {
-    text: &'a str,
-}
-
-impl Reader<'_> {
-    fn line(&self, at: usize) -> usize {
-        1 + self.text.bytes().take(at).filter(|&byte| byte == b'\n').count()
-    }
-
-    fn take<T>(&self, key: &str, given: Given<T>, range: impl RangeBounds<T>, to: &mut T) -> Result<(), ScenarioError>
-    where
-        T: PartialOrd + Copy + std::fmt::Display,
-    {
-        let Some(given) = given else { return Ok(()) };
-        let value = *given.get_ref();
-        if !range.contains(&value) {
-            let (line, range) = (self.line(given.span().start), words(&range));
-            return Err(ScenarioError(format!("line {line}: {key} is {value}, expected {range}")));
-        }
-        *to = value;
-        Ok(())
-    }
-
-    /// Two numbers, the lower one first.
-    fn take_range(
-        &self,
-        key: &str,
-        given: Given<[f32; 2]>,
-        range: RangeInclusive<f32>,
-        to: &mut [f32; 2],
-    ) -> Result<(), ScenarioError> {
-        let Some(given) = given else { return Ok(()) };
-        let [low, high] = *given.get_ref();
-        if !(low <= high && range.contains(&low) && range.contains(&high)) {
-            let (line, range) = (self.line(given.span().start), words(&range));
-            let asked = "expected the lower one first";
-            return Err(ScenarioError(format!("line {line}: {key} is [{low}, {high}], {asked}, each {range}")));
-        }
-        *to = [low, high];
-        Ok(())
-    }
-}
-
-fn words<T: std::fmt::Display>(range: &impl RangeBounds<T>) -> String {
-    let low = match range.start_bound() {
-        Bound::Included(low) => format!("at least {low}"),
-        Bound::Excluded(low) => format!("more than {low}"),
-        Bound::Unbounded => String::from("anything"),
-    };
-    match range.end_bound() {
-        Bound::Included(high) => format!("{low} and at most {high}"),
-        Bound::Excluded(high) => format!("{low} and less than {high}"),
-        Bound::Unbounded => low,
-    }
-}
-
 fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     let reader = Reader { text };
     let given: Text = toml::from_str(text).map_err(|error| {
@@ -153,6 +95,7 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     })?;
     let mut scenario = Scenario::default_for(&given.map, given.seed);
     traffic(&reader, given.traffic, &mut scenario)?;
+    given.hazards.read(&reader, &mut scenario.hazards)?;
     weather(&reader, given.weather, &mut scenario)?;
     rules(&reader, given.rules, &mut scenario)?;
     if let Some(lane) = given.ego.lane {
@@ -201,13 +144,15 @@ fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(
 
 /// Every key, so that the text still says the same when a default changes.
 fn print(scenario: &Scenario) -> String {
-    let Scenario { map, seed, traffic, weather, ego, car, rules } = scenario;
+    let Scenario { map, seed, traffic, hazards, weather, ego, car, rules } = scenario;
+    let hazards = print_hazards(hazards);
     let map = toml::Value::from(map.as_str());
     let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));
     format!(
         "map = {map}\nseed = {seed}\n\n\
          [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\
          speed_share = {:?}\nheadway_s = {:?}\npoliteness = {:?}\n\n\
+         {hazards}\n\
          [weather]\ncloudiness_pct = {:?}\nwind_pct = {:?}\nsun_altitude_deg = {:?}\nsun_azimuth_deg = {:?}\n\n\
          [ego]\n{lane}s_m = {:?}\n\n\
          [car]\nabs = {}\nesc = {}\n\n\

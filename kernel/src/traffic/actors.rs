@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::body::Body;
 use super::counts::TrafficCounts;
+use super::rates::HazardRates;
 use super::state::TrafficState;
 use super::traits::{Driver, WalkerTraits, driver, walker_traits};
 use super::ways::Ways;
@@ -15,6 +16,8 @@ pub(super) struct Actors {
     pub ways: Arc<Ways>,
     pub seed: u64,
     pub counts: TrafficCounts,
+    /// How often drivers make mistakes.
+    pub rates: HazardRates,
     pub state: TrafficState,
     pub drivers: Vec<Driver>,
     pub walker_traits: Vec<WalkerTraits>,
@@ -31,6 +34,7 @@ impl Actors {
             ways: ways.clone(),
             seed,
             counts: *counts,
+            rates: HazardRates::NONE,
             drivers: state.vehicles.iter().map(|v| driver(&counts.drivers, seed, v.id, v.kind)).collect(),
             walker_traits: state.walkers.iter().map(|w| walker_traits(seed, w.id)).collect(),
             places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),

@@ -9,6 +9,7 @@ use crate::time::Tick;
 use super::drive::{View, follow_idm};
 use super::hazard::{Hazard, Seeker, sight};
 use super::journey::Journey;
+use super::lapse::Lapse;
 use super::lists::Entry;
 use super::manoeuvre::Manoeuvre;
 use super::pass;
@@ -26,7 +27,7 @@ const SAFE_MPS2: f32 = 2.5;
 const ROUTE_MPS2: f32 = 3.0;
 const ROUTE_M: f32 = 250.0;
 /// Gap to others that is left at least, metres.
-const GAP_M: f32 = 2.5;
+pub(super) const GAP_M: f32 = 2.5;
 /// Vehicles think about changes so often.
 const CONSIDER_TICKS: Tick = 30;
 /// They signal for so long before they change.
@@ -60,12 +61,12 @@ const APART_M: f32 = 30.0;
 
 /// Somebody ahead or behind on a lane.
 #[derive(Clone, Copy)]
-struct Near {
+pub(super) struct Near {
     /// Index of the vehicle.
-    vehicle: u32,
+    pub vehicle: u32,
     /// From bumper to bumper, metres; negative beside.
-    gap_m: f32,
-    speed_mps: f32,
+    pub gap_m: f32,
+    pub speed_mps: f32,
 }
 
 impl View<'_> {
@@ -104,6 +105,9 @@ impl View<'_> {
 
     /// Moves a vehicle that wishes to change to the other lane, if that is safe now.
     pub(super) fn move_over(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
+        if next.lapse == Lapse::CutsIn && next.manoeuvre == Manoeuvre::Keep {
+            return self.barge_in(index, plan, next);
+        }
         let vehicle = &self.vehicles[index];
         let turn = (self.tick + u64::from(next.id)).is_multiple_of(GAP_TICKS);
         // A grant is for the way from this lane.
@@ -116,6 +120,11 @@ impl View<'_> {
         else {
             return;
         };
+        self.take_lane(&there, next);
+    }
+
+    /// Goes over to a lane, beside whose middle the vehicle is then.
+    pub(super) fn take_lane(&self, there: &Projection, next: &mut Vehicle) {
         let position = self.map.lanes[next.lane as usize].straight_on(next.s_m).beside(next.offset_m);
         let there = self.map.project(there.lane, position);
         (next.lane, next.before) = (there.lane, there.lane);
@@ -154,7 +163,7 @@ impl View<'_> {
     }
 
     /// All other vehicles that may be in the way of one.
-    fn near(&self, index: usize, seeker: &Seeker) -> impl Iterator<Item = &Hazard> {
+    pub(super) fn near(&self, index: usize, seeker: &Seeker) -> impl Iterator<Item = &Hazard> {
         let reach_m = seeker.horizon_m + 20.0;
         let position = seeker.position;
         let near = move |h: &Hazard| h.position.distance_squared(position) < reach_m * reach_m;
@@ -177,7 +186,7 @@ impl View<'_> {
     }
 
     /// Where a vehicle would be on the lane beside its own, if a change is possible.
-    fn target(&self, index: usize, plan: &Plan, side: i8) -> Option<Projection> {
+    pub(super) fn target(&self, index: usize, plan: &Plan, side: i8) -> Option<Projection> {
         let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
         let lane = beside(self.map, vehicle.lane, side > 0)?;
         let (from, to) = (&self.ways.lanes[vehicle.lane as usize], &self.ways.lanes[lane as usize]);
@@ -285,7 +294,7 @@ impl View<'_> {
     }
 
     /// Whether nobody has to brake hard when a vehicle changes to a place now, and nobody else goes there.
-    fn is_safe(&self, index: usize, there: &Projection) -> bool {
+    pub(super) fn is_safe(&self, index: usize, there: &Projection) -> bool {
         let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
         let bears = |who: &Driver, mps: f32, gap_m: f32, ahead_mps: f32| {
             gap_m > GAP_M && follow_idm(who, mps, gap_m, ahead_mps) > -SAFE_MPS2
@@ -298,7 +307,7 @@ impl View<'_> {
     }
 
     /// Whether the ego car and loose actors leave room on the other lane.
-    fn is_free_of_hazards(
+    pub(super) fn is_free_of_hazards(
         &self,
         index: usize,
         there: &Projection,
@@ -338,7 +347,7 @@ impl View<'_> {
     }
 
     /// Who is ahead of a place on a lane and on the way that a vehicle would take from there.
-    fn ahead(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
+    pub(super) fn ahead(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
         let vehicle = &self.vehicles[index];
         let (mut lane, mut start_m) = (lane, -s_m);
         let mut journey = Journey::of(self.ways, self.seed, vehicle);
@@ -357,7 +366,7 @@ impl View<'_> {
     }
 
     /// Who is behind a place on a lane: the nearest on it, or on those that lead there.
-    fn behind(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
+    pub(super) fn behind(&self, index: usize, lane: LaneId, s_m: f32) -> Option<Near> {
         self.behind_within(index, lane, s_m, &mut { LANES_BEHIND })
     }
 

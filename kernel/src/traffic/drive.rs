@@ -13,8 +13,10 @@ use super::horn::Horn;
 use super::journey::Journey;
 use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
 use super::lane_way::{ConflictKind, LaneConflict};
+use super::lapse::Lapse;
 use super::lists::{Entry, Lists};
 use super::plan::{self, Line, Plan, stopping_speed};
+use super::rates::HazardRates;
 use super::sideways::{EDGE_M, drift, pass_drift};
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
@@ -61,6 +63,7 @@ pub(super) struct View<'a> {
     pub seed: u64,
     /// How much the others count for who changes lanes.
     pub politeness: f32,
+    pub rates: &'a HazardRates,
     pub lights: &'a [(LightPhase, Tick)],
     pub vehicles: &'a [Vehicle],
     pub drivers: &'a [Driver],
@@ -114,14 +117,22 @@ impl View<'_> {
     pub fn drive(&self, index: usize) -> Vehicle {
         let plan = &self.plans[index];
         let mut next = self.vehicles[index];
+        if next.is_aside() {
+            self.stand_aside(index, &mut next);
+            return next;
+        }
+        self.err(index, plan, &mut next);
         self.decide(index, plan, &mut next);
         if (self.tick + Tick::from(next.id)).is_multiple_of(INDICATE_TICKS) {
             next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
         }
         let seeker = self.seeker(index);
-        self.decide_manoeuvre(index, plan, &seeker, &mut next);
+        if next.lapse != Lapse::Parks {
+            self.decide_manoeuvre(index, plan, &seeker, &mut next);
+        }
         let side = self.side(index, plan, &seeker);
-        let accel = self.acceleration(index, plan, &next, &seeker, side);
+        let behind = self.behind_leader_mps2(index, plan, &mut next).min(self.lapse_mps2(&next));
+        let accel = self.acceleration(index, plan, &next, &seeker, side).min(behind).max(-EMERGENCY_MPS2);
         self.advance(index, accel, side, &mut next);
         self.move_over(index, plan, &mut next);
         if self.tick.is_multiple_of(seconds(1)) {
@@ -154,9 +165,11 @@ impl View<'_> {
         };
         let steps = self.steps_of(plan);
         let signal = junction::signal(self.map, self.lights, next, steps[line.approach].lane);
-        if next.flags & Vehicle::GRANTED != 0 {
+        if next.lapse == Lapse::RunsRed {
+            next.flags |= Vehicle::GRANTED;
+        } else if next.flags & Vehicle::GRANTED != 0 {
             let keeps = junction::near_enough(next, line, 6.0) && !self.lost_room(index, plan, line, next);
-            if junction::must_stop(signal, next, line) || !keeps {
+            if junction::must_stop(signal, next, line, self.pace_mps(plan, line, next)) || !keeps {
                 next.flags &= !Vehicle::GRANTED;
             }
         } else if let Some(asking) = self.members.asking(line.zone, index)
@@ -165,6 +178,12 @@ impl View<'_> {
             next.flags |= Vehicle::GRANTED;
         }
         self.wait(index, line, signal, steps, next);
+    }
+
+    /// How fast a vehicle gets to its line at most: as fast as the one before it there.
+    fn pace_mps(&self, plan: &Plan, line: &Line, next: &Vehicle) -> f32 {
+        let before = plan.leader.filter(|leader| leader.gap_m < line.ahead_m);
+        before.map_or(next.speed_mps, |leader| next.speed_mps.min(leader.speed_mps))
     }
 
     /// Whether one that stands before the line with a grant has no room beyond the junction any more.
@@ -191,7 +210,7 @@ impl View<'_> {
         } else if !at_line {
             next.wait_ticks = 0;
         }
-        if sign && next.wait_ticks >= HALT_TICKS {
+        if sign && (next.wait_ticks >= HALT_TICKS || self.rolls(line, steps[line.approach].lane, next)) {
             next.flags |= Vehicle::HALTED;
         }
     }
@@ -203,10 +222,6 @@ impl View<'_> {
         let mut accel = self.free_acceleration(next, driver, steps).min(self.zip(index, steps, next, seeker.horizon_m));
         let mut follow = |gap_m: f32, speed_mps: f32| accel = accel.min(follow_idm(driver, v, gap_m, speed_mps));
         self.heed_manoeuvres(index, plan, seeker, |m| side.after(seeker.offset_m, m), &mut follow);
-        // Who passes looks for everybody where they are.
-        if let Some(leader) = plan.leader.filter(|_| !self.vehicles[index].manoeuvre.passes()) {
-            follow(leader.gap_m, leader.speed_mps);
-        }
         let mut room = f32::MAX;
         for hazard in self.hazards {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
@@ -271,6 +286,9 @@ impl View<'_> {
     }
 
     fn wanted_side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
+        if let Some(aim_m) = self.kerb_m(index) {
+            return Side { aim_m, drift: PASS_DRIFT };
+        }
         let (vehicle, likes_m) = (&self.vehicles[index], self.likes_m(index));
         let passing = vehicle.manoeuvre.passes().then(|| vehicle.manoeuvre.side());
         let passed = passing.and_then(|side| self.passed(index, plan, seeker, side));
@@ -281,7 +299,7 @@ impl View<'_> {
         let drift = match vehicle.manoeuvre {
             manoeuvre if manoeuvre.moves() => drift(vehicle.speed_mps, seeker.half.x),
             manoeuvre if manoeuvre.passes() => pass_drift(vehicle.speed_mps),
-            _ if aim_m == likes_m => DRIFT,
+            _ if aim_m == likes_m && vehicle.lapse != Lapse::PullsOut => DRIFT,
             _ => PASS_DRIFT,
         };
         Side { aim_m, drift }
@@ -427,6 +445,9 @@ impl View<'_> {
                 next.flags &= !(Vehicle::GRANTED | Vehicle::HALTED);
                 next.flags |= Vehicle::CROSSING;
                 next.wait_ticks = 0;
+                if matches!(next.lapse, Lapse::RunsRed | Lapse::Rolls) {
+                    next.lapse = Lapse::None;
+                }
             }
         }
         let outside = self.ways.lanes[next.lane as usize].zone.is_none();

@@ -23,7 +23,7 @@ use super::zebra;
 /// After this long at a line a vehicle goes before those that have the right of way.
 pub(super) const PATIENCE_TICKS: u16 = 240;
 /// Braking that a yellow light asks for at most, m/s².
-const YELLOW_BRAKE_MPS2: f32 = 4.0;
+pub(super) const YELLOW_BRAKE_MPS2: f32 = 4.0;
 /// Braking within which a vehicle asks for its grant, m/s².
 const ASK_BRAKE_MPS2: f32 = 1.5;
 /// Distance from the line within which it asks at any speed, metres.
@@ -174,14 +174,15 @@ pub(super) fn near_enough(vehicle: &Vehicle, line: &Line, spare_m: f32) -> bool 
     line.hold_m < near_m || braking_needed(vehicle.speed_mps, line.hold_m - near_m) > ASK_BRAKE_MPS2
 }
 
-/// Whether a granted vehicle gives its grant back because the light has changed.
-pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line) -> bool {
+/// Whether a granted vehicle gives its grant back because the light has changed; `pace_mps` is how fast it gets to the
+/// line at most.
+pub(super) fn must_stop(signal: Signal, vehicle: &Vehicle, line: &Line, pace_mps: f32) -> bool {
     let needed = braking_needed(vehicle.speed_mps, line.ahead_m);
     match signal {
         _ if line.passed => false,
         Signal::Open => false,
         // At high speed yellow may be too short to get there.
-        Signal::Closing(left) if line.ahead_m < vehicle.speed_mps * left as f32 * TICK_S => needed < YELLOW_BRAKE_MPS2,
+        Signal::Closing(left) if line.ahead_m < pace_mps * left as f32 * TICK_S => needed < YELLOW_BRAKE_MPS2,
         Signal::Closing(_) | Signal::Closed => needed < 1.5 * YELLOW_BRAKE_MPS2,
     }
 }

@@ -34,21 +34,21 @@ impl Lists {
         &self.entries[first as usize..(first + count) as usize]
     }
 
-    /// Takes the vehicles whose ids are `present`; `next_lane` tells where one goes on.
+    /// Takes the vehicles that are `present`; `next_lane` tells where one goes on.
     pub fn rebuild(
         &mut self,
         map: &MapData,
         vehicles: &[Vehicle],
         drivers: &[Driver],
         next_lane: impl Fn(&Vehicle) -> Option<Onward>,
-        present: impl Fn(u16) -> bool,
+        present: impl Fn(&Vehicle) -> bool,
     ) {
         for entry in self.entries.drain(..) {
             self.spans[entry.lane as usize] = (0, 0);
         }
         self.spans.resize(map.lanes.len(), (0, 0));
         for (i, vehicle) in vehicles.iter().enumerate() {
-            if present(vehicle.id) {
+            if present(vehicle) {
                 self.add(map, i, vehicle, &drivers[i], &next_lane);
             }
         }

@@ -42,7 +42,7 @@ pub(super) struct Sight {
     steps: Vec<Step>,
     plans: Vec<Plan>,
     members: Members,
-    /// The ego car and loose actors first, then people on the road.
+    /// The ego car, loose actors and vehicles that stand aside first, then people on the road.
     hazards: Vec<Hazard>,
     free: usize,
     /// Vehicles, the ego car and loose actors.
@@ -67,7 +67,7 @@ impl Sight {
         self.lights.extend(groups.map(|g| signals::phase(map, actors.seed, g, around.tick)));
         let next = |v: &Vehicle| Journey::of(&actors.ways, actors.seed, v).next_lane(v.lane);
         let vehicles = &actors.state.vehicles;
-        self.lists.rebuild(map, vehicles, &actors.drivers, next, |id| !around.holds(id));
+        self.lists.rebuild(map, vehicles, &actors.drivers, next, |v| !v.is_aside() && !around.holds(v.id));
         let people = &actors.bodies[actors.state.vehicles.len()..];
         self.crowd.rebuild(people, |id| !around.holds(id as u16));
         self.plan(actors);
@@ -84,6 +84,7 @@ impl Sight {
             ways: &actors.ways,
             seed: actors.seed,
             politeness: actors.counts.drivers.politeness,
+            rates: &actors.rates,
             lights: &self.lights,
             vehicles: &actors.state.vehicles,
             drivers: &actors.drivers,
@@ -153,11 +154,14 @@ impl Sight {
         self.hazards.clear();
         self.hazards.push(Hazard::of(&around.ego, false));
         self.hazards.extend(around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id))));
+        let aside = vehicles.iter().zip(&actors.bodies).filter(|(v, _)| v.is_aside() && !around.holds(v.id));
+        self.hazards.extend(aside.map(|(_, body)| Hazard::of_body(body)));
         self.free = self.hazards.len();
         self.blocks.clear();
         self.blocks.extend(self.hazards.iter().filter(|h| !h.walker));
         let (driven, walked) = actors.bodies.split_at(vehicles.len());
-        let present = vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !around.holds(v.id));
+        let present =
+            vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !v.is_aside() && !around.holds(v.id));
         self.driven.clear();
         self.driven.extend(present.map(|(i, (_, body))| (i as u32, Hazard::of_body(body))));
         self.blocks.extend(self.driven.iter().map(|(_, hazard)| *hazard));
@@ -191,7 +195,7 @@ impl Sight {
         let mut members = std::mem::take(&mut self.members);
         members.clear();
         for (i, vehicle) in actors.state.vehicles.iter().enumerate() {
-            if !around.holds(vehicle.id) {
+            if !vehicle.is_aside() && !around.holds(vehicle.id) {
                 self.add_inside(actors, i, &mut members);
                 self.add_before_junction(actors, i, &mut members);
             }

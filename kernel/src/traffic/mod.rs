@@ -7,11 +7,13 @@
 
 mod actors;
 mod asking;
+mod barge;
 mod body;
 mod change;
 mod company;
 mod counts;
 mod courtesy;
+mod crash;
 mod crosswalk;
 mod crowd;
 mod drive;
@@ -21,16 +23,20 @@ mod jaywalk;
 mod journey;
 mod junction;
 mod lane_way;
+mod lapse;
 mod links;
 mod lists;
 mod look;
 mod manoeuvre;
 mod meets;
+mod mistakes;
 mod pass;
 mod passage;
+mod perception;
 mod plan;
 mod population;
 mod poses;
+mod rates;
 mod routes;
 mod sideways;
 mod spawn;
@@ -58,12 +64,17 @@ use passage::Told;
 
 pub use body::{Body, Obstacle, Surroundings};
 pub use counts::{Missing, TrafficCounts};
+pub use lapse::Lapse;
 pub use manoeuvre::Manoeuvre;
 pub use population::Population;
+pub use rates::{HazardLevel, HazardRates};
 pub use state::TrafficState;
 pub use vehicle::Vehicle;
 pub use walker::{Walker, WalkerMode};
 pub use ways::Ways;
+
+/// Mistakes of others within this distance are events of the ego car's run, metres.
+const SIGHT_M: f32 = 100.0;
 
 /// All traffic of a world: its state, and what is derived from it and the map.
 #[derive(Clone, Debug)]
@@ -71,7 +82,7 @@ pub struct Traffic {
     actors: Actors,
     /// Memory for the next step; holds nothing between steps.
     sight: Sight,
-    /// What the watchdog found in the last step.
+    /// What the watchdog found in the last step, and which mistakes began.
     told: Vec<Told>,
 }
 
@@ -80,6 +91,16 @@ impl Traffic {
     /// `ego_start`; fewer where the map has no room ([`Traffic::missing`] says so).
     pub fn spawn(counts: &TrafficCounts, seed: u64, ways: &Arc<Ways>, ego_start: Vec3) -> Self {
         Self::with(counts, seed, ways, spawn::spawn(counts, seed, ways, ego_start))
+    }
+
+    /// The same with people at the wheel who make mistakes at these rates; by itself nobody does.
+    pub fn with_hazards(mut self, rates: &HazardRates) -> Self {
+        self.actors.rates = *rates;
+        let Actors { seed, state, drivers, .. } = &mut self.actors;
+        for (vehicle, driver) in state.vehicles.iter().zip(drivers) {
+            rates.form(*seed, vehicle, driver);
+        }
+        self
     }
 
     /// Traffic as it was, from its state. Fails with one sentence when the state does not fit the
@@ -117,10 +138,18 @@ impl Traffic {
         self.actors.counts.missing(vehicles.iter().map(|v| v.kind).chain(walkers))
     }
 
-    /// What the watchdog found in the last step, each with the id of a vehicle: [`EventKind::Stuck`] and
-    /// [`EventKind::Dissolved`].
+    /// What the watchdog found in the last step and which mistakes began, each with the id of a vehicle: all kinds
+    /// from [`EventKind::Stuck`] on.
     pub fn told(&self) -> &[(EventKind, u32)] {
         &self.told
+    }
+
+    /// The same, of mistakes only those in sight of a place.
+    pub(crate) fn told_near(&self, place: Vec3) -> impl Iterator<Item = (EventKind, u32)> {
+        let bodies = self.bodies();
+        let position = |id: u32| bodies.binary_search_by_key(&id, |body| body.id).map(|at| bodies[at].position);
+        let near = move |id: u32| position(id).is_ok_and(|p| p.distance_squared(place) < SIGHT_M * SIGHT_M);
+        self.told.iter().copied().filter(move |(kind, id)| !mistakes::is_mistake(*kind) || near(*id))
     }
 
     /// Advances everyone by one tick.
@@ -143,8 +172,10 @@ impl Traffic {
         }
         sight.next = std::mem::replace(&mut actors.state, next);
         sight.places = std::mem::replace(&mut actors.places, places);
+        mistakes::tell(&sight.next.vehicles, &actors.state.vehicles, told);
         actors.return_to_map(surroundings, told);
         actors.place_bodies();
+        actors.crash(surroundings, told);
     }
 }
 

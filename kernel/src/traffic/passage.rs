@@ -10,6 +10,7 @@ use crate::time::seconds;
 
 use super::actors::Actors;
 use super::body::{Body, Surroundings};
+use super::lapse::Lapse;
 use super::manoeuvre::Manoeuvre;
 use super::plan::way_end_m;
 use super::poses::walker_body;
@@ -49,7 +50,8 @@ impl Actors {
             if vehicle.stuck_s == STUCK_S && around.tick.is_multiple_of(seconds(1)) {
                 told.push((EventKind::Stuck, id));
             }
-            if vehicle.stuck_s >= DISSOLVE_S && self.enter_map(i, around, vehicle.stuck_s >= DISSOLVE_SEEN_S) {
+            let off = vehicle.stuck_s >= DISSOLVE_S && self.enter_map(i, around, vehicle.stuck_s >= DISSOLVE_SEEN_S);
+            if off && vehicle.lapse != Lapse::Crashed {
                 told.push((EventKind::Dissolved, id));
             }
         }
@@ -87,8 +89,8 @@ impl Actors {
         let (s_m, half_width_m) = (driver.size_m.x * 0.5 + 0.5, self.map().lanes[lane as usize].start().half_width_m);
         let offset_m = driver.keeps_to_m(half_width_m, self.ways.kerb);
         let (trips, flags) = (vehicle.trips.wrapping_add(1), vehicle.flags & Vehicle::BRAKING);
-        let fresh =
-            Vehicle { wait_ticks: 0, stuck_s: 0, manoeuvre: Manoeuvre::Keep, signal_ticks: 0, drift: 0, ..vehicle };
+        let fresh = Vehicle { wait_ticks: 0, stuck_s: 0, manoeuvre: Manoeuvre::Keep, signal_ticks: 0, ..vehicle };
+        let fresh = Vehicle { drift: 0, lapse: Lapse::None, lapse_left: 0, late_ticks: 0, ..fresh };
         Vehicle { lane, before: lane, s_m, offset_m, flags, trips, speed_mps: ENTRY_MPS, ..fresh }
     }
 

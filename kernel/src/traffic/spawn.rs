@@ -9,6 +9,7 @@ use crate::ops;
 use crate::rng::{Stream, bits, unit};
 
 use super::counts::TrafficCounts;
+use super::lapse::Lapse;
 use super::manoeuvre::Manoeuvre;
 use super::plan::stopping_speed;
 use super::state::TrafficState;
@@ -222,6 +223,9 @@ impl Spawner<'_> {
             manoeuvre: Manoeuvre::Keep,
             signal_ticks: 0,
             drift: 0,
+            lapse: Lapse::None,
+            lapse_left: 0,
+            late_ticks: 0,
         });
         true
     }

@@ -27,6 +27,8 @@ pub(super) struct Driver {
     pub size_m: Vec3,
     /// Distance of its middle from the edge of the lane at the kerb; cars keep to the middle.
     pub from_kerb_m: Option<f32>,
+    /// Ticks until it reacts to the vehicle ahead.
+    pub reaction_ticks: u8,
     /// Selects colour and shape.
     pub variant: u32,
 }
@@ -86,6 +88,7 @@ pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKin
         gap_m: between(1.8, 2.8, t(4)),
         size_m: kind.size_m(),
         from_kerb_m,
+        reaction_ticks: 0,
         variant: variant(seed, id),
     }
 }

@@ -4,10 +4,11 @@ use crate::actor::ActorKind;
 use crate::map_data::LaneId;
 use crate::state;
 
+use super::lapse::Lapse;
 use super::manoeuvre::Manoeuvre;
 
 state! {
-    /// A vehicle on a lane. 34 bytes.
+    /// A vehicle on a lane. 37 bytes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Vehicle {
         /// Id of the actor.
@@ -40,6 +41,12 @@ state! {
         pub signal_ticks: u8,
         /// Sideways motion to the left for each metre driven, 1/100.
         pub drift: i8,
+        /// What its driver does wrong at the moment.
+        pub lapse: Lapse,
+        /// Time until that is over, in units that depend on what it is.
+        pub lapse_left: u8,
+        /// Ticks for which the driver has not yet reacted to the vehicle ahead.
+        pub late_ticks: u8,
     }
 }
 
@@ -56,6 +63,11 @@ impl Vehicle {
     pub const TURNS_LEFT: u8 = 16;
     /// Turns right there.
     pub const TURNS_RIGHT: u8 = 32;
+    /// Stands where it is no part of the traffic: it crashed, or halted at the kerb.
+    pub(super) fn is_aside(&self) -> bool {
+        matches!(self.lapse, Lapse::Crashed | Lapse::Halts)
+    }
+
     /// Every flag with a meaning.
     pub const ALL_FLAGS: u8 = 63;
 }

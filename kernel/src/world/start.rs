@@ -32,7 +32,8 @@ pub(super) fn begin(scenario: &Scenario, network: &Arc<RoadNetwork>) -> Result<(
     let refused = |error: StartError| WorldError::Scenario { map: network.name.clone(), reason: error.reason };
     let (lane, s_m) = scenario.start_on(network).map_err(refused)?;
     let car = standing(network, lane, s_m);
-    let traffic = Traffic::spawn(&scenario.traffic, scenario.seed, network.ways(), car.middle());
+    let traffic =
+        Traffic::spawn(&scenario.traffic, scenario.seed, network.ways(), car.middle()).with_hazards(&scenario.hazards);
     let route = Route::from(network, scenario.seed, lane, s_m);
     let parts = Parts {
         input: InputPart { origin: origin(scenario, network), tick: 0, controls: TickInput::default() },

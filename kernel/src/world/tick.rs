@@ -76,6 +76,7 @@ impl World {
         keyframe::check(&parts, network).map_err(wrong)?;
         let counts = &scenario.traffic;
         let traffic = Traffic::resume(counts, scenario.seed, network.ways(), traffic).map_err(wrong)?;
+        let traffic = traffic.with_hazards(&scenario.hazards);
         Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
     }
 
@@ -145,7 +146,7 @@ impl World {
         let ego_flags = self.parts.output.applied.controls.flags;
         self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, ego_flags, loose: obstacles });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
-        self.traffic.told().iter().for_each(|(kind, actor)| log.with(*kind, *actor));
+        self.traffic.told_near(ego.position).for_each(|(kind, actor)| log.with(kind, actor));
         bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
         self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);

@@ -11,7 +11,7 @@ use kernel::map::StopKind;
 use kernel::scene::ActorKind;
 use kernel::signals::{self, LightPhase};
 use kernel::time::{Tick, seconds};
-use kernel::traffic::{Body, Obstacle, Surroundings, Traffic, TrafficCounts, Vehicle};
+use kernel::traffic::{Body, HazardRates, Obstacle, Surroundings, Traffic, TrafficCounts, Vehicle};
 
 /// Nobody may stand for so long but before a red light, or behind somebody who waits there.
 const STAND_S: u32 = 180;
@@ -29,6 +29,7 @@ const BEHIND_M: f32 = 8.0;
 pub struct Drive {
     pub network: Arc<RoadNetwork>,
     pub counts: TrafficCounts,
+    pub hazards: HazardRates,
     pub seed: u64,
     pub minutes: u32,
 }
@@ -50,6 +51,11 @@ pub struct Census {
     pub missing: u32,
     /// Vehicles that were taken off the road.
     pub dissolved: u32,
+    /// Vehicles that were in a collision because of a mistake, which is told.
+    pub collided: u32,
+    /// Mistakes of drivers that began, and those among them who run a light.
+    pub mistakes: u32,
+    pub runners: u32,
 }
 
 impl Census {
@@ -62,6 +68,9 @@ impl Census {
         self.red += other.red;
         self.missing += other.missing;
         self.dissolved += other.dissolved;
+        self.collided += other.collided;
+        self.mistakes += other.mistakes;
+        self.runners += other.runners;
     }
 }
 
@@ -70,10 +79,12 @@ impl fmt::Display for Census {
         let [cars, person, persons] = self.overlaps;
         let (h, km_h) = (self.vehicle_h, self.vehicle_km / self.vehicle_h.max(1e-9));
         let (stood, red, missing, dissolved) = (self.stood, self.red, self.missing, self.dissolved);
+        let (collided, mistakes) = (self.collided, self.mistakes);
         write!(
             f,
             "{h:7.1} vehicle-h at {km_h:4.1} km/h: {stood:3} stood, overlaps {cars:4} vehicles {person:4} with a person \
-             {persons:6} persons, {red:2} at red, {missing:4} missing, {dissolved:3} dissolved"
+             {persons:6} persons, {red:2} at red, {missing:4} missing, {dissolved:3} dissolved, \
+             {mistakes:4} mistakes, {collided:2} collided"
         )
     }
 }
@@ -89,6 +100,7 @@ impl Drive {
         let size_m = kernel::ego::SIZE_M;
         let ego = Obstacle { id: 0, position: place, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m };
         let mut traffic = Traffic::spawn(&self.counts, self.seed, self.network.ways(), place);
+        traffic = traffic.with_hazards(&self.hazards);
         let mut watcher = Watcher::new(self, &traffic);
         for tick in 1..=seconds(60 * self.minutes) {
             traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[] });
@@ -130,6 +142,12 @@ impl<'a> Watcher<'a> {
                 eprintln!("tick {tick}: dissolved {:?}", self.before.iter().find(|v| u32::from(v.id) == *id));
             }
         }
+        let collided = |kind: &EventKind| *kind == EventKind::HazardCollision;
+        let kinds = || traffic.told().iter().map(|(kind, _)| *kind);
+        self.found.collided += kinds().filter(collided).count() as u32;
+        self.found.runners += kinds().filter(|kind| *kind == EventKind::HazardRedLight).count() as u32;
+        let mistake = |kind: &EventKind| *kind > EventKind::Dissolved && !collided(kind);
+        self.found.mistakes += kinds().filter(mistake).count() as u32;
         let vehicles = &traffic.state().vehicles;
         let driven_m: f32 = vehicles.iter().map(|v| v.speed_mps / 60.0).sum();
         self.found.vehicle_km += f64::from(driven_m) / 1000.0;

@@ -24,7 +24,7 @@ fn beside(world: &World, target_mps: f32, bearing_deg: f32) -> Controls {
 }
 
 /// Keeps the limit and stops at lights.
-fn polite(world: &World) -> Controls {
+pub fn polite(world: &World) -> Controls {
     let hud = world.hud();
     let stop = hud.light.is_some_and(|light| light != LightPhase::Green) && hud.light_distance_m < 30;
     let near = f32::from(hud.light_distance_m) * 0.4 - 1.0;

@@ -59,6 +59,12 @@ pub fn event(event: &Event) -> String {
         EventKind::Dissolved => {
             return format!("vehicle {} stood for too long and was taken off the road", event.actor);
         }
+        EventKind::HazardRedLight => return format!("vehicle {} runs a red light", event.actor),
+        EventKind::HazardRollingStop => return format!("vehicle {} rolls over the line of a stop sign", event.actor),
+        EventKind::HazardBraking => return format!("vehicle {} brakes hard for no reason", event.actor),
+        EventKind::HazardCutIn => return format!("vehicle {} cuts in", event.actor),
+        EventKind::HazardPullOut => return format!("vehicle {} pulls out from the kerb without a look", event.actor),
+        EventKind::HazardCollision => return format!("vehicle {} is in a collision with another", event.actor),
     };
     // The tick of a collision ends with what the impact has left of the speed.
     let at = match event.kind {

@@ -6,7 +6,7 @@ use super::{MINUTE, nowhere};
 use crate::map::{RoadNetwork, bake};
 use crate::time::Tick;
 use crate::traffic::traits::driver;
-use crate::traffic::{Surroundings, Traffic, TrafficCounts};
+use crate::traffic::{Population, Surroundings, Traffic, TrafficCounts};
 
 const LENGTH_M: f64 = 4000.0;
 const LIMIT_KMH: f64 = 100.0;
@@ -45,15 +45,16 @@ fn a_free_road_is_driven_as_the_model_says() {
     let network = ring();
     let kinds = [(1, 0, 0), (0, 1, 0), (0, 0, 1)];
     for (seed, (cars, motorcycles, bicycles)) in (9001..9021).flat_map(|seed| kinds.map(|kind| (seed, kind))) {
-        let counts = TrafficCounts { cars, motorcycles, bicycles, pedestrians: 0, jaywalks_per_min: 0.0 };
+        let drivers = Population::USUAL;
+        let counts = TrafficCounts { cars, motorcycles, bicycles, pedestrians: 0, jaywalks_per_min: 0.0, drivers };
         let mut traffic = Traffic::spawn(&counts, seed, network.ways(), nowhere().position);
         let Some(&start) = traffic.state().vehicles.first() else { panic!("one finds room") };
-        let person = driver(seed, start.id, start.kind);
+        let person = driver(&drivers, seed, start.id, start.kind);
         let limit_mps = (LIMIT_KMH / 3.6) as f32 * person.limit_share;
         let ticks = 3 * MINUTE;
         let mut driven_m = 0.0;
         for tick in 1..=ticks {
-            traffic.step(&Surroundings { tick, ego: nowhere(), loose: &[] });
+            traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] });
             driven_m += f64::from(traffic.state().vehicles[0].speed_mps) / 60.0;
         }
         let expected_m = expected_m(start.speed_mps, limit_mps.min(person.top_mps), person.accel_mps2, ticks);

@@ -2,6 +2,8 @@
 
 mod crossroads;
 mod free_road;
+mod encroachment;
+mod mistakes;
 
 use std::sync::Arc;
 

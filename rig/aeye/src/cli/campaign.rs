@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
+use kernel::scenario::HazardLevel;
 use lab::experiment::Preset;
 
-use super::values::{CHECKPOINTS, MAPS, jobs, people, preset, seconds};
+use super::values::{CHECKPOINTS, MAPS, hazards, jobs, people, preset, seconds};
 
 /// Arguments of `campaign`.
 #[derive(Args, Clone, Debug)]
@@ -42,6 +43,9 @@ pub struct CampaignArgs {
     /// People on foot, instead of as many as the scenario or the map's default has.
     #[arg(long, value_parser = people, value_name = "N")]
     pub pedestrians: Option<u16>,
+    /// How often people at the wheel endanger others, instead of what the scenario says.
+    #[arg(long, value_parser = hazards(), value_name = "LEVEL")]
+    pub hazards: Option<HazardLevel>,
     /// Longest simulated time of a run, 10s to 24h.
     #[arg(long = "max-time", default_value = "4m", value_parser = seconds(10..=86_400), value_name = "DURATION")]
     pub run_seconds: u32,

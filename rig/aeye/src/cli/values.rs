@@ -7,7 +7,7 @@ use base::library;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::Screens;
-use kernel::scenario::MOST_OF_A_KIND;
+use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::time::{TICK_HZ, Tick};
 use lab::experiment::Preset;
 
@@ -52,6 +52,12 @@ pub fn new_recording() -> impl TypedValueParser<Value = PathBuf> {
 pub fn preset() -> impl TypedValueParser<Value = Preset> {
     let named = |name: String| Preset::ALL.into_iter().find(|preset| preset.name() == name);
     PossibleValuesParser::new(Preset::ALL.map(Preset::name)).try_map(move |name| named(name).ok_or("no such preset"))
+}
+
+/// How often people at the wheel endanger others.
+pub fn hazards() -> impl TypedValueParser<Value = HazardLevel> {
+    PossibleValuesParser::new(HazardLevel::ALL.map(HazardLevel::name))
+        .try_map(|name| HazardLevel::named(&name).ok_or("no such level"))
 }
 
 /// Monitors that a view is spread over.

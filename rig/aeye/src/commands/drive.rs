@@ -14,7 +14,7 @@ use base::progress::Interrupt;
 use base::say::say;
 use drivers::simulate;
 use drivers::vision::Vision;
-use kernel::scenario::{EgoStart, driving_lanes};
+use kernel::scenario::{EgoStart, HazardLevel, driving_lanes};
 use kernel::{Scenario, World};
 use measures::RunFigures;
 use perception::Compute;
@@ -89,6 +89,7 @@ fn scenario(args: &DriveArgs) -> anyhow::Result<(Scenario, Map)> {
     };
     let map = if args.embed_map { map.embedded() } else { map };
     scenario.seed = args.seed.unwrap_or(scenario.seed);
+    scenario.hazards = args.hazards.map_or(scenario.hazards, HazardLevel::rates);
     let rules = &mut scenario.rules;
     rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
     rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);

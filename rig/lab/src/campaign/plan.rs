@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use base::maps::Map;
 use kernel::Scenario;
 use kernel::rng::{self, Stream};
+use kernel::scenario::HazardLevel;
 
 use super::until::Until;
 
@@ -17,6 +18,8 @@ pub struct Plan {
     pub scenario: Option<Scenario>,
     /// People on foot, if not as many as the scenario says.
     pub pedestrians: Option<u16>,
+    /// How often people at the wheel endanger others, if not as the scenario says.
+    pub hazards: Option<HazardLevel>,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign.
@@ -42,6 +45,7 @@ impl Plan {
         scenario.seed = seed;
         scenario.rules.max_seconds = self.run_seconds;
         scenario.traffic.pedestrians = self.pedestrians.unwrap_or(scenario.traffic.pedestrians);
+        scenario.hazards = self.hazards.map_or(scenario.hazards, HazardLevel::rates);
         scenario
     }
 

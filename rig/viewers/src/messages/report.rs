@@ -17,8 +17,13 @@ pub fn event(event: &Event, said: &str, time_ns: u64) -> Line {
     let level = match event.kind {
         EventKind::CollisionActor | EventKind::CollisionScenery | EventKind::Intervention => Level::Error,
         EventKind::RedLight | EventKind::Speeding | EventKind::OffRoad | EventKind::WrongWay => Level::Warning,
-        EventKind::Stuck | EventKind::Dissolved => Level::Warning,
+        EventKind::Stuck | EventKind::Dissolved | EventKind::HazardCollision => Level::Warning,
         EventKind::Armed | EventKind::Seen | EventKind::Ended => Level::Info,
+        EventKind::HazardRedLight
+        | EventKind::HazardRollingStop
+        | EventKind::HazardBraking
+        | EventKind::HazardCutIn
+        | EventKind::HazardPullOut => Level::Info,
     };
     line(level, DRIVE, words::event(event) + said, time_ns)
 }

@@ -98,5 +98,11 @@ fn mark(kind: EventKind) -> (Color32, &'static str) {
         EventKind::Ended => (TEXT, "end"),
         EventKind::Stuck => (TEXT, "stuck"),
         EventKind::Dissolved => (TEXT, "taken off"),
+        EventKind::HazardRedLight => (TEXT, "other runs red"),
+        EventKind::HazardRollingStop => (TEXT, "other rolls"),
+        EventKind::HazardBraking => (TEXT, "other brakes"),
+        EventKind::HazardCutIn => (TEXT, "cut-in"),
+        EventKind::HazardPullOut => (TEXT, "pull-out"),
+        EventKind::HazardCollision => (TEXT, "others collide"),
     }
 }

@@ -1,0 +1,54 @@
+//! Vehicles that run into each other because of a mistake.
+
+use glam::{Vec2, Vec3};
+
+use crate::events::EventKind;
+use crate::geometry::rectangles_overlap;
+
+use super::actors::Actors;
+use super::body::{Body, Surroundings};
+use super::lapse::Lapse;
+use super::passage::Told;
+use super::vehicle::Vehicle;
+use super::watchdog::STUCK_S;
+
+/// Nobody farther away is touched, metres.
+const NEAR_M: f32 = 12.0;
+/// Nor anybody at another level, metres.
+const LEVEL_M: f32 = 2.0;
+/// Touching by less than this is none, metres.
+const SKIN_M: f32 = 0.025;
+
+impl Actors {
+    /// Whoever makes a mistake and touches another vehicle stands from then on, and so does that. The watchdog takes
+    /// them off the road after a minute.
+    pub(super) fn crash(&mut self, around: &Surroundings<'_>, told: &mut Vec<Told>) {
+        let vehicles = &self.state.vehicles;
+        let endangers = |v: &Vehicle| v.lapse != Lapse::None && v.lapse != Lapse::Crashed && !around.holds(v.id);
+        let mut crashed = Vec::new();
+        for (i, _) in vehicles.iter().enumerate().filter(|(_, v)| endangers(v)) {
+            let meets = |k: usize| k != i && !around.holds(vehicles[k].id) && touches(&self.bodies[i], &self.bodies[k]);
+            crashed.extend((0..vehicles.len()).filter(|k| meets(*k)).flat_map(|k| [i, k]));
+        }
+        crashed.sort_unstable();
+        crashed.dedup();
+        for i in crashed {
+            let vehicle = &mut self.state.vehicles[i];
+            if vehicle.lapse != Lapse::Crashed {
+                (vehicle.lapse, vehicle.stuck_s) = (Lapse::Crashed, STUCK_S + 1);
+                told.push((EventKind::HazardCollision, u32::from(vehicle.id)));
+            }
+        }
+    }
+}
+
+fn touches(a: &Body, b: &Body) -> bool {
+    let to = b.position - a.position;
+    if to.length_squared() > NEAR_M * NEAR_M || to.z.abs() > LEVEL_M {
+        return false;
+    }
+    let [forward, axis] = [a, b].map(|body| (body.rotation * Vec3::X).truncate());
+    let turned = |v: Vec2| Vec2::new(v.dot(forward), forward.perp_dot(v));
+    let half = |body: &Body| body.kind.size_m().truncate() * 0.5 - SKIN_M;
+    rectangles_overlap(half(a), turned(to.truncate()), turned(axis), half(b))
+}
