@@ -28,6 +28,8 @@ const ROUTE_MPS2: f32 = 3.0;
 const ROUTE_M: f32 = 250.0;
 /// Gap to others that is left at least, metres.
 pub(super) const GAP_M: f32 = 2.5;
+/// The same before one behind who stands, so that two who want to change places do not wait for each other, metres.
+const STANDING_GAP_M: f32 = 1.0;
 /// Vehicles think about changes so often.
 const CONSIDER_TICKS: Tick = 30;
 /// They signal for so long before they change.
@@ -37,6 +39,8 @@ const GAP_TICKS: Tick = 6;
 /// Slower than this nobody changes, and no long vehicle, m/s.
 const LEAST_MPS: f32 = 1.5;
 const LONG_LEAST_MPS: f32 = 4.0;
+/// Who is slower than this stands, m/s.
+const STANDS_MPS: f32 = 0.1;
 /// Past what stands in the lane after so much of a change, metres.
 const CLEAR_M: f32 = 2.8;
 /// Width of a lane for which a change has room, metres.
@@ -296,13 +300,17 @@ impl View<'_> {
     /// Whether nobody has to brake hard when a vehicle changes to a place now, and nobody else goes there.
     pub(super) fn is_safe(&self, index: usize, there: &Projection) -> bool {
         let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
-        let bears = |who: &Driver, mps: f32, gap_m: f32, ahead_mps: f32| {
-            gap_m > GAP_M && follow_idm(who, mps, gap_m, ahead_mps) > -SAFE_MPS2
-        };
+        let safe =
+            |who: &Driver, mps: f32, gap_m: f32, ahead_mps: f32| follow_idm(who, mps, gap_m, ahead_mps) > -SAFE_MPS2;
+        let bears =
+            |who: &Driver, mps: f32, gap_m: f32, ahead_mps: f32| gap_m > GAP_M && safe(who, mps, gap_m, ahead_mps);
+        let leaves = |n: &Near| n.gap_m > if n.speed_mps < STANDS_MPS { STANDING_GAP_M } else { GAP_M };
         let ahead = self.ahead(index, there.lane, there.s_m);
         let behind = self.behind(index, there.lane, there.s_m);
         let free = ahead.is_none_or(|n| bears(driver, vehicle.speed_mps, n.gap_m, n.speed_mps))
-            && behind.is_none_or(|n| bears(&self.drivers[n.vehicle as usize], n.speed_mps, n.gap_m, vehicle.speed_mps));
+            && behind.is_none_or(|n| {
+                leaves(&n) && safe(&self.drivers[n.vehicle as usize], n.speed_mps, n.gap_m, vehicle.speed_mps)
+            });
         free && self.is_free_of_hazards(index, there, bears) && self.is_first(index)
     }
 

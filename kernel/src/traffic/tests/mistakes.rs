@@ -28,7 +28,7 @@ pub(super) fn watch(
 ) {
     let mut sight = Sight::default();
     for tick in 1..=minutes * MINUTE {
-        let around = Surroundings { tick, ego: nowhere(), loose: &[] };
+        let around = Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] };
         sight.look(&traffic.actors, &around);
         before(&sight.view(&traffic.actors));
         traffic.step(&around);

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use kernel::geometry::direction;
 use kernel::map::{LaneKind, RoadNetwork};
-use kernel::scene::{ActorKind, ActorScene, EgoScene};
+use kernel::scene::{ActorScene, EgoScene};
 use kernel::{World, ego, ops};
 
 use crate::footprint::{Footprint, middle};

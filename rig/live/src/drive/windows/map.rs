@@ -7,7 +7,6 @@ use egui::epaint::PathShape;
 use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
 use glam::{Vec2 as Place, Vec3, Vec3Swizzles};
 use kernel::SceneSnapshot;
-use kernel::scene::ActorKind;
 
 use crate::drive::traces::Traces;
 
