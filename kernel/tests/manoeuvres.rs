@@ -9,6 +9,7 @@ use kernel::map::bake;
 use kernel::scene::ActorKind;
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, Obstacle, Surroundings, Traffic, TrafficCounts};
+use kernel::weather::Conditions;
 
 const LANE_M: f64 = 3.5;
 const NOBODY: TrafficCounts =
@@ -59,7 +60,7 @@ fn car_at(position: Vec3) -> Obstacle {
 
 fn drive(traffic: &mut Traffic, ego: Obstacle, ticks: Tick, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in 1..=ticks {
-        traffic.step(&Surroundings { tick, ego, loose: &[] });
+        traffic.step(&Surroundings { tick, ego, loose: &[], conditions: Conditions::default() });
         each(traffic, tick);
     }
 }

@@ -2,8 +2,10 @@
 
 mod default;
 mod fields;
+mod reader;
 mod start;
 mod text;
+mod weather;
 
 pub use crate::car::CarSetup;
 pub use crate::traffic::TrafficCounts;

@@ -1,11 +1,10 @@
 //! Scenarios as text.
 
-use std::ops::{Bound, RangeBounds};
-
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::fields::{MOST_OF_A_KIND, Scenario, ScenarioError};
+use super::reader::{Given, Reader};
+use super::weather::{self, AtStart};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -16,7 +15,7 @@ struct Text {
     #[serde(default)]
     traffic: Traffic,
     #[serde(default)]
-    weather: Weather,
+    weather: AtStart,
     #[serde(default)]
     ego: Ego,
     #[serde(default)]
@@ -24,8 +23,6 @@ struct Text {
     #[serde(default)]
     rules: Rules,
 }
-
-type Given<T> = Option<Spanned<T>>;
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -35,15 +32,6 @@ struct Traffic {
     bicycles: Given<u16>,
     pedestrians: Given<u16>,
     jaywalks_per_min: Given<f32>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Weather {
-    cloudiness_pct: Given<f32>,
-    wind_pct: Given<f32>,
-    sun_altitude_deg: Given<f32>,
-    sun_azimuth_deg: Given<f32>,
 }
 
 #[derive(Default, Deserialize)]
@@ -83,44 +71,6 @@ impl Scenario {
     }
 }
 
-/// Takes over given values, checked.
-struct Reader<'a> {
-    text: &'a str,
-}
-
-impl Reader<'_> {
-    fn line(&self, at: usize) -> usize {
-        1 + self.text.bytes().take(at).filter(|&byte| byte == b'\n').count()
-    }
-
-    fn take<T>(&self, key: &str, given: Given<T>, range: impl RangeBounds<T>, to: &mut T) -> Result<(), ScenarioError>
-    where
-        T: PartialOrd + Copy + std::fmt::Display,
-    {
-        let Some(given) = given else { return Ok(()) };
-        let value = *given.get_ref();
-        if !range.contains(&value) {
-            let (line, range) = (self.line(given.span().start), words(&range));
-            return Err(ScenarioError(format!("line {line}: {key} is {value}, expected {range}")));
-        }
-        *to = value;
-        Ok(())
-    }
-}
-
-fn words<T: std::fmt::Display>(range: &impl RangeBounds<T>) -> String {
-    let low = match range.start_bound() {
-        Bound::Included(low) => format!("at least {low}"),
-        Bound::Excluded(low) => format!("more than {low}"),
-        Bound::Unbounded => String::from("anything"),
-    };
-    match range.end_bound() {
-        Bound::Included(high) => format!("{low} and at most {high}"),
-        Bound::Excluded(high) => format!("{low} and less than {high}"),
-        Bound::Unbounded => low,
-    }
-}
-
 fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     let reader = Reader { text };
     let given: Text = toml::from_str(text).map_err(|error| {
@@ -129,7 +79,7 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     })?;
     let mut scenario = Scenario::default_for(&given.map, given.seed);
     traffic(&reader, given.traffic, &mut scenario)?;
-    weather(&reader, given.weather, &mut scenario)?;
+    weather::take(&reader, given.weather, &mut scenario)?;
     rules(&reader, given.rules, &mut scenario)?;
     if let Some(lane) = given.ego.lane {
         scenario.ego.lane = Some(*lane.get_ref());
@@ -151,14 +101,6 @@ fn traffic(reader: &Reader<'_>, given: Traffic, scenario: &mut Scenario) -> Resu
     reader.take("traffic.jaywalks_per_min", given.jaywalks_per_min, 0.0..=60.0, &mut to.jaywalks_per_min)
 }
 
-fn weather(reader: &Reader<'_>, given: Weather, scenario: &mut Scenario) -> Result<(), ScenarioError> {
-    let to = &mut scenario.weather;
-    reader.take("weather.cloudiness_pct", given.cloudiness_pct, 0.0..=100.0, &mut to.cloudiness_pct)?;
-    reader.take("weather.wind_pct", given.wind_pct, 0.0..=100.0, &mut to.wind_pct)?;
-    reader.take("weather.sun_altitude_deg", given.sun_altitude_deg, -90.0..=90.0, &mut to.sun_altitude_deg)?;
-    reader.take("weather.sun_azimuth_deg", given.sun_azimuth_deg, 0.0..=360.0, &mut to.sun_azimuth_deg)
-}
-
 fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(), ScenarioError> {
     let to = &mut scenario.rules;
     let threshold = 0.01..=0.99;
@@ -170,13 +112,13 @@ fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(
 
 /// Every key, so that the text still says the same when a default changes.
 fn print(scenario: &Scenario) -> String {
-    let Scenario { map, seed, traffic, weather, ego, car, rules } = scenario;
+    let Scenario { map, seed, traffic, weather, later, ego, car, rules } = scenario;
     let map = toml::Value::from(map.as_str());
     let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));
     format!(
         "map = {map}\nseed = {seed}\n\n\
          [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\n\
-         [weather]\ncloudiness_pct = {:?}\nwind_pct = {:?}\nsun_altitude_deg = {:?}\nsun_azimuth_deg = {:?}\n\n\
+         {}\n\
          [ego]\n{lane}s_m = {:?}\n\n\
          [car]\nabs = {}\nesc = {}\n\n\
          [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n",
@@ -185,10 +127,7 @@ fn print(scenario: &Scenario) -> String {
         traffic.bicycles,
         traffic.pedestrians,
         traffic.jaywalks_per_min,
-        weather.cloudiness_pct,
-        weather.wind_pct,
-        weather.sun_altitude_deg,
-        weather.sun_azimuth_deg,
+        weather::print(weather, later.as_ref()),
         ego.s_m,
         car.abs,
         car.esc,

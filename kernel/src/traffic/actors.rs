@@ -8,6 +8,7 @@ use super::state::TrafficState;
 use super::traits::{Driver, WalkerTraits, driver, walker_traits};
 use super::ways::Ways;
 use crate::map_data::{MapData, Place};
+use crate::weather::Conditions;
 
 /// All actors of a world.
 #[derive(Clone, Debug)]
@@ -22,6 +23,8 @@ pub(super) struct Actors {
     pub places: Vec<Place>,
     /// At the places of the state.
     pub bodies: Vec<Body>,
+    /// The weather that drivers and walkers heed.
+    conditions: Conditions,
 }
 
 impl Actors {
@@ -36,9 +39,22 @@ impl Actors {
             places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),
             state,
             bodies: Vec::new(),
+            conditions: Conditions::default(),
         };
         actors.place_bodies();
         actors
+    }
+
+    /// Everybody drives and walks as the weather asks for.
+    pub fn heed(&mut self, conditions: &Conditions) {
+        if self.conditions == *conditions {
+            return;
+        }
+        self.conditions = *conditions;
+        let vehicles = self.state.vehicles.iter().zip(&mut self.drivers);
+        vehicles.for_each(|(v, known)| *known = driver(self.seed, v.id, v.kind).heeding(conditions));
+        let walkers = self.state.walkers.iter().zip(&mut self.walker_traits);
+        walkers.for_each(|(w, known)| *known = walker_traits(self.seed, w.id).heeding(conditions));
     }
 
     /// The map they are on.

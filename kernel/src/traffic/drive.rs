@@ -20,8 +20,6 @@ use super::vehicle::Vehicle;
 use super::ways::Ways;
 use super::zebra;
 
-/// Hardest braking, m/s².
-const EMERGENCY_MPS2: f32 = 8.0;
 /// Time in which a driver takes up a speed that the road asks for, s.
 const ADAPT_S: f32 = 0.4;
 /// The same before a line; short, so that it is not overrun.
@@ -215,7 +213,7 @@ impl View<'_> {
         self.conflicts(index, plan, steps, next, &mut follow);
         let wall_m = self.wall(plan, steps, next, driver);
         let stop = (stopping_speed(wall_m, driver.brake_mps2) - v) / STOP_S;
-        accel.min(room).min(stop).max(-EMERGENCY_MPS2)
+        accel.min(room).min(stop).max(-driver.hardest_mps2)
     }
 
     pub(super) fn seeker(&self, index: usize) -> Seeker {
@@ -428,7 +426,7 @@ impl View<'_> {
 /// takes the lesser of this and the free part, as IDM+ does (Schakel, van Arem and Netten 2010). m/s².
 pub(super) fn follow_idm(driver: &Driver, speed_mps: f32, gap_m: f32, leader_mps: f32) -> f32 {
     if gap_m < 0.3 {
-        return -EMERGENCY_MPS2;
+        return -driver.hardest_mps2;
     }
     let closing = speed_mps - leader_mps;
     let root = 2.0 * ops::sqrt(driver.accel_mps2 * driver.brake_mps2);

@@ -122,6 +122,7 @@ impl Traffic {
     pub fn step(&mut self, surroundings: &Surroundings<'_>) {
         let Self { actors, sight, told } = self;
         told.clear();
+        actors.heed(&surroundings.conditions);
         sight.look(actors, surroundings);
         let (mut next, mut places) = (std::mem::take(&mut sight.next), std::mem::take(&mut sight.places));
         places.clear();

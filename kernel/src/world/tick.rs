@@ -16,6 +16,7 @@ use crate::state::StateHash;
 use crate::time::{KEYFRAME_TICKS, Tick, seconds};
 use crate::traffic::{Obstacle, Surroundings, Traffic};
 use crate::watch::{self, Log};
+use crate::weather::{Conditions, Water};
 
 use super::error::WorldError;
 use super::keyframe::{self, Keyframe};
@@ -141,11 +142,15 @@ impl World {
             velocity_mps: car.motion.velocity_mps,
             size_m: ego::SIZE_M,
         };
-        self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, loose: obstacles });
+        let tick = self.parts.input.tick;
+        // People notice the weather once a second.
+        let conditions = Conditions::of(&self.scenario.weather_at(tick - tick % seconds(1)));
+        self.traffic.step(&Surroundings { tick, ego, loose: obstacles, conditions });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
         self.traffic.told().iter().for_each(|(kind, actor)| log.with(*kind, *actor));
         bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
-        self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car);
+        let water = Water::of(&self.scenario.weather_at(tick));
+        self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car, &water);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
     }
 

@@ -116,6 +116,7 @@ fn campaign_options(options: &Options, checkpoint: CheckpointChoice, out: &Path)
         scenario: None,
         until: Until::Cases(CASES),
         pedestrians: Some(PEDESTRIANS),
+        weather: None,
         run_seconds: RUN_SECONDS,
         seed: options.seed,
         jobs: options.jobs,

@@ -19,6 +19,7 @@ fn plan(out: &Path) -> Plan {
         maps,
         scenario: None,
         pedestrians: None,
+        weather: None,
         run_seconds: 10,
         seed: 5,
         until: Until::Runs(2),

@@ -12,6 +12,7 @@ use crate::map::{RoadNetwork, StopKind, bundled};
 use crate::signals::{LightPhase, phase};
 use crate::state::State;
 use crate::time::Tick;
+use crate::weather::Conditions;
 use crossroads::{Signs, crossroads};
 
 /// Ticks in a minute.
@@ -39,7 +40,7 @@ fn start(network: &Arc<RoadNetwork>, actors: u16, seed: u64) -> Traffic {
 
 fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in ticks {
-        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &[] });
+        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &[], conditions: Conditions::default() });
         each(traffic, tick);
     }
 }
@@ -242,7 +243,7 @@ fn vehicles_stop_behind_whatever_stands_in_their_lane() {
         let loose = [there];
         for tick in 1..1200 {
             let (ego, loose) = if ego { (there, &loose[..0]) } else { (nowhere(), &loose[..]) };
-            traffic.step(&Surroundings { tick, ego, loose });
+            traffic.step(&Surroundings { tick, ego, loose, conditions: Conditions::default() });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         let gap_m = 120.0 - vehicle.s_m - 2.25;
@@ -260,7 +261,7 @@ fn who_stands_without_a_reason_is_told_and_then_taken_off_the_road() {
         let mut traffic = lone_car(&network);
         let mut told = Vec::new();
         for tick in 1..4 * MINUTE {
-            traffic.step(&Surroundings { tick, ego, loose });
+            traffic.step(&Surroundings { tick, ego, loose, conditions: Conditions::default() });
             told.extend(traffic.told().iter().map(|(kind, id)| (*kind, *id, tick / 60)));
         }
         let id = u32::from(traffic.state().vehicles[0].id);
@@ -285,7 +286,7 @@ fn vehicles_pass_what_stands_beside_their_lane() {
     let mut traffic = lone_car(&network);
     let beside = network.lanes[0].points[60].position + Vec3::Y * 3.5;
     for tick in 1..1200 {
-        traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[] });
+        traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[], conditions: Conditions::default() });
     }
     assert!(traffic.actors.state.vehicles[0].lane != 0, "{:?}", traffic.actors.state.vehicles[0]);
 }
@@ -298,7 +299,12 @@ fn vehicles_pass_within_their_lane_whatever_leaves_room_there() {
         let mut traffic = lone_car(&network);
         let beside = network.lanes[0].points[60].position + Vec3::Y * aside_m;
         for tick in 1..1800 {
-            traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), loose: &[] });
+            traffic.step(&Surroundings {
+                tick,
+                ego: car_at(beside, 0.0),
+                loose: &[],
+                conditions: Conditions::default(),
+            });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         assert!(vehicle.lane != 0 || vehicle.s_m > 130.0, "{aside_m} m aside: {vehicle:?}");
@@ -313,7 +319,7 @@ fn loose_actors_keep_their_state() {
     let lie = |id: u16| Obstacle { id: u32::from(id), ..car_at(Vec3::new(0.0, 300.0, 0.0), 0.0) };
     let loose = [lie(vehicle.id), lie(walker.id)];
     for tick in 1..600 {
-        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &loose });
+        traffic.step(&Surroundings { tick, ego: nowhere(), loose: &loose, conditions: Conditions::default() });
     }
     assert_eq!((traffic.actors.state.vehicles[2], traffic.actors.state.walkers[2]), (vehicle, walker));
 }

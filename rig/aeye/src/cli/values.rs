@@ -9,6 +9,7 @@ use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::Screens;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::{TICK_HZ, Tick};
+use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
 
 /// What stands for a checkpoint in help.
@@ -52,6 +53,12 @@ pub fn new_recording() -> impl TypedValueParser<Value = PathBuf> {
 pub fn preset() -> impl TypedValueParser<Value = Preset> {
     let named = |name: String| Preset::ALL.into_iter().find(|preset| preset.name() == name);
     PossibleValuesParser::new(Preset::ALL.map(Preset::name)).try_map(move |name| named(name).ok_or("no such preset"))
+}
+
+/// A weather with a name.
+pub fn weather() -> impl TypedValueParser<Value = WeatherPreset> {
+    let named = |name: String| WeatherPreset::find(&name).copied();
+    PossibleValuesParser::new(WeatherPreset::names()).try_map(move |name| named(name).ok_or("no such weather"))
 }
 
 /// Monitors that a view is spread over.

@@ -24,11 +24,12 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
         return Err(Usage("--pedestrian-cases without people on foot; expected --pedestrians above 0".into()).into());
     }
     let until = until(args)?;
-    let CampaignArgs { checkpoint, maps, embed_map, scenario, pedestrians, run_seconds, seed, jobs, out, .. } =
-        args.clone();
+    let CampaignArgs {
+        checkpoint, maps, embed_map, scenario, pedestrians, weather, run_seconds, seed, jobs, out, ..
+    } = args.clone();
     // Nothing goes anywhere where the scenario is only printed.
     let out = out.unwrap_or_default();
-    Ok(Options { checkpoint, maps, embed_map, scenario, until, pedestrians, run_seconds, seed, jobs, out })
+    Ok(Options { checkpoint, maps, embed_map, scenario, until, pedestrians, weather, run_seconds, seed, jobs, out })
 }
 
 fn until(args: &CampaignArgs) -> anyhow::Result<Until> {

@@ -10,6 +10,7 @@ use base::progress::Interrupt;
 use base::spread::jobs;
 use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::Eye;
+use kernel::weather::WeatherPreset;
 use measures::statistics::table;
 use render::AdapterChoice;
 
@@ -33,6 +34,8 @@ pub struct Options {
     pub until: Until,
     /// People on foot, instead of as many as the scenario or the map's default has.
     pub pedestrians: Option<u16>,
+    /// Weather, if not as the scenario or the map's default says.
+    pub weather: Option<WeatherPreset>,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign; run `i` follows from it and `i` alone.
@@ -74,8 +77,8 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         maps.iter().try_for_each(|map| file.check_start(map))?;
     }
     let scenario = file.map(|file| file.scenario);
-    let Options { until, pedestrians, run_seconds, seed, .. } = *options;
-    Ok(Plan { maps, scenario, pedestrians, run_seconds, seed, until, out: options.out.clone() })
+    let Options { until, pedestrians, weather, run_seconds, seed, .. } = *options;
+    Ok(Plan { maps, scenario, pedestrians, weather, run_seconds, seed, until, out: options.out.clone() })
 }
 
 impl fmt::Display for CampaignFigures {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use base::maps::Map;
 use kernel::Scenario;
 use kernel::rng::{self, Stream};
+use kernel::weather::WeatherPreset;
 
 use super::until::Until;
 
@@ -17,6 +18,8 @@ pub struct Plan {
     pub scenario: Option<Scenario>,
     /// People on foot, if not as many as the scenario says.
     pub pedestrians: Option<u16>,
+    /// Weather, if not as the scenario says.
+    pub weather: Option<WeatherPreset>,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign.
@@ -41,6 +44,7 @@ impl Plan {
         scenario.map = map.network.name.clone();
         scenario.seed = seed;
         scenario.rules.max_seconds = self.run_seconds;
+        self.weather.iter().for_each(|preset| scenario.take_weather(preset));
         scenario.traffic.pedestrians = self.pedestrians.unwrap_or(scenario.traffic.pedestrians);
         scenario
     }

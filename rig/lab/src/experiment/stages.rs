@@ -193,6 +193,7 @@ impl Stages<'_> {
             scenario: None,
             until,
             pedestrians,
+            weather: None,
             run_seconds,
             seed: self.recipe.seed,
             jobs: self.jobs,
