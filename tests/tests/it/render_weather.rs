@@ -1,9 +1,8 @@
 //! Rain, fog and water change colours, and nothing that counts as truth.
 
+use kernel::SceneSnapshot;
 use kernel::scene::Weather;
-use kernel::time::seconds;
 use kernel::weather::WeatherPreset;
-use kernel::{Scenario, SceneSnapshot, TickInput, World, map};
 use render::{Camera, Frame, Preset, RenderOptions, Renderer, SemanticTag};
 use tests::street;
 
@@ -84,10 +83,10 @@ fn fog_hides_what_is_far_and_begins_where_it_shall() {
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn wet_roads_are_darker_and_puddles_mirror_the_sky() {
     let (mut renderer, camera) = (renderer(), Camera::driver(256, 128));
-    let dry = Weather::dry(60.0, 0.0, 45.0, 200.0);
+    let clear = Weather::dry(60.0, 0.0, 45.0, 200.0);
     let mut draw = |weather| renderer.draw(&street_in(weather), &camera).expect("a frame");
     let (dry, wet, flooded) =
-        (draw(dry), draw(Weather { wetness_pct: 100.0, ..dry }), draw(Weather { puddles_pct: 100.0, ..dry }));
+        (draw(clear), draw(Weather { wetness_pct: 100.0, ..clear }), draw(Weather { puddles_pct: 100.0, ..clear }));
     let near = |at: usize| dry.class_ids[at] == SemanticTag::Road as u8 && dry.depth_m[at] < 6.0;
     let far = |at: usize| dry.class_ids[at] == SemanticTag::Road as u8 && dry.depth_m[at] > 20.0;
     let [before, after] = [&dry, &wet].map(|frame| brightness(frame, near));
@@ -96,33 +95,4 @@ fn wet_roads_are_darker_and_puddles_mirror_the_sky() {
     assert!(after > 1.2 * before, "{before} {after}");
     let house = |at: usize| dry.class_ids[at] == SemanticTag::Building as u8;
     assert!((brightness(&dry, house) - brightness(&wet, house)).abs() < 0.5);
-}
-
-/// `AEYE_PICTURES=DIR` writes pictures of the city in several weathers there, as PPM.
-#[test]
-#[ignore = "writes pictures to look at"]
-fn pictures() {
-    let folder = std::env::var("AEYE_PICTURES").expect("AEYE_PICTURES is a folder");
-    let network = map::bundled("city").expect("it is bundled");
-    let mut world = World::new(&Scenario::default_for("city", 3), &network).expect("it fits");
-    (0..seconds(10)).for_each(|_| drop(world.step(&TickInput::default())));
-    let mut renderer = Renderer::new(&network, &RenderOptions::default()).expect("an adapter");
-    let clear = Weather::dry(10.0, 10.0, 45.0, 200.0);
-    let weathers = [
-        ("dry", clear),
-        ("fog", Weather { fog_density_pct: 60.0, cloudiness_pct: 60.0, ..clear }),
-        ("fog_later", Weather { fog_density_pct: 60.0, fog_distance_m: 30.0, ..clear }),
-        ("wet", Weather { wetness_pct: 100.0, ..clear }),
-    ];
-    let named = ["ClearNoon", "HardRainNoon", "SoftRainNoon", "WetCloudySunset", "WetNoon", "HardRainNight"];
-    let all = weathers.into_iter().chain(named.map(|name| (name, preset(name))));
-    for (name, weather) in all {
-        let scene = SceneSnapshot { weather, ..world.scene() };
-        for (view, camera) in [("driver", Camera::driver(854, 480)), ("chase", Camera::chase(854, 480))] {
-            let frame = renderer.draw(&scene, &camera).expect("a frame");
-            let mut file = format!("P6\n{} {}\n255\n", frame.width, frame.height).into_bytes();
-            file.extend(&frame.rgb);
-            std::fs::write(format!("{folder}/{name}-{view}.ppm"), file).expect("writable");
-        }
-    }
 }
