@@ -32,7 +32,7 @@ pub mod state;
 pub mod time;
 pub mod traffic;
 pub mod watch;
-mod weather;
+pub mod weather;
 pub mod world;
 
 pub use controls::{Controls, Seat, TickInput};

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use kernel::map::bake;
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts};
+use kernel::weather::Conditions;
 use kernel::{Controls, RoadNetwork};
 
 const LANE_M: f64 = 3.5;
@@ -64,7 +65,7 @@ fn car_at(position: Vec3) -> Obstacle {
 
 fn drive(traffic: &mut Traffic, ego: Obstacle, ticks: Tick, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in 1..=ticks {
-        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[] });
+        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
         each(traffic, tick);
     }
 }
@@ -136,7 +137,7 @@ fn falls_back_m(seed: u64, indicates: bool) -> f32 {
     let mut tick = 0;
     let mut step = |traffic: &mut Traffic, ego, ego_flags| {
         tick += 1;
-        traffic.step(&Surroundings { tick, ego, ego_flags, loose: &[] });
+        traffic.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
     };
     while traffic.bodies()[0].velocity_mps.x < 8.0 || place(&traffic).x > 1000.0 {
         step(&mut traffic, car_at(FAR), 0);

@@ -17,6 +17,7 @@ mod instance_ids;
 mod light;
 pub mod mesh;
 mod noise;
+mod rain;
 mod renderer;
 mod scenery;
 pub mod tags;

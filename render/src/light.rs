@@ -14,6 +14,8 @@ pub(crate) struct Light {
     pub(crate) ground_light: Vec3,
     pub(crate) horizon: Vec3,
     pub(crate) zenith: Vec3,
+    /// Of fog that hides all behind it.
+    pub(crate) fog: Vec3,
     pub(crate) exposure: f32,
 }
 
@@ -27,16 +29,21 @@ impl Light {
         let clouds = 0.01 * weather.cloudiness_pct;
         let white = Vec3::new(1.0, 0.95, 0.87).lerp(Vec3::new(1.0, 0.68, 0.4), warm);
         let grey = Vec3::new(0.62, 0.66, 0.72);
+        let (rain, mist) = (0.01 * weather.precipitation_pct, 0.01 * weather.fog_density_pct);
+        // What comes through rain clouds and fog; all of it without them.
+        let (beam, dim) = ((1.0 - 0.9 * rain) * (1.0 - 0.8 * mist), 1.0 - 0.3 * rain);
         let zenith = Vec3::new(0.14, 0.32, 0.72).lerp(grey, 0.35 * clouds) * day + Vec3::new(0.006, 0.008, 0.018);
         let haze = Vec3::new(0.62, 0.78, 0.98).lerp(Vec3::new(0.95, 0.72, 0.5), 0.6 * warm);
+        let horizon = haze.lerp(grey, 0.3 * clouds) * (0.95 * day) + Vec3::splat(0.015);
         Self {
             sun,
-            sun_light: white * (2.5 * smooth(-0.02, 0.2, sun.z) * (1.0 - 0.45 * clouds)),
-            sky_light: Vec3::new(0.5, 0.6, 0.78).lerp(grey, 0.5 * clouds) * (day * (0.95 + 0.3 * clouds))
+            sun_light: white * (2.5 * smooth(-0.02, 0.2, sun.z) * (1.0 - 0.45 * clouds) * beam),
+            sky_light: Vec3::new(0.5, 0.6, 0.78).lerp(grey, 0.5 * clouds) * (day * (0.95 + 0.3 * clouds) * dim)
                 + Vec3::splat(0.02),
             ground_light: Vec3::new(0.36, 0.34, 0.31) * day + Vec3::splat(0.015),
-            horizon: haze.lerp(grey, 0.3 * clouds) * (0.95 * day) + Vec3::splat(0.015),
-            zenith,
+            horizon: horizon.lerp(grey * (0.7 * day), 0.8 * rain),
+            zenith: zenith.lerp(grey * (0.6 * day), 0.8 * rain),
+            fog: horizon.lerp(grey * day, 0.6) * (0.9 * dim) + Vec3::splat(0.01),
             exposure: 0.62,
         }
     }
@@ -85,7 +92,7 @@ mod tests {
 
     #[test]
     fn the_sun_stands_where_the_weather_says() {
-        let weather = Weather { cloudiness_pct: 0.0, wind_pct: 0.0, sun_altitude_deg: 30.0, sun_azimuth_deg: 90.0 };
+        let weather = Weather::dry(0.0, 0.0, 30.0, 90.0);
         let light = Light::new(&weather);
         assert!((light.sun - Vec3::new(0.0, 0.866, 0.5)).length() < 1e-3);
         let night = Light::new(&Weather { sun_altitude_deg: -30.0, ..weather });

@@ -7,6 +7,7 @@ use crate::actors::{Cast, Moving};
 use crate::blob::{self, BlobVertex};
 use crate::gpu::{Draws, Gpu, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
+use crate::rain;
 use crate::scenery::Scenery;
 use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, RenderError};
@@ -115,6 +116,8 @@ impl Renderer {
             casters: stale.then(|| self.scenery.near_line(shadow.centre, light.sun, 1.42 * shadow.reach_m)),
             moving_casts: self.quality.moving_shadows,
             blobs: &self.blobs,
+            weather: rain::is_drawn(&scene.weather),
+            drops: rain::drops(&scene.weather),
         };
         let (width, height) = (camera.width, camera.height);
         let fits = |t: &Targets| t.width == width && t.height == height;

@@ -75,6 +75,9 @@ class State:
     def list(self, item):
         return [item() for _ in range(self.take("I"))]
 
+    def left(self):
+        return len(self.data) - self.at
+
     def option(self, item):
         return item() if self.take("B") else None
 
@@ -121,6 +124,8 @@ def scene(data):
     actors = state.list(lambda: state.take("IBI3f4f2fB"))
     lights = state.list(lambda: state.take("B"))
     state.take("4f")
+    if state.left():
+        state.take("5f")
     state.end()
     return {"tick": tick, "actors": len(actors), "lights": len(lights)}
 

@@ -174,10 +174,5 @@ pub fn scene(moment: u32) -> SceneSnapshot {
 
 fn weather(moment: u32) -> Weather {
     let t = moment as f32;
-    Weather {
-        cloudiness_pct: 25.0,
-        wind_pct: 10.0 * (t % 6.0),
-        sun_altitude_deg: 38.0 + 7.0 * (t % 7.0),
-        sun_azimuth_deg: (140.0 + 47.0 * t) % 360.0,
-    }
+    Weather::dry(25.0, 10.0 * (t % 6.0), 38.0 + 7.0 * (t % 7.0), (140.0 + 47.0 * t) % 360.0)
 }

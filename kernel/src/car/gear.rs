@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3};
 use super::assist::{self, CarSetup};
 use super::body::Body;
 use super::dimensions::{CENTRE_OF_MASS_M, WHEEL_RADIUS_M, WHEELS, is_front, place_m};
-use super::surface::{Footing, Grip, grip};
+use super::surface::{Footing, Grip};
 use super::suspension::{self, REST_M};
 use super::tyre::Tyre;
 use super::wheel::{Torque, Wheel};
@@ -77,7 +77,7 @@ struct Stand {
 }
 
 impl Stand {
-    fn new(wheel: usize, mount_m: Vec3, angle_rad: f32, footing: &Footing) -> Self {
+    fn new(wheel: usize, mount_m: Vec3, angle_rad: f32, footing: &Footing, speed_mps: f32) -> Self {
         let (normal, ahead) = (footing.normal, steering::direction(wheel, angle_rad));
         let forward = (ahead - normal * normal.dot(ahead)).normalize_or(ahead);
         Self {
@@ -86,7 +86,7 @@ impl Stand {
             normal,
             forward,
             left: normal.cross(forward),
-            grip: grip(footing.kind),
+            grip: footing.grip(speed_mps),
         }
     }
 
@@ -131,10 +131,11 @@ impl RunningGear {
         self.wheel_angle_rad = steering::turned_rad(self.wheel_angle_rad, controls.steer_fraction(), speed_mps);
         self.parked &= controls.throttle == 0;
         let asked = self.ask(controls, setup, &body, ground);
+        let over_ground_mps = body.velocity_mps.length();
 
         let (mounts, angle_rad) = (mounts(), self.wheel_angle_rad);
         let mut stands: [Option<Stand>; WHEELS] = std::array::from_fn(|wheel| {
-            ground[wheel].as_ref().map(|footing| Stand::new(wheel, mounts[wheel], angle_rad, footing))
+            ground[wheel].as_ref().map(|footing| Stand::new(wheel, mounts[wheel], angle_rad, footing, over_ground_mps))
         });
         let mut footprints = [Footprint::default(); WHEELS];
         for _ in 0..STEPS {
@@ -158,7 +159,7 @@ impl RunningGear {
             abs: std::array::from_fn(|wheel| setup.abs && (is_front(wheel) || !(hand || self.parked))),
             traction: setup.esc,
         };
-        let friction = ground.iter().flatten().map(|footing| grip(footing.kind).peak).fold(1.0, f32::min);
+        let friction = ground.iter().flatten().map(|footing| footing.grip(speed_mps).peak).fold(1.0, f32::min);
         self.meant_yaw_radps =
             assist::meant_yaw_radps(self.meant_yaw_radps, -self.wheel_angle_rad, speed_mps, friction);
         let correction = assist::correction(yaw_radps, self.meant_yaw_radps, speed_mps);

@@ -22,5 +22,5 @@ pub use dimensions::{
     TRACK_M, WHEEL_RADIUS_M, WHEELBASE_M, WHEELS,
 };
 pub use gear::{Footprint, RunningGear, mounts, reach_m};
-pub use surface::{Footing, Grip, grip};
+pub use surface::{Footing, Grip};
 pub use wheel::Wheel;

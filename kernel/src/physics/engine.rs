@@ -11,7 +11,9 @@ use crate::actor::ActorKind;
 use crate::car::{self, CarSetup, Footing, Footprint, WHEELS};
 use crate::controls::Controls;
 use crate::ego::Ego;
+use crate::map_data::SurfaceKind;
 use crate::motion::Motion;
+use crate::weather::Water;
 
 const GRAVITY: Vec3 = Vec3::new(0.0, 0.0, -car::GRAVITY_MPS2);
 /// Ground that is steeper than this along the car's z axis carries no wheel.
@@ -183,9 +185,9 @@ impl Physics {
         }
     }
 
-    /// Advances by one tick, the ego car under the controls of its driver.
-    pub fn step(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup) {
-        self.drive(ego, controls, setup);
+    /// Advances by one tick, the ego car under the controls of its driver, with water on the ground.
+    pub fn step(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup, water: &Water) {
+        self.drive(ego, controls, setup, water);
         self.pipeline.step(
             GRAVITY,
             &self.parameters,
@@ -205,8 +207,8 @@ impl Physics {
     }
 
     /// The body gets the velocities that its wheels give it. What it runs into is for the engine.
-    fn drive(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup) {
-        let ground = self.ground(&ego.motion);
+    fn drive(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup, water: &Water) {
+        let ground = self.ground(&ego.motion, water);
         self.off_road = ground.iter().flatten().any(|footing| is_soft(footing.kind));
         let (velocity, spin, footprints) = ego.gear.advance(&ego.motion, controls, setup, &ground);
         self.footprints = footprints;
@@ -216,14 +218,17 @@ impl Physics {
     }
 
     /// The ground below each wheel.
-    fn ground(&self, motion: &Motion) -> [Option<Footing>; WHEELS] {
+    fn ground(&self, motion: &Motion, water: &Water) -> [Option<Footing>; WHEELS] {
         let (to_body, down) = (motion.rotation.conjugate(), motion.rotation * Vec3::NEG_Z);
         car::mounts().map(|mount| {
             let from = motion.position + motion.rotation * mount;
             let (distance_m, normal, kind) = self.statics.ground(from, down, car::reach_m())?;
             let normal = to_body * normal;
             let normal = if normal.z < 0.0 { -normal } else { normal };
-            (normal.z > LEAST_NORMAL_Z).then_some(Footing { distance_m, normal, kind })
+            let place = from + down * distance_m;
+            // Soil drinks what falls on it.
+            let water_mm = if kind == SurfaceKind::Terrain { 0.0 } else { water.depth_mm(place.truncate()) };
+            (normal.z > LEAST_NORMAL_Z).then_some(Footing { distance_m, normal, kind, wet: water.wet, water_mm })
         })
     }
 

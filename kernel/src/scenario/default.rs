@@ -38,12 +38,13 @@ impl Scenario {
             seed,
             traffic: counts(actors_on(map), draw(4, [0.5, 2.0])),
             hazards: HazardLevel::Natural.rates(),
-            weather: Weather {
-                cloudiness_pct: draw(0, CLOUDS_PCT),
-                wind_pct: draw(1, WIND_PCT),
-                sun_altitude_deg: draw(2, SUN_ALTITUDE_DEG),
-                sun_azimuth_deg: draw(3, SUN_AZIMUTH_DEG),
-            },
+            weather: Weather::dry(
+                draw(0, CLOUDS_PCT),
+                draw(1, WIND_PCT),
+                draw(2, SUN_ALTITUDE_DEG),
+                draw(3, SUN_AZIMUTH_DEG),
+            ),
+            later: None,
             ego: EgoStart { lane: None, s_m: 0.0 },
             car: CarSetup::default(),
             rules: Rules {

@@ -2,8 +2,9 @@
 
 use crate::car::CarSetup;
 use crate::state;
+use crate::time::Tick;
 use crate::traffic::{HazardRates, TrafficCounts};
-use crate::weather::Weather;
+use crate::weather::{Weather, WeatherChange, WeatherPreset};
 
 /// Most actors of one kind.
 pub const MOST_OF_A_KIND: u16 = 500;
@@ -50,14 +51,29 @@ state! {
         pub traffic: TrafficCounts,
         /// How often people at the wheel endanger others.
         pub hazards: HazardRates,
-        /// Weather.
+        /// Weather at the start; [`Scenario::weather_at`] any tick.
         pub weather: Weather,
+        /// What it becomes, if it changes.
+        pub later: Option<WeatherChange>,
         /// Start of the ego car.
         pub ego: EgoStart,
         /// Which helpers of the ego car are on.
         pub car: CarSetup,
         /// Rules.
         pub rules: Rules,
+    }
+}
+
+impl Scenario {
+    /// The weather at a tick.
+    pub fn weather_at(&self, tick: Tick) -> Weather {
+        self.later.map_or(self.weather, |later| later.at(&self.weather, tick))
+    }
+
+    /// Takes the weather of a preset, which stays, with the sun in the direction that it had.
+    pub fn take_weather(&mut self, preset: &WeatherPreset) {
+        self.weather = preset.weather(self.weather.sun_azimuth_deg);
+        self.later = None;
     }
 }
 

@@ -6,6 +6,7 @@ mod hazards;
 mod reader;
 mod start;
 mod text;
+mod weather;
 
 pub use crate::car::CarSetup;
 pub use crate::traffic::{HazardLevel, HazardRates, TrafficCounts};

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::fields::{MOST_OF_A_KIND, Scenario, ScenarioError};
 use super::hazards::{Hazards, print_hazards};
 use super::reader::{Given, Reader};
+use super::weather::{self, AtStart};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -17,7 +18,7 @@ struct Text {
     #[serde(default)]
     hazards: Hazards,
     #[serde(default)]
-    weather: Weather,
+    weather: AtStart,
     #[serde(default)]
     ego: Ego,
     #[serde(default)]
@@ -37,15 +38,6 @@ struct Traffic {
     speed_share: Given<[f32; 2]>,
     headway_s: Given<[f32; 2]>,
     politeness: Given<f32>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Weather {
-    cloudiness_pct: Given<f32>,
-    wind_pct: Given<f32>,
-    sun_altitude_deg: Given<f32>,
-    sun_azimuth_deg: Given<f32>,
 }
 
 #[derive(Default, Deserialize)]
@@ -96,7 +88,7 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     let mut scenario = Scenario::default_for(&given.map, given.seed);
     traffic(&reader, given.traffic, &mut scenario)?;
     given.hazards.read(&reader, &mut scenario.hazards)?;
-    weather(&reader, given.weather, &mut scenario)?;
+    weather::take(&reader, given.weather, &mut scenario)?;
     rules(&reader, given.rules, &mut scenario)?;
     if let Some(lane) = given.ego.lane {
         scenario.ego.lane = Some(*lane.get_ref());
@@ -122,14 +114,6 @@ fn traffic(reader: &Reader<'_>, given: Traffic, scenario: &mut Scenario) -> Resu
     reader.take("traffic.politeness", given.politeness, 0.0..=1.0, &mut drivers.politeness)
 }
 
-fn weather(reader: &Reader<'_>, given: Weather, scenario: &mut Scenario) -> Result<(), ScenarioError> {
-    let to = &mut scenario.weather;
-    reader.take("weather.cloudiness_pct", given.cloudiness_pct, 0.0..=100.0, &mut to.cloudiness_pct)?;
-    reader.take("weather.wind_pct", given.wind_pct, 0.0..=100.0, &mut to.wind_pct)?;
-    reader.take("weather.sun_altitude_deg", given.sun_altitude_deg, -90.0..=90.0, &mut to.sun_altitude_deg)?;
-    reader.take("weather.sun_azimuth_deg", given.sun_azimuth_deg, 0.0..=360.0, &mut to.sun_azimuth_deg)
-}
-
 fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(), ScenarioError> {
     let to = &mut scenario.rules;
     let threshold = 0.01..=0.99;
@@ -144,7 +128,7 @@ fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(
 
 /// Every key, so that the text still says the same when a default changes.
 fn print(scenario: &Scenario) -> String {
-    let Scenario { map, seed, traffic, hazards, weather, ego, car, rules } = scenario;
+    let Scenario { map, seed, traffic, hazards, weather, later, ego, car, rules } = scenario;
     let hazards = print_hazards(hazards);
     let map = toml::Value::from(map.as_str());
     let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));
@@ -153,7 +137,7 @@ fn print(scenario: &Scenario) -> String {
          [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\
          speed_share = {:?}\nheadway_s = {:?}\npoliteness = {:?}\n\n\
          {hazards}\n\
-         [weather]\ncloudiness_pct = {:?}\nwind_pct = {:?}\nsun_altitude_deg = {:?}\nsun_azimuth_deg = {:?}\n\n\
+         {}\n\
          [ego]\n{lane}s_m = {:?}\n\n\
          [car]\nabs = {}\nesc = {}\n\n\
          [rules]\nmax_speed_kmh = {:?}\nmax_seconds = {}\nbrake_threshold = {:?}\nsteer_threshold = {:?}\n\
@@ -166,10 +150,7 @@ fn print(scenario: &Scenario) -> String {
         traffic.drivers.speed_share,
         traffic.drivers.headway_s,
         traffic.drivers.politeness,
-        weather.cloudiness_pct,
-        weather.wind_pct,
-        weather.sun_altitude_deg,
-        weather.sun_azimuth_deg,
+        weather::print(weather, later.as_ref()),
         ego.s_m,
         car.abs,
         car.esc,

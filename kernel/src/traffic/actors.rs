@@ -9,6 +9,7 @@ use super::state::TrafficState;
 use super::traits::{Driver, WalkerTraits, driver, walker_traits};
 use super::ways::Ways;
 use crate::map_data::{MapData, Place};
+use crate::weather::Conditions;
 
 /// All actors of a world.
 #[derive(Clone, Debug)]
@@ -25,6 +26,8 @@ pub(super) struct Actors {
     pub places: Vec<Place>,
     /// At the places of the state.
     pub bodies: Vec<Body>,
+    /// The weather that drivers and walkers heed.
+    conditions: Conditions,
 }
 
 impl Actors {
@@ -35,14 +38,38 @@ impl Actors {
             seed,
             counts: *counts,
             rates: HazardRates::NONE,
-            drivers: state.vehicles.iter().map(|v| driver(&counts.drivers, seed, v.id, v.kind)).collect(),
+            drivers: Vec::new(),
             walker_traits: state.walkers.iter().map(|w| walker_traits(seed, w.id)).collect(),
             places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),
             state,
             bodies: Vec::new(),
+            conditions: Conditions::default(),
         };
+        actors.know_drivers();
         actors.place_bodies();
         actors
+    }
+
+    /// How everybody at the wheel drives: by nature, with the habits that the rates ask for, in this weather.
+    pub fn know_drivers(&mut self) {
+        let Self { counts, seed, rates, conditions, drivers, state, .. } = self;
+        drivers.clear();
+        drivers.extend(state.vehicles.iter().map(|v| {
+            let mut known = driver(&counts.drivers, *seed, v.id, v.kind);
+            rates.form(*seed, v, &mut known);
+            known.heeding(conditions)
+        }));
+    }
+
+    /// Everybody drives and walks as the weather asks for.
+    pub fn heed(&mut self, conditions: &Conditions) {
+        if self.conditions == *conditions {
+            return;
+        }
+        self.conditions = *conditions;
+        self.know_drivers();
+        let walkers = self.state.walkers.iter().zip(&mut self.walker_traits);
+        walkers.for_each(|(w, known)| *known = walker_traits(self.seed, w.id).heeding(conditions));
     }
 
     /// The map they are on.

@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 
 use crate::actor::ActorKind;
 use crate::time::Tick;
+use crate::weather::Conditions;
 
 /// A box that moves freely: the ego car, or an actor that physics has taken over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +33,8 @@ pub struct Surroundings<'a> {
     /// Actors that physics has made loose, by ascending id: they decide nothing, their state stays
     /// as it was, and others see them at these poses.
     pub loose: &'a [Obstacle],
+    /// What the weather asks of everybody.
+    pub conditions: Conditions,
 }
 
 /// An actor as physics and pictures need it.

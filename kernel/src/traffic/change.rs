@@ -294,7 +294,7 @@ impl View<'_> {
         let wish_mps = (self.map.lanes[lane as usize].speed_limit_mps * driver.limit_share).min(driver.top_mps);
         let ratio = (speed_mps / wish_mps.max(0.1)).min(1.1);
         let free = driver.accel_mps2 * (1.0 - ratio * ratio * ratio * ratio);
-        ahead.map_or(free, |(gap_m, mps)| free.min(follow_idm(driver, speed_mps, gap_m, mps).max(-8.0)))
+        ahead.map_or(free, |(gap_m, mps)| free.min(follow_idm(driver, speed_mps, gap_m, mps).max(-driver.hardest_mps2)))
     }
 
     /// Whether nobody has to brake hard when a vehicle changes to a place now, and nobody else goes there.

@@ -24,8 +24,6 @@ use super::vehicle::Vehicle;
 use super::ways::Ways;
 use super::zebra;
 
-/// Hardest braking, m/s².
-const EMERGENCY_MPS2: f32 = 8.0;
 /// Time in which a driver takes up a speed that the road asks for, s.
 const ADAPT_S: f32 = 0.4;
 /// The same before a line; short, so that it is not overrun.
@@ -132,7 +130,7 @@ impl View<'_> {
         }
         let side = self.side(index, plan, &seeker);
         let behind = self.behind_leader_mps2(index, plan, &mut next).min(self.lapse_mps2(&next));
-        let accel = self.acceleration(index, plan, &next, &seeker, side).min(behind).max(-EMERGENCY_MPS2);
+        let accel = self.acceleration(index, plan, &next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
         self.advance(index, accel, side, &mut next);
         self.move_over(index, plan, &mut next);
         if self.tick.is_multiple_of(seconds(1)) {
@@ -241,7 +239,7 @@ impl View<'_> {
         accel = accel.min(self.lets_in(index, plan));
         let wall_m = self.wall(index, plan, steps, next);
         let stop = (stopping_speed(wall_m, driver.brake_mps2) - v) / STOP_S;
-        accel.min(room).min(stop).max(-EMERGENCY_MPS2)
+        accel.min(room).min(stop).max(-driver.hardest_mps2)
     }
 
     pub(super) fn seeker(&self, index: usize) -> Seeker {
@@ -461,7 +459,7 @@ impl View<'_> {
 /// takes the lesser of this and the free part, as IDM+ does (Schakel, van Arem and Netten 2010). m/s².
 pub(super) fn follow_idm(driver: &Driver, speed_mps: f32, gap_m: f32, leader_mps: f32) -> f32 {
     if gap_m < 0.3 {
-        return -EMERGENCY_MPS2;
+        return -driver.hardest_mps2;
     }
     let closing = speed_mps - leader_mps;
     let root = 2.0 * ops::sqrt(driver.accel_mps2 * driver.brake_mps2);

@@ -203,7 +203,10 @@ impl View<'_> {
         });
         let lane = &self.map.lanes[next.lane as usize];
         let kerb = if self.ways.kerb > 0 { lane.left } else { lane.right };
-        let drives = next.kind.is_car_or_heavier() && !next.kind.is_heavy() && (least..most).contains(&next.speed_mps) && next.late_ticks == 0;
+        let drives = next.kind.is_car_or_heavier()
+            && !next.kind.is_heavy()
+            && (least..most).contains(&next.speed_mps)
+            && next.late_ticks == 0;
         drives
             && clear
             && kerb.is_none()

@@ -96,10 +96,7 @@ impl Traffic {
     /// The same with people at the wheel who make mistakes at these rates; by itself nobody does.
     pub fn with_hazards(mut self, rates: &HazardRates) -> Self {
         self.actors.rates = *rates;
-        let Actors { seed, state, drivers, .. } = &mut self.actors;
-        for (vehicle, driver) in state.vehicles.iter().zip(drivers) {
-            rates.form(*seed, vehicle, driver);
-        }
+        self.actors.know_drivers();
         self
     }
 
@@ -156,6 +153,7 @@ impl Traffic {
     pub fn step(&mut self, surroundings: &Surroundings<'_>) {
         let Self { actors, sight, told } = self;
         told.clear();
+        actors.heed(&surroundings.conditions);
         sight.look(actors, surroundings);
         let (mut next, mut places) = (std::mem::take(&mut sight.next), std::mem::take(&mut sight.places));
         places.clear();

@@ -4,6 +4,10 @@ use glam::Vec3;
 
 use crate::actor::ActorKind;
 use crate::rng::{Stream, bits, unit};
+use crate::weather::Conditions;
+
+/// Hardest braking on a dry road, m/s².
+const EMERGENCY_MPS2: f32 = 8.0;
 
 use super::population::Population;
 
@@ -19,6 +23,8 @@ pub(super) struct Driver {
     pub accel_mps2: f32,
     /// Comfortable braking, m/s², positive.
     pub brake_mps2: f32,
+    /// Hardest braking, m/s², positive.
+    pub hardest_mps2: f32,
     /// Time headway, s.
     pub headway_s: f32,
     /// Distance kept at standstill, metres.
@@ -34,6 +40,18 @@ pub(super) struct Driver {
 }
 
 impl Driver {
+    /// The same in a weather.
+    pub fn heeding(self, conditions: &Conditions) -> Self {
+        Self {
+            limit_share: self.limit_share * conditions.speed,
+            top_mps: (self.top_mps * conditions.speed).min(conditions.sight_mps),
+            brake_mps2: self.brake_mps2 * conditions.brake,
+            hardest_mps2: self.hardest_mps2 * conditions.grip,
+            headway_s: self.headway_s * conditions.headway,
+            ..self
+        }
+    }
+
     /// Where across a lane of this half width it drives, metres to the left of the middle; the kerb is to the left (1)
     /// or right (-1).
     pub fn keeps_to_m(&self, half_width_m: f32, kerb: i8) -> f32 {
@@ -60,6 +78,13 @@ fn between(lo: f32, hi: f32, t: f32) -> f32 {
     lo + (hi - lo) * t
 }
 
+impl WalkerTraits {
+    /// The same in a weather.
+    pub fn heeding(self, conditions: &Conditions) -> Self {
+        Self { speed_mps: self.speed_mps * conditions.pace, ..self }
+    }
+}
+
 /// The driver of vehicle `id` in a population.
 pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKind) -> Driver {
     let t = |which| trait_unit(seed, id, which);
@@ -84,6 +109,7 @@ pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKin
         top_mps,
         accel_mps2,
         brake_mps2: between(1.8, 2.4, t(2)),
+        hardest_mps2: EMERGENCY_MPS2,
         headway_s: drawn(population.headway_s, 3),
         gap_m: between(1.8, 2.8, t(4)),
         size_m: kind.size_m(),

@@ -17,6 +17,7 @@ use crate::state::StateHash;
 use crate::time::{KEYFRAME_TICKS, Tick, seconds};
 use crate::traffic::{Obstacle, Surroundings, Traffic};
 use crate::watch::{self, Log};
+use crate::weather::{Conditions, Water};
 
 use super::error::WorldError;
 use super::keyframe::{self, Keyframe};
@@ -143,12 +144,15 @@ impl World {
             velocity_mps: car.motion.velocity_mps,
             size_m: ego::SIZE_M,
         };
-        let ego_flags = self.parts.output.applied.controls.flags;
-        self.traffic.step(&Surroundings { tick: self.parts.input.tick, ego, ego_flags, loose: obstacles });
+        let (tick, ego_flags) = (self.parts.input.tick, self.parts.output.applied.controls.flags);
+        // People notice the weather once a second.
+        let conditions = Conditions::of(&self.scenario.weather_at(tick - tick % seconds(1)));
+        self.traffic.step(&Surroundings { tick, ego, ego_flags, loose: obstacles, conditions });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
         self.traffic.told_near(ego.position).for_each(|(kind, actor)| log.with(kind, actor));
         bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
-        self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car);
+        let water = Water::of(&self.scenario.weather_at(tick));
+        self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car, &water);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
     }
 

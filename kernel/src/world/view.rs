@@ -6,14 +6,16 @@ use glam::Vec3;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::arbiter::Arbiter;
+use crate::car::Footing;
 use crate::controls::Controls;
 use crate::events::{Event, Hud};
-use crate::map::RoadNetwork;
+use crate::map::{RoadNetwork, SurfaceKind};
 use crate::scenario::Scenario;
 use crate::scene::{ActorScene, EgoScene, SceneSnapshot, lamps, quantise};
 use crate::signals;
 use crate::traffic::Missing;
 use crate::watch::Watch;
+use crate::weather::Water;
 
 use super::keyframe::{self, FieldDifference, Keyframe};
 use super::snapshot::PARTS;
@@ -63,7 +65,7 @@ impl World {
             },
             actors: self.actors().collect(),
             lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
-            weather: self.scenario.weather,
+            weather: self.scenario.weather_at(tick),
         };
         quantise(&mut scene);
         scene
@@ -96,6 +98,19 @@ impl World {
     /// hands feel, before any assistance.
     pub fn aligning_torque_nm(&self) -> f32 {
         self.parts.ego.car.gear.aligning_torque_nm
+    }
+
+    /// Greatest coefficient of friction of asphalt without puddles in the present weather, at the ego car's speed.
+    pub fn friction(&self) -> f32 {
+        let water = Water::of(&self.scenario.weather_at(self.tick()));
+        let road = Footing {
+            distance_m: 0.0,
+            normal: Vec3::Z,
+            kind: SurfaceKind::Road,
+            wet: water.wet,
+            water_mm: water.film_mm,
+        };
+        road.grip(self.parts.ego.car.speed_mps()).peak
     }
 
     /// What goes on around the ego car; its beginnings are the events.

@@ -12,6 +12,7 @@ use kernel::scene::ActorKind;
 use kernel::signals::{self, LightPhase};
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, HazardRates, Obstacle, Surroundings, Traffic, TrafficCounts, Vehicle};
+use kernel::weather::Conditions;
 
 /// Nobody may stand for so long but before a red light, or behind somebody who waits there.
 const STAND_S: u32 = 180;
@@ -103,7 +104,7 @@ impl Drive {
         traffic = traffic.with_hazards(&self.hazards);
         let mut watcher = Watcher::new(self, &traffic);
         for tick in 1..=seconds(60 * self.minutes) {
-            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[] });
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
             watcher.look(&traffic, tick);
         }
         watcher.found

@@ -4,11 +4,12 @@ use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 use kernel::SceneSnapshot;
 use kernel::time::TICK_S;
+use kernel::weather::Water;
 
 use super::Gpu;
 use crate::light::Light;
 use crate::view::View;
-use crate::wind;
+use crate::{rain, wind};
 
 /// The uniform block of `scene.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -35,6 +36,15 @@ pub(crate) struct SceneUniform {
     zenith: [f32; 3],
     pad2: f32,
     shadow: [[f32; 4]; 4],
+    fog: [f32; 3],
+    fog_per_m: f32,
+    rain_drift: [f32; 3],
+    fog_from_m: f32,
+    rain_streak: [f32; 3],
+    wet: f32,
+    puddles: f32,
+    pixel_rad: f32,
+    pad3: [f32; 2],
 }
 
 /// Clouds drift by this share of their pattern a second in a storm.
@@ -43,6 +53,7 @@ const DRIFT_PER_S: f32 = 0.05;
 impl SceneUniform {
     pub(crate) fn new(view: &View, scene: &SceneSnapshot, light: &Light, shadow: Mat4, shadow_texel: f32) -> Self {
         let weather = &scene.weather;
+        let water = Water::of(weather);
         // The pattern repeats every 100 units (noise scales 0.05 and 0.21), so it may wrap there.
         let drift = f64::from(DRIFT_PER_S * 0.01 * weather.wind_pct * TICK_S) * scene.tick as f64 % 100.0;
         let drift = wind::DIRECTION * -(drift as f32);
@@ -68,6 +79,15 @@ impl SceneUniform {
             zenith: light.zenith.to_array(),
             pad2: 0.0,
             shadow: shadow.to_cols_array_2d(),
+            fog: light.fog.to_array(),
+            fog_per_m: weather.fog_extinction_per_m(),
+            rain_drift: rain::drift_m(weather, scene.tick).to_array(),
+            fog_from_m: weather.fog_distance_m,
+            rain_streak: rain::streak_m(weather).to_array(),
+            wet: water.wet,
+            puddles: water.level,
+            pixel_rad: 1.0 / view.pixels_per_m,
+            pad3: [0.0; 2],
         }
     }
 }

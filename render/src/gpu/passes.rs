@@ -19,11 +19,19 @@ pub(crate) struct Draws<'a> {
     /// Whether moving things are in the shadow map too.
     pub(crate) moving_casts: bool,
     pub(crate) blobs: &'a [BlobVertex],
+    /// Whether fog, water or rain is to be drawn.
+    pub(crate) weather: bool,
+    /// Drops of rain.
+    pub(crate) drops: u32,
 }
 
 /// Pipelines and the buffers they read.
 pub(crate) struct Passes {
-    pipelines: Pipelines,
+    layouts: Layouts,
+    shadow_taps: u32,
+    dry: Pipelines,
+    /// Those for fog, water and rain, made when they are needed first.
+    weather: Option<Pipelines>,
     uniform: wgpu::Buffer,
     scene_group: wgpu::BindGroup,
     shadow_view: wgpu::TextureView,
@@ -60,7 +68,9 @@ impl Passes {
         let (shadow_view, shadow_sampler) = (textures::shadow_view(gpu, shadow_side), textures::shadow_sampler(gpu));
         let scene = [uniform.as_entire_binding(), R::TextureView(&noise), R::Sampler(&noise_sampler)];
         Self {
-            pipelines: Pipelines::new(gpu, &layouts, shadow_taps),
+            dry: Pipelines::new(gpu, &layouts, shadow_taps, false),
+            weather: None,
+            shadow_taps,
             scene_group: bind(gpu, &layouts.scene, &scene),
             shadow_group: bind(gpu, &layouts.shadow, &[R::TextureView(&shadow_view), R::Sampler(&shadow_sampler)]),
             uniform,
@@ -69,6 +79,7 @@ impl Passes {
             moving: GrowingBuffer::new(gpu, U::VERTEX),
             blobs: GrowingBuffer::new(gpu, U::VERTEX),
             indices: GrowingBuffer::new(gpu, U::INDEX),
+            layouts,
         }
     }
 
@@ -78,11 +89,15 @@ impl Passes {
         self.moving.write(gpu, draws.moving_vertices);
         self.blobs.write(gpu, draws.blobs);
         let ranges = self.write_indices(gpu, draws);
+        if draws.weather && self.weather.is_none() {
+            self.weather = Some(Pipelines::new(gpu, &self.layouts, self.shadow_taps, true));
+        }
+        let pipelines = self.weather.as_ref().filter(|_| draws.weather).unwrap_or(&self.dry);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if draws.casters.is_some() {
             self.shadow_pass(&mut encoder, &ranges, draws.moving_casts);
         }
-        self.main_pass(&mut encoder, &ranges, draws.blobs.len() as u32, targets);
+        self.main_pass(&mut encoder, pipelines, &ranges, draws, targets);
         readback::record(&mut encoder, targets);
         gpu.queue.submit([encoder.finish()]);
     }
@@ -106,7 +121,7 @@ impl Passes {
             depth_stencil_attachment: Some(depth_attachment(&self.shadow_view, 1.0)),
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipelines.shadow);
+        pass.set_pipeline(&self.dry.shadow);
         pass.set_bind_group(0, &self.scene_group, &[]);
         self.draw_mesh(&mut pass, &self.fixed, &ranges.casters);
         if moving_casts {
@@ -114,7 +129,14 @@ impl Passes {
         }
     }
 
-    fn main_pass(&self, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, blobs: u32, targets: &Targets) {
+    fn main_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        pipelines: &Pipelines,
+        ranges: &Ranges,
+        draws: &Draws<'_>,
+        targets: &Targets,
+    ) {
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let (colour, ids, depth) = (view(&targets.colour), view(&targets.ids), view(&targets.depth));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -126,19 +148,24 @@ impl Passes {
         pass.set_bind_group(0, &self.scene_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
         // Nearest and most covering first: hidden fragments are cheap.
-        pass.set_pipeline(&self.pipelines.world[Finish::Plain as usize]);
+        pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
         for finish in [Finish::Facade, Finish::Plain, Finish::Grainy] {
-            pass.set_pipeline(&self.pipelines.world[finish as usize]);
+            pass.set_pipeline(&pipelines.world[finish as usize]);
             self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
         }
+        let blobs = draws.blobs.len() as u32;
         if blobs > 0 {
-            pass.set_pipeline(&self.pipelines.blob);
+            pass.set_pipeline(&pipelines.blob);
             pass.set_vertex_buffer(0, self.blobs.buffer.slice(..));
             pass.draw(0..blobs, 0..1);
         }
-        pass.set_pipeline(&self.pipelines.sky);
+        pass.set_pipeline(&pipelines.sky);
         pass.draw(0..3, 0..1);
+        if draws.drops > 0 {
+            pass.set_pipeline(&pipelines.rain);
+            pass.draw(0..6 * draws.drops, 0..1);
+        }
     }
 
     fn draw_mesh(&self, pass: &mut wgpu::RenderPass<'_>, vertices: &wgpu::Buffer, range: &Range<u32>) {

@@ -19,6 +19,7 @@ pub(super) struct Pipelines {
     pub(super) world: [wgpu::RenderPipeline; FINISHES],
     pub(super) sky: wgpu::RenderPipeline,
     pub(super) blob: wgpu::RenderPipeline,
+    pub(super) rain: wgpu::RenderPipeline,
     pub(super) shadow: wgpu::RenderPipeline,
 }
 
@@ -102,8 +103,9 @@ impl Recipe<'_> {
 }
 
 impl Pipelines {
-    /// `shadow_taps`: samples of the shadow map along each axis.
-    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, shadow_taps: u32) -> Self {
+    /// `shadow_taps`: samples of the shadow map along each axis; `weather`: whether there is fog, water or rain.
+    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, shadow_taps: u32, weather: bool) -> Self {
+        let weather = ("WEATHER", f64::from(u8::from(weather)));
         let module = |name: &str| {
             let text = shaders::source(name).unwrap_or_default();
             gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -121,6 +123,7 @@ impl Pipelines {
         let (scene_only, with_shadow) =
             (layout(&[Some(&layouts.scene)]), layout(&[Some(&layouts.scene), Some(&layouts.shadow)]));
         let (world, sky, blob, shadow) = (module("world"), module("sky"), module("blob"), module("shadow"));
+        let rain = module("rain");
         let opaque = [Some(COLOUR.into()), Some(IDS.into())];
         let base = Recipe {
             module: &world,
@@ -129,7 +132,7 @@ impl Pipelines {
             fragment: None,
             buffers: &[Some(world_vertices())],
             targets: &opaque,
-            constants: &[("SHADOW_TAPS", f64::from(shadow_taps))],
+            constants: &[("SHADOW_TAPS", f64::from(shadow_taps)), weather],
             cull: true,
             depth_write: true,
             depth_compare: wgpu::CompareFunction::Greater,
@@ -144,7 +147,7 @@ impl Pipelines {
                 layout: &scene_only,
                 fragment: Some("fragment"),
                 buffers: &[],
-                constants: &[("SKY_TAG", f64::from(SemanticTag::Sky as u8))],
+                constants: &[("SKY_TAG", f64::from(SemanticTag::Sky as u8)), weather],
                 depth_write: false,
                 depth_compare: wgpu::CompareFunction::Equal,
                 ..base
@@ -156,6 +159,18 @@ impl Pipelines {
                 fragment: Some("fragment"),
                 buffers: &[Some(blob_vertices())],
                 targets: &[Some(darkening()), Some(untouched())],
+                constants: &[],
+                cull: false,
+                depth_write: false,
+                ..base
+            }
+            .make(gpu),
+            rain: Recipe {
+                module: &rain,
+                layout: &scene_only,
+                fragment: Some("fragment"),
+                buffers: &[],
+                targets: &[Some(covering()), Some(untouched())],
                 constants: &[],
                 cull: false,
                 depth_write: false,
@@ -200,6 +215,12 @@ fn darkening() -> wgpu::ColorTargetState {
         operation: wgpu::BlendOperation::Add,
     };
     let blend = Some(wgpu::BlendState { color: component, alpha: component });
+    wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::COLOR }
+}
+
+/// What comes, as far as its alpha says, over what is there.
+fn covering() -> wgpu::ColorTargetState {
+    let blend = Some(wgpu::BlendState::ALPHA_BLENDING);
     wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::COLOR }
 }
 

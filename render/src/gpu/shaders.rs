@@ -4,11 +4,12 @@
 const SCENE: &str = include_str!("../shaders/scene.wgsl");
 
 /// The shaders with their names, without the common start.
-const SOURCES: [(&str, &str); 4] = [
+const SOURCES: [(&str, &str); 5] = [
     ("world", include_str!("../shaders/world.wgsl")),
     ("sky", include_str!("../shaders/sky.wgsl")),
     ("shadow", include_str!("../shaders/shadow.wgsl")),
     ("blob", include_str!("../shaders/blob.wgsl")),
+    ("rain", include_str!("../shaders/rain.wgsl")),
 ];
 
 /// The only shader that does not need the scene.

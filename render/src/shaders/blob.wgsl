@@ -7,7 +7,9 @@ struct BlobOut {
 
 @vertex
 fn vertex(@location(0) position: vec3f, @location(1) darkness: f32) -> BlobOut {
-    return BlobOut(project(position), darkness);
+    // Fog lies over shadows too.
+    let through = exp(-scene.fog_per_m * max(length(position - scene.eye) - scene.fog_from_m, 0.0));
+    return BlobOut(project(position), select(darkness, darkness * through, scene.fog_per_m > 0.0));
 }
 
 @fragment

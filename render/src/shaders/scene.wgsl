@@ -25,7 +25,21 @@ struct Scene {
     pad2: f32,
     // World to the shadow map's uv and depth.
     shadow: mat4x4f,
+    fog: vec3f,
+    fog_per_m: f32,
+    // How far all drops have come, and the way that one leaves on a picture.
+    rain_drift: vec3f,
+    fog_from_m: f32,
+    rain_streak: vec3f,
+    wet: f32,
+    puddles: f32,
+    pixel_rad: f32,
+    pad3: f32,
+    pad4: f32,
 }
+
+// Whether there is fog, rain or water to draw; without them a picture is what it would be if they did not exist.
+override WEATHER: bool = false;
 
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var noise: texture_2d<f32>;
@@ -54,6 +68,12 @@ const WIND_WAVE = vec2f(0.11, 0.07);
 fn swayed(position: vec3f, sway: f32) -> vec3f {
     let swing = sin(scene.wind_phase + dot(WIND_WAVE, position.xy));
     return position + vec3f(WIND_DIRECTION * (sway * scene.wind_m * (0.35 + 0.65 * swing)), 0.0);
+}
+
+// What fog leaves of a colour at a distance.
+fn fogged(colour: vec3f, distance: f32) -> vec3f {
+    let through = exp(-scene.fog_per_m * max(distance - scene.fog_from_m, 0.0));
+    return mix(scene.fog, colour, through);
 }
 
 // The clear sky's colour in a direction.

@@ -12,6 +12,8 @@ struct Pixel {
 
 override SKY_TAG: u32;
 
+const FOG_TOP_M = 40.0;
+
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> SkyOut {
     let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u)) * 2.0 - 1.0;
@@ -45,5 +47,9 @@ fn fragment(in: SkyOut) -> Pixel {
     let lit = clamp(0.75 + 2.2 * (density - cloud(at + scene.sun.xy * 0.35)), 0.35, 1.15);
     let white = scene.sun_light * 0.27 * lit + scene.sky_light * 0.62;
     colour = mix(colour, white, cover * 0.92);
+    if WEATHER {
+        // Fog lies in a layer on the ground.
+        colour = fogged(colour, FOG_TOP_M / max(direction.z, 0.004));
+    }
     return Pixel(to_screen(colour), SKY_TAG);
 }

@@ -23,6 +23,7 @@ struct Lit {
     @location(3) uv_param: vec3f,
     @location(4) @interpolate(flat) ids: u32,
     @location(5) haze: f32,
+    @location(6) from_eye: vec3f,
 }
 
 struct Pixel {
@@ -44,7 +45,8 @@ fn lit(in: VertexIn) -> Lit {
     out.shadow = (scene.shadow * vec4f(world + normal * 0.06, 1.0)).xyz;
     out.uv_param = vec3f(in.uv, in.colour_param.a);
     out.ids = in.ids;
-    let distance = length(world - scene.eye);
+    out.from_eye = world - scene.eye;
+    let distance = length(out.from_eye);
     out.haze = min(distance / 1400.0, 0.9);
     return out;
 }
@@ -89,8 +91,12 @@ fn sunshine(at: vec3f) -> f32 {
 }
 
 fn finish(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
-    let colour = shade + sunlit * sunshine(in.shadow);
-    return Pixel(to_screen(mix(colour, scene.horizon * 0.8, in.haze * in.haze)), in.ids);
+    var colour = shade + sunlit * sunshine(in.shadow);
+    colour = mix(colour, scene.horizon * 0.8, in.haze * in.haze);
+    if WEATHER {
+        colour = fogged(colour, length(in.from_eye));
+    }
+    return Pixel(to_screen(colour), in.ids);
 }
 
 @fragment
@@ -116,7 +122,59 @@ fn fragment_grainy(in: Lit) -> Pixel {
     let edge = min(cell, 1.0 - cell) / width;
     let joint = clamp(1.0 - min(edge.x, edge.y), 0.0, 1.0) * 0.03 / max(width.x, width.y);
     tint *= select(1.0, 1.0 - 0.45 * joint, code == 1u);
+    if WEATHER {
+        return wetted(in, in.shade * tint, in.sunlit * tint);
+    }
     return finish(in, in.shade * tint, in.sunlit * tint);
+}
+
+// Drawn for a corner of the squares of `kernel::weather::Water`, 0 to 1.
+fn corner(at: vec2i) -> f32 {
+    let cell = bitcast<vec2u>(at);
+    var h = (cell.x * 0x9e3779b1u) ^ (cell.y * 0x85ebca77u);
+    h = (h ^ (h >> 15u)) * 0x2c1b3c6du;
+    h = (h ^ (h >> 12u)) * 0x297a2d39u;
+    return f32((h ^ (h >> 15u)) >> 8u) / 16777216.0;
+}
+
+// Height of the ground in its relief, as there.
+fn relief(at: vec2f) -> f32 {
+    let cell = floor(at / 3.0);
+    let inside = at / 3.0 - cell;
+    let t = inside * inside * (3.0 - 2.0 * inside);
+    let c = vec2i(cell);
+    let low = mix(corner(c), corner(c + vec2i(1, 0)), t.x);
+    let high = mix(corner(c + vec2i(0, 1)), corner(c + vec2i(1, 1)), t.x);
+    return mix(low, high, t.y);
+}
+
+const ROAD_LINE = 6u;
+const SIDEWALK = 8u;
+const GROUND = 14u;
+const TERRAIN = 22u;
+
+// A wet surface is darker, for light that is caught in the water; a puddle mirrors the sky.
+fn wetted(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
+    let class_id = in.ids & 255u;
+    let paved = (class_id >= ROAD_LINE && class_id <= SIDEWALK) || class_id == GROUND;
+    if !(paved || class_id == TERRAIN) {
+        return finish(in, shade, sunlit);
+    }
+    let place = scene.eye + in.from_eye;
+    let depth = select(0.0, scene.puddles - relief(place.xy), paved && scene.puddles > 0.0);
+    let puddle = smoothstep(0.0, 0.12, depth);
+    let dark = mix(1.0, select(0.75, 0.55, paved), scene.wet) * mix(1.0, 0.7, puddle);
+    let view = normalize(in.from_eye);
+    let grazing = 1.0 - clamp(-view.z, 0.0, 1.0);
+    let fresnel = 0.02 + 0.98 * grazing * grazing * grazing * grazing * grazing;
+    let film = select(0.0, 0.3 * scene.wet, paved);
+    let mirror = fresnel * mix(film, 0.9, puddle);
+    let bounce = vec3f(view.xy, abs(view.z));
+    let overcast = scene.sun_light * 0.24 + scene.sky_light * 0.6;
+    let sky = mix(sky_colour(bounce), overcast, 0.85 * scene.cloudiness);
+    let towards = max(dot(bounce, scene.sun), 0.0);
+    let glint = mix(0.25 * film * pow(towards, 24.0), 3.0 * pow(towards, 400.0), puddle);
+    return finish(in, mix(shade * dark, sky, mirror), sunlit * dark * (1.0 - mirror) + scene.sun_light * glint);
 }
 
 fn hash(p: vec2f) -> f32 {

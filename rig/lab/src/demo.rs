@@ -117,6 +117,7 @@ fn campaign_options(options: &Options, checkpoint: CheckpointChoice, out: &Path)
         until: Until::Cases(CASES),
         pedestrians: Some(PEDESTRIANS),
         hazards: None,
+        weather: None,
         run_seconds: RUN_SECONDS,
         seed: options.seed,
         jobs: options.jobs,

@@ -12,6 +12,7 @@ mod real_maps;
 mod render_frame;
 mod render_golden;
 mod render_oracle;
+mod render_weather;
 mod replay_budget;
 mod replay_case;
 mod replay_changes;

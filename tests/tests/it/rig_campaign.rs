@@ -20,6 +20,7 @@ fn plan(out: &Path) -> Plan {
         scenario: None,
         pedestrians: None,
         hazards: None,
+        weather: None,
         run_seconds: 10,
         seed: 5,
         until: Until::Runs(2),

@@ -18,6 +18,7 @@ use crate::ego::Ego;
 use crate::map_data::{MapData, Surface, SurfaceKind};
 use crate::motion::Motion;
 use crate::time::{Tick, seconds};
+use crate::weather::{Water, Weather};
 
 const HELPED: CarSetup = CarSetup { abs: true, esc: true };
 const BARE: CarSetup = CarSetup { abs: false, esc: false };
@@ -45,6 +46,7 @@ struct Drive {
     ego: Ego,
     physics: Physics,
     setup: CarSetup,
+    water: Water,
 }
 
 impl Drive {
@@ -64,11 +66,11 @@ impl Drive {
         let velocity_mps = rotation * Vec3::X * speed_mps;
         let motion = Motion { position: Vec3::ZERO, rotation, velocity_mps, spin_radps: Vec3::ZERO };
         let physics = Physics::new(&Arc::new(Statics::new(&map)), &motion);
-        Self { physics, ego: Ego::new(motion), setup }
+        Self { physics, ego: Ego::new(motion), setup, water: Water::default() }
     }
 
     fn step(&mut self, controls: &Controls) {
-        self.physics.step(&mut self.ego, controls, &self.setup);
+        self.physics.step(&mut self.ego, controls, &self.setup, &self.water);
     }
 
     fn hold(&mut self, ticks: Tick, driver: impl Fn(&Ego) -> Controls) {
@@ -118,5 +120,16 @@ fn friction(kind: SurfaceKind) -> [f64; 2] {
         SurfaceKind::Sidewalk => [0.9, 0.75],
         SurfaceKind::Ground => [0.7, 0.58],
         SurfaceKind::Terrain => [0.45, 0.38],
+    }
+}
+
+/// The same wet through, at a walking pace.
+fn wet_friction(kind: SurfaceKind) -> [f64; 2] {
+    match kind {
+        SurfaceKind::Road => [0.75, 0.55],
+        SurfaceKind::RoadLine => [0.5, 0.4],
+        SurfaceKind::Sidewalk => [0.7, 0.58],
+        SurfaceKind::Ground => [0.45, 0.37],
+        SurfaceKind::Terrain => [0.28, 0.22],
     }
 }

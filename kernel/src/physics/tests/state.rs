@@ -14,7 +14,7 @@ fn busy() -> Drive {
 /// The state after a second more, from nothing but the state.
 fn future(ego: &Ego) -> Vec<u8> {
     let physics = Physics::new(&Arc::new(Statics::new(&plain(SurfaceKind::Road, 0.0))), &ego.motion);
-    let mut drive = Drive { ego: *ego, physics, setup: HELPED };
+    let mut drive = Drive { ego: *ego, physics, setup: HELPED, water: Water::default() };
     drive.hold(seconds(1), |_| Controls::from_fractions(-0.2, 0.0, 0.2));
     drive.ego.to_bytes()
 }

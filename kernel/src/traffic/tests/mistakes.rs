@@ -14,6 +14,7 @@ use crate::traffic::drive::View;
 use crate::traffic::look::Sight;
 use crate::traffic::step::LINE_MARGIN_M;
 use crate::traffic::{HazardLevel, HazardRates, Lapse, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle};
+use crate::weather::Conditions;
 
 fn start(network: &Arc<RoadNetwork>, actors: u16, seed: u64, rates: HazardRates) -> Traffic {
     super::start(network, actors, seed).with_hazards(&rates)
@@ -28,7 +29,7 @@ pub(super) fn watch(
 ) {
     let mut sight = Sight::default();
     for tick in 1..=minutes * MINUTE {
-        let around = Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] };
+        let around = Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[], conditions: Conditions::default() };
         sight.look(&traffic.actors, &around);
         before(&sight.view(&traffic.actors));
         traffic.step(&around);

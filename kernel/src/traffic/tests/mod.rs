@@ -1,8 +1,8 @@
 //! Invariants of traffic, on a crossroads built in code and on the bundled maps.
 
 mod crossroads;
-mod free_road;
 mod encroachment;
+mod free_road;
 mod mistakes;
 
 use std::sync::Arc;
@@ -16,6 +16,7 @@ use crate::map::{RoadNetwork, StopKind, bundled};
 use crate::signals::{LightPhase, phase};
 use crate::state::State;
 use crate::time::Tick;
+use crate::weather::Conditions;
 use crossroads::{Signs, crossroads};
 
 /// Ticks in a minute.
@@ -43,7 +44,13 @@ fn start(network: &Arc<RoadNetwork>, actors: u16, seed: u64) -> Traffic {
 
 fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in ticks {
-        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] });
+        traffic.step(&Surroundings {
+            tick,
+            ego: nowhere(),
+            ego_flags: 0,
+            loose: &[],
+            conditions: Conditions::default(),
+        });
         each(traffic, tick);
     }
 }
@@ -246,7 +253,7 @@ fn vehicles_stop_behind_whatever_stands_in_their_lane() {
         let loose = [there];
         for tick in 1..1200 {
             let (ego, loose) = if ego { (there, &loose[..0]) } else { (nowhere(), &loose[..]) };
-            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose });
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose, conditions: Conditions::default() });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         let gap_m = 120.0 - vehicle.s_m - 2.25;
@@ -264,7 +271,7 @@ fn who_stands_without_a_reason_is_told_and_then_taken_off_the_road() {
         let mut traffic = lone_car(&network);
         let mut told = Vec::new();
         for tick in 1..4 * MINUTE {
-            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose });
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose, conditions: Conditions::default() });
             told.extend(traffic.told().iter().map(|(kind, id)| (*kind, *id, tick / 60)));
         }
         let id = u32::from(traffic.state().vehicles[0].id);
@@ -289,7 +296,13 @@ fn vehicles_pass_what_stands_beside_their_lane() {
     let mut traffic = lone_car(&network);
     let beside = network.lanes[0].points[60].position + Vec3::Y * 3.5;
     for tick in 1..1200 {
-        traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), ego_flags: 0, loose: &[] });
+        traffic.step(&Surroundings {
+            tick,
+            ego: car_at(beside, 0.0),
+            ego_flags: 0,
+            loose: &[],
+            conditions: Conditions::default(),
+        });
     }
     assert!(traffic.actors.state.vehicles[0].lane != 0, "{:?}", traffic.actors.state.vehicles[0]);
 }
@@ -302,7 +315,13 @@ fn vehicles_pass_within_their_lane_whatever_leaves_room_there() {
         let mut traffic = lone_car(&network);
         let beside = network.lanes[0].points[60].position + Vec3::Y * aside_m;
         for tick in 1..1800 {
-            traffic.step(&Surroundings { tick, ego: car_at(beside, 0.0), ego_flags: 0, loose: &[] });
+            traffic.step(&Surroundings {
+                tick,
+                ego: car_at(beside, 0.0),
+                ego_flags: 0,
+                loose: &[],
+                conditions: Conditions::default(),
+            });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         assert!(vehicle.lane != 0 || vehicle.s_m > 130.0, "{aside_m} m aside: {vehicle:?}");
@@ -327,14 +346,20 @@ fn who_waits_at_an_open_line_hears_the_horn_of_the_car_behind() {
             let ego = behind(body.position, body.rotation * Vec3::X, 9.0);
             let after = |ego_flags: u8| {
                 let mut fork = traffic.clone();
-                fork.step(&Surroundings { tick, ego, ego_flags, loose: &[] });
+                fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
                 fork.state().vehicles.iter().find(|v| v.id == id).map_or(0, |v| v.wait_ticks)
             };
             let (silent, honked) = (after(0), after(Controls::HORN));
             assert!(silent < 62 && (honked == 0 || honked > 240), "{silent} {honked}");
             heard += usize::from(honked > 240);
         }
-        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] });
+        traffic.step(&Surroundings {
+            tick,
+            ego: nowhere(),
+            ego_flags: 0,
+            loose: &[],
+            conditions: Conditions::default(),
+        });
     }
     assert!(heard > 3, "{heard}");
 }
@@ -352,7 +377,7 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             let goes = |ego_flags: u8| {
                 let mut fork = traffic.clone();
                 for tick in tick..tick + 240 {
-                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[] });
+                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
                     let walker = fork.state().walkers.iter().find(|w| w.id == id).expect("it is there");
                     let edge = &network.walk_edges[walker.edge as usize];
                     if walker.mode != WalkerMode::Wait && edge.crosswalk.is_some() {
@@ -365,7 +390,13 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             gone += usize::from(goes(0));
             assert!(!goes(Controls::HORN), "walker {id} at tick {tick}");
         }
-        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[] });
+        traffic.step(&Surroundings {
+            tick,
+            ego: nowhere(),
+            ego_flags: 0,
+            loose: &[],
+            conditions: Conditions::default(),
+        });
     }
     assert!(asked > 20 && gone > 5, "{gone} of {asked}");
 }
@@ -378,7 +409,13 @@ fn loose_actors_keep_their_state() {
     let lie = |id: u16| Obstacle { id: u32::from(id), ..car_at(Vec3::new(0.0, 300.0, 0.0), 0.0) };
     let loose = [lie(vehicle.id), lie(walker.id)];
     for tick in 1..600 {
-        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &loose });
+        traffic.step(&Surroundings {
+            tick,
+            ego: nowhere(),
+            ego_flags: 0,
+            loose: &loose,
+            conditions: Conditions::default(),
+        });
     }
     assert_eq!((traffic.actors.state.vehicles[2], traffic.actors.state.walkers[2]), (vehicle, walker));
 }

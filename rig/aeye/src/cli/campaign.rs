@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
+use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
 
-use super::values::{CHECKPOINTS, MAPS, hazards, jobs, people, preset, seconds};
+use super::values::{CHECKPOINTS, MAPS, hazards, jobs, people, preset, seconds, weather};
 
 /// Arguments of `campaign`.
 #[derive(Args, Clone, Debug)]
@@ -46,6 +47,10 @@ pub struct CampaignArgs {
     /// How often people at the wheel endanger others, instead of what the scenario says.
     #[arg(long, value_parser = hazards(), value_name = "LEVEL")]
     pub hazards: Option<HazardLevel>,
+    /// Weather by CARLA's name, as `weather.preset` of scenarios, instead of the scenario's or of
+    /// one that is drawn for each run.
+    #[arg(long, value_parser = weather(), value_name = "NAME")]
+    pub weather: Option<WeatherPreset>,
     /// Longest simulated time of a run, 10s to 24h.
     #[arg(long = "max-time", default_value = "4m", value_parser = seconds(10..=86_400), value_name = "DURATION")]
     pub run_seconds: u32,

@@ -8,12 +8,14 @@ use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::{Pictures, Screens};
 use drivers::seat::SeatChoice;
 use kernel::scenario::HazardLevel;
+use kernel::weather::WeatherPreset;
 use perception::Compute;
 use study::{Pseudonym, Study};
 use viewers::server::{self, Endpoint};
 
 use super::values::{
     CHECKPOINT, CHECKPOINTS, file, force, hazards, new_recording, one_checkpoint, screens, seconds, size, threshold,
+    weather,
 };
 
 /// Arguments of `drive`.
@@ -61,6 +63,9 @@ pub struct DriveArgs {
     /// How often people at the wheel endanger others; replaces what the scenario says.
     #[arg(long, value_parser = hazards(), value_name = "LEVEL")]
     pub hazards: Option<HazardLevel>,
+    /// Weather by CARLA's name, as `weather.preset` of scenarios; replaces the scenario's.
+    #[arg(long, value_parser = weather(), value_name = "NAME")]
+    pub weather: Option<WeatherPreset>,
     /// Longest simulated time of a run, 4s to 24h, as `rules.max_seconds` of scenarios.
     #[arg(long = "max-time", value_parser = seconds(4..=86_400), value_name = "DURATION")]
     pub seconds: Option<u32>,

@@ -9,6 +9,7 @@ use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::Screens;
 use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::time::{TICK_HZ, Tick};
+use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
 
 /// What stands for a checkpoint in help.
@@ -58,6 +59,12 @@ pub fn preset() -> impl TypedValueParser<Value = Preset> {
 pub fn hazards() -> impl TypedValueParser<Value = HazardLevel> {
     PossibleValuesParser::new(HazardLevel::ALL.map(HazardLevel::name))
         .try_map(|name| HazardLevel::named(&name).ok_or("no such level"))
+}
+
+/// A weather with a name.
+pub fn weather() -> impl TypedValueParser<Value = WeatherPreset> {
+    let named = |name: String| WeatherPreset::find(&name).copied();
+    PossibleValuesParser::new(WeatherPreset::names()).try_map(move |name| named(name).ok_or("no such weather"))
 }
 
 /// Monitors that a view is spread over.

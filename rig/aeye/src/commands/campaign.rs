@@ -25,11 +25,35 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
     }
     let until = until(args)?;
     let CampaignArgs {
-        checkpoint, maps, embed_map, scenario, pedestrians, hazards, run_seconds, seed, jobs, out, ..
+        checkpoint,
+        maps,
+        embed_map,
+        scenario,
+        pedestrians,
+        hazards,
+        weather,
+        run_seconds,
+        seed,
+        jobs,
+        out,
+        ..
     } = args.clone();
     // Nothing goes anywhere where the scenario is only printed.
     let out = out.unwrap_or_default();
-    Ok(Options { checkpoint, maps, embed_map, scenario, until, pedestrians, hazards, run_seconds, seed, jobs, out })
+    Ok(Options {
+        checkpoint,
+        maps,
+        embed_map,
+        scenario,
+        until,
+        pedestrians,
+        hazards,
+        weather,
+        run_seconds,
+        seed,
+        jobs,
+        out,
+    })
 }
 
 fn until(args: &CampaignArgs) -> anyhow::Result<Until> {

@@ -90,6 +90,7 @@ fn scenario(args: &DriveArgs) -> anyhow::Result<(Scenario, Map)> {
     let map = if args.embed_map { map.embedded() } else { map };
     scenario.seed = args.seed.unwrap_or(scenario.seed);
     scenario.hazards = args.hazards.map_or(scenario.hazards, HazardLevel::rates);
+    args.weather.iter().for_each(|preset| scenario.take_weather(preset));
     let rules = &mut scenario.rules;
     rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
     rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);

@@ -2,6 +2,7 @@
 
 use base::words;
 use glam::Vec2;
+use kernel::car::GRAVITY_MPS2;
 use kernel::events::Hud;
 use kernel::map::PropKind;
 use kernel::scene::{ActorKind, ActorScene, SceneSnapshot};
@@ -25,8 +26,9 @@ const STEERING_S: f32 = 0.7;
 /// are only ideas.
 const OFF_LANE_M: f32 = 1.6;
 const OFF_LANE_IN_JUNCTION_M: f32 = 2.3;
-/// Deceleration before a red light that is too hard to be meant, m/s^2.
+/// Deceleration before a red light that is too hard to be meant, m/s^2, and as a share of what the road allows.
 const RED_LIGHT_MPS2: f32 = 5.0;
+const RED_LIGHT_SHARE: f32 = 0.6;
 /// Angle against the route from which the car drives the wrong way (cosine).
 const WRONG_WAY_COS: f32 = 0.3;
 
@@ -45,7 +47,7 @@ pub struct Hazard {
 pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Hazard> {
     let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
     encroachment(world, scene, &way, looks)
-        .or_else(|| red_light(&world.hud(), &way))
+        .or_else(|| red_light(&world.hud(), &way, world.friction()))
         .or_else(|| leaving_lane(world, scene))
 }
 
@@ -151,9 +153,10 @@ fn matters(world: &World, scene: &SceneSnapshot, actor: &ActorScene) -> bool {
     ahead_m > 0.0 || !same_way
 }
 
-fn red_light(hud: &Hud, way: &EgoWay) -> Option<Hazard> {
+fn red_light(hud: &Hud, way: &EgoWay, friction: f32) -> Option<Hazard> {
     let to_line_m = f32::from(hud.light_distance_m).max(0.5);
-    let too_fast = hud.speed_mps * hud.speed_mps / (2.0 * to_line_m) > RED_LIGHT_MPS2;
+    let hardest_mps2 = RED_LIGHT_MPS2.min(RED_LIGHT_SHARE * friction * GRAVITY_MPS2);
+    let too_fast = hud.speed_mps * hud.speed_mps / (2.0 * to_line_m) > hardest_mps2;
     let runs_it = hud.light == Some(LightPhase::Red) && too_fast && way.driven_m(10.0) > to_line_m + 1.0;
     runs_it.then(|| hazard(Label::Rules, format!("red light in {to_line_m:.0} m")))
 }

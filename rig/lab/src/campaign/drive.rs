@@ -11,6 +11,7 @@ use base::spread::jobs;
 use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::Eye;
 use kernel::scenario::HazardLevel;
+use kernel::weather::WeatherPreset;
 use measures::statistics::table;
 use render::AdapterChoice;
 
@@ -36,6 +37,8 @@ pub struct Options {
     pub pedestrians: Option<u16>,
     /// How often people at the wheel endanger others, instead of what the scenario says.
     pub hazards: Option<HazardLevel>,
+    /// Weather, if not as the scenario or the map's default says.
+    pub weather: Option<WeatherPreset>,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign; run `i` follows from it and `i` alone.
@@ -77,8 +80,8 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
         maps.iter().try_for_each(|map| file.check_start(map))?;
     }
     let scenario = file.map(|file| file.scenario);
-    let Options { until, pedestrians, hazards, run_seconds, seed, .. } = *options;
-    Ok(Plan { maps, scenario, pedestrians, hazards, run_seconds, seed, until, out: options.out.clone() })
+    let Options { until, pedestrians, hazards, weather, run_seconds, seed, .. } = *options;
+    Ok(Plan { maps, scenario, pedestrians, hazards, weather, run_seconds, seed, until, out: options.out.clone() })
 }
 
 impl fmt::Display for CampaignFigures {

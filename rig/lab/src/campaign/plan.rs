@@ -6,6 +6,7 @@ use base::maps::Map;
 use kernel::Scenario;
 use kernel::rng::{self, Stream};
 use kernel::scenario::HazardLevel;
+use kernel::weather::WeatherPreset;
 
 use super::until::Until;
 
@@ -20,6 +21,8 @@ pub struct Plan {
     pub pedestrians: Option<u16>,
     /// How often people at the wheel endanger others, if not as the scenario says.
     pub hazards: Option<HazardLevel>,
+    /// Weather, if not as the scenario says.
+    pub weather: Option<WeatherPreset>,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign.
@@ -44,6 +47,7 @@ impl Plan {
         scenario.map = map.network.name.clone();
         scenario.seed = seed;
         scenario.rules.max_seconds = self.run_seconds;
+        self.weather.iter().for_each(|preset| scenario.take_weather(preset));
         scenario.traffic.pedestrians = self.pedestrians.unwrap_or(scenario.traffic.pedestrians);
         scenario.hazards = self.hazards.map_or(scenario.hazards, HazardLevel::rates);
         scenario

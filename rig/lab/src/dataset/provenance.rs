@@ -77,12 +77,36 @@ pub struct WeatherLine {
     pub sun_altitude_deg: f32,
     /// Direction to the sun, degrees counter-clockwise from east.
     pub sun_azimuth_deg: f32,
+    /// Rain in percent of a cloudburst.
+    #[serde(default)]
+    pub precipitation_pct: f32,
+    /// Water that stands on the road, percent.
+    #[serde(default)]
+    pub puddles_pct: f32,
+    /// How wet surfaces are, percent.
+    #[serde(default)]
+    pub wetness_pct: f32,
+    /// Fog in percent of one in which one sees 50 m.
+    #[serde(default)]
+    pub fog_density_pct: f32,
+    /// Where the fog begins, metres from the eye.
+    #[serde(default)]
+    pub fog_distance_m: f32,
 }
 
 impl From<Weather> for WeatherLine {
     fn from(w: Weather) -> Self {
-        let Weather { cloudiness_pct, wind_pct, sun_altitude_deg, sun_azimuth_deg } = w;
-        Self { cloudiness_pct, wind_pct, sun_altitude_deg, sun_azimuth_deg }
+        Self {
+            cloudiness_pct: w.cloudiness_pct,
+            wind_pct: w.wind_pct,
+            sun_altitude_deg: w.sun_altitude_deg,
+            sun_azimuth_deg: w.sun_azimuth_deg,
+            precipitation_pct: w.precipitation_pct,
+            puddles_pct: w.puddles_pct,
+            wetness_pct: w.wetness_pct,
+            fog_density_pct: w.fog_density_pct,
+            fog_distance_m: w.fog_distance_m,
+        }
     }
 }
 

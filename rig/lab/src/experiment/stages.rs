@@ -194,6 +194,7 @@ impl Stages<'_> {
             until,
             pedestrians,
             hazards: None,
+            weather: None,
             run_seconds,
             seed: self.recipe.seed,
             jobs: self.jobs,

@@ -39,7 +39,8 @@ pub enum Otherwise {
 pub struct Fork {
     /// What is done otherwise.
     pub otherwise: Otherwise,
-    /// Other weather than recorded. It changes pictures and nothing else.
+    /// Other weather than recorded, which then stays. Among dry weathers without fog it changes pictures and nothing
+    /// else.
     pub weather: Option<Weather>,
     /// Ticks from the recorded intervention to the end.
     pub after_ticks: Tick,
@@ -118,7 +119,9 @@ impl Fork {
         };
         let mut manifest = log.manifest.clone();
         manifest.case = None;
-        manifest.scenario.weather = self.weather.unwrap_or(manifest.scenario.weather);
+        if let Some(weather) = self.weather {
+            (manifest.scenario.weather, manifest.scenario.later) = (weather, None);
+        }
         manifest.provenance.extend(self.provenance(fork_tick, &vision));
         let end = at + self.after_ticks;
         manifest.scenario = lasting(manifest.scenario, end);

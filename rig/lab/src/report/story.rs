@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 use kernel::arbiter::Outcome;
+use kernel::scene::Weather;
 use kernel::time::{TICK_HZ, Tick};
 use measures::footage::Footage;
 use replay::{Log, Replayer};
@@ -60,7 +61,7 @@ fn route(log: &Log, footage: &Footage, to: Tick) -> anyhow::Result<(Vec<Vec2>, O
 
 fn facts(log: &Log, at: Tick, odometer_mm: Option<u64>) -> Vec<Fact> {
     let scenario = &log.manifest.scenario;
-    let weather = &scenario.weather;
+    let weather = &scenario.weather_at(at);
     let mut facts = Vec::new();
     let mut add = |name, value: String| facts.push(Fact { name, value });
     if let Some(annotation) = &log.annotation {
@@ -89,12 +90,23 @@ fn facts(log: &Log, at: Tick, odometer_mm: Option<u64>) -> Vec<Fact> {
         add("Driven through", format!("{checkpoint}{blind}"));
     }
     add("Map and seed", format!("{}, {}", scenario.map, scenario.seed));
-    add(
-        "Weather",
-        format!(
-            "sun {:.0}\u{b0} high, clouds {:.0} %, wind {:.0} %",
-            weather.sun_altitude_deg, weather.cloudiness_pct, weather.wind_pct
-        ),
-    );
+    add("Weather", words(weather));
     facts
+}
+
+fn words(weather: &Weather) -> String {
+    let mut words = format!(
+        "sun {:.0}\u{b0} high, clouds {:.0} %, wind {:.0} %",
+        weather.sun_altitude_deg, weather.cloudiness_pct, weather.wind_pct
+    );
+    let rare = [
+        ("rain", weather.precipitation_pct),
+        ("puddles", weather.puddles_pct),
+        ("wetness", weather.wetness_pct),
+        ("fog", weather.fog_density_pct),
+    ];
+    for (name, percent) in rare.into_iter().filter(|(_, percent)| *percent > 0.0) {
+        words += &format!(", {name} {percent:.0} %");
+    }
+    words
 }
