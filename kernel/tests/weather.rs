@@ -9,7 +9,7 @@ use glam::Vec3;
 use kernel::map::bundled;
 use kernel::scene::ActorKind;
 use kernel::time::{Tick, seconds};
-use kernel::traffic::{Obstacle, Surroundings, Traffic, TrafficCounts};
+use kernel::traffic::{Obstacle, Population, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::{Conditions, Weather, WeatherChange, WeatherPreset};
 use kernel::{RoadNetwork, Scenario, World};
 
@@ -26,7 +26,7 @@ fn drive(network: &Arc<RoadNetwork>, counts: &TrafficCounts, weather: &Weather, 
     let ego = Obstacle { id: 0, position: FAR, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m };
     let conditions = Conditions::of(weather);
     for tick in 1..=ticks {
-        traffic.step(&Surroundings { tick, ego, loose: &[], conditions });
+        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions });
         assert!(traffic.told().is_empty(), "tick {tick}: {:?}", traffic.told());
     }
     traffic
@@ -46,7 +46,14 @@ fn road() -> Arc<RoadNetwork> {
 
 /// The speed of the only car after a minute, m/s.
 fn free_mps(weather: &Weather) -> f32 {
-    let counts = TrafficCounts { cars: 1, motorcycles: 0, bicycles: 0, pedestrians: 0, jaywalks_per_min: 0.0 };
+    let counts = TrafficCounts {
+        cars: 1,
+        motorcycles: 0,
+        bicycles: 0,
+        pedestrians: 0,
+        jaywalks_per_min: 0.0,
+        drivers: Population::USUAL,
+    };
     drive(&road(), &counts, weather, seconds(40)).state().vehicles[0].speed_mps
 }
 
@@ -66,7 +73,14 @@ fn rain_slows_a_free_car_as_was_measured_and_fog_until_it_can_stop_within_sight(
 #[test]
 fn people_hurry_in_rain() {
     let network = bundled("rural").expect("it is bundled");
-    let counts = TrafficCounts { cars: 0, motorcycles: 0, bicycles: 0, pedestrians: 60, jaywalks_per_min: 0.0 };
+    let counts = TrafficCounts {
+        cars: 0,
+        motorcycles: 0,
+        bicycles: 0,
+        pedestrians: 60,
+        jaywalks_per_min: 0.0,
+        drivers: Population::USUAL,
+    };
     let pace = |weather: &Weather| {
         let traffic = drive(&network, &counts, weather, seconds(30));
         let mut speeds: Vec<f32> = traffic.state().walkers.iter().map(|walker| walker.speed_mps).collect();
@@ -89,7 +103,7 @@ fn traffic_flows_in_a_downpour() {
         let conditions = Conditions::of(weather);
         let mut driven_m = 0.0;
         for tick in 1..=seconds(300) {
-            traffic.step(&Surroundings { tick, ego, loose: &[], conditions });
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions });
             let vehicles = traffic.bodies().iter().filter(|body| body.kind != ActorKind::Pedestrian);
             driven_m += vehicles.map(|body| f64::from(body.velocity_mps.length())).sum::<f64>() / 60.0;
         }

@@ -130,7 +130,8 @@ impl View<'_> {
         }
         let side = self.side(index, plan, &seeker);
         let behind = self.behind_leader_mps2(index, plan, &mut next).min(self.lapse_mps2(&next));
-        let accel = self.acceleration(index, plan, &next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
+        let accel =
+            self.acceleration(index, plan, &next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
         self.advance(index, accel, side, &mut next);
         self.move_over(index, plan, &mut next);
         if self.tick.is_multiple_of(seconds(1)) {
