@@ -1,4 +1,5 @@
-//! Who signals to a lane beside its own, and wants to be let in there.
+//! Who signals to a lane beside its own, and wants to be let in there. Others ask only where their way needs the change: who
+//! would just drive faster there waits for a gap, or a full road would carry less.
 
 use crate::controls::Controls;
 use crate::geometry::direction;
@@ -6,6 +7,7 @@ use crate::map_data::{LaneId, LaneKind};
 
 use super::actors::Actors;
 use super::body::Surroundings;
+use super::journey::Journey;
 use super::manoeuvre::Manoeuvre;
 use super::sideways::beside;
 use super::vehicle::Vehicle;
@@ -33,12 +35,21 @@ pub(super) fn gather(actors: &Actors, around: &Surroundings<'_>, asking: &mut Ve
     let signals = |(i, v): (usize, &Vehicle)| {
         let rolls = v.manoeuvre.signals() && v.speed_mps > ROLLS_MPS && !around.holds(v.id);
         let lane = beside(map, v.lane, v.manoeuvre == Manoeuvre::SignalLeft).filter(|_| rolls)?;
+        if !needs(actors, v, lane) {
+            return None;
+        }
         let s_m = map.project(lane, actors.bodies[i].position).s_m;
         Some(Asking { id: v.id, lane, s_m, half_m: actors.drivers[i].size_m.x * 0.5, speed_mps: v.speed_mps })
     };
     asking.clear();
     asking.extend(actors.state.vehicles.iter().enumerate().filter_map(signals));
     asking.extend(ego(actors, around));
+}
+
+/// Whether a vehicle comes to its goal sooner from another lane, or its own lane ends.
+fn needs(actors: &Actors, vehicle: &Vehicle, lane: LaneId) -> bool {
+    let journey = Journey::of(&actors.ways, actors.seed, vehicle);
+    actors.ways.lanes[vehicle.lane as usize].ends_m.is_some() || journey.seconds(lane) < journey.seconds(vehicle.lane)
 }
 
 fn ego(actors: &Actors, around: &Surroundings<'_>) -> Option<Asking> {
