@@ -315,7 +315,7 @@ mod tests {
 
     #[test]
     fn rocking_at_standstill_is_no_stop() {
-        let rocks = |tick: Tick| after(false, if tick % 20 == 0 { 0.3 } else { 0.0 });
+        let rocks = |tick: Tick| after(false, if tick.is_multiple_of(20) { 0.3 } else { 0.0 });
         assert_eq!(end_of(rocks, &RULES), Some(900));
     }
 

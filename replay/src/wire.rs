@@ -453,7 +453,7 @@ mod tests {
         };
         let weather = kernel::Scenario::default_for("field", 1).weather;
         let scene = SceneSnapshot { tick: 9, ego, actors: Vec::new(), lights: Vec::new(), weather };
-        assert_eq!(scenes(&scenes_bytes(&[scene.clone()]), FORMAT_VERSION), Ok(vec![scene.clone()]));
+        assert_eq!(scenes(&scenes_bytes(std::slice::from_ref(&scene)), FORMAT_VERSION), Ok(vec![scene.clone()]));
         let mut row = scene.to_bytes();
         assert_eq!(row.remove(EGO_LAMPS_AT), 7);
         row.truncate(row.len() - RAIN_TO_FOG);

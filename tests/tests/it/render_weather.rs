@@ -75,7 +75,7 @@ fn fog_hides_what_is_far_and_begins_where_it_shall() {
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn wet_roads_are_darker_and_puddles_mirror_the_sky() {
-    let (mut renderer, camera) = (renderer(), Camera::driver(256, 128));
+    let (mut renderer, camera) = (renderer(), Camera::driver(512, 256));
     let clear = Weather::dry(60.0, 0.0, 45.0, 200.0);
     let mut draw = |weather| renderer.draw(&street_in(weather), &camera).expect("a frame");
     let (dry, wet, flooded) =

@@ -92,9 +92,9 @@ fn a_window_beyond_the_recording_is_refused() {
 
 #[test]
 fn a_cut_that_ends_long_before_the_intervention_knows_nothing_of_it() {
-    let case = Case::cut(&RECORDING, &CITY.network, 300..=400).expect("a window of the recording");
+    let case = Case::cut(&RECORDING, &CITY.network, 200..=300).expect("a window of the recording");
     let log = case.log();
-    assert_eq!((log.intervention, &log.annotation, log.last_tick()), (None, &None, 700));
+    assert_eq!((log.intervention, &log.annotation, log.last_tick()), (None, &None, 900));
     let report = verify(log, &CITY.network).expect("a log that can be simulated");
     assert_eq!((report.divergence, case.scenes().len()), (None, 17));
 }

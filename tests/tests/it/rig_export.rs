@@ -20,7 +20,7 @@ use tests::scenes::busy_city;
 /// Recording and case of the city, in a folder.
 fn files(folder: &Path) -> (PathBuf, PathBuf) {
     let scene = busy_city();
-    let bytes = record(&scene, TAKEOVER + 60, WITH_TAKEOVER);
+    let bytes = record(&scene, TAKEOVER + 180, WITH_TAKEOVER);
     let recording = Recording::from_bytes(&bytes).unwrap();
     let window = Case::window(recording.log()).expect("an intervention");
     let case = Case::cut(&recording, &scene.network, window).unwrap().encode().unwrap();

@@ -56,7 +56,6 @@ fn braking_distances_are_those_of_the_tyre_curve_by_surface_and_wetness() {
             let abs = driven_m(kind, &weather, from as f32, HELPED);
             let bare = driven_m(kind, &weather, from as f32, BARE);
             let what = format!("{kind:?}, wetness {wetness}, {kmh} km/h");
-            println!("{what}: {abs:.1} m of {best:.1} m, locked {bare:.1} m of {locked:.1} m");
             assert!((0.95..1.0).contains(&(best / abs)), "{what}: {abs} m, at best {best} m");
             assert!((bare / locked - 1.0).abs() < 0.05, "{what}: {bare} m, sliding {locked} m");
             assert!(bare > 1.05 * abs, "{what}: {bare} m, {abs} m");

@@ -122,7 +122,6 @@ fn raised_hazards_make_three_times_as_many_encroachments() {
             let (more, driven_km) = encroachments(seed, 8, level);
             (found, km) = (found + more, km + driven_km);
         }
-        println!("{}: {found} in {km:.0} km, {:.3} a km", level.name(), f64::from(found) / km);
         f64::from(found) / km
     };
     let [natural, raised] = [HazardLevel::Natural, HazardLevel::Raised].map(per_km);

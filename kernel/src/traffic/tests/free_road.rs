@@ -35,7 +35,8 @@ fn expected_m(from_mps: f32, wanted_mps: f32, accel_mps2: f32, ticks: Tick) -> f
     let (mut v, wanted, accel) = (f64::from(from_mps), f64::from(wanted_mps), f64::from(accel_mps2));
     let (mut at_m, dt) = (0.0, 1.0 / 600.0);
     for _ in 0..ticks * 10 {
-        v += accel * (1.0 - (v / wanted).powi(4)) * dt;
+        let squared = (v / wanted) * (v / wanted);
+        v += accel * (1.0 - squared * squared) * dt;
         at_m += v * dt;
     }
     at_m

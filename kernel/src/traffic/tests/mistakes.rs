@@ -50,7 +50,6 @@ fn at_most(k: u64, n: u64, p: f64) -> f64 {
 
 /// The configured rate lies in the exact interval (Clopper and Pearson, 99 %) of what was counted.
 fn agrees(what: &str, k: u64, n: u64, p: f64) {
-    println!("{what}: {k} of {n}, {:.4} where {p:.4} is configured", k as f64 / n as f64);
     assert!(k >= 10, "{what}: {k} of {n} are too few to tell");
     let (low, high) = (at_most(k, n, p), 1.0 - at_most(k - 1, n, p));
     assert!(low > 0.005 && high > 0.005, "{what}: {k} of {n} where {p} is configured");
@@ -126,7 +125,6 @@ fn so_many_run_a_red_light_as_are_asked_for() {
         });
         met += occasions.len();
     }
-    println!("{at_red} of {lines} passed at red");
     agrees("red lights", runs as u64, met as u64, f64::from(share));
     assert!(at_red <= runs && at_red * 10 >= runs * 8, "{at_red} passed at red where {runs} set out to");
 }
@@ -171,7 +169,6 @@ fn so_many_roll_over_the_line_of_a_stop_sign_as_are_asked_for() {
             last.clone_from(&t.state().vehicles);
         });
     }
-    println!("{unhalted} entered without having stood");
     agrees("stop signs", rolls as u64, arrivals.len() as u64, f64::from(share));
     assert!(unhalted > 0 && unhalted <= rolls, "{unhalted} entered without having stood, {rolls} rolled");
 }
