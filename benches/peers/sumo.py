@@ -16,7 +16,6 @@ import time
 from pathlib import Path
 
 import libsumo
-import sumo
 import sumolib
 
 STEP_S = 1 / 60
@@ -97,7 +96,7 @@ def main():
         town, net, routes = (folder / f"town_{actors}.{end}" for end in ("xodr", "net.xml", "rou.xml"))
         text = subprocess.run([program, "town", str(columns), str(rows)], check=True, capture_output=True, text=True)
         town.write_text(text.stdout)
-        netconvert = Path(sumo.SUMO_HOME) / "bin" / "netconvert"
+        netconvert = Path(sys.executable).parent / "netconvert"
         convert = ["--opendrive", str(town), "-o", str(net), "--no-warnings", "--opendrive.import-all-lanes"]
         convert += ["--crossings.guess", "--walkingareas", "--no-turnarounds"]
         subprocess.run([netconvert, *convert], check=True, capture_output=True)
