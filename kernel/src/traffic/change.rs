@@ -17,7 +17,7 @@ use super::plan::Plan;
 use super::routes::{CHANGE_S, Class};
 use super::sideways::{beside, drift};
 use super::traits::Driver;
-use super::vehicle::Vehicle;
+use super::vehicle::{DECIDE_TICKS, Vehicle};
 
 /// Acceleration that a change has to gain, m/s².
 const THRESHOLD_MPS2: f32 = 0.2;
@@ -76,7 +76,7 @@ pub(super) struct Near {
 impl View<'_> {
     /// Whether a vehicle wishes to change lanes or to pass somebody, and whether it has done so.
     pub(super) fn decide_manoeuvre(&self, index: usize, plan: &Plan, seeker: &Seeker, next: &mut Vehicle) {
-        let considers = (self.tick + u64::from(next.id)).is_multiple_of(CONSIDER_TICKS);
+        let considers = next.is_due(self.tick, CONSIDER_TICKS);
         let side = next.manoeuvre.side();
         next.manoeuvre = match next.manoeuvre {
             Manoeuvre::Keep if considers => {
@@ -84,12 +84,12 @@ impl View<'_> {
                 self.wish(index, plan, seeker)
             }
             signal if signal.signals() => {
-                next.signal_ticks = next.signal_ticks.saturating_add(1);
+                next.signal_ticks = next.signal_ticks.saturating_add(DECIDE_TICKS);
                 let pays = !considers || self.gain_mps2(index, plan, seeker, side) > THRESHOLD_MPS2 * 0.5;
                 if pays { signal } else { Manoeuvre::Keep }
             }
             over if over != Manoeuvre::Keep => {
-                next.signal_ticks = next.signal_ticks.saturating_add(1);
+                next.signal_ticks = next.signal_ticks.saturating_add(DECIDE_TICKS);
                 let passes = over.passes() && self.passed(index, plan, seeker, side).is_some();
                 let is_there = (next.offset_m - self.likes_m(index)).abs() < THERE_M;
                 if is_there && !passes { Manoeuvre::Keep } else { over }
@@ -113,7 +113,7 @@ impl View<'_> {
             return self.barge_in(index, plan, next);
         }
         let vehicle = &self.vehicles[index];
-        let turn = (self.tick + u64::from(next.id)).is_multiple_of(GAP_TICKS);
+        let turn = next.is_due(self.tick, GAP_TICKS);
         // A grant is for the way from this lane.
         let granted = next.flags & Vehicle::GRANTED != 0;
         let ready = next.manoeuvre.signals() && next.signal_ticks >= SIGNAL_TICKS && !granted;
@@ -135,7 +135,7 @@ impl View<'_> {
         (next.s_m, next.offset_m) = (there.s_m, there.lateral_m);
         next.manoeuvre = Manoeuvre::move_to(next.manoeuvre.side());
         (next.signal_ticks, next.wait_ticks) = (0, 0);
-        next.flags &= !Vehicle::HALTED;
+        next.flags &= !(Vehicle::ASKING | Vehicle::HALTED);
     }
 
     /// Tells `follow` the gap to whoever is in the way of a vehicle while it or another is between lanes, and its
@@ -348,7 +348,7 @@ impl View<'_> {
         let place = self.bodies[index].position;
         let ready = |(i, hazard): &(u32, Hazard)| {
             let other = &self.vehicles[*i as usize];
-            let ready = other.manoeuvre.signals() && other.signal_ticks.saturating_add(1) >= SIGNAL_TICKS;
+            let ready = other.manoeuvre.signals() && other.signal_ticks.saturating_add(DECIDE_TICKS) >= SIGNAL_TICKS;
             ready && hazard.position.distance_squared(place) < APART_M * APART_M
         };
         !self.driven.iter().take_while(|(i, _)| (*i as usize) < index).any(ready)

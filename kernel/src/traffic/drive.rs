@@ -1,7 +1,7 @@
 //! What a vehicle does in a tick.
 
 use crate::light::LightPhase;
-use crate::map_data::{LaneId, MapData, StopKind, Turn};
+use crate::map_data::{LaneId, MapData, Turn};
 use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
@@ -11,11 +11,11 @@ use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, Seeker, side, sight};
 use super::horn::Horn;
 use super::journey::Journey;
-use super::junction::{self, Members, Signal, has_room, stopping_m, swept_half_m};
+use super::junction::{Members, stopping_m, swept_half_m};
 use super::lane_way::{ConflictKind, LaneConflict};
 use super::lapse::Lapse;
 use super::lists::{Entry, Lists};
-use super::plan::{self, Line, Plan, stopping_speed};
+use super::plan::{self, Plan, stopping_speed};
 use super::rates::HazardRates;
 use super::sideways::{EDGE_M, drift, pass_drift};
 use super::step::{LINE_MARGIN_M, Step};
@@ -30,10 +30,6 @@ const ADAPT_S: f32 = 0.4;
 const STOP_S: f32 = 0.25;
 /// Vehicles look this far ahead for others in a junction, metres.
 const CONFLICT_M: f32 = 30.0;
-/// How long a vehicle stands at a stop sign.
-const HALT_TICKS: u16 = seconds(1) as u16;
-/// Who waits for so long at an open line gives up his goal for another.
-const RETHINK_TICKS: u16 = seconds(15) as u16;
 /// A turn is indicated from here on, metres.
 const INDICATE_M: f32 = 40.0;
 /// Its indicator is looked after so often.
@@ -93,14 +89,10 @@ struct Side {
 }
 
 impl Side {
-    /// Drives so many metres ahead, turning to where the vehicle is to be as quickly as it can be steered.
-    fn steer(&self, next: &mut Vehicle, moved_m: f32) {
-        if moved_m > 0.0 {
-            let within_m = SWING_M.max(SWING_S * next.speed_mps);
-            let wanted = ((self.aim_m - next.offset_m) / within_m).clamp(-self.drift, self.drift) * 100.0;
-            next.drift += (ops::round(wanted) as i8 - next.drift).clamp(-1, 1);
-            next.offset_m += f32::from(next.drift) * 0.01 * moved_m;
-        }
+    /// Sideways motion to get there, 1/100 for each metre ahead.
+    fn drift_aim(&self, next: &Vehicle) -> i8 {
+        let within_m = SWING_M.max(SWING_S * next.speed_mps);
+        ops::round(((self.aim_m - next.offset_m) / within_m).clamp(-self.drift, self.drift) * 100.0) as i8
     }
 
     /// Where one that is `offset_m` to the left is after so many metres ahead.
@@ -113,31 +105,46 @@ impl Side {
 impl View<'_> {
     /// The next state of vehicle `index`.
     pub fn drive(&self, index: usize) -> Vehicle {
-        let plan = &self.plans[index];
         let mut next = self.vehicles[index];
         if next.is_aside() {
             self.stand_aside(index, &mut next);
             return next;
         }
-        self.err(index, plan, &mut next);
-        self.decide(index, plan, &mut next);
-        if (self.tick + Tick::from(next.id)).is_multiple_of(INDICATE_TICKS) {
-            next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
+        let decides = next.decides(self.tick);
+        if decides {
+            self.decide(index, &mut next);
         }
-        let seeker = self.seeker(index);
-        if next.lapse != Lapse::Parks {
-            self.decide_manoeuvre(index, plan, &seeker, &mut next);
+        self.roll(&self.drivers[index], &mut next);
+        if decides {
+            self.move_over(index, &self.plans[index], &mut next);
         }
-        let side = self.side(index, plan, &seeker);
-        let behind = self.behind_leader_mps2(index, plan, &mut next).min(self.lapse_mps2(&next));
-        let accel =
-            self.acceleration(index, plan, &next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
-        self.advance(index, accel, side, &mut next);
-        self.move_over(index, plan, &mut next);
         if self.tick.is_multiple_of(seconds(1)) {
             next.stuck_s = self.stuck_s(index);
         }
         next
+    }
+
+    /// What the driver does from now on.
+    fn decide(&self, index: usize, next: &mut Vehicle) {
+        let plan = &self.plans[index];
+        self.err(index, plan, next);
+        self.enter_or_wait(index, plan, next);
+        if next.is_due(self.tick, INDICATE_TICKS) {
+            next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
+        }
+        let seeker = self.seeker(index);
+        if next.lapse != Lapse::Parks {
+            self.decide_manoeuvre(index, plan, &seeker, next);
+        }
+        let side = self.side(index, plan, &seeker);
+        let behind = self.behind_leader_mps2(index, plan, next).min(self.lapse_mps2(next));
+        let accel =
+            self.acceleration(index, plan, next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
+        let was_braking = next.flags & Vehicle::BRAKING != 0;
+        let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
+        next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };
+        next.accel_mmps2 = ops::round(accel * 1000.0) as i16;
+        next.drift_aim = side.drift_aim(next);
     }
 
     pub(super) fn steps_of(&self, plan: &Plan) -> &[Step] {
@@ -152,65 +159,6 @@ impl View<'_> {
             Some(Turn::Left) => Vehicle::TURNS_LEFT,
             Some(Turn::Right) => Vehicle::TURNS_RIGHT,
             _ => 0,
-        }
-    }
-
-    /// Asks for grants, gives them back, waits and halts.
-    fn decide(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
-        let Some(line) = &plan.line else {
-            next.flags &= !Vehicle::GRANTED;
-            next.wait_ticks = 0;
-            return;
-        };
-        let steps = self.steps_of(plan);
-        let signal = junction::signal(self.map, self.lights, next, steps[line.approach].lane);
-        if next.lapse == Lapse::RunsRed {
-            next.flags |= Vehicle::GRANTED;
-        } else if next.flags & Vehicle::GRANTED != 0 {
-            let keeps = junction::near_enough(next, line, 6.0) && !self.lost_room(index, plan, line, next);
-            if junction::must_stop(signal, next, line, self.pace_mps(plan, line, next)) || !keeps {
-                next.flags &= !Vehicle::GRANTED;
-            }
-        } else if let Some(asking) = self.members.asking(line.zone, index)
-            && self.members.grants(self.ways, asking, &steps[line.inside.0..line.inside.1])
-        {
-            next.flags |= Vehicle::GRANTED;
-        }
-        self.wait(index, line, signal, steps, next);
-    }
-
-    /// How fast a vehicle gets to its line at most: as fast as the one before it there.
-    fn pace_mps(&self, plan: &Plan, line: &Line, next: &Vehicle) -> f32 {
-        let before = plan.leader.filter(|leader| leader.gap_m < line.ahead_m);
-        before.map_or(next.speed_mps, |leader| next.speed_mps.min(leader.speed_mps))
-    }
-
-    /// Whether one that stands before the line with a grant has no room beyond the junction any more.
-    fn lost_room(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle) -> bool {
-        let (steps, driver) = (self.steps_of(plan), &self.drivers[index]);
-        let known = (self.map, self.ways, self.lists);
-        let waits = next.speed_mps < 0.1 && line.ahead_m > 0.0 && !line.passed;
-        waits && !has_room(known, plan, line, steps, index, driver, f32::MAX)
-    }
-
-    fn wait(&self, index: usize, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
-        let stop = self.map.lanes[steps[line.approach].lane as usize].stop;
-        let sign = stop.is_some_and(|stop| stop.kind == StopKind::Stop);
-        let at_line = line.hold_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
-        if at_line && (sign || signal == Signal::Open) {
-            next.wait_ticks = next.wait_ticks.saturating_add(1);
-            if signal == Signal::Open && self.is_honked_at(index) {
-                next.wait_ticks = next.wait_ticks.max(junction::PATIENCE_TICKS + 1);
-            }
-            if next.wait_ticks.is_multiple_of(RETHINK_TICKS) && next.flags & Vehicle::GRANTED == 0 {
-                // No way through: somewhere else, perhaps by another turn.
-                next.trips = next.trips.wrapping_add(1);
-            }
-        } else if !at_line {
-            next.wait_ticks = 0;
-        }
-        if sign && (next.wait_ticks >= HALT_TICKS || self.rolls(line, steps[line.approach].lane, next)) {
-            next.flags |= Vehicle::HALTED;
         }
     }
 
@@ -399,9 +347,9 @@ impl View<'_> {
         (between_m > 0.0).then_some((between_m - entry.half_m - half_m, entry.speed_mps))
     }
 
-    fn advance(&self, index: usize, accel: f32, side: Side, next: &mut Vehicle) {
-        let driver = &self.drivers[index];
-        let was_braking = next.flags & Vehicle::BRAKING != 0;
+    /// Drives on for a tick as the driver holds pedals and wheel.
+    fn roll(&self, driver: &Driver, next: &mut Vehicle) {
+        let accel = f32::from(next.accel_mmps2) * 0.001;
         let before = next.speed_mps;
         next.speed_mps = (before + accel * TICK_S).max(0.0);
         if accel < 0.05 && next.speed_mps < 0.02 {
@@ -411,10 +359,11 @@ impl View<'_> {
         next.s_m += moved_m;
         let turns = moved_m / PEDAL_M;
         next.phase = next.phase.wrapping_add((turns * 65536.0) as u16);
-        let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
-        next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };
         self.change_lane(driver, next);
-        side.steer(next, moved_m);
+        if moved_m > 0.0 {
+            next.drift += (next.drift_aim - next.drift).clamp(-1, 1);
+            next.offset_m += f32::from(next.drift) * 0.01 * moved_m;
+        }
     }
 
     /// Takes the lanes that follow, and clears what belonged to the junction left behind.
@@ -441,7 +390,7 @@ impl View<'_> {
             journey.enter(next.lane);
             next.trips = journey.trips;
             if self.ways.lanes[next.lane as usize].zone.is_some() {
-                next.flags &= !(Vehicle::GRANTED | Vehicle::HALTED);
+                next.flags &= !(Vehicle::GRANTED | Vehicle::ASKING | Vehicle::HALTED);
                 next.flags |= Vehicle::CROSSING;
                 next.wait_ticks = 0;
                 if matches!(next.lapse, Lapse::RunsRed | Lapse::Rolls) {

@@ -9,7 +9,7 @@ use super::vehicle::Vehicle;
 
 /// A vehicle's place on a lane. One that reaches over an end stands on both lanes, its middle
 /// before the start or beyond the end of the one; so does one that changes lanes, until it has left the one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Entry {
     pub lane: LaneId,
     pub s_m: f32,
@@ -20,17 +20,35 @@ pub(super) struct Entry {
     pub id: u16,
 }
 
+impl Entry {
+    /// Whether it comes before another on the same lane.
+    fn is_before(&self, other: &Self) -> bool {
+        self.s_m.total_cmp(&other.s_m).then(self.id.cmp(&other.id)).is_lt()
+    }
+}
+
+/// A lane's stretch of the entries.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    first: u32,
+    count: u32,
+}
+
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lists {
+    /// As they were found.
+    found: Vec<Entry>,
+    /// By lane, and on each by ascending place.
     entries: Vec<Entry>,
-    /// For each lane, its first entry and the number of them.
-    spans: Vec<(u32, u32)>,
+    spans: Vec<Span>,
+    /// Lanes with entries.
+    busy: Vec<LaneId>,
 }
 
 impl Lists {
     /// Vehicles on a lane by ascending place.
     pub fn on(&self, lane: LaneId) -> &[Entry] {
-        let (first, count) = self.spans[lane as usize];
+        let Span { first, count } = self.spans[lane as usize];
         &self.entries[first as usize..(first + count) as usize]
     }
 
@@ -43,24 +61,39 @@ impl Lists {
         next_lane: impl Fn(&Vehicle) -> Option<Onward>,
         present: impl Fn(&Vehicle) -> bool,
     ) {
-        for entry in self.entries.drain(..) {
-            self.spans[entry.lane as usize] = (0, 0);
-        }
-        self.spans.resize(map.lanes.len(), (0, 0));
+        self.found.clear();
         for (i, vehicle) in vehicles.iter().enumerate() {
             if present(vehicle) {
                 self.add(map, i, vehicle, &drivers[i], &next_lane);
             }
         }
-        let key = |e: &Entry| (e.lane, e.s_m, e.id);
-        self.entries.sort_unstable_by(|a, b| {
-            let ((l, s, i), (m, t, j)) = (key(a), key(b));
-            l.cmp(&m).then(s.total_cmp(&t)).then(i.cmp(&j))
-        });
-        for (i, entry) in self.entries.iter().enumerate() {
+        self.spans.resize(map.lanes.len(), Span::default());
+        self.make_room();
+        for entry in &self.found {
             let span = &mut self.spans[entry.lane as usize];
-            *span = if span.1 == 0 { (i as u32, 1) } else { (span.0, span.1 + 1) };
+            insert(&mut self.entries[span.first as usize..], span.count as usize, *entry);
+            span.count += 1;
         }
+    }
+
+    /// Gives every lane a stretch as long as its entries are many.
+    fn make_room(&mut self) {
+        for lane in self.busy.drain(..) {
+            self.spans[lane as usize] = Span::default();
+        }
+        for entry in &self.found {
+            let span = &mut self.spans[entry.lane as usize];
+            if span.count == 0 {
+                self.busy.push(entry.lane);
+            }
+            span.count += 1;
+        }
+        let mut first = 0;
+        for &lane in &self.busy {
+            let span = &mut self.spans[lane as usize];
+            (span.first, first, span.count) = (first, first + span.count, 0);
+        }
+        self.entries.resize(self.found.len(), Entry::default());
     }
 
     fn add(
@@ -81,19 +114,29 @@ impl Lists {
             vehicle: index as u32,
             id: vehicle.id,
         };
-        self.entries.push(entry);
+        self.found.push(entry);
         if let Some(left) = reaches_into(map, vehicle, driver) {
-            self.entries.push(Entry { lane: left.lane, s_m: left.s_m, ..entry });
+            self.found.push(Entry { lane: left.lane, s_m: left.s_m, ..entry });
         }
         if vehicle.s_m < half_m {
             for &before in &lane.predecessors {
                 let s_m = vehicle.s_m + map.lanes[before as usize].length_m;
-                self.entries.push(Entry { lane: before, s_m, ..entry });
+                self.found.push(Entry { lane: before, s_m, ..entry });
             }
         }
         if vehicle.s_m + half_m > lane.length_m {
             let reach = |next: Onward| Entry { lane: next.lane, s_m: vehicle.s_m - lane.length_m + next.at_m, ..entry };
-            self.entries.extend(next_lane(vehicle).map(reach));
+            self.found.extend(next_lane(vehicle).map(reach));
         }
     }
+}
+
+/// Puts an entry among the first `count`, which are in order: a lane holds few.
+fn insert(entries: &mut [Entry], count: usize, entry: Entry) {
+    let mut at = count;
+    while at > 0 && entry.is_before(&entries[at - 1]) {
+        entries[at] = entries[at - 1];
+        at -= 1;
+    }
+    entries[at] = entry;
 }

@@ -3,7 +3,7 @@
 use crate::controls::Controls;
 use crate::map_data::{LaneKind, Place, Projection, StopKind, Turn};
 use crate::signals::{self, LightPhase};
-use crate::time::Tick;
+use crate::time::{Tick, seconds};
 
 use super::actors::Actors;
 use super::asking::{self, Asking};
@@ -11,14 +11,14 @@ use super::body::Surroundings;
 use super::crosswalk::{Claim, Gaps};
 use super::crowd::Crowd;
 use super::drive::View;
-use super::hazard::{Hazard, Seeker, side, sight};
+use super::hazard::Hazard;
 use super::horn::Horn;
 use super::jaywalk;
 use super::journey::Journey;
-use super::junction::{self, EGO, Member, Members, Signal, swept_half_m};
+use super::junction::{EGO, Member, Members, swept_half_m};
 use super::lists::{Entry, Lists};
 use super::pass;
-use super::plan::{self, Line, Plan};
+use super::plan::{self, Plan};
 use super::state::TrafficState;
 use super::step::Step;
 use super::vehicle::Vehicle;
@@ -27,8 +27,6 @@ use super::walker::{Walker, WalkerMode};
 
 /// The ego car is expected at a junction that it reaches within this time, s.
 const EGO_EXPECTED_S: f32 = 4.0;
-/// Before it asks for a junction a vehicle looks this far for what stands in its way, metres.
-const STANDING_M: f32 = 60.0;
 /// Slower than this it lets others go, m/s.
 const EGO_WAITS_MPS: f32 = 1.0;
 
@@ -40,6 +38,7 @@ pub(super) struct Sight {
     lights: Vec<(LightPhase, Tick)>,
     lists: Lists,
     steps: Vec<Step>,
+    /// Of those who decide, and of those whom others have to know about.
     plans: Vec<Plan>,
     members: Members,
     /// The ego car, loose actors and vehicles that stand aside first, then people on the road.
@@ -136,15 +135,23 @@ impl Sight {
     fn plan(&mut self, actors: &Actors) {
         self.steps.clear();
         self.plans.clear();
-        for (i, (vehicle, driver)) in actors.state.vehicles.iter().zip(&actors.drivers).enumerate() {
-            let (map, ways) = (actors.map(), &actors.ways);
-            let mut plan = plan::plan(map, ways, actors.seed, vehicle, driver, &mut self.steps);
-            let steps = &self.steps[plan.steps.0 as usize..];
-            let apart = |entry: &Entry| pass::apart(&actors.state.vehicles, &actors.drivers, i, entry);
-            plan.leader =
-                plan::leader(&self.lists, steps, i, driver, plan::horizon_m(vehicle.speed_mps, driver), apart);
+        let watched = self.tick.is_multiple_of(seconds(1));
+        for (i, vehicle) in actors.state.vehicles.iter().enumerate() {
+            let plan = match watched || vehicle.decides(self.tick) || vehicle.counts_at_junction() {
+                true => self.plan_of(actors, i, vehicle),
+                false => Plan::default(),
+            };
             self.plans.push(plan);
         }
+    }
+
+    fn plan_of(&mut self, actors: &Actors, i: usize, vehicle: &Vehicle) -> Plan {
+        let driver = &actors.drivers[i];
+        let plan = plan::plan(actors.map(), &actors.ways, actors.seed, vehicle, driver, &mut self.steps);
+        let apart = |entry: &Entry| pass::apart(&actors.state.vehicles, &actors.drivers, i, entry);
+        let horizon_m = plan::horizon_m(vehicle.speed_mps, driver);
+        let leader = plan::leader(&self.lists, self.steps_of(&plan), i, driver, horizon_m, apart);
+        Plan { leader, ..plan }
     }
 
     fn gather_hazards(&mut self, actors: &Actors, around: &Surroundings<'_>) {
@@ -231,37 +238,11 @@ impl Sight {
     fn add_before_junction(&self, actors: &Actors, i: usize, members: &mut Members) {
         let plan = &self.plans[i];
         let Some(line) = &plan.line else { return };
-        let granted = actors.state.vehicles[i].flags & Vehicle::GRANTED != 0;
-        if granted || self.asks(actors, i, plan, line) {
+        let flags = actors.state.vehicles[i].flags;
+        if flags & (Vehicle::GRANTED | Vehicle::ASKING) != 0 {
             let inside = &self.steps_of(plan)[line.inside.0..line.inside.1];
-            members.push(member(actors, i, line.zone, granted), inside.iter().copied());
+            members.push(member(actors, i, line.zone, flags & Vehicle::GRANTED != 0), inside.iter().copied());
         }
-    }
-
-    fn asks(&self, actors: &Actors, i: usize, plan: &Plan, line: &Line) -> bool {
-        let (vehicle, steps) = (&actors.state.vehicles[i], self.steps_of(plan));
-        let map = actors.map();
-        let open = junction::signal(map, &self.lights, vehicle, steps[line.approach].lane) == Signal::Open;
-        let free = plan.leader.is_none_or(|leader| {
-            let ahead = &actors.state.vehicles[leader.vehicle as usize];
-            leader.gap_m > line.ahead_m || ahead.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0
-        });
-        let known = (map, &*actors.ways, &self.lists);
-        let room =
-            || junction::has_room(known, plan, line, steps, i, &actors.drivers[i], self.standing_m(actors, i, steps));
-        junction::near_enough(vehicle, line, 0.0) && open && free && room()
-    }
-
-    /// From a vehicle's middle to the nearest thing that stands in its way and cannot be passed, metres.
-    fn standing_m(&self, actors: &Actors, i: usize, steps: &[Step]) -> f32 {
-        let half = actors.drivers[i].size_m.truncate() * 0.5;
-        let (position, offset_m) = (actors.bodies[i].position, actors.state.vehicles[i].offset_m);
-        let seeker = Seeker { position, offset_m, speed_mps: 0.0, half, horizon_m: STANDING_M };
-        let free = &self.hazards[..self.free];
-        let aim_m = side(actors.map(), steps, &seeker, free, offset_m);
-        let seen = free.iter().filter(|h| h.stands()).filter_map(|h| sight(actors.map(), steps, &seeker, h));
-        let blocking = seen.filter(|seen| seen.blocks(aim_m, half.y));
-        blocking.map(|seen| seen.gap_m + half.x).fold(f32::MAX, f32::min)
     }
 
     /// The ego car counts as crossing where it is, and as asking for every way it may take: those that it indicates.

@@ -17,7 +17,7 @@ use super::plan::{Line, Plan, braking_needed};
 use super::rates::HazardRates;
 use super::step::LINE_MARGIN_M;
 use super::traits::Driver;
-use super::vehicle::Vehicle;
+use super::vehicle::{DECIDE_TICKS, Vehicle};
 
 /// Whoever would be at the line this long after the light has turned red may run it, s.
 const RUN_S: f32 = 2.0;
@@ -95,7 +95,7 @@ impl View<'_> {
         match next.lapse {
             Lapse::None => self.begin(index, plan, next),
             Lapse::BrakesHard => {
-                next.lapse_left = next.lapse_left.saturating_sub(1);
+                next.lapse_left = next.lapse_left.saturating_sub(DECIDE_TICKS);
                 end_if(next.lapse_left == 0, next);
             }
             Lapse::RunsRed => {
@@ -124,7 +124,7 @@ impl View<'_> {
             next.lapse = Lapse::RunsRed;
             next.flags |= Vehicle::GRANTED;
         }
-        if (self.tick + Tick::from(next.id)).is_multiple_of(seconds(1)) {
+        if next.is_due(self.tick, seconds(1)) {
             self.begin_at_any_time(index, plan, next);
         }
     }
@@ -240,7 +240,7 @@ impl View<'_> {
             next.stuck_s = next.stuck_s.saturating_add(u8::from(self.tick.is_multiple_of(seconds(1))));
             return;
         }
-        if (self.tick + Tick::from(next.id)).is_multiple_of(DS_TICKS) {
+        if next.is_due(self.tick, DS_TICKS) {
             next.lapse_left = next.lapse_left.saturating_sub(1);
             if next.lapse_left == 0 && self.can_pull_out(index) {
                 next.lapse = Lapse::PullsOut;

@@ -6,6 +6,7 @@
 //! Poses follow from the map's geometry, individual differences from stateless random numbers.
 
 mod actors;
+mod approach;
 mod asking;
 mod barge;
 mod body;

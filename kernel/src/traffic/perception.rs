@@ -11,7 +11,7 @@ use super::drive::{View, follow_idm};
 use super::plan::{Leader, Plan};
 use super::rates::HazardRates;
 use super::traits::Driver;
-use super::vehicle::Vehicle;
+use super::vehicle::{DECIDE_TICKS, Vehicle};
 
 /// Standard deviation of the gap as it is judged, relative, and of the closing speed, m/s for each metre.
 const GAP_ERROR: f32 = 0.05;
@@ -62,7 +62,7 @@ impl View<'_> {
         if notices || wished > NOTICED_MPS2 || looms(driver, next.speed_mps, &leader) {
             return wished;
         }
-        next.late_ticks = waited + 1;
+        next.late_ticks = waited + DECIDE_TICKS;
         LATE_MPS2
     }
 

@@ -3,12 +3,16 @@
 use crate::actor::ActorKind;
 use crate::map_data::LaneId;
 use crate::state;
+use crate::time::Tick;
 
 use super::lapse::Lapse;
 use super::manoeuvre::Manoeuvre;
 
+/// Drivers decide so often: 20 times a second, faster than anybody reacts. Between that they hold pedals and wheel.
+pub(super) const DECIDE_TICKS: u8 = 3;
+
 state! {
-    /// A vehicle on a lane. 37 bytes.
+    /// A vehicle on a lane. 40 bytes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Vehicle {
         /// Id of the actor.
@@ -27,6 +31,8 @@ state! {
         pub offset_m: f32,
         /// Speed, m/s, never negative.
         pub speed_mps: f32,
+        /// Acceleration that its driver holds, 1/1000 m/s².
+        pub accel_mmps2: i16,
         /// Journeys begun after the first (wrapping): the counter of its drawn goals.
         pub trips: u16,
         /// Ticks it has waited at the line before it, saturating.
@@ -41,6 +47,8 @@ state! {
         pub signal_ticks: u8,
         /// Sideways motion to the left for each metre driven, 1/100.
         pub drift: i8,
+        /// The same that its driver steers for.
+        pub drift_aim: i8,
         /// What its driver does wrong at the moment.
         pub lapse: Lapse,
         /// Time until that is over, in units that depend on what it is.
@@ -63,11 +71,28 @@ impl Vehicle {
     pub const TURNS_LEFT: u8 = 16;
     /// Turns right there.
     pub const TURNS_RIGHT: u8 = 32;
+    /// Asks to enter the junction before it.
+    pub const ASKING: u8 = 64;
+    /// Every flag with a meaning.
+    pub const ALL_FLAGS: u8 = 127;
+
     /// Stands where it is no part of the traffic: it crashed, or halted at the kerb.
     pub(super) fn is_aside(&self) -> bool {
         matches!(self.lapse, Lapse::Crashed | Lapse::Halts)
     }
 
-    /// Every flag with a meaning.
-    pub const ALL_FLAGS: u8 = 63;
+    /// Whether it is in a junction, may enter one, or asks for that.
+    pub(super) fn counts_at_junction(&self) -> bool {
+        self.flags & (Self::GRANTED | Self::ASKING | Self::CROSSING) != 0
+    }
+
+    /// Whether its driver decides in a tick.
+    pub(super) fn decides(&self, tick: Tick) -> bool {
+        self.is_due(tick, Tick::from(DECIDE_TICKS))
+    }
+
+    /// Whether what is done every so many ticks is due: not for everybody in the same tick.
+    pub(super) fn is_due(&self, tick: Tick, every_ticks: Tick) -> bool {
+        (tick + Tick::from(self.id)).is_multiple_of(every_ticks)
+    }
 }

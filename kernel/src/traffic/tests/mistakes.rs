@@ -107,7 +107,8 @@ fn so_many_run_a_red_light_as_are_asked_for() {
         let mut last = traffic.state().vehicles.clone();
         let before = |view: &View<'_>| {
             for (i, (vehicle, plan)) in view.vehicles.iter().zip(view.plans).enumerate() {
-                let Some(line) = plan.line.filter(|_| vehicle.lapse == Lapse::None) else { continue };
+                let free = vehicle.lapse == Lapse::None && vehicle.decides(view.tick);
+                let Some(line) = plan.line.filter(|_| free) else { continue };
                 let red_at = view.meets_red(plan, &line, vehicle);
                 if let Some(red_at) = red_at.filter(|_| view.has_room_beyond(i, plan, &line)) {
                     occasions.insert((vehicle.id, red_at));

@@ -16,6 +16,7 @@ use crate::map::{RoadNetwork, StopKind, bundled};
 use crate::signals::{LightPhase, phase};
 use crate::state::State;
 use crate::time::Tick;
+use crate::traffic::vehicle::DECIDE_TICKS;
 use crate::weather::Conditions;
 use crossroads::{Signs, crossroads};
 
@@ -195,7 +196,7 @@ fn state_is_small_and_resumes() {
     let bytes = traffic.actors.state.to_bytes();
     // So that a keyframe with 150 of them stays below 6 kB.
     let TrafficState { vehicles, walkers } = traffic.state();
-    assert_eq!(bytes.len(), 37 * vehicles.len() + 28 * walkers.len() + 8);
+    assert_eq!(bytes.len(), 40 * vehicles.len() + 28 * walkers.len() + 8);
     let state = TrafficState::from_bytes(&bytes).expect("own bytes are read back");
     let mut resumed = Traffic::resume(&counts(60), 4, network.ways(), state).expect("own state fits the map");
     assert_eq!(traffic.actors.bodies, resumed.actors.bodies);
@@ -348,7 +349,9 @@ fn who_waits_at_an_open_line_hears_the_horn_of_the_car_behind() {
             let ego = behind(body.position, body.rotation * Vec3::X, 9.0);
             let after = |ego_flags: u8| {
                 let mut fork = traffic.clone();
-                fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
+                for tick in tick..tick + Tick::from(DECIDE_TICKS) {
+                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
+                }
                 fork.state().vehicles.iter().find(|v| v.id == id).map_or(0, |v| v.wait_ticks)
             };
             let (silent, honked) = (after(0), after(Controls::HORN));
@@ -379,7 +382,15 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             let goes = |ego_flags: u8| {
                 let mut fork = traffic.clone();
                 for tick in tick..tick + 240 {
-                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
+                    for tick in tick..tick + Tick::from(DECIDE_TICKS) {
+                        fork.step(&Surroundings {
+                            tick,
+                            ego,
+                            ego_flags,
+                            loose: &[],
+                            conditions: Conditions::default(),
+                        });
+                    }
                     let walker = fork.state().walkers.iter().find(|w| w.id == id).expect("it is there");
                     let edge = &network.walk_edges[walker.edge as usize];
                     if walker.mode != WalkerMode::Wait && edge.crosswalk.is_some() {

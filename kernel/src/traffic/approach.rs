@@ -1,0 +1,107 @@
+//! What a vehicle does before a junction: it asks to enter, waits at the line, and gives back what it was granted.
+
+use crate::map_data::StopKind;
+use crate::time::seconds;
+
+use super::drive::View;
+use super::hazard::{Seeker, side, sight};
+use super::junction::{self, Signal, has_room};
+use super::lapse::Lapse;
+use super::plan::{Line, Plan};
+use super::step::{LINE_MARGIN_M, Step};
+use super::vehicle::{DECIDE_TICKS, Vehicle};
+
+/// How long a vehicle stands at a stop sign.
+const HALT_TICKS: u16 = seconds(1) as u16;
+/// Who waits for so long at an open line gives up his goal for another.
+const RETHINK_TICKS: u16 = seconds(15) as u16;
+/// Before it asks for a junction a vehicle looks this far for what stands in its way, metres.
+const STANDING_M: f32 = 60.0;
+
+impl View<'_> {
+    /// Asks for grants, gives them back, waits and halts.
+    pub(super) fn enter_or_wait(&self, index: usize, plan: &Plan, next: &mut Vehicle) {
+        let Some(line) = &plan.line else {
+            next.flags &= !(Vehicle::GRANTED | Vehicle::ASKING);
+            next.wait_ticks = 0;
+            return;
+        };
+        let steps = self.steps_of(plan);
+        let signal = junction::signal(self.map, self.lights, next, steps[line.approach].lane);
+        if next.lapse == Lapse::RunsRed {
+            next.flags |= Vehicle::GRANTED;
+        } else if next.flags & Vehicle::GRANTED != 0 {
+            let keeps = junction::near_enough(next, line, 6.0) && !self.lost_room(index, plan, line, next);
+            if junction::must_stop(signal, next, line, self.pace_mps(plan, line, next)) || !keeps {
+                next.flags &= !Vehicle::GRANTED;
+            }
+        } else if self.asks(index, plan, line, signal, next) {
+            // The others have to have heard of it.
+            let heard = self.members.asking(line.zone, index);
+            let granted = |asking| self.members.grants(self.ways, asking, &steps[line.inside.0..line.inside.1]);
+            next.flags |= if heard.is_some_and(granted) { Vehicle::GRANTED } else { Vehicle::ASKING };
+        } else {
+            next.flags &= !Vehicle::ASKING;
+        }
+        if next.flags & Vehicle::GRANTED != 0 {
+            next.flags &= !Vehicle::ASKING;
+        }
+        self.wait(index, line, signal, steps, next);
+    }
+
+    /// How fast a vehicle gets to its line at most: as fast as the one before it there.
+    fn pace_mps(&self, plan: &Plan, line: &Line, next: &Vehicle) -> f32 {
+        let before = plan.leader.filter(|leader| leader.gap_m < line.ahead_m);
+        before.map_or(next.speed_mps, |leader| next.speed_mps.min(leader.speed_mps))
+    }
+
+    /// Whether one that stands before the line with a grant has no room beyond the junction any more.
+    fn lost_room(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle) -> bool {
+        let (steps, driver) = (self.steps_of(plan), &self.drivers[index]);
+        let known = (self.map, self.ways, self.lists);
+        let waits = next.speed_mps < 0.1 && line.ahead_m > 0.0 && !line.passed;
+        waits && !has_room(known, plan, line, steps, index, driver, f32::MAX)
+    }
+
+    fn wait(&self, index: usize, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
+        let stop = self.map.lanes[steps[line.approach].lane as usize].stop;
+        let sign = stop.is_some_and(|stop| stop.kind == StopKind::Stop);
+        let at_line = line.hold_m < LINE_MARGIN_M + 2.0 && next.speed_mps < 0.3;
+        if at_line && (sign || signal == Signal::Open) {
+            next.wait_ticks = next.wait_ticks.saturating_add(u16::from(DECIDE_TICKS));
+            if signal == Signal::Open && self.is_honked_at(index) {
+                next.wait_ticks = next.wait_ticks.max(junction::PATIENCE_TICKS + u16::from(DECIDE_TICKS));
+            }
+            if next.wait_ticks.is_multiple_of(RETHINK_TICKS) && next.flags & Vehicle::GRANTED == 0 {
+                // No way through: somewhere else, perhaps by another turn.
+                next.trips = next.trips.wrapping_add(1);
+            }
+        } else if !at_line {
+            next.wait_ticks = 0;
+        }
+        if sign && (next.wait_ticks >= HALT_TICKS || self.rolls(line, steps[line.approach].lane, next)) {
+            next.flags |= Vehicle::HALTED;
+        }
+    }
+
+    /// Whether a vehicle wants to enter the junction before it now.
+    fn asks(&self, index: usize, plan: &Plan, line: &Line, signal: Signal, next: &Vehicle) -> bool {
+        let free = plan.leader.is_none_or(|leader| {
+            let ahead = &self.vehicles[leader.vehicle as usize];
+            leader.gap_m > line.ahead_m || ahead.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0
+        });
+        let (known, steps) = ((self.map, self.ways, self.lists), self.steps_of(plan));
+        let room = || has_room(known, plan, line, steps, index, &self.drivers[index], self.standing_m(index, steps));
+        junction::near_enough(next, line, 0.0) && signal == Signal::Open && free && room()
+    }
+
+    /// From a vehicle's middle to the nearest thing that stands in its way and cannot be passed, metres.
+    fn standing_m(&self, index: usize, steps: &[Step]) -> f32 {
+        let seeker = Seeker { speed_mps: 0.0, horizon_m: STANDING_M, ..self.seeker(index) };
+        let free = &self.hazards[..self.free];
+        let aim_m = side(self.map, steps, &seeker, free, seeker.offset_m);
+        let seen = free.iter().filter(|h| h.stands()).filter_map(|h| sight(self.map, steps, &seeker, h));
+        let blocking = seen.filter(|seen| seen.blocks(aim_m, seeker.half.y));
+        blocking.map(|seen| seen.gap_m + seeker.half.x).fold(f32::MAX, f32::min)
+    }
+}
