@@ -231,7 +231,7 @@ impl Sight {
         let zone = ways[vehicle.lane as usize].zone.or_else(|| behind.clone().find_map(|s| inside(&s)));
         let Some(zone) = zone else { return };
         let here = self.steps_of(&self.plans[i]).iter().copied().take_while(|s| inside(s) == Some(zone));
-        let member = member(actors, i, zone, true);
+        let member = self.member(actors, i, zone, true);
         members.push(member, here.chain(behind.filter(|s| inside(s) == Some(zone))));
     }
 
@@ -241,8 +241,15 @@ impl Sight {
         let flags = actors.state.vehicles[i].flags;
         if flags & (Vehicle::GRANTED | Vehicle::ASKING) != 0 {
             let inside = &self.steps_of(plan)[line.inside.0..line.inside.1];
-            members.push(member(actors, i, line.zone, flags & Vehicle::GRANTED != 0), inside.iter().copied());
+            members.push(self.member(actors, i, line.zone, flags & Vehicle::GRANTED != 0), inside.iter().copied());
         }
+    }
+
+    fn member(&self, actors: &Actors, i: usize, zone: u32, holds: bool) -> Member {
+        let vehicle = &actors.state.vehicles[i];
+        let half_m = swept_half_m(actors.drivers[i].size_m);
+        let wait_ticks = vehicle.waited_ticks(self.tick);
+        Member { zone, vehicle: i as u32, id: vehicle.id, holds, half_m, wait_ticks, lanes: (0, 0) }
     }
 
     /// The ego car counts as crossing where it is, and as asking for every way it may take: those that it indicates.
@@ -287,10 +294,4 @@ impl Sight {
             members.push(member(zone, false), lanes);
         }
     }
-}
-
-fn member(actors: &Actors, i: usize, zone: u32, holds: bool) -> Member {
-    let vehicle = &actors.state.vehicles[i];
-    let half_m = swept_half_m(actors.drivers[i].size_m);
-    Member { zone, vehicle: i as u32, id: vehicle.id, holds, half_m, wait_ticks: vehicle.wait_ticks, lanes: (0, 0) }
 }

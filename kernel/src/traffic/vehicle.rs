@@ -86,6 +86,13 @@ impl Vehicle {
         self.flags & (Self::GRANTED | Self::ASKING | Self::CROSSING) != 0
     }
 
+    /// Ticks for which it has waited at a tick, also since its driver last counted: so that all compare the same.
+    pub(super) fn waited_ticks(&self, tick: Tick) -> u16 {
+        let every = Tick::from(DECIDE_TICKS);
+        let since = (tick + Tick::from(self.id) + every - 1) % every + 1;
+        if self.wait_ticks == 0 { 0 } else { self.wait_ticks.saturating_add(since as u16) }
+    }
+
     /// Whether its driver decides in a tick.
     pub(super) fn decides(&self, tick: Tick) -> bool {
         self.is_due(tick, Tick::from(DECIDE_TICKS))
@@ -94,5 +101,56 @@ impl Vehicle {
     /// Whether what is done every so many ticks is due: not for everybody in the same tick.
     pub(super) fn is_due(&self, tick: Tick, every_ticks: Tick) -> bool {
         (tick + Tick::from(self.id)).is_multiple_of(every_ticks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actor::ActorKind;
+
+    #[test]
+    fn two_who_wait_agree_in_every_tick_who_came_first() {
+        let came = [(1, 100), (2, 101), (3, 101), (4, 99), (5, 103), (6, 104)];
+        let waits = |id, from: Tick, tick: Tick| {
+            // As counted when its driver decided before this tick.
+            let decisions = (from..tick).filter(|t| Vehicle { id, ..Vehicle::standing() }.decides(*t)).count() as u16;
+            Vehicle { id, wait_ticks: decisions * u16::from(DECIDE_TICKS), ..Vehicle::standing() }
+        };
+        for (a, from_a) in came {
+            for (b, from_b) in came {
+                let lead =
+                    |t| i32::from(waits(a, from_a, t).waited_ticks(t)) - i32::from(waits(b, from_b, t).waited_ticks(t));
+                let leads: Vec<i32> = (110..130).map(lead).collect();
+                assert!(leads.iter().all(|l| *l == leads[0]), "{a} and {b}: {leads:?}");
+            }
+        }
+    }
+
+    impl Vehicle {
+        fn standing() -> Self {
+            Self {
+                id: 0,
+                kind: ActorKind::Car,
+                flags: 0,
+                lane: 0,
+                before: 0,
+                s_m: 0.0,
+                offset_m: 0.0,
+                speed_mps: 0.0,
+                accel_mmps2: 0,
+                trips: 0,
+                wait_ticks: 0,
+                phase: 0,
+                stuck_s: 0,
+                manoeuvre: Manoeuvre::Keep,
+                signal_ticks: 0,
+                drift: 0,
+                drift_aim: 0,
+                lapse: Lapse::None,
+                lapse_left: 0,
+                late_ticks: 0,
+            }
+        }
     }
 }
