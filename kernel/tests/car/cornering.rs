@@ -52,7 +52,13 @@ fn axle_limit(friction: f64) -> f64 {
 #[test]
 fn the_skid_pad_ends_where_the_tyres_do() {
     // Rolling without pedals, as what drives the front wheels is lost to the turn, and the wheel turned ever more.
-    for (kind, from_mps) in [(SurfaceKind::Road, 26.0), (SurfaceKind::Ground, 22.0), (SurfaceKind::Terrain, 20.0)] {
+    let cases = [
+        (SurfaceKind::Road, 26.0),
+        (SurfaceKind::Setts, 22.0),
+        (SurfaceKind::Gravel, 22.0),
+        (SurfaceKind::Terrain, 20.0),
+    ];
+    for (kind, from_mps) in cases {
         let mut drive = Drive::over(kind, from_mps, BARE);
         let (mut best, mut angle_rad) = (0f32, 0f32);
         for tick in 0..seconds(8) / 6 {
@@ -88,7 +94,7 @@ fn the_hand_brake_turns_the_car_round() {
         for _ in 0..seconds(4) {
             drive.step(&Controls { flags, ..Controls::from_fractions(-1.0, 0.0, 0.0) });
             let heading = drive.ego.heading_rad();
-            turned += crate::ops::wrap_angle(heading - last);
+            turned += kernel::ops::wrap_angle(heading - last);
             last = heading;
             if drive.ego.motion.velocity_mps.length() < 1.0 {
                 break;
@@ -105,7 +111,7 @@ fn the_hand_brake_turns_the_car_round() {
 /// Angle from the car's x axis to its way, radians counter-clockwise.
 fn side_slip_rad(ego: &Ego) -> f32 {
     let velocity = ego.motion.rotation.conjugate() * ego.motion.velocity_mps;
-    crate::ops::atan2(velocity.y, velocity.x)
+    kernel::ops::atan2(velocity.y, velocity.x)
 }
 
 /// ISO 3888-2: lengths of the sections and the sides of the three lanes, metres, for a car 1.8 m wide; the last lane with
@@ -133,9 +139,9 @@ fn lane_change(entry_mps: f32, setup: CarSetup) -> f32 {
         let heading = drive.ego.heading_rad();
         let ahead_m = 5.0;
         let target = path(at + ahead_m);
-        let bearing = crate::ops::atan2(target - middle.y, ahead_m) - heading;
+        let bearing = kernel::ops::atan2(target - middle.y, ahead_m) - heading;
         let curvature = 2.0 * bearing / ahead_m;
-        let steer = -crate::ops::atan2(2.7 * curvature, 1.0) / 0.611;
+        let steer = -kernel::ops::atan2(2.7 * curvature, 1.0) / 0.611;
         let throttle = if at < 2.0 { cruise(&drive.ego, entry_mps, 0.0).throttle_fraction() } else { 0.0 };
         drive.step(&Controls::from_fractions(steer, throttle, 0.0));
         for corner in [(2.25, 0.9), (2.25, -0.9), (-2.25, 0.9), (-2.25, -0.9)] {
