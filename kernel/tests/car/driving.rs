@@ -107,7 +107,7 @@ const ROCKING: (f32, f32) = (0.02, 0.1);
 const LET_GO_MPS: f32 = 1.5;
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig::with_cases(cases(48)))]
 
     #[test]
     fn more_throttle_is_never_slower_and_more_brake_never_faster(

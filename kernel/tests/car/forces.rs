@@ -18,7 +18,7 @@ fn sequences() -> impl Strategy<Value = Vec<(Controls, u8)>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig::with_cases(cases(64)))]
 
     /// 10,000 of them: `PROPTEST_CASES=10000`.
     #[test]

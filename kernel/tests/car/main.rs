@@ -1,11 +1,16 @@
 //! The car against the books, on a plane without lanes. What a test expects is computed in it, from figures of its own.
 
+#![allow(clippy::disallowed_methods, reason = "tests may read the environment")]
+
 mod braking;
 mod cornering;
 mod driving;
 mod forces;
+mod plots;
 mod standing;
 mod state;
+#[path = "../common/svg.rs"]
+mod svg;
 
 use std::sync::Arc;
 
@@ -87,6 +92,11 @@ impl Drive {
     fn yaw_radps(&self) -> f32 {
         self.ego.motion.spin_radps.z
     }
+}
+
+/// How many cases of a property are tried: `PROPTEST_CASES` of them, if it is set.
+fn cases(usual: u32) -> u32 {
+    std::env::var("PROPTEST_CASES").map_or(usual, |cases| cases.parse().expect("PROPTEST_CASES is a number"))
 }
 
 /// Keeps a speed.

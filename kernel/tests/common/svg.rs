@@ -50,7 +50,9 @@ impl Chart {
             let (at, _) = chart.at(*tick, y.range[0]);
             chart.text([at, area.bottom + 16.0], MIDDLE, BLACK, &tick.to_string());
         }
-        chart.text([0.5 * (area.left + area.right), area.bottom + 36.0], MIDDLE, BLACK, x.label);
+        if !x.label.is_empty() {
+            chart.text([0.5 * (area.left + area.right), area.bottom + 36.0], MIDDLE, BLACK, x.label);
+        }
         chart.text([area.left - 50.0, area.top - 19.0], START, BLACK, y.label);
         chart
     }
@@ -98,14 +100,14 @@ impl Chart {
         self.svg += &format!("<path d=\"{steps}\" fill=\"none\" stroke=\"{colour}\"{style}/>\n");
     }
 
-    /// Many small points of one colour.
-    pub fn cloud(&mut self, colour: &str, places: impl IntoIterator<Item = (f64, f64)>) {
+    /// Many points of one colour, so many pixels wide.
+    pub fn cloud(&mut self, colour: &str, width: f64, places: impl IntoIterator<Item = (f64, f64)>) {
         let points = places.into_iter().map(|(x, y)| {
             let (x, y) = self.at(x, y);
             format!("M{x:.1} {y:.1}h0")
         });
         let points = points.collect::<String>();
-        let style = "stroke-width=\"2\" stroke-linecap=\"round\" stroke-opacity=\"0.5\"";
+        let style = format!("stroke-width=\"{width}\" stroke-linecap=\"round\"");
         self.svg += &format!("<path d=\"{points}\" stroke=\"{colour}\" {style}/>\n");
     }
 }
