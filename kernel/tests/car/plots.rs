@@ -95,12 +95,12 @@ fn tyre_curve() {
     let mut along = Chart::new(along, &slip, &friction_axis("braking force by load"));
     let mut across = Chart::new(across, &angle, &friction_axis("side force by load"));
     let cases = [
-        (BLUE, "asphalt", friction(SurfaceKind::Road)),
-        (RED, "wet asphalt", wet_friction(SurfaceKind::Road)),
-        (ORANGE, "gravel", friction(SurfaceKind::Gravel)),
-        (GREEN, "grass", friction(SurfaceKind::Terrain)),
+        (BLUE, "asphalt", 0.38, friction(SurfaceKind::Road)),
+        (RED, "wet asphalt", 0.18, wet_friction(SurfaceKind::Road)),
+        (ORANGE, "gravel", 0.38, friction(SurfaceKind::Gravel)),
+        (GREEN, "grass", 0.38, friction(SurfaceKind::Terrain)),
     ];
-    for (colour, name, figures) in cases {
+    for (colour, name, slip_of_name, figures) in cases {
         let grip = Grip { peak: figures[0] as f32, sliding: figures[1] as f32, rolling: 0.0 };
         along.line(colour, "", (0..=100).map(|k| f64::from(k) / 200.0).map(|slip| (slip, curve(figures, slip))));
         across.line(
@@ -122,9 +122,10 @@ fn tyre_curve() {
                 assert!((driven / computed - 1.0).abs() < 0.01, "{name}: {driven} instead of {computed}");
             }
         }
-        let last = curve(figures, 0.5);
-        along.beside((0.5, last), [-4.0, -8.0], END, colour, name);
-        across.beside((25.0, last), [-4.0, -8.0], END, colour, name);
+        let last = curve(figures, slip_of_name);
+        let down = if name.contains("asphalt") { -8.0 } else { 16.0 };
+        along.beside((slip_of_name, last), [6.0, down], START, colour, name);
+        across.beside((libm::atan(slip_of_name).to_degrees(), last), [6.0, down], START, colour, name);
     }
     agrees_with_plot("tyre", &picture([650, 325], &[along, across]));
 }
@@ -178,12 +179,12 @@ fn yaw_gains() {
     let x = Axis { label: "sideways acceleration, g", range: [0.0, 0.7], ticks: &[0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6] };
     let y = Axis {
         label: "yaw rate by angle of the front wheels, 1/s (dots: driven, lines: single-track model)",
-        range: [0.0, 8.0],
-        ticks: &[0.0, 2.0, 4.0, 6.0, 8.0],
+        range: [0.0, 10.0],
+        ticks: &[0.0, 2.0, 4.0, 6.0, 8.0, 10.0],
     };
     let mut chart = Chart::new(AREA, &x, &y);
     for (colour, speed) in [(BLUE, 7.0), (GREEN, 14.0), (ORANGE, 21.0), (RED, 28.0)] {
-        let mut expected = vec![(0.0, yaw_gain(speed))];
+        let mut expected = Vec::new();
         for k in 1..=12 {
             let (driven, yaw, gain) = turned(speed, 0.05 * f64::from(k));
             let place = (driven * yaw / G, gain);
@@ -201,18 +202,21 @@ fn yaw_gains() {
 fn coasting() {
     let x = Axis { label: "time, s", range: [0.0, 40.0], ticks: &[0.0, 10.0, 20.0, 30.0, 40.0] };
     let y = Axis {
-        label: "speed without a pedal, km/h (dots: driven, lines: drag and rolling resistance)",
+        label: "speed without a pedal, km/h (dots: driven, lines: drag and rolling resistance of so much)",
         range: [0.0, 100.0],
         ticks: &[0.0, 20.0, 40.0, 60.0, 80.0, 100.0],
     };
     let mut chart = Chart::new(AREA, &x, &y);
-    for ((kind, rolling, seconds_long), colour) in ROLLING.into_iter().zip([BLUE, ORANGE, GREEN]) {
+    for ((kind, rolling, seconds_long), (colour, at)) in
+        ROLLING.into_iter().zip([(BLUE, 16), (ORANGE, 34), (GREEN, 20)])
+    {
         let speeds = coasted_mps(kind, seconds_long);
         let computed = (0..=seconds_long).map(|s| (s as f64, 3.6 * rolled_mps(rolling, speeds[0], s as f64)));
         chart.line(colour, "", computed);
         chart.cloud(colour, 6.0, speeds.iter().enumerate().step_by(2).map(|(s, speed)| (s as f64, 3.6 * speed)));
-        let last = (seconds_long as f64, 3.6 * speeds[seconds_long]);
-        chart.beside(last, [-4.0, -10.0], END, colour, &format!("{}, {rolling}", name(kind)));
+        let words = format!("{}, {rolling}", name(kind));
+        let (anchor, beside) = if kind == SurfaceKind::Road { (START, [4.0, -10.0]) } else { (END, [-4.0, 18.0]) };
+        chart.beside((at as f64, 3.6 * speeds[at]), beside, anchor, colour, &words);
     }
     agrees_with_plot("coasting", &picture([620, 325], &[chart]));
 }
@@ -225,12 +229,14 @@ fn lane_change_of_iso_3888_2() {
     let y = Axis { label: &label, range: [-4.0, 6.0], ticks: &[-4.0, -2.0, 0.0, 2.0, 4.0, 6.0] };
     let mut chart = Chart::new(Area { bottom: 185.0, ..AREA }, &x, &y);
     let place = |corner: Vec3| (f64::from(corner.x), f64::from(corner.y));
-    for corners in change.boxes.iter().step_by(12) {
+    let seen = |corners: &&[Vec3; 4]| corners.iter().all(|corner| corner.x >= -5.0);
+    let boxes: Vec<_> = change.boxes.iter().filter(seen).collect();
+    for corners in boxes.iter().step_by(12) {
         let mut outline = corners.map(place).to_vec();
         outline.push(outline[0]);
         chart.line("#bbb", "", outline);
     }
-    let middles = change.boxes.iter().step_by(3).map(|corners| place(corners.iter().sum::<Vec3>() / 4.0));
+    let middles = boxes.iter().step_by(3).map(|corners| place(corners.iter().sum::<Vec3>() / 4.0));
     chart.line(BLUE, " stroke-width=\"2\"", middles);
     for ([from, to], sides) in LANES {
         for k in 0..=4 {
