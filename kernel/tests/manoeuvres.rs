@@ -1,6 +1,9 @@
 //! Vehicles change lanes, pass bicycles and whatever stands in their way, and flow as traffic does.
 #![allow(clippy::disallowed_methods, reason = "tests may read files and the environment")]
 
+#[path = "common/svg.rs"]
+mod svg;
+
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
@@ -9,6 +12,7 @@ use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::Conditions;
 use kernel::{Controls, RoadNetwork};
+use svg::{Area, Axis, Chart, agrees_with_plot, picture};
 
 const LANE_M: f64 = 3.5;
 const NOBODY: TrafficCounts = TrafficCounts {
@@ -295,45 +299,21 @@ fn two_lanes_with_1200_vehicles_an_hour_merge_into_one() {
     }
 }
 
-const PLOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/flow.svg");
-
 /// Flow over density as a picture.
 fn plot(diagram: &[(f64, f64, f64)]) -> String {
-    let at = |density: f64, flow: f64| (60.0 + density * 6.0, 275.0 - flow * 0.12);
-    let text = |x: f64, y: f64, anchor: &str, text: &str| {
-        format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n")
+    let density =
+        Axis { label: "density, vehicles a km and lane", range: [0.0, 90.0], ticks: &[0.0, 20.0, 40.0, 60.0, 80.0] };
+    let flow = Axis {
+        label: "flow, vehicles an hour and lane (mean speed in km/h at the points)",
+        range: [0.0, 2000.0],
+        ticks: &[0.0, 500.0, 1000.0, 1500.0, 2000.0],
     };
-    let mut svg = String::from(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"620\" height=\"325\" font-family=\"sans-serif\" \
-         font-size=\"12\">\n<rect width=\"620\" height=\"325\" fill=\"white\"/>\n",
-    );
-    for flow in [0.0, 500.0, 1000.0, 1500.0, 2000.0] {
-        let ((x0, y), (x1, _)) = (at(0.0, flow), at(90.0, flow));
-        svg += &format!("<path d=\"M{x0:.1} {y:.1}H{x1:.1}\" stroke=\"#ddd\"/>\n");
-        svg += &text(x0 - 6.0, y + 4.0, "end", &format!("{flow:.0}"));
+    let mut chart = Chart::new(Area { left: 60.0, top: 35.0, right: 600.0, bottom: 275.0 }, &density, &flow);
+    for &(density, flow, speed) in diagram {
+        chart.dot(svg::BLUE, (density, flow));
+        chart.beside((density, flow), [7.0, -6.0], svg::START, svg::BLACK, &format!("{:.0}", speed * 3.6));
     }
-    for density in [0.0, 20.0, 40.0, 60.0, 80.0] {
-        let (x, y) = at(density, 0.0);
-        svg += &text(x, y + 16.0, "middle", &format!("{density:.0}"));
-    }
-    let (x, y) = at(45.0, 0.0);
-    svg += &text(x, y + 36.0, "middle", "density, vehicles a km and lane");
-    svg += &text(10.0, 16.0, "start", "flow, vehicles an hour and lane (mean speed in km/h at the points)");
-    for (density, flow, speed) in diagram {
-        let (x, y) = at(*density, *flow);
-        svg += &format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"#1f77b4\"/>\n");
-        svg += &text(x + 7.0, y - 6.0, "start", &format!("{:.0}", speed * 3.6));
-    }
-    svg + "</svg>\n"
-}
-
-/// The picture in the documentation is the present one; `AEYE_BLESS=1` draws it.
-fn agrees_with_plot(svg: &str) {
-    if std::env::var("AEYE_BLESS").is_ok_and(|bless| bless == "1") {
-        std::fs::write(PLOT, svg).expect("docs can be written");
-    }
-    let golden = std::fs::read_to_string(PLOT).expect("docs/flow.svg is there (AEYE_BLESS=1 draws it)");
-    assert!(golden == svg, "docs/flow.svg shows another flow; AEYE_BLESS=1 draws it anew");
+    picture([620, 325], &[chart])
 }
 
 #[test]
@@ -342,7 +322,7 @@ fn the_flow_of_a_lane_has_its_maximum_where_measured_ones_do() {
     for (density, flow, speed) in &diagram {
         println!("{density:5.1} vehicles/km: {flow:6.0} vehicles/h at {:5.1} km/h", speed * 3.6);
     }
-    agrees_with_plot(&plot(&diagram));
+    agrees_with_plot("flow", &plot(&diagram));
     let most = diagram.iter().map(|point| point.1).fold(0.0, f64::max);
     assert!((1500.0..=2200.0).contains(&most), "at most {most} vehicles/h and lane");
     let (first, last) = (diagram[0], diagram[diagram.len() - 1]);

@@ -13,7 +13,7 @@ use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
 use crate::mesh::actor::{actor_model, ego_model};
 use crate::mesh::model::{Detail, Model};
-use crate::mesh::{CODE_BRAKE, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
+use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
 use crate::view::View;
 
 /// Actors smaller than this many pixels are left out.
@@ -55,7 +55,7 @@ impl Cast {
         moving.vertices.clear();
         moving.indices.clear();
         moving.shadows.clear();
-        self.pose_ego(&scene.ego, view, moving);
+        self.pose_ego(&scene.ego, scene.tick, view, moving);
         let near = |a: &ActorScene| {
             let (centre, radius) = sphere(a);
             centre.truncate().distance(view.eye.truncate()) - radius - SHADOW_M
@@ -73,13 +73,13 @@ impl Cast {
         }
     }
 
-    fn pose_ego(&mut self, ego: &EgoScene, view: &View, moving: &mut Moving) {
+    fn pose_ego(&mut self, ego: &EgoScene, tick: Tick, view: &View, moving: &mut Moving) {
         let frame =
             Affine3A::from_rotation_translation(ego.rotation, ego.position + ego.rotation * Vec3::X * EGO_MIDDLE_M);
         let size = ActorKind::Car.size_m();
         moving.shadows.push((frame, size));
         if view.sees(frame.translation.into(), size.length()) {
-            moving.append(ego_model(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, 0);
+            moving.append(ego_model(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, flashing(ego.lamps, tick));
         }
     }
 
@@ -138,7 +138,7 @@ impl Moving {
 
 /// The lamps that shine at a tick: indicators flash.
 fn flashing(lamps: u8, tick: Tick) -> u8 {
-    if tick % FLASH_TICKS < FLASH_TICKS / 2 { lamps } else { lamps & lamps::BRAKE }
+    if tick % FLASH_TICKS < FLASH_TICKS / 2 { lamps } else { lamps & !(lamps::LEFT | lamps::RIGHT) }
 }
 
 fn posed(v: &Vertex, frame: &Affine3A, instance: u16, lamps: u8) -> Vertex {
@@ -146,6 +146,7 @@ fn posed(v: &Vertex, frame: &Affine3A, instance: u16, lamps: u8) -> Vertex {
     let turn: Mat3A = frame.matrix3;
     let n = (turn * Vec3A::from_array(v.normal.map(f32::from))).round();
     let (code, colour) = match v.code {
+        CODE_HEAD if lamps & lamps::HEADLIGHTS != 0 => (CODE_LIT, [255, 250, 230]),
         CODE_BRAKE if lamps & lamps::BRAKE != 0 => (CODE_LIT, [255, 44, 36]),
         CODE_LEFT if lamps & lamps::LEFT != 0 => (CODE_LIT, AMBER),
         CODE_RIGHT if lamps & lamps::RIGHT != 0 => (CODE_LIT, AMBER),

@@ -10,9 +10,8 @@ pub(super) struct Meshes(Vec<Surface>);
 
 impl Meshes {
     pub fn new() -> Self {
-        use SurfaceKind as K;
-        let kinds = [K::Road, K::RoadLine, K::Sidewalk, K::Terrain, K::Ground];
-        Self(kinds.map(|kind| Surface { kind, positions: Vec::new(), triangles: Vec::new() }).to_vec())
+        let empty = |&kind| Surface { kind, positions: Vec::new(), triangles: Vec::new() };
+        Self(SurfaceKind::ALL.iter().map(empty).collect())
     }
 
     pub fn of(&mut self, kind: SurfaceKind) -> &mut Surface {

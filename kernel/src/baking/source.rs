@@ -75,6 +75,13 @@ impl Source {
         if is_raised { 0.0 } else { KERB_M }
     }
 
+    /// What the file says that a lane is made of, along its centre line.
+    pub fn materials(&self, lane: xodr::LaneId) -> &[xodr::Along<xodr::Material>] {
+        let all = self.net.lane_materials();
+        let (from, to) = (all.partition_point(|m| m.lane.0 < lane.0), all.partition_point(|m| m.lane.0 <= lane.0));
+        &all[from..to]
+    }
+
     /// What xodr remembers of a lane: its records are in the order of their lanes.
     fn told_of(&self, lane: xodr::LaneId) -> Option<&xodr::LaneProvenance> {
         let lanes = &self.provenance.lanes;

@@ -23,4 +23,5 @@ pub use dimensions::{
 };
 pub use gear::{Footprint, RunningGear, mounts, reach_m};
 pub use surface::{Footing, Grip};
-pub use wheel::Wheel;
+pub use tyre::{NOMINAL_LOAD_N, Tyre};
+pub use wheel::{Torque, Wheel};

@@ -18,6 +18,10 @@ state_enum! {
         Terrain = 3,
         /// Paved ground that is none of the above.
         Ground = 4,
+        /// Packed gravel of a road or track.
+        Gravel = 5,
+        /// Setts of a road.
+        Setts = 6,
     }
 }
 

@@ -9,6 +9,3 @@ mod statics;
 
 pub use engine::{Hold, Physics, Touched};
 pub use statics::Statics;
-
-#[cfg(test)]
-mod tests;

@@ -36,8 +36,9 @@ impl Ground {
     }
 }
 
-fn is_paved(kind: SurfaceKind) -> bool {
-    matches!(kind, SurfaceKind::Road | SurfaceKind::Ground)
+/// Whether a surface is of a road, paved or not.
+fn is_of_road(kind: SurfaceKind) -> bool {
+    matches!(kind, SurfaceKind::Road | SurfaceKind::Ground | SurfaceKind::Gravel | SurfaceKind::Setts)
 }
 
 /// Whether a wheel on such a surface is off the road.
@@ -60,7 +61,7 @@ impl Statics {
             colliders.insert(ColliderBuilder::new(shape).collision_groups(groups).friction(0.6))
         };
         let paint = mesh(map, |kind| kind == SurfaceKind::RoadLine);
-        let meshes: Vec<Ground> = [is_paved, is_soft].into_iter().filter_map(|wanted| mesh(map, wanted)).collect();
+        let meshes: Vec<Ground> = [is_of_road, is_soft].into_iter().filter_map(|wanted| mesh(map, wanted)).collect();
         for mesh in &meshes {
             insert(mesh.shape.clone(), ground);
         }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::model::Detail;
 use super::variety::Variety;
-use super::{CODE_BRAKE, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
+use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 
 const LACQUERS: [[u8; 3]; 12] = [
@@ -220,7 +220,7 @@ fn lights(mesh: &mut Mesh, shape: &Shape) {
     let tag = SemanticTag::Vehicles;
     let (front, rear) = (shape.belt[1], shape.belt[shape.belt.len() - 1]);
     let w = shape.half_width - 0.08;
-    let lamp = Paint::plain(tag, [236, 238, 228]).glossy(200);
+    let lamp = Paint::plain(tag, [236, 238, 228]).glossy(200).coded(CODE_HEAD);
     let brake = Paint::plain(tag, [150, 14, 16]).coded(CODE_BRAKE);
     for side in [-1.0f32, 1.0] {
         let (y0, y1) = (side * w, side * (w - 0.36));

@@ -47,6 +47,8 @@ pub const CODE_BRAKE: u8 = 254;
 pub const CODE_LEFT: u8 = 253;
 /// [`Vertex::code`] of an indicator on the right.
 pub const CODE_RIGHT: u8 = 252;
+/// [`Vertex::code`] of a head lamp.
+pub const CODE_HEAD: u8 = 251;
 /// [`Vertex::code`] of a surface with the joints of slabs.
 pub const CODE_SLABS: u8 = 1;
 /// [`Vertex::code`] of grass.

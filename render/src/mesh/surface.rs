@@ -18,6 +18,8 @@ fn paint(kind: SurfaceKind) -> Paint {
         SurfaceKind::Sidewalk => Paint::plain(SemanticTag::SideWalk, [164, 158, 150]).grainy(60).coded(CODE_SLABS),
         SurfaceKind::Terrain => Paint::plain(SemanticTag::Terrain, [104, 124, 62]).grainy(200).coded(CODE_GRASS),
         SurfaceKind::Ground => Paint::plain(SemanticTag::Ground, [140, 134, 124]).grainy(120),
+        SurfaceKind::Gravel => Paint::plain(SemanticTag::Road, [152, 142, 122]).grainy(220),
+        SurfaceKind::Setts => Paint::plain(SemanticTag::Road, [118, 112, 106]).grainy(160),
     }
 }
 

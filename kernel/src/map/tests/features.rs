@@ -169,3 +169,42 @@ pub(super) fn check_ground(map: &RoadNetwork) {
         }
     }
 }
+
+#[test]
+fn lanes_are_made_of_what_the_file_says_from_where_it_says_so() {
+    let material =
+        |s: u32, surface: &str| format!("<material sOffset=\"{s}\" surface=\"{surface}\" friction=\"0.5\"/>");
+    let lane = |id: i32, kind: &str, materials: &str| {
+        format!(
+            "<lane id=\"{id}\" type=\"{kind}\"><width sOffset=\"0\" a=\"4\" b=\"0\" c=\"0\" d=\"0\"/>{materials}</lane>"
+        )
+    };
+    let text = format!(
+        "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"0\" length=\"200\" junction=\"-1\"><planView>\
+         <geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"200\"><line/></geometry></planView><lanes>\
+         <laneSection s=\"0\"><left>{}</left><center><lane id=\"0\" type=\"none\"/></center><right>{}{}{}</right>\
+         </laneSection></lanes></road></OpenDRIVE>",
+        lane(1, "driving", &(material(0, "Asphalt") + &material(130, "RoadSurface_Gravel"))),
+        lane(-1, "driving", &(material(37, "gravel") + &material(80, "cobblestone") + &material(150, "4711"))),
+        lane(-2, "shoulder", &material(50, "grass")),
+        lane(-3, "sidewalk", &material(0, "gravel")),
+    );
+    let map = bake("track", &text).unwrap();
+    check_sound(&map);
+    let kind = |x: f32, y: f32| map.ground(Vec3::new(x, y, 0.0)).unwrap().kind;
+    use SurfaceKind::{Gravel, Road, Setts, Sidewalk, Terrain};
+    let cases: [(f32, &[(f32, SurfaceKind)]); 4] = [
+        (2.0, &[(1.0, Road), (129.5, Road), (130.5, Gravel), (199.0, Gravel)]),
+        (
+            -2.0,
+            &[(1.0, Road), (36.5, Road), (37.5, Gravel), (79.5, Gravel), (80.5, Setts), (149.5, Setts), (151.0, Road)],
+        ),
+        (-6.0, &[(49.5, Road), (50.5, Terrain)]),
+        (-10.0, &[(1.0, Sidewalk), (199.0, Sidewalk)]),
+    ];
+    for (y, places) in cases {
+        for &(x, expected) in places {
+            assert_eq!(kind(x, y), expected, "{x} {y}");
+        }
+    }
+}

@@ -22,7 +22,7 @@ pub fn ground(network: &RoadNetwork, time_ns: u64) -> SceneUpdate {
 /// What is drawn of the ground; grass and soil are left out.
 fn class(kind: SurfaceKind) -> Option<SemanticTag> {
     match kind {
-        SurfaceKind::Road => Some(SemanticTag::Road),
+        SurfaceKind::Road | SurfaceKind::Gravel | SurfaceKind::Setts => Some(SemanticTag::Road),
         SurfaceKind::RoadLine => Some(SemanticTag::RoadLine),
         SurfaceKind::Sidewalk => Some(SemanticTag::SideWalk),
         SurfaceKind::Ground => Some(SemanticTag::Ground),

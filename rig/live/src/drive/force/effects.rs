@@ -1,14 +1,17 @@
-//! What a driver's hands are to feel: a function of what the car does, without any device.
+//! What a driver's hands are to feel: a function of what the car and the road do, without any device.
 
 use kernel::events::{Event, EventKind};
 
 /// Shares of the limit that the effects have at most; together they are all of it.
-const SPRING_SHARE: f32 = 0.5;
+const ROAD_SHARE: f32 = 0.3;
+const SPRING_SHARE: f32 = 0.2;
 const JOLT_SHARE: f32 = 0.3;
 const RUMBLE_SHARE: f32 = 0.2;
-/// The wheel pulls towards its centre with this part of the spring's share at standstill, and with all
+/// The road pulls at the front wheels with all its share from this torque about their steering axes on, N m.
+const ROAD_FULL_NM: f32 = 150.0;
+/// The wheel pulls towards its centre, to be still in nobody's hands, with this part of the spring's share at standstill, and with all
 /// of it from this speed on, m/s.
-const SPRING_AT_REST: f32 = 0.2;
+const SPRING_AT_REST: f32 = 0.3;
 const SPRING_FULL_MPS: f32 = 15.0;
 /// A collision shakes the wheel to and fro for so long, ticks; at this speed, m/s, with all its share.
 const JOLT_TICKS: u32 = 24;
@@ -40,6 +43,15 @@ impl Effects {
     }
 }
 
+/// What the car did in a tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Driven<'a> {
+    pub speed_mps: f32,
+    /// Of the road on the front wheels, N m, positive to the right.
+    pub aligning_torque_nm: f32,
+    pub events: &'a [Event],
+}
+
 /// What goes on after a collision or beside the road.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Feel {
@@ -67,11 +79,10 @@ impl Fading {
 }
 
 impl Feel {
-    /// The effects of a tick in which the car drove at this speed, m/s, and these events happened. The
-    /// limit is the greatest force that is allowed, [0, 1].
-    pub fn tick(&mut self, speed_mps: f32, events: &[Event], limit: f32) -> Effects {
-        let fast = |full_mps: f32| fraction(speed_mps.abs() / full_mps);
-        for event in events {
+    /// The effects of a tick in which the car drove so. The limit is the greatest force that is allowed, [0, 1].
+    pub fn tick(&mut self, driven: &Driven<'_>, limit: f32) -> Effects {
+        let fast = |full_mps: f32| fraction(driven.speed_mps.abs() / full_mps);
+        for event in driven.events {
             match event.kind {
                 EventKind::CollisionActor | EventKind::CollisionScenery => {
                     self.jolt.begin(JOLT_TICKS, fraction(event.speed_mps.abs() / JOLT_FULL_MPS));
@@ -86,10 +97,11 @@ impl Feel {
             side * strength * left as f32 / JOLT_TICKS as f32
         });
         let rumble = self.rumble.tick().map_or(0.0, |(_, strength)| strength * fast(RUMBLE_FULL_MPS));
+        let road = fraction(driven.aligning_torque_nm.abs() / ROAD_FULL_NM).copysign(driven.aligning_torque_nm);
         let limit = fraction(limit);
         Effects {
             spring: step(limit * SPRING_SHARE * spring),
-            push: step(limit * JOLT_SHARE * jolt),
+            push: step(limit * (ROAD_SHARE * road + JOLT_SHARE * jolt)),
             rumble: step(limit * RUMBLE_SHARE * rumble),
         }
     }
@@ -120,30 +132,48 @@ mod tests {
         Event { kind, actor: 0, speed_mps }
     }
 
+    /// Driven without any torque.
+    fn at(speed_mps: f32, events: &[Event]) -> Driven<'_> {
+        Driven { speed_mps, aligning_torque_nm: 0.0, events }
+    }
+
     #[test]
     fn the_wheel_is_heavier_at_speed() {
-        let springs = [0.0, 5.0, 10.0, 15.0, 30.0].map(|speed| Feel::default().tick(speed, &[], 1.0).spring);
+        let springs = [0.0, 5.0, 10.0, 15.0, 30.0].map(|speed| Feel::default().tick(&at(speed, &[]), 1.0).spring);
         assert!(springs.is_sorted() && springs[0] > 0.05 && springs[3] == springs[4], "{springs:?}");
+    }
+
+    #[test]
+    fn the_road_pulls_the_way_its_torque_does_up_to_its_share() {
+        let push = |torque_nm: f32, limit: f32| {
+            Feel::default().tick(&Driven { aligning_torque_nm: torque_nm, ..at(20.0, &[]) }, limit).push
+        };
+        let pushes = [-400.0, -75.0, 0.0, 75.0, 400.0, f32::INFINITY].map(|torque_nm| push(torque_nm, 1.0));
+        assert!(pushes.is_sorted() && pushes[0] < 0.0 && pushes[2] == 0.0, "{pushes:?}");
+        assert!((pushes[3] - 0.5 * ROAD_SHARE).abs() <= 1.0 / STEPS && pushes[4] <= ROAD_SHARE, "{pushes:?}");
+        assert_eq!((pushes[5], push(f32::NAN, 1.0)), (pushes[4], 0.0));
+        assert!(push(75.0, 0.5) <= 0.5 * pushes[3] + 1.0 / STEPS);
     }
 
     #[test]
     fn a_collision_shakes_both_ways_and_fades() {
         let mut feel = Feel::default();
         let hit = [event(EventKind::CollisionActor, 12.0)];
-        let pushes: Vec<f32> = (0..40).map(|i| feel.tick(5.0, if i == 0 { &hit } else { &[] }, 1.0).push).collect();
+        let pushes: Vec<f32> =
+            (0..40).map(|i| feel.tick(&at(5.0, if i == 0 { &hit } else { &[] }), 1.0).push).collect();
         assert!(pushes[0].abs() > 0.25 && pushes.iter().any(|p| *p > 0.1) && pushes.iter().any(|p| *p < -0.1));
         assert!(pushes[JOLT_TICKS as usize..].iter().all(|p| *p == 0.0), "{pushes:?}");
-        assert_eq!(Feel::default().tick(5.0, &[event(EventKind::Speeding, 12.0)], 1.0).push, 0.0);
+        assert_eq!(Feel::default().tick(&at(5.0, &[event(EventKind::Speeding, 12.0)]), 1.0).push, 0.0);
     }
 
     #[test]
     fn a_kerb_rumbles_while_the_car_moves() {
         let kerb = [event(EventKind::OffRoad, 9.0)];
         let mut feel = Feel::default();
-        assert!(feel.tick(9.0, &kerb, 1.0).rumble > 0.15);
-        assert_eq!(feel.tick(0.0, &[], 1.0).rumble, 0.0);
-        assert!(feel.tick(9.0, &[], 1.0).rumble > 0.15);
-        assert_eq!((feel.rest(), feel.tick(9.0, &[], 1.0).rumble), (Effects::default(), 0.0));
+        assert!(feel.tick(&at(9.0, &kerb), 1.0).rumble > 0.15);
+        assert_eq!(feel.tick(&at(0.0, &[]), 1.0).rumble, 0.0);
+        assert!(feel.tick(&at(9.0, &[]), 1.0).rumble > 0.15);
+        assert_eq!((feel.rest(), feel.tick(&at(9.0, &[]), 1.0).rumble), (Effects::default(), 0.0));
     }
 
     fn kinds() -> impl Strategy<Value = EventKind> {
@@ -155,15 +185,19 @@ mod tests {
         #[test]
         fn the_force_never_passes_the_limit(
             limit in 0.0f32..=1.0,
-            ticks in prop::collection::vec((any::<f32>(), prop::collection::vec((kinds(), any::<f32>()), 0..3)), 1..60),
+            ticks in prop::collection::vec(
+                (any::<[f32; 2]>(), prop::collection::vec((kinds(), any::<f32>()), 0..3)),
+                1..60,
+            ),
         ) {
             let mut feel = Feel::default();
-            for (speed_mps, events) in ticks {
+            for ([speed_mps, aligning_torque_nm], events) in ticks {
                 let events: Vec<Event> = events.into_iter().map(|(kind, speed)| event(kind, speed)).collect();
-                let effects = feel.tick(speed_mps, &events, limit);
+                let driven = Driven { speed_mps, aligning_torque_nm, events: &events };
+                let effects = feel.tick(&driven, limit);
                 prop_assert!(effects.sum() <= limit, "{effects:?} of {limit}");
                 prop_assert!(effects.spring >= 0.0 && effects.rumble >= 0.0);
-                prop_assert_eq!(Feel::default().tick(speed_mps, &events, 0.0).sum(), 0.0);
+                prop_assert_eq!(Feel::default().tick(&driven, 0.0).sum(), 0.0);
             }
         }
     }

@@ -13,10 +13,10 @@ use std::time::Duration;
 
 use base::newest::Newest;
 use base::say;
-use kernel::events::Event;
 
 use super::board::Message;
 use actuator::Actuator;
+pub use effects::Driven;
 use effects::{Effects, Feel};
 
 /// Longest wait for a device to fall silent at the end. The system ends the effects of a program that
@@ -75,9 +75,9 @@ impl Force {
         }
     }
 
-    /// What the car did in a tick at a speed, m/s, is felt on the devices of those seats that have one.
-    pub fn drive(&mut self, speed_mps: f32, events: &[Event], devices: [Option<&str>; 2]) {
-        let effects = self.feel.tick(speed_mps, events, self.limit);
+    /// What the car did in a tick is felt on the devices of those seats that have one.
+    pub fn drive(&mut self, driven: &Driven<'_>, devices: [Option<&str>; 2]) {
+        let effects = self.feel.tick(driven, self.limit);
         self.order(effects, devices);
     }
 
@@ -282,15 +282,16 @@ mod tests {
         let (outbox, _inbox) = mpsc::channel();
         let mut force = Force::new(0.6, &outbox);
         let last = |force: &Force| force.hands.as_ref().expect("hands").each_ref().map(|hand| hand.last.clone());
+        let fast = Driven { speed_mps: 20.0, ..Driven::default() };
         // Paths that are no devices: the orders are looked at, not what becomes of them.
-        force.drive(20.0, &[], [Some("/nonexistent"), None]);
+        force.drive(&fast, [Some("/nonexistent"), None]);
         let [semantic, safety] = last(&force);
         assert!(semantic.effects.spring > 0.1 && semantic.effects.sum() <= 0.6, "{semantic:?}");
         assert_eq!(safety, Order::default());
         force.rest();
         assert_eq!(last(&force), [Order::default(), Order::default()]);
         force.toggle();
-        force.drive(20.0, &[], [Some("/nonexistent"), None]);
+        force.drive(&fast, [Some("/nonexistent"), None]);
         assert_eq!(last(&force), [Order::default(), Order::default()]);
         assert!(force.words().contains("F switches it on"));
         assert!(Force::new(0.0, &outbox).hands.is_none());

@@ -20,6 +20,7 @@ use kernel::arbiter::Outcome;
 use kernel::time::{TICK_HZ, Tick};
 
 use super::board::{Message, Wake};
+use super::force::Driven;
 use super::run::car_state;
 use super::seating::{self, Seating};
 use super::stage::{Press, Stage, Wish};
@@ -133,7 +134,7 @@ impl Simulation {
         match &session.runs.stage {
             Stage::Driving => {}
             // The jolt of the collision that ended the run fades.
-            Stage::Labelling(_) => session.force.drive(0.0, &[], session.seating.armed_devices()),
+            Stage::Labelling(_) => session.force.drive(&Driven::default(), session.seating.armed_devices()),
             Stage::Ready => session.force.rest(),
         }
         Ok(())
@@ -178,7 +179,12 @@ fn tick(session: &mut Session, polled: &Polled) -> anyhow::Result<()> {
     let Some(run) = session.runs.current() else { return Ok(()) };
     session.pace.begin_tick();
     let (state, output, input) = run.tick(polled, session.sights.screen())?;
-    session.force.drive(run.world().hud().speed_mps, &output.events, session.seating.armed_devices());
+    let driven = Driven {
+        speed_mps: run.world().hud().speed_mps,
+        aligning_torque_nm: run.world().aligning_torque_nm(),
+        events: &output.events,
+    };
+    session.force.drive(&driven, session.seating.armed_devices());
     for event in &output.events {
         session.voice.note(words::event_at(output.tick, event));
     }

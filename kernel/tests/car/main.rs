@@ -1,24 +1,29 @@
 //! The car against the books, on a plane without lanes. What a test expects is computed in it, from figures of its own.
 
+#![allow(clippy::disallowed_methods, reason = "tests may read the environment")]
+
 mod braking;
 mod cornering;
 mod driving;
 mod forces;
+mod plots;
 mod standing;
 mod state;
+#[path = "../common/svg.rs"]
+mod svg;
 
 use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-use super::{Physics, Statics};
-use crate::car::CarSetup;
-use crate::controls::Controls;
-use crate::ego::Ego;
-use crate::map_data::{MapData, Surface, SurfaceKind};
-use crate::motion::Motion;
-use crate::time::{Tick, seconds};
-use crate::weather::{Water, Weather};
+use kernel::Controls;
+use kernel::car::CarSetup;
+use kernel::ego::Ego;
+use kernel::map::{MapData, Surface, SurfaceKind};
+use kernel::motion::Motion;
+use kernel::physics::{Physics, Statics};
+use kernel::time::{Tick, seconds};
+use kernel::weather::{Water, Weather};
 
 const HELPED: CarSetup = CarSetup { abs: true, esc: true };
 const BARE: CarSetup = CarSetup { abs: false, esc: false };
@@ -89,6 +94,11 @@ impl Drive {
     }
 }
 
+/// How many cases of a property are tried: `PROPTEST_CASES` of them, if it is set.
+fn cases(usual: u32) -> u32 {
+    std::env::var("PROPTEST_CASES").map_or(usual, |cases| cases.parse().expect("PROPTEST_CASES is a number"))
+}
+
 /// Keeps a speed.
 fn cruise(car: &Ego, speed_mps: f32, steer: f32) -> Controls {
     Controls::from_fractions(steer, (speed_mps - car.speed_mps()) * 0.5 + 0.1, 0.0)
@@ -118,8 +128,9 @@ fn friction(kind: SurfaceKind) -> [f64; 2] {
         SurfaceKind::Road => [1.0, 0.8],
         SurfaceKind::RoadLine => [0.9, 0.7],
         SurfaceKind::Sidewalk => [0.9, 0.75],
-        SurfaceKind::Ground => [0.7, 0.58],
+        SurfaceKind::Ground | SurfaceKind::Setts => [0.7, 0.58],
         SurfaceKind::Terrain => [0.45, 0.38],
+        SurfaceKind::Gravel => [0.6, 0.55],
     }
 }
 
@@ -129,7 +140,8 @@ fn wet_friction(kind: SurfaceKind) -> [f64; 2] {
         SurfaceKind::Road => [0.75, 0.55],
         SurfaceKind::RoadLine => [0.5, 0.4],
         SurfaceKind::Sidewalk => [0.7, 0.58],
-        SurfaceKind::Ground => [0.45, 0.37],
+        SurfaceKind::Ground | SurfaceKind::Setts => [0.45, 0.37],
         SurfaceKind::Terrain => [0.28, 0.22],
+        SurfaceKind::Gravel => [0.55, 0.5],
     }
 }

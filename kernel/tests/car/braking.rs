@@ -42,19 +42,34 @@ fn in_water(dry: f64, wet: f64, wetness: f64, depth_mm: f64) -> impl Fn(f64) -> 
     }
 }
 
+/// Full stops from a speed, metres: the tyre curve integrated independently, at its peak and sliding, and driven with
+/// anti-lock brakes and with locked wheels.
+pub struct Stops {
+    pub best: f64,
+    pub locked: f64,
+    pub abs: f64,
+    pub bare: f64,
+}
+
+pub fn stops(kind: SurfaceKind, wetness: f64, kmh: f64) -> Stops {
+    let weather = Weather { wetness_pct: 100.0 * wetness as f32, ..Weather::dry(0.0, 0.0, 45.0, 0.0) };
+    let film_mm = if kind == SurfaceKind::Terrain { 0.0 } else { 0.4 * wetness };
+    let from = kmh / 3.6;
+    let ([peak, sliding], [wet_peak, wet_sliding]) = (friction(kind), wet_friction(kind));
+    Stops {
+        best: stopping_m(in_water(peak, wet_peak, wetness, film_mm), from),
+        locked: stopping_m(in_water(sliding, wet_sliding, wetness, film_mm), from),
+        abs: driven_m(kind, &weather, from as f32, HELPED),
+        bare: driven_m(kind, &weather, from as f32, BARE),
+    }
+}
+
 #[test]
 fn braking_distances_are_those_of_the_tyre_curve_by_surface_and_wetness() {
     let cases = SurfaceKind::ALL.iter().flat_map(|kind| [0.0, 0.5, 1.0].map(|wetness| (*kind, wetness)));
     for (kind, wetness) in cases {
-        let weather = Weather { wetness_pct: 100.0 * wetness as f32, ..Weather::dry(0.0, 0.0, 45.0, 0.0) };
-        let film_mm = if kind == SurfaceKind::Terrain { 0.0 } else { 0.4 * wetness };
         for kmh in [50.0, 100.0] {
-            let from = kmh / 3.6;
-            let ([peak, sliding], [wet_peak, wet_sliding]) = (friction(kind), wet_friction(kind));
-            let best = stopping_m(in_water(peak, wet_peak, wetness, film_mm), from);
-            let locked = stopping_m(in_water(sliding, wet_sliding, wetness, film_mm), from);
-            let abs = driven_m(kind, &weather, from as f32, HELPED);
-            let bare = driven_m(kind, &weather, from as f32, BARE);
+            let Stops { best, locked, abs, bare } = stops(kind, wetness, kmh);
             let what = format!("{kind:?}, wetness {wetness}, {kmh} km/h");
             assert!((0.95..1.0).contains(&(best / abs)), "{what}: {abs} m, at best {best} m");
             assert!((bare / locked - 1.0).abs() < 0.05, "{what}: {bare} m, sliding {locked} m");

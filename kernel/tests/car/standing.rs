@@ -18,7 +18,7 @@ fn it_stands_on_a_slope_of_10_percent_for_ten_minutes() {
     let hand = Controls { flags: Controls::HAND_BRAKE, ..Controls::default() };
     for heading_rad in [0.0, 1.0, 2.2] {
         for held in [Controls::default(), foot, hand] {
-            let up = Quat::from_rotation_y(-crate::ops::atan2(0.1, 1.0));
+            let up = Quat::from_rotation_y(-kernel::ops::atan2(0.1, 1.0));
             let rotation = up * Quat::from_rotation_z(heading_rad);
             let mut drive = Drive::posed(plain(SurfaceKind::Road, 0.1), rotation, 0.0, HELPED);
             drive.hold(seconds(5), |_| held);
@@ -34,7 +34,7 @@ fn it_stands_on_a_slope_of_10_percent_for_ten_minutes() {
 
 #[test]
 fn it_rolls_back_where_nothing_holds_it() {
-    let up = Quat::from_rotation_y(-crate::ops::atan2(0.1, 1.0));
+    let up = Quat::from_rotation_y(-kernel::ops::atan2(0.1, 1.0));
     let mut drive = Drive::posed(plain(SurfaceKind::Road, 0.1), up, 0.0, HELPED);
     drive.hold(1, |_| pedals(0.01, 0.0));
     drive.hold(seconds(3), |_| Controls::default());

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::time::TICK_S;
+use kernel::time::TICK_S;
 
 #[test]
 fn it_drives_straight_ahead() {
@@ -44,25 +44,43 @@ fn it_creeps_as_an_automatic_once_it_has_been_driven() {
     assert!(drive.ego.speed_mps().abs() < 1e-3, "{}", drive.ego.speed_mps());
 }
 
-/// Speed after rolling without a pedal for a time: drag of 0.4 N s^2/m^2, rolling resistance of 0.013, 150 N of the
-/// motor, and four wheels of 1.2 kg m^2 that go on turning.
-fn rolled_mps(from_mps: f64, time_s: f64) -> f64 {
+/// Speed after rolling without a pedal for a time: drag of 0.4 N s^2/m^2, rolling resistance, 150 N of the motor, and
+/// four wheels of 1.2 kg m^2 that go on turning.
+pub fn rolled_mps(rolling: f64, from_mps: f64, time_s: f64) -> f64 {
     let inertia = MASS + 4.0 * 1.2 / (0.32 * 0.32);
     let (mut speed, step) = (from_mps, 1e-3);
     for _ in 0..(time_s / step) as usize {
-        speed -= step * (0.4 * speed * speed + 0.013 * MASS * G + 150.0) / inertia;
+        speed -= step * (0.4 * speed * speed + rolling * MASS * G + 150.0) / inertia;
     }
     speed
 }
 
+/// Surfaces, their coefficients of rolling resistance, and for how long a car is watched that coasts on them, s.
+pub const ROLLING: [(SurfaceKind, f64, usize); 3] =
+    [(SurfaceKind::Road, 0.013, 40), (SurfaceKind::Gravel, 0.02, 40), (SurfaceKind::Terrain, 0.05, 25)];
+
+/// Speeds of a car that rolls without a pedal, from 100 km/h on, each second, m/s.
+pub fn coasted_mps(kind: SurfaceKind, seconds_long: usize) -> Vec<f64> {
+    let from_mps = 100.0 / 3.6;
+    let mut drive = Drive::over(kind, from_mps, HELPED);
+    drive.hold(seconds(1), |car| cruise(car, from_mps, 0.0));
+    let mut speeds = vec![f64::from(drive.ego.speed_mps())];
+    for _ in 0..seconds_long {
+        drive.hold(seconds(1), |_| Controls::default());
+        speeds.push(f64::from(drive.ego.speed_mps()));
+    }
+    speeds
+}
+
 #[test]
 fn coasting_from_100_kmh_is_drag_and_rolling_resistance() {
-    let mut drive = Drive::at(100.0 / 3.6);
-    let from = f64::from(drive.ego.speed_mps());
-    for after_s in 1..=40 {
-        drive.hold(seconds(1), |_| Controls::default());
-        let (speed, expected) = (f64::from(drive.ego.speed_mps()), rolled_mps(from, f64::from(after_s)));
-        assert!((speed - expected).abs() < 0.01 * from, "{speed} after {after_s} s, expected {expected}");
+    for (kind, rolling, seconds_long) in ROLLING {
+        let speeds = coasted_mps(kind, seconds_long);
+        for (after_s, speed) in speeds.iter().enumerate() {
+            let expected = rolled_mps(rolling, speeds[0], after_s as f64);
+            let what = format!("{kind:?}: {speed} after {after_s} s, expected {expected}");
+            assert!((speed - expected).abs() < 0.01 * speeds[0], "{what}");
+        }
     }
 }
 
@@ -89,7 +107,7 @@ const ROCKING: (f32, f32) = (0.02, 0.1);
 const LET_GO_MPS: f32 = 1.5;
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig::with_cases(cases(48)))]
 
     #[test]
     fn more_throttle_is_never_slower_and_more_brake_never_faster(

@@ -1,7 +1,7 @@
 //! Everything that steers the car's future is in its state.
 
 use super::*;
-use crate::state::State;
+use kernel::state::State;
 
 /// A drive in the middle of everything: braking in a turn.
 fn busy() -> Drive {

@@ -8,21 +8,27 @@ fn stiffness_n(load_n: f64) -> f64 {
 }
 
 /// Yaw rate by angle of the wheels of the linear bicycle model, 1/s.
-fn yaw_gain(speed: f64) -> f64 {
+pub fn yaw_gain(speed: f64) -> f64 {
     let [front, rear] = [FRONT, 1.0 - FRONT].map(|share| MASS * share / (2.0 * stiffness_n(0.5 * MASS * G * share)));
     speed / (BASE + (front - rear) * speed * speed)
+}
+
+/// A steady turn for which the bicycle model gives a sideways acceleration in g: the speed, m/s, and the yaw rate,
+/// rad/s, that the car comes to, and its yaw gain, 1/s.
+pub fn turned(speed: f64, g: f64) -> (f64, f64, f64) {
+    let angle = g * G / speed / yaw_gain(speed);
+    let mut drive = Drive::over(SurfaceKind::Road, speed as f32, HELPED);
+    let steer = angle / 35f64.to_radians();
+    drive.hold(seconds(4), |car| cruise(car, speed as f32 + 0.2, steer as f32));
+    let (driven, yaw) = (f64::from(drive.ego.speed_mps()), -f64::from(drive.yaw_radps()));
+    (driven, yaw, yaw / f64::from(drive.ego.gear.wheel_angle_rad))
 }
 
 #[test]
 fn the_yaw_gain_is_that_of_the_bicycle_model_up_to_0_4_g() {
     for speed in [7.0, 14.0, 21.0, 28.0] {
         for g in [0.1, 0.25, 0.4] {
-            let angle = g * G / speed / yaw_gain(speed);
-            let mut drive = Drive::over(SurfaceKind::Road, speed as f32, HELPED);
-            let steer = angle / 35f64.to_radians();
-            drive.hold(seconds(4), |car| cruise(car, speed as f32 + 0.2, steer as f32));
-            let (driven, yaw) = (f64::from(drive.ego.speed_mps()), -f64::from(drive.yaw_radps()));
-            let gain = yaw / f64::from(drive.ego.gear.wheel_angle_rad);
+            let (driven, _, gain) = turned(speed, g);
             let expected = yaw_gain(driven);
             assert!((gain / expected - 1.0).abs() < 0.1, "{gain}, expected {expected} at {driven} m/s and {g} g");
         }
@@ -52,7 +58,13 @@ fn axle_limit(friction: f64) -> f64 {
 #[test]
 fn the_skid_pad_ends_where_the_tyres_do() {
     // Rolling without pedals, as what drives the front wheels is lost to the turn, and the wheel turned ever more.
-    for (kind, from_mps) in [(SurfaceKind::Road, 26.0), (SurfaceKind::Ground, 22.0), (SurfaceKind::Terrain, 20.0)] {
+    let cases = [
+        (SurfaceKind::Road, 26.0),
+        (SurfaceKind::Setts, 22.0),
+        (SurfaceKind::Gravel, 22.0),
+        (SurfaceKind::Terrain, 20.0),
+    ];
+    for (kind, from_mps) in cases {
         let mut drive = Drive::over(kind, from_mps, BARE);
         let (mut best, mut angle_rad) = (0f32, 0f32);
         for tick in 0..seconds(8) / 6 {
@@ -88,7 +100,7 @@ fn the_hand_brake_turns_the_car_round() {
         for _ in 0..seconds(4) {
             drive.step(&Controls { flags, ..Controls::from_fractions(-1.0, 0.0, 0.0) });
             let heading = drive.ego.heading_rad();
-            turned += crate::ops::wrap_angle(heading - last);
+            turned += kernel::ops::wrap_angle(heading - last);
             last = heading;
             if drive.ego.motion.velocity_mps.length() < 1.0 {
                 break;
@@ -105,12 +117,12 @@ fn the_hand_brake_turns_the_car_round() {
 /// Angle from the car's x axis to its way, radians counter-clockwise.
 fn side_slip_rad(ego: &Ego) -> f32 {
     let velocity = ego.motion.rotation.conjugate() * ego.motion.velocity_mps;
-    crate::ops::atan2(velocity.y, velocity.x)
+    kernel::ops::atan2(velocity.y, velocity.x)
 }
 
 /// ISO 3888-2: lengths of the sections and the sides of the three lanes, metres, for a car 1.8 m wide; the last lane with
 /// the same offset of 1 m from the second as the first.
-const LANES: [([f32; 2], [f32; 2]); 3] =
+pub const LANES: [([f32; 2], [f32; 2]); 3] =
     [([0.0, 12.0], [-1.115, 1.115]), ([25.5, 36.5], [2.115, 4.915]), ([49.0, 61.0], [-1.885, 1.115])];
 
 /// Where the middle of the car shall be, metres to the left, by its way.
@@ -122,38 +134,47 @@ fn path(x: f32) -> f32 {
     3.4 * ease(12.0, 28.0) - 3.9 * ease(34.0, 52.0)
 }
 
-/// How far a car got out of the lanes, metres, negative for room that was left.
-fn lane_change(entry_mps: f32, setup: CarSetup) -> f32 {
+/// What became of a lane change.
+pub struct LaneChange {
+    /// How far the car got out of the lanes, metres, negative for room that was left.
+    pub out_m: f32,
+    /// Its corners at each tick, metres from where the lanes begin.
+    pub boxes: Vec<[Vec3; 4]>,
+}
+
+pub fn lane_change(entry_mps: f32, setup: CarSetup) -> LaneChange {
     let mut drive = Drive::over(SurfaceKind::Road, entry_mps, setup);
     let start = 20.0;
-    let mut out = f32::MIN;
+    let mut change = LaneChange { out_m: f32::MIN, boxes: Vec::new() };
     while drive.ego.middle().x < start + 64.0 {
         let middle = drive.ego.middle();
         let at = middle.x - start;
         let heading = drive.ego.heading_rad();
         let ahead_m = 5.0;
         let target = path(at + ahead_m);
-        let bearing = crate::ops::atan2(target - middle.y, ahead_m) - heading;
+        let bearing = kernel::ops::atan2(target - middle.y, ahead_m) - heading;
         let curvature = 2.0 * bearing / ahead_m;
-        let steer = -crate::ops::atan2(2.7 * curvature, 1.0) / 0.611;
+        let steer = -kernel::ops::atan2(2.7 * curvature, 1.0) / 0.611;
         let throttle = if at < 2.0 { cruise(&drive.ego, entry_mps, 0.0).throttle_fraction() } else { 0.0 };
         drive.step(&Controls::from_fractions(steer, throttle, 0.0));
-        for corner in [(2.25, 0.9), (2.25, -0.9), (-2.25, 0.9), (-2.25, -0.9)] {
-            let place = drive.ego.middle() + drive.ego.motion.rotation * Vec3::new(corner.0, corner.1, 0.0);
+        let corners = [(2.25, 0.9), (2.25, -0.9), (-2.25, -0.9), (-2.25, 0.9)]
+            .map(|(x, y)| drive.ego.middle() + drive.ego.motion.rotation * Vec3::new(x, y, 0.0) - Vec3::X * start);
+        for place in corners {
             for ([from, to], [right, left]) in LANES {
-                if (from..to).contains(&(place.x - start)) {
-                    out = out.max(place.y - left).max(right - place.y);
+                if (from..to).contains(&place.x) {
+                    change.out_m = change.out_m.max(place.y - left).max(right - place.y);
                 }
             }
         }
+        change.boxes.push(corners);
     }
-    out
+    change
 }
 
 #[test]
 fn an_iso_3888_2_lane_change_at_50_kmh_hits_no_cone() {
-    let out = lane_change(50.0 / 3.6, HELPED);
-    assert!(out <= 0.0, "{out} m out of the lanes");
+    let out_m = lane_change(50.0 / 3.6, HELPED).out_m;
+    assert!(out_m <= 0.0, "{out_m} m out of the lanes");
 }
 
 #[test]
