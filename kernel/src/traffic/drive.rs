@@ -125,11 +125,13 @@ impl View<'_> {
             next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
         }
         let seeker = self.seeker(index);
-        if next.lapse != Lapse::Parks {
+        self.call(index, plan, &mut next);
+        if !next.lapse.is_to_kerb() {
             self.decide_manoeuvre(index, plan, &seeker, &mut next);
         }
         let side = self.side(index, plan, &seeker);
-        let behind = self.behind_leader_mps2(index, plan, &mut next).min(self.lapse_mps2(&next));
+        let halt_mps2 = self.lapse_mps2(&next).min(self.call_mps2(index, plan, &next));
+        let behind = self.behind_leader_mps2(index, plan, &mut next).min(halt_mps2);
         let accel =
             self.acceleration(index, plan, &next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
         self.advance(index, accel, side, &mut next);
@@ -163,7 +165,7 @@ impl View<'_> {
             return;
         };
         let steps = self.steps_of(plan);
-        let signal = junction::signal(self.map, self.lights, next, steps[line.approach].lane);
+        let signal = junction::signal(self.map, self.lights, next, steps, line);
         if next.lapse == Lapse::RunsRed {
             next.flags |= Vehicle::GRANTED;
         } else if next.flags & Vehicle::GRANTED != 0 {
@@ -298,7 +300,7 @@ impl View<'_> {
         let drift = match vehicle.manoeuvre {
             manoeuvre if manoeuvre.moves() => drift(vehicle.speed_mps, seeker.half.x),
             manoeuvre if manoeuvre.passes() => pass_drift(vehicle.speed_mps),
-            _ if aim_m == likes_m && vehicle.lapse != Lapse::PullsOut => DRIFT,
+            _ if aim_m == likes_m && !vehicle.lapse.is_from_kerb() => DRIFT,
             _ => PASS_DRIFT,
         };
         Side { aim_m, drift }

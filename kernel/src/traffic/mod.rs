@@ -9,6 +9,7 @@ mod actors;
 mod asking;
 mod barge;
 mod body;
+mod bus;
 mod change;
 mod company;
 mod counts;

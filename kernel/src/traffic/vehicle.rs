@@ -63,9 +63,9 @@ impl Vehicle {
     pub const TURNS_LEFT: u8 = 16;
     /// Turns right there.
     pub const TURNS_RIGHT: u8 = 32;
-    /// Stands where it is no part of the traffic: it crashed, or halted at the kerb.
+    /// Stands where it is no part of the traffic: it crashed, or halted at the kerb or a bus stop.
     pub(super) fn is_aside(&self) -> bool {
-        matches!(self.lapse, Lapse::Crashed | Lapse::Halts)
+        matches!(self.lapse, Lapse::Crashed | Lapse::Halts | Lapse::Boards)
     }
 
     /// Every flag with a meaning.
