@@ -2,7 +2,7 @@
 
 import math
 
-from opendrive import Arm, Map, Path2, Profile
+from opendrive import Arm, Map, Path2, Profile, bus_stop
 
 STREET = Profile(lanes=1, width=3.5, edge=2.3, parking=True, sidewalk=3.0, kmh=50)
 QUIET = Profile(lanes=1, width=3.25, edge=2.3, parking=True, sidewalk=2.5, kmh=30)
@@ -15,6 +15,8 @@ CORNER = 6.0  # radius of a kerb at a corner, metres
 MOVED = {(1, 3): (22, 0), (3, 1): (-26, 8), (4, 3): (0, -20), (2, 1): (0, 10), (4, 1): (18, 0)}
 LIGHTS = {(1, 2), (2, 2), (3, 2), (4, 2), (2, 3), (3, 1), (0, 2), (5, 2), (2, 0)}
 STOPS = {(1, 1), (3, 3), (4, 0), (1, 4)}
+# Streets with a bus stop in each direction.
+BUSES = [((1, 2), (2, 2)), ((3, 2), (4, 2)), ((2, 0), (2, 1)), ((3, 3), (3, 4)), ((0, 1), (1, 1)), ((4, 3), (5, 3))]
 EAST, NORTH, WEST, SOUTH = 0.0, math.pi / 2, math.pi, -math.pi / 2
 
 
@@ -140,4 +142,8 @@ def city():
     for road in roads.values():
         if road.profile.parking:
             parked(m, road, rng)
+    for street in BUSES:
+        road = roads[street]
+        for forward in (True, False):
+            road.signals.append(bus_stop(m.id(), road, road.length / 2 + (8 if forward else -8), forward))
     return m

@@ -334,6 +334,16 @@ def speed_sign(sid, road, s, kmh, forward):
     )
 
 
+def bus_stop(sid, road, s, forward):
+    p = road.profile
+    right = p.kerb + p.sidewalk + 0.5
+    t, orientation = (-right, "+") if forward else (right, "-")
+    return (
+        f'<signal id="{sid}" name="" s="{num(s)}" t="{num(t)}" zOffset="2" orientation="{orientation}" dynamic="no" '
+        f'country="DE" type="224" subtype="-1" value="-1" height="0.5" width="0.5"/>'
+    )
+
+
 def zebra(oid, s, kerb, half=2.0):
     corners = [(s - half, -kerb), (s + half, -kerb), (s + half, kerb), (s - half, kerb)]
     points = "".join(

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::ego;
 use crate::events::{Hud, RouteArrow};
-use crate::map::{LaneId, LaneKind, LightGroupId, Projection, RoadNetwork, StopKind, Turn};
+use crate::map::{LaneId, LaneKind, LightGroupId, Projection, RoadNetwork, Turn};
 use crate::rng::{self, Stream};
 use crate::scenario::Scenario;
 use crate::time::Tick;
@@ -128,9 +128,10 @@ impl Route {
 
     /// The next traffic light's line that the front of the car has not passed.
     pub fn light_ahead(&self, network: &RoadNetwork) -> Option<LightAhead> {
-        self.stretches(network).find_map(|(lane, start)| {
+        let next = self.lanes.iter().skip(1).map(Some).chain([None]);
+        self.stretches(network).zip(next).find_map(|((lane, start), next)| {
             let stop = network.lanes[lane as usize].stop?;
-            let StopKind::Light(group) = stop.kind else { return None };
+            let group = network.light_between(lane, *next.unwrap_or(&lane))?;
             let distance_m = start + stop.s_m - NOSE_M;
             (distance_m >= 0.0).then_some(LightAhead { lane, group, distance_m })
         })

@@ -1,36 +1,25 @@
 //! Traffic lights: a function of the tick, so nothing of them is state.
 //!
-//! Programme of CARLA: one approach of a junction at a time, green 10 s, yellow 3 s, then 2 s in
-//! which all are red.
+//! Every junction goes through its programme again and again, from a moment that is drawn.
 
 use crate::map_data::{LightGroupId, MapData};
 use crate::rng::{self, Stream};
-use crate::time::{Tick, seconds};
+use crate::time::Tick;
 
 pub use crate::light::LightPhase;
-
-/// Length of green.
-pub const GREEN_TICKS: Tick = seconds(10);
-/// Length of yellow.
-pub const YELLOW_TICKS: Tick = seconds(3);
-/// Length of the clearance in which all approaches are red.
-pub const ALL_RED_TICKS: Tick = seconds(2);
-
-const SLOT_TICKS: Tick = GREEN_TICKS + YELLOW_TICKS + ALL_RED_TICKS;
 
 /// The phase of a light group at a tick, and the ticks until it changes.
 pub fn phase(map: &MapData, seed: u64, group: LightGroupId, tick: Tick) -> (LightPhase, Tick) {
     let light = &map.light_groups[group as usize];
-    let groups = map.junctions[light.junction as usize].light_groups.len().max(1) as Tick;
-    let cycle = groups * SLOT_TICKS;
-    let offset = Tick::from(rng::below(seed, Stream::Signal, u64::from(light.junction), 0, cycle as u32));
-    let at = (tick + offset) % cycle;
-    let start = Tick::from(light.place) * SLOT_TICKS;
-    let into = (at + cycle - start) % cycle;
-    if into < GREEN_TICKS {
-        (LightPhase::Green, GREEN_TICKS - into)
-    } else if into < GREEN_TICKS + YELLOW_TICKS {
-        (LightPhase::Yellow, GREEN_TICKS + YELLOW_TICKS - into)
+    let cycle_ticks = map.junctions[light.junction as usize].cycle_ticks.max(1);
+    let offset = rng::below(seed, Stream::Signal, u64::from(light.junction), 0, cycle_ticks);
+    let [cycle, offset, from, green, yellow] =
+        [cycle_ticks, offset, light.green_from_ticks, light.green_ticks, light.yellow_ticks].map(Tick::from);
+    let into = (tick + offset + cycle - from % cycle) % cycle;
+    if into < green {
+        (LightPhase::Green, green - into)
+    } else if into < green + yellow {
+        (LightPhase::Yellow, green + yellow - into)
     } else {
         (LightPhase::Red, cycle - into)
     }

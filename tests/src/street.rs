@@ -18,8 +18,8 @@ pub fn network() -> RoadNetwork {
     let map = MapData {
         name: "street".into(),
         digest: 1,
-        junctions: vec![Junction { light_groups: vec![0], ..Default::default() }],
-        light_groups: vec![LightGroup { junction: 0, place: 0 }],
+        junctions: vec![Junction { light_groups: vec![0], cycle_ticks: 900, ..Default::default() }],
+        light_groups: vec![LightGroup { junction: 0, green_from_ticks: 0, green_ticks: 600, yellow_ticks: 180 }],
         light_heads: vec![head(Vec3::new(22.0, -4.6, 0.125)), head(Vec3::new(22.0, 4.6, 0.125))],
         surfaces: surfaces(),
         props: props(),

@@ -35,7 +35,7 @@ pub(super) fn bake(
     let axes = outlines.filter_map(|outline| axis(roads, &outline));
     let mut found: Vec<Crosswalk> =
         axes.filter_map(|(ends, half_width_m)| crosswalk(roads, ends, half_width_m)).collect();
-    let lit: BTreeSet<u32> = governed.iter().filter(|g| g.is_light).map(|g| g.junction).collect();
+    let lit: BTreeSet<u32> = governed.iter().filter(|g| g.is_light()).map(|g| g.junction).collect();
     let mut crossed: BTreeSet<u32> = found.iter().flat_map(|c| junctions_of(roads.lanes, c)).collect();
     for id in lit {
         if !crossed.contains(&id) {

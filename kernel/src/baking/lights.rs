@@ -8,45 +8,137 @@ use super::rounding::snap;
 use super::shapes::{beside_lanes, point};
 use super::signs::Governed;
 use super::source::{Approach, Source};
-use crate::map_data::{Junction, Lane, LightGroup, LightGroupId, LightHead};
+use crate::map_data::{Junction, Lane, LaneId, LightGroupId, LightHead, Turn};
 use crate::ops;
 use crate::places::Roads;
 
 /// Height of the lamps where the file gives no sensible one, metres.
 const LAMPS_M: f32 = 3.2;
 
-/// The light group of each approach to a junction that has one.
-pub(super) type Groups = BTreeMap<(u32, Approach), LightGroupId>;
+/// The lights of a map.
+#[derive(Default)]
+pub(super) struct Groups {
+    pub list: Vec<Group>,
+    /// The lanes before junctions that have one, and what holds whom there.
+    pub before: BTreeMap<LaneId, Lights>,
+    /// By the index of what governs a lane; none for a sign.
+    of: Vec<Option<LightGroupId>>,
+}
 
-/// One group for each approach with a light, counter-clockwise around its junction.
-pub(super) fn groups(
-    lanes: &[Lane],
-    mut junctions: Vec<Junction>,
-    governed: &[Governed],
-) -> (Vec<Junction>, Vec<LightGroup>, Groups) {
-    let mut lights: BTreeMap<(u32, Approach), f32> = BTreeMap::new();
-    for g in governed.iter().filter(|g| g.is_light) {
-        let heading = lanes[g.lane as usize].end().heading_rad;
-        lights.entry((g.junction, g.approach)).or_insert(heading);
+/// Signals that always show the same.
+pub(super) struct Group {
+    pub junction: u32,
+    pub approach: Approach,
+    /// Whether it holds only some turns, which then have the way for themselves.
+    pub is_arrow: bool,
+    /// Its place among the controllers of its junction; none without a controller.
+    pub sequence: Option<u32>,
+    /// The lanes before the junction that it holds, each with one that follows inside.
+    pub ways: Vec<(LaneId, LaneId)>,
+}
+
+/// The lights for those on a lane before a junction.
+#[derive(Default)]
+pub(super) struct Lights {
+    /// That of the line; none where only some turns are held.
+    pub line: Option<LightGroupId>,
+    /// Those of the lanes inside that have another.
+    pub own: Vec<(LaneId, LightGroupId)>,
+}
+
+/// What the signals of a group share: junction, approach, turns, and the controller.
+type Key = (u32, Approach, &'static [Turn], Option<usize>);
+
+impl Groups {
+    /// The groups of a file, counter-clockwise around their junctions.
+    pub fn new(source: &Source, lanes: &[Lane], junctions: &[Junction], governed: &[Governed]) -> Self {
+        let key = |g: &Governed| -> Option<Key> {
+            let controller = controller(source, g.signal, &junctions[g.junction as usize].name);
+            Some((g.junction, g.approach, g.turns()?, controller.map(|(id, _)| id)))
+        };
+        let mut first: BTreeMap<Key, (f32, Option<u32>)> = BTreeMap::new();
+        for g in governed {
+            let Some(key) = key(g) else { continue };
+            let sequence = controller(source, g.signal, &junctions[g.junction as usize].name).map(|(_, at)| at);
+            first.entry(key).or_insert((lanes[g.lane as usize].end().heading_rad, sequence));
+        }
+        let mut order: Vec<_> = first.into_iter().collect();
+        order.sort_by(|(a, x), (b, y)| a.0.cmp(&b.0).then(x.0.total_cmp(&y.0)).then(a.cmp(b)));
+        let ids: BTreeMap<Key, LightGroupId> = order.iter().zip(0..).map(|((key, _), id)| (*key, id)).collect();
+        let list = order.iter().map(|(key, (_, sequence))| Group {
+            junction: key.0,
+            approach: key.1,
+            is_arrow: key.2 != Turn::ALL,
+            sequence: *sequence,
+            ways: Vec::new(),
+        });
+        let of = governed.iter().map(|g| key(g).map(|key| ids[&key])).collect();
+        let mut groups = Self { list: list.collect(), before: BTreeMap::new(), of };
+        groups.hold(lanes, governed);
+        groups
     }
-    let mut order: Vec<_> = lights.into_iter().collect();
-    order.sort_by(|a, b| a.0.0.cmp(&b.0.0).then(a.1.total_cmp(&b.1)).then(a.0.1.cmp(&b.0.1)));
-    let (mut groups, mut ids) = (Vec::new(), BTreeMap::new());
-    for (key, _) in order {
-        let id = groups.len() as LightGroupId;
-        let places = &mut junctions[key.0 as usize].light_groups;
-        groups.push(LightGroup { junction: key.0, place: places.len() as u32 });
-        places.push(id);
-        ids.insert(key, id);
+
+    /// Finds what holds whom before each junction.
+    fn hold(&mut self, lanes: &[Lane], governed: &[Governed]) {
+        let mut there: BTreeMap<LaneId, Vec<(&Governed, LightGroupId)>> = BTreeMap::new();
+        for (g, group) in governed.iter().zip(&self.of) {
+            if let Some(group) = group {
+                there.entry(g.lane).or_default().push((g, *group));
+            }
+        }
+        for (before, signals) in there {
+            let junction = self.list[signals[0].1 as usize].junction;
+            let inside = lanes[before as usize].successors.iter().copied();
+            let inside: Vec<_> = inside.filter(|&l| lanes[l as usize].junction == Some(junction)).collect();
+            let lights = Lights::of(lanes, &inside, &signals, &self.list);
+            for lane in inside {
+                let own = lights.own.iter().find(|(l, _)| *l == lane).map(|(_, light)| *light);
+                if let Some(light) = own.or(lights.line) {
+                    self.list[light as usize].ways.push((before, lane));
+                }
+            }
+            self.before.insert(before, lights);
+        }
     }
-    (junctions, groups, ids)
+}
+
+impl Lights {
+    /// An arrow goes before a light for all turns, and a light that is referred to from a lane before one of another lane.
+    fn of(lanes: &[Lane], inside: &[LaneId], signals: &[(&Governed, LightGroupId)], groups: &[Group]) -> Self {
+        let is_arrow = |id: LightGroupId| groups[id as usize].is_arrow;
+        let named = |lane: LaneId, arrow: bool| {
+            let held = signals.iter().find(|(g, id)| is_arrow(*id) == arrow && g.inside.contains(&lane));
+            held.map(|(_, id)| *id)
+        };
+        let own = |lane: LaneId| named(lane, true).or_else(|| named(lane, false));
+        let full = signals.iter().find(|(_, id)| !is_arrow(*id)).map(|(_, id)| *id);
+        let straight = inside.iter().copied().min_by_key(|l| (lanes[*l as usize].turn != Turn::Straight, *l));
+        let all_held = inside.iter().all(|&lane| own(lane).is_some());
+        let line = full.or_else(|| straight.filter(|_| all_held).and_then(own));
+        let differs = |&lane: &LaneId| own(lane).filter(|light| Some(*light) != line).map(|light| (lane, light));
+        Self { line, own: inside.iter().filter_map(differs).collect() }
+    }
+}
+
+/// The controller of a signal at a junction, and its place in the order there: as the junction says, else as it says
+/// itself; without either it is last.
+fn controller(source: &Source, signal: usize, junction: &str) -> Option<(usize, u32)> {
+    let controllers = &source.net.signals()[signal].controllers;
+    let named = controllers.iter().find_map(|id| {
+        let told = source.provenance.controllers.iter().find(|told| told.controller == *id)?;
+        let here = told.junctions.iter().find(|at| at.junction_id == junction)?;
+        Some((id, here.sequence))
+    });
+    let (id, here) = named.or(controllers.first().map(|id| (id, None)))?;
+    let own = source.net.controller(*id).and_then(|controller| controller.sequence);
+    Some((id.0, here.or(own).unwrap_or(u32::MAX)))
 }
 
 /// One head for each pole and approach.
 pub(super) fn heads(source: &Source, roads: &Roads<'_>, governed: &[Governed], groups: &Groups) -> Vec<LightHead> {
     let (mut heads, mut placed) = (Vec::new(), BTreeSet::<(usize, LightGroupId)>::new());
-    for g in governed.iter().filter(|g| g.is_light) {
-        let group = groups[&(g.junction, g.approach)];
+    for (g, group) in governed.iter().zip(&groups.of) {
+        let Some(group) = *group else { continue };
         if !placed.insert((g.signal, group)) {
             continue;
         }

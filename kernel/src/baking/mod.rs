@@ -1,5 +1,7 @@
 //! OpenDRIVE text to [`MapData`](crate::map_data::MapData): `steps` says in which order.
 
+mod bus_stops;
+mod catalogue;
 mod crosswalks;
 mod dressing;
 mod error;
@@ -9,11 +11,13 @@ mod lights;
 mod limits;
 mod mesh;
 mod priority;
+mod programme;
 mod props;
 mod rounding;
 mod shapes;
 mod signs;
 mod source;
+mod speeds;
 mod steps;
 mod stops;
 mod surfaces;

@@ -2,18 +2,22 @@
 
 use std::collections::BTreeSet;
 
+use super::catalogue::Meaning;
+use super::signs::Governed;
 use super::source::Source;
 use super::stops::Crossed;
 use crate::geometry::direction;
 use crate::map_data::{Lane, LaneId, LaneKind, StopKind, StopLine, Turn};
 
 /// Decides who goes first at every overlap, and adds the stop lines of those who wait without a sign.
-pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crossed: &Crossed) -> Vec<Lane> {
+pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crossed: &Crossed, governed: &[Governed]) -> Vec<Lane> {
     let yields = Yields::new(source);
+    let told = governed.iter().filter(|g| g.meaning == Meaning::Priority);
+    let first: BTreeSet<LaneId> = told.map(|g| g.lane).collect();
     for a in 0..lanes.len() as LaneId {
         for k in 0..lanes[a as usize].conflicts.len() {
             let b = lanes[a as usize].conflicts[k].lane;
-            lanes[a as usize].conflicts[k].other_first = gives_way(source, &yields, &lanes, a, b);
+            lanes[a as usize].conflicts[k].other_first = gives_way(source, &yields, &lanes, &first, a, b);
         }
     }
     for before in 0..lanes.len() {
@@ -32,12 +36,12 @@ pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crossed: &Crossed) -> 
 }
 
 /// Whether traffic on junction lane `a` waits for traffic on `b`; never true both ways.
-fn gives_way(source: &Source, yields: &Yields, lanes: &[Lane], a: LaneId, b: LaneId) -> bool {
+fn gives_way(source: &Source, yields: &Yields, lanes: &[Lane], first: &BTreeSet<LaneId>, a: LaneId, b: LaneId) -> bool {
     let (one, other) = (&lanes[a as usize], &lanes[b as usize]);
     if let Some(told) = priority(source, yields, lanes, a, b) {
         return told;
     }
-    match (sign(lanes, one), sign(lanes, other)) {
+    match (sign(lanes, first, one), sign(lanes, first, other)) {
         (x, y) if x != y => return x > y,
         _ => {}
     }
@@ -53,10 +57,14 @@ fn gives_way(source: &Source, yields: &Yields, lanes: &[Lane], a: LaneId, b: Lan
     }
 }
 
-/// 1 where a sign says to wait, 0 with a light or without a sign.
-fn sign(lanes: &[Lane], lane: &Lane) -> u32 {
-    let stops = lane.predecessors.iter().filter_map(|&p| lanes[p as usize].stop);
-    u32::from(stops.into_iter().any(|s| matches!(s.kind, StopKind::Stop | StopKind::Yield)))
+/// 1 where a sign says to wait, -1 where one says to go first, 0 with a light or without a sign.
+fn sign(lanes: &[Lane], first: &BTreeSet<LaneId>, lane: &Lane) -> i32 {
+    let told = lane.predecessors.iter().map(|p| match lanes[*p as usize].stop.map(|stop| stop.kind) {
+        Some(StopKind::Stop | StopKind::Yield) => 1,
+        Some(StopKind::Light(_)) => 0,
+        None => -i32::from(first.contains(p)),
+    });
+    told.max_by_key(|told| told.abs()).unwrap_or_default()
 }
 
 /// The `<priority>` records of the file: who waits, for whom.

@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 
+use super::catalogue::{Meaning, meaning};
 use super::rounding::{snap, snap3};
 use super::shapes::{beside_lanes, footprint, least_rectangle, point};
 use super::source::Source;
-use crate::map_data::{LaneKind, LightHead, Prop, PropKind, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
+use crate::map_data::{LaneKind, LightHead, Prop, PropKind, SIGN_BUS_STOP, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
 use crate::ops;
 use crate::places::Roads;
 
@@ -36,12 +37,13 @@ fn pole(position: Vec3, heading_rad: f32, lamps_m: f32) -> Prop {
 }
 
 fn sign(signal: &xodr::Signal) -> Option<u32> {
-    let value = signal.value.unwrap_or(0.0);
-    match signal.kind.as_str() {
-        "206" => Some(SIGN_STOP),
-        "205" => Some(SIGN_YIELD),
-        "274" if (5.0..=130.0).contains(&value) => Some(SIGN_LIMIT + value as u32),
-        _ => None,
+    match meaning(signal)? {
+        Meaning::Stop => Some(SIGN_STOP),
+        Meaning::Yield => Some(SIGN_YIELD),
+        Meaning::BusStop => Some(SIGN_BUS_STOP),
+        // What stands on it, in the unit of its country.
+        Meaning::Limit(_) => signal.value.map(|value| SIGN_LIMIT + value as u32),
+        Meaning::Light(_) | Meaning::Priority => None,
     }
 }
 

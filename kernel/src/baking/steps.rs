@@ -4,9 +4,11 @@ use glam::Vec3;
 
 use super::error::BakeError;
 use super::limits::{CROWD, EXTENT_M};
+use super::programme::Programmes;
 use super::source::Source;
 use super::{
-    crosswalks, dressing, junctions, lanes, lights, priority, props, signs, stops, surfaces, terrain, walkways,
+    bus_stops, crosswalks, dressing, junctions, lanes, lights, priority, props, signs, speeds, stops, surfaces,
+    terrain, walkways,
 };
 use crate::map_data::{Lane, MapData};
 use crate::places::LaneGrid;
@@ -18,21 +20,25 @@ use crate::places::LaneGrid;
 pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
     let source = Source::read(xodr)?;
     let (source, lanes) = lanes::bake(source)?;
+    let lanes = speeds::bake(&source, lanes);
     let bounds = bounds(&lanes)?;
     let grid = LaneGrid::new(&lanes);
     sparse(&lanes, &grid)?;
     let (lanes, junctions) = junctions::bake(&source, lanes, &grid);
     let governed = signs::governed(&source, &lanes);
     let crosswalks = crosswalks::bake(&source, &grid.over(&lanes), &junctions, &governed);
-    let (junctions, light_groups, groups) = lights::groups(&lanes, junctions, &governed);
+    let groups = lights::Groups::new(&source, &lanes, &junctions, &governed);
     let crossed = stops::Crossed::new(&crosswalks);
+    let programmes = Programmes { lanes: &lanes, crosswalks: &crosswalks, crossed: &crossed, groups: &groups };
+    let (junctions, light_groups) = programmes.bake(junctions);
     let lanes = stops::bake(lanes, &crossed, &governed, &groups);
+    let bus_stops = bus_stops::bake(&source, &lanes);
     let light_heads = lights::heads(&source, &grid.over(&lanes), &governed, &groups);
     let crosswalks = crosswalks::lit(crosswalks, &lanes, &junctions);
     let (walk_nodes, walk_edges) = walkways::bake(&source, &grid.over(&lanes), &crosswalks);
     let mut surfaces = surfaces::bake(&source, &lanes, &junctions, &crosswalks);
     // After the paint: who waits without a sign has no line on the road.
-    let lanes = priority::bake(&source, lanes, &crossed);
+    let lanes = priority::bake(&source, lanes, &crossed, &governed);
     surfaces.push(terrain::bake(&lanes, bounds));
     let props = props::bake(&source, &grid.over(&lanes), &light_heads);
     let props = dressing::bake(&source, grid.over(&lanes), bounds, props);
@@ -44,6 +50,7 @@ pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
         junctions,
         light_groups,
         light_heads,
+        bus_stops,
         crosswalks,
         walk_nodes,
         walk_edges,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::catalogue::Meaning;
 use super::lights::Groups;
 use super::rounding::snap;
 use super::signs::Governed;
@@ -12,17 +13,24 @@ const SETBACK_M: f32 = 1.0;
 /// A crosswalk this near to the junction moves the stop line before itself, metres.
 const CROSSWALK_M: f32 = 15.0;
 
-/// Gives the lanes before junctions the stop lines of their lights and signs.
+/// Gives the lanes before junctions the stop lines of their lights and signs, and those inside the lights of their own.
 pub(super) fn bake(mut lanes: Vec<Lane>, crossed: &Crossed, governed: &[Governed], groups: &Groups) -> Vec<Lane> {
     for g in governed {
-        let kind = match g.kind {
-            StopKind::Light(_) => StopKind::Light(groups[&(g.junction, g.approach)]),
-            sign => sign,
+        let kind = match g.meaning {
+            Meaning::Stop => StopKind::Stop,
+            Meaning::Yield => StopKind::Yield,
+            Meaning::Light(_) | Meaning::Priority | Meaning::Limit(_) | Meaning::BusStop => continue,
         };
         let s_m = crossed.stop_place(&lanes, g.lane);
-        let stop = &mut lanes[g.lane as usize].stop;
-        if stop.is_none() || g.is_light {
-            *stop = Some(StopLine { s_m, kind });
+        lanes[g.lane as usize].stop.get_or_insert(StopLine { s_m, kind });
+    }
+    for (&lane, lights) in &groups.before {
+        let s_m = crossed.stop_place(&lanes, lane);
+        let stop = &mut lanes[lane as usize].stop;
+        let kind = lights.line.map(StopKind::Light).or(stop.map(|stop| stop.kind));
+        *stop = Some(StopLine { s_m, kind: kind.unwrap_or(StopKind::Yield) });
+        for &(inside, light) in &lights.own {
+            lanes[inside as usize].light = Some(light);
         }
     }
     lanes

@@ -3,10 +3,11 @@
 use glam::Vec3;
 use xxhash_rust::xxh3::xxh3_128;
 
+use super::bus_stop::BusStop;
 use super::digest::Digested;
-use super::ids::LaneId;
+use super::ids::{LaneId, LightGroupId};
 use super::junction::{Junction, LightGroup, LightHead};
-use super::lane::{Lane, LanePoint, Projection};
+use super::lane::{Lane, LanePoint, Projection, StopKind};
 use super::scenery::{Prop, Surface};
 use super::walkway::{Crosswalk, WalkEdge, WalkNode};
 
@@ -25,6 +26,8 @@ pub struct MapData {
     pub light_groups: Vec<LightGroup>,
     /// Signal heads.
     pub light_heads: Vec<LightHead>,
+    /// Bus stops, by lane and place.
+    pub bus_stops: Vec<BusStop>,
     /// Crosswalks.
     pub crosswalks: Vec<Crosswalk>,
     /// Where the ways of pedestrians meet.
@@ -49,6 +52,7 @@ impl MapData {
             junctions,
             light_groups,
             light_heads,
+            bus_stops,
             crosswalks,
             walk_nodes,
             walk_edges,
@@ -57,8 +61,19 @@ impl MapData {
             bounds,
         } = self;
         let mut bytes = Vec::new();
-        let parts: [&dyn Digested; 10] =
-            [lanes, junctions, light_groups, light_heads, crosswalks, walk_nodes, walk_edges, surfaces, props, bounds];
+        let parts: [&dyn Digested; 11] = [
+            lanes,
+            junctions,
+            light_groups,
+            light_heads,
+            bus_stops,
+            crosswalks,
+            walk_nodes,
+            walk_edges,
+            surfaces,
+            props,
+            bounds,
+        ];
         parts.iter().for_each(|part| part.digest(&mut bytes));
         xxh3_128(&bytes)
     }
@@ -66,6 +81,15 @@ impl MapData {
     /// The point of `lane` at `s_m` from its start, interpolated; `s_m` is clamped to the lane.
     pub fn lane_point(&self, lane: LaneId, s_m: f32) -> LanePoint {
         self.lanes[lane as usize].at(s_m)
+    }
+
+    /// The light that holds those at the line of the lane `before` who go on to `next`, if one does.
+    pub fn light_between(&self, before: LaneId, next: LaneId) -> Option<LightGroupId> {
+        let at_line = self.lanes[before as usize].stop.and_then(|stop| match stop.kind {
+            StopKind::Light(group) => Some(group),
+            StopKind::Stop | StopKind::Yield => None,
+        });
+        self.lanes[next as usize].light.or(at_line)
     }
 
     /// Where `position` is relative to `lane`.

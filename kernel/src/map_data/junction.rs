@@ -15,19 +15,26 @@ digested! {
         pub lanes: Vec<LaneId>,
         /// Light groups in the order in which they turn green; empty when it has no lights.
         pub light_groups: Vec<LightGroupId>,
+        /// Length of its signal programme, ticks; 0 when it has no lights.
+        pub cycle_ticks: u32,
         /// Middle of the junction.
         pub center: Vec3,
     }
 }
 
 digested! {
-    /// Signals of one approach, green at the same time.
+    /// Signals of one approach that always show the same, and their part of the programme of their junction: green,
+    /// then yellow, red for the rest of it.
     #[derive(Clone, Debug)]
     pub struct LightGroup {
         /// Index of its junction in [`MapData::junctions`](super::MapData::junctions).
         pub junction: u32,
-        /// Its place in [`Junction::light_groups`].
-        pub place: u32,
+        /// When it turns green, ticks from the start of the programme.
+        pub green_from_ticks: u32,
+        /// Length of green, ticks.
+        pub green_ticks: u32,
+        /// Length of yellow, ticks.
+        pub yellow_ticks: u32,
     }
 }
 

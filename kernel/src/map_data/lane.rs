@@ -134,6 +134,9 @@ digested! {
         pub turn: Turn,
         /// Stop line on it, if any (on the lane before the junction).
         pub stop: Option<StopLine>,
+        /// Light that holds those who take this lane through a junction at the line before it, where that is another than
+        /// the one of the line: an arrow.
+        pub light: Option<LightGroupId>,
         /// Lanes of the same junction that overlap it.
         pub conflicts: Vec<Conflict>,
     }
@@ -190,6 +193,7 @@ impl Default for Lane {
             junction: None,
             turn: Turn::Straight,
             stop: None,
+            light: None,
             conflicts: Vec::new(),
         }
     }

@@ -89,5 +89,7 @@ digested! {
 pub const SIGN_STOP: u32 = 0;
 /// [`Prop::variant`] of a yield sign.
 pub const SIGN_YIELD: u32 = 1;
-/// [`Prop::variant`] of a speed limit: this plus the limit in km/h.
+/// [`Prop::variant`] of the sign of a bus stop.
+pub const SIGN_BUS_STOP: u32 = 2;
+/// [`Prop::variant`] of a speed limit: this plus the number on it, km/h or what its country counts in.
 pub const SIGN_LIMIT: u32 = 1000;

@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use glam::{Quat, Vec3};
 
 use super::*;
+use crate::map::StopKind;
 use crate::map::bundled;
 use crate::motion::Motion;
 

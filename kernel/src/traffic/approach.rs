@@ -27,7 +27,7 @@ impl View<'_> {
             return;
         };
         let steps = self.steps_of(plan);
-        let signal = junction::signal(self.map, self.lights, next, steps[line.approach].lane);
+        let signal = junction::signal(self.map, self.lights, next, steps, line);
         if next.lapse == Lapse::RunsRed {
             next.flags |= Vehicle::GRANTED;
         } else if next.flags & Vehicle::GRANTED != 0 {

@@ -27,6 +27,8 @@ pub(super) struct Asking {
     pub s_m: f32,
     pub half_m: f32,
     pub speed_mps: f32,
+    /// Whether it has to be let in: a bus that leaves its stop (StVO § 20).
+    pub owed: bool,
 }
 
 /// Adds everybody who signals to a lane beside its own: vehicles of traffic, and the ego car.
@@ -39,10 +41,23 @@ pub(super) fn gather(actors: &Actors, around: &Surroundings<'_>, asking: &mut Ve
             return None;
         }
         let s_m = map.project(lane, actors.bodies[i].position).s_m;
-        Some(Asking { id: v.id, lane, s_m, half_m: actors.drivers[i].size_m.x * 0.5, speed_mps: v.speed_mps })
+        Some(Asking {
+            id: v.id,
+            lane,
+            s_m,
+            half_m: actors.drivers[i].size_m.x * 0.5,
+            speed_mps: v.speed_mps,
+            owed: false,
+        })
+    };
+    let leaves = |(i, v): (usize, &Vehicle)| {
+        let half_m = actors.drivers[i].size_m.x * 0.5;
+        let asks = v.wants_out() && !around.holds(v.id);
+        asks.then_some(Asking { id: v.id, lane: v.lane, s_m: v.s_m, half_m, speed_mps: 0.0, owed: true })
     };
     asking.clear();
     asking.extend(actors.state.vehicles.iter().enumerate().filter_map(signals));
+    asking.extend(actors.state.vehicles.iter().enumerate().filter_map(leaves));
     asking.extend(ego(actors, around));
 }
 
@@ -64,5 +79,5 @@ fn ego(actors: &Actors, around: &Surroundings<'_>) -> Option<Asking> {
     let lane = beside(actors.map(), here.lane, to_left)?;
     let s_m = actors.map().project(lane, ego.position).s_m;
     let speed_mps = ego.velocity_mps.truncate().dot(direction(ego.heading_rad)).max(0.0);
-    Some(Asking { id: 0, lane, s_m, half_m: ego.size_m.x * 0.5, speed_mps })
+    Some(Asking { id: 0, lane, s_m, half_m: ego.size_m.x * 0.5, speed_mps, owed: false })
 }

@@ -18,8 +18,8 @@ const LEFT_M: f32 = 1.5;
 const LEAST_MPS: f32 = 5.0;
 /// Whoever is nearer than this beside the kerb is waited for, metres.
 const BESIDE_M: f32 = 2.0;
-/// And whoever has to brake harder than this, as the vehicle still stands, m/s².
-const PULL_OUT_MPS2: f32 = 5.0;
+/// And whoever has to brake harder than this where one pulls out without a look, as the vehicle still stands, m/s².
+pub(super) const PULL_OUT_MPS2: f32 = 5.0;
 
 impl View<'_> {
     /// Where a vehicle would be on a lane beside its own, if it can change there right before somebody who has to brake
@@ -61,15 +61,16 @@ impl View<'_> {
         }
     }
 
-    /// Whether nobody is beside a vehicle that has halted at the kerb, nor so near behind that he could not stop.
-    pub(super) fn can_pull_out(&self, index: usize) -> bool {
+    /// Whether nobody is beside a vehicle that has halted at the kerb, nor so near behind that he would have to brake harder
+    /// than that.
+    pub(super) fn can_pull_out(&self, index: usize, most_mps2: f32) -> bool {
         let (vehicle, seeker, plan) = (&self.vehicles[index], self.seeker(index), &self.plans[index]);
         let likes_m = self.likes_m(index);
         let steps = self.steps_of(plan);
         let mut seen =
             self.near(index, &seeker).chain(&self.hazards[..1]).filter_map(|h| sight(self.map, steps, &seeker, h));
         let beside = seen.any(|seen| seen.gap_m < BESIDE_M && seen.obstructs(likes_m, seeker.half.y));
-        let stops = |mps: f32, gap_m: f32| braking_needed(mps, gap_m - LEFT_M) < PULL_OUT_MPS2;
+        let stops = |mps: f32, gap_m: f32| braking_needed(mps, gap_m - LEFT_M) < most_mps2;
         let behind = self.behind(index, vehicle.lane, vehicle.s_m);
         let there = self.map.project(vehicle.lane, self.bodies[index].position);
         !beside

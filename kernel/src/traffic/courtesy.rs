@@ -39,7 +39,8 @@ impl View<'_> {
             let gap_m = ahead_m - asking.half_m;
             let asked = ahead_m > 0.0 && gap_m < reach_m && plan.leader.is_none_or(|l| l.gap_m > gap_m);
             let bears = vehicle.speed_mps - asking.speed_mps < SLOWER_MPS;
-            let gives = asked && bears && self.is_courteous(vehicle.id, asking.id) && !self.is_honked_at(index);
+            let courteous = asking.owed || self.is_courteous(vehicle.id, asking.id);
+            let gives = asked && bears && courteous && !self.is_honked_at(index);
             gives.then(|| follow_idm(driver, vehicle.speed_mps, gap_m, asking.speed_mps).max(-GIVE_MPS2))
         };
         self.asking.iter().filter(|asking| asking.id != vehicle.id).filter_map(gives).fold(f32::MAX, f32::min)

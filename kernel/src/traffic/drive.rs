@@ -133,11 +133,13 @@ impl View<'_> {
             next.flags = next.flags & !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT) | self.turn(plan);
         }
         let seeker = self.seeker(index);
-        if next.lapse != Lapse::Parks {
+        self.call(index, plan, next);
+        if !next.lapse.is_to_kerb() {
             self.decide_manoeuvre(index, plan, &seeker, next);
         }
         let side = self.side(index, plan, &seeker);
-        let behind = self.behind_leader_mps2(index, plan, next).min(self.lapse_mps2(next));
+        let halt_mps2 = self.lapse_mps2(next).min(self.call_mps2(index, plan, next));
+        let behind = self.behind_leader_mps2(index, plan, next).min(halt_mps2);
         let accel =
             self.acceleration(index, plan, next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
         let was_braking = next.flags & Vehicle::BRAKING != 0;
@@ -246,7 +248,7 @@ impl View<'_> {
         let drift = match vehicle.manoeuvre {
             manoeuvre if manoeuvre.moves() => drift(vehicle.speed_mps, seeker.half.x),
             manoeuvre if manoeuvre.passes() => pass_drift(vehicle.speed_mps),
-            _ if aim_m == likes_m && vehicle.lapse != Lapse::PullsOut => DRIFT,
+            _ if aim_m == likes_m && !vehicle.lapse.is_from_kerb() => DRIFT,
             _ => PASS_DRIFT,
         };
         Side { aim_m, drift }

@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use crate::light::LightPhase;
-use crate::map_data::{LaneId, MapData, StopKind};
+use crate::map_data::{MapData, StopKind};
 use crate::time::{TICK_S, Tick};
 
 use super::lane_way::{ConflictKind, LaneConflict};
@@ -155,17 +155,24 @@ pub(super) enum Signal {
     Closed,
 }
 
-/// What the light or sign at the line of a plan says to a vehicle.
-pub(super) fn signal(map: &MapData, lights: &[(LightPhase, Tick)], vehicle: &Vehicle, approach: LaneId) -> Signal {
-    match map.lanes[approach as usize].stop.map(|stop| stop.kind) {
-        Some(StopKind::Light(group)) => match lights[group as usize] {
+/// What the light or sign at a line says to a vehicle with these steps.
+pub(super) fn signal(
+    map: &MapData,
+    lights: &[(LightPhase, Tick)],
+    vehicle: &Vehicle,
+    steps: &[Step],
+    line: &Line,
+) -> Signal {
+    let approach = steps[line.approach].lane;
+    if let Some(group) = map.light_between(approach, steps[line.inside.0].lane) {
+        return match lights[group as usize] {
             (LightPhase::Green, _) => Signal::Open,
             (LightPhase::Yellow, left) => Signal::Closing(left),
             (LightPhase::Red, _) => Signal::Closed,
-        },
-        Some(StopKind::Stop) if vehicle.flags & Vehicle::HALTED == 0 => Signal::Closed,
-        _ => Signal::Open,
+        };
     }
+    let sign = map.lanes[approach as usize].stop.is_some_and(|stop| stop.kind == StopKind::Stop);
+    if sign && vehicle.flags & Vehicle::HALTED == 0 { Signal::Closed } else { Signal::Open }
 }
 
 /// Whether a vehicle is close enough to the line to ask; `spare_m` widens the distance.

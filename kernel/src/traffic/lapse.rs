@@ -1,9 +1,9 @@
-//! What a driver does wrong at the moment.
+//! What a driver does wrong at the moment, and what takes him to the kerb and back.
 
 use crate::state_enum;
 
 state_enum! {
-    /// A mistake that goes on.
+    /// A mistake that goes on, or a halt at the kerb.
     pub enum Lapse {
         /// None.
         None = 0,
@@ -23,5 +23,23 @@ state_enum! {
         PullsOut = 7,
         /// Has run into another vehicle.
         Crashed = 8,
+        /// A bus draws up at the stop before it.
+        Calls = 9,
+        /// A bus stands at a stop.
+        Boards = 10,
+        /// A bus drives off from a stop.
+        Departs = 11,
+    }
+}
+
+impl Lapse {
+    /// Draws up at the kerb.
+    pub fn is_to_kerb(self) -> bool {
+        matches!(self, Self::Parks | Self::Calls)
+    }
+
+    /// Drives off from the kerb.
+    pub fn is_from_kerb(self) -> bool {
+        matches!(self, Self::PullsOut | Self::Departs)
     }
 }

@@ -1,7 +1,7 @@
 //! What everybody sees in a tick, gathered once for all.
 
 use crate::controls::Controls;
-use crate::map_data::{LaneKind, Place, Projection, StopKind, Turn};
+use crate::map_data::{LaneKind, Place, Projection, Turn};
 use crate::signals::{self, LightPhase};
 use crate::time::{Tick, seconds};
 
@@ -273,10 +273,8 @@ impl Sight {
         }
         let ahead_m = lane.length_m - place.s_m;
         let expected = ahead_m - half_m < speed * EGO_EXPECTED_S;
-        let closed = match lane.stop.map(|stop| stop.kind) {
-            Some(StopKind::Light(group)) => self.lights[group as usize].0 == LightPhase::Red,
-            _ => false,
-        };
+        let light = |next| map.light_between(place.lane, next);
+        let open = |next: u32| light(next).is_none_or(|group| self.lights[group as usize].0 != LightPhase::Red);
         let ways = &actors.ways.lanes;
         let next = ways[place.lane as usize].onward.iter();
         let next = next.filter_map(|onward| Some((onward.lane, ways[onward.lane as usize].zone?)));
@@ -288,9 +286,9 @@ impl Sight {
         };
         let turns = |lane: u32| indicated.is_none_or(|turn| map.lanes[lane as usize].turn == turn);
         let none_turns = !next.clone().any(|(lane, _)| turns(lane));
-        let taken = next.clone().filter(|(lane, _)| none_turns || turns(*lane));
-        let lanes = taken.map(|(lane, _)| Step { lane, start_m: ahead_m, from_m: 0.0 });
-        if let Some((_, zone)) = next.clone().next().filter(|_| expected && !closed) {
+        let taken = next.filter(|(lane, _)| (none_turns || turns(*lane)) && open(*lane));
+        let lanes = taken.clone().map(|(lane, _)| Step { lane, start_m: ahead_m, from_m: 0.0 });
+        if let Some((_, zone)) = taken.clone().next().filter(|_| expected) {
             members.push(member(zone, false), lanes);
         }
     }

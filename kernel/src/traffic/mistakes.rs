@@ -8,6 +8,7 @@ use crate::map_data::LaneId;
 use crate::rng::{Stream, below, unit};
 use crate::time::{TICK_S, Tick, seconds};
 
+use super::barge::PULL_OUT_MPS2;
 use super::drive::View;
 use super::junction::{self, Signal, YELLOW_BRAKE_MPS2};
 use super::lapse::Lapse;
@@ -77,7 +78,15 @@ pub(super) fn tell(before: &[Vehicle], after: &[Vehicle], told: &mut Vec<Told>) 
             Lapse::BrakesHard => EventKind::HazardBraking,
             Lapse::CutsIn => EventKind::HazardCutIn,
             Lapse::PullsOut => EventKind::HazardPullOut,
-            Lapse::None | Lapse::Parks | Lapse::Halts | Lapse::Crashed => return None,
+            Lapse::None
+            | Lapse::Parks
+            | Lapse::Halts
+            | Lapse::Crashed
+            | Lapse::Calls
+            | Lapse::Boards
+            | Lapse::Departs => {
+                return None;
+            }
         };
         Some((kind, u32::from(is.id)))
     }));
@@ -110,7 +119,7 @@ impl View<'_> {
                 (next.lapse, next.lapse_left) = (Lapse::Halts, least + drawn as u8);
             }
             Lapse::PullsOut => end_if((next.offset_m - self.likes_m(index)).abs() < 0.3, next),
-            Lapse::Parks | Lapse::Halts | Lapse::Crashed => {}
+            Lapse::Parks | Lapse::Halts | Lapse::Crashed | Lapse::Calls | Lapse::Boards | Lapse::Departs => {}
         }
     }
 
@@ -150,8 +159,8 @@ impl View<'_> {
     /// When the light turns red before which a vehicle could stop and at whose line it would be a moment later, if it is
     /// the first there.
     pub(super) fn meets_red(&self, plan: &Plan, line: &Line, next: &Vehicle) -> Option<Tick> {
-        let approach = self.steps_of(plan)[line.approach].lane;
-        let Signal::Closing(left) = junction::signal(self.map, self.lights, next, approach) else { return None };
+        let signal = junction::signal(self.map, self.lights, next, self.steps_of(plan), line);
+        let Signal::Closing(left) = signal else { return None };
         let v = next.speed_mps;
         let red_s = left as f32 * TICK_S;
         // Who speeds up may be there before that.
@@ -219,7 +228,7 @@ impl View<'_> {
         let vehicle = &self.vehicles[index];
         let lane = &self.map.lanes[vehicle.lane as usize];
         let room_m = lane.at(vehicle.s_m).half_width_m - self.drivers[index].size_m.y * 0.5;
-        (vehicle.lapse == Lapse::Parks).then(|| f32::from(self.ways.kerb) * room_m.max(0.0))
+        vehicle.lapse.is_to_kerb().then(|| f32::from(self.ways.kerb) * room_m.max(0.0))
     }
 
     /// The greatest acceleration that a mistake allows, m/s².
@@ -240,9 +249,12 @@ impl View<'_> {
             next.stuck_s = next.stuck_s.saturating_add(u8::from(self.tick.is_multiple_of(seconds(1))));
             return;
         }
+        if next.lapse == Lapse::Boards {
+            return self.board(index, next);
+        }
         if next.is_due(self.tick, DS_TICKS) {
             next.lapse_left = next.lapse_left.saturating_sub(1);
-            if next.lapse_left == 0 && self.can_pull_out(index) {
+            if next.lapse_left == 0 && self.can_pull_out(index, PULL_OUT_MPS2) {
                 next.lapse = Lapse::PullsOut;
             }
         }

@@ -76,9 +76,9 @@ impl Vehicle {
     /// Every flag with a meaning.
     pub const ALL_FLAGS: u8 = 127;
 
-    /// Stands where it is no part of the traffic: it crashed, or halted at the kerb.
+    /// Stands where it is no part of the traffic: it crashed, or halted at the kerb or a bus stop.
     pub(super) fn is_aside(&self) -> bool {
-        matches!(self.lapse, Lapse::Crashed | Lapse::Halts)
+        matches!(self.lapse, Lapse::Crashed | Lapse::Halts | Lapse::Boards)
     }
 
     /// Whether it is in a junction, may enter one, or asks for that.

@@ -73,9 +73,9 @@ impl View<'_> {
 
     fn waits_at_light(&self, index: usize, plan: &Plan) -> bool {
         let Some(line) = plan.line.filter(|line| line.hold_m < AT_LIGHT_M && !line.passed) else { return false };
-        let approach = self.steps_of(plan)[line.approach].lane;
-        let light = self.ways.is_lit(approach);
-        light && signal(self.map, self.lights, &self.vehicles[index], approach) != Signal::Open
+        let steps = self.steps_of(plan);
+        let light = self.map.light_between(steps[line.approach].lane, steps[line.inside.0].lane);
+        light.is_some() && signal(self.map, self.lights, &self.vehicles[index], steps, &line) != Signal::Open
     }
 
     fn behind_ego(&self, index: usize, plan: &Plan) -> bool {

@@ -9,7 +9,7 @@ use super::links::LEAST_HALF_M;
 use super::routes::{Class, Routes};
 use super::walker::Walker;
 use crate::actor::ActorKind;
-use crate::map_data::{Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, StopKind, WalkEdgeId};
+use crate::map_data::{Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, WalkEdgeId};
 use crate::ops;
 use crate::places::Places;
 
@@ -96,12 +96,6 @@ impl Ways {
         Class::of(kind).may_use(lane) && (!kind.is_pedalled() || beside.is_none())
     }
 
-    /// Whether a light holds traffic at the end of a lane.
-    pub(super) fn is_lit(&self, lane: LaneId) -> bool {
-        let stop = self.places.map.lanes[lane as usize].stop;
-        stop.is_some_and(|stop| matches!(stop.kind, StopKind::Light(_)))
-    }
-
     fn add_crosswalks(&mut self, map: &MapData) {
         for (i, crosswalk) in map.crosswalks.iter().enumerate() {
             for &(lane, s_m) in &crosswalk.lanes {
@@ -120,9 +114,8 @@ fn crosswalk_lights(map: &MapData, crosswalk: &Crosswalk) -> Vec<LightGroupId> {
     let mut groups = Vec::new();
     if crosswalk.junction.is_some() {
         for &(lane, _) in &crosswalk.lanes {
-            if let Some(StopKind::Light(group)) = map.lanes[lane as usize].stop.map(|stop| stop.kind) {
-                groups.push(group);
-            }
+            let next = &map.lanes[lane as usize].successors;
+            groups.extend(next.iter().filter_map(|next| map.light_between(lane, *next)));
         }
     }
     groups.sort_unstable();

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use kernel::RoadNetwork;
 use kernel::events::EventKind;
-use kernel::map::StopKind;
 use kernel::scene::ActorKind;
 use kernel::signals::{self, LightPhase};
 use kernel::time::{Tick, seconds};
@@ -163,11 +162,16 @@ impl<'a> Watcher<'a> {
         self.before.clone_from(vehicles);
     }
 
+    /// What the light before a vehicle shows, and the distance to its line; of several for the ways on the one that shows
+    /// most.
     fn phase(&self, vehicle: &Vehicle, tick: Tick) -> Option<(LightPhase, f32)> {
-        let stop = self.drive.network.lanes[vehicle.lane as usize].stop?;
-        let StopKind::Light(group) = stop.kind else { return None };
-        let ahead_m = stop.s_m - vehicle.s_m - vehicle.kind.size_m().x * 0.5;
-        Some((signals::phase(&self.drive.network, self.drive.seed, group, tick).0, ahead_m))
+        let network = &self.drive.network;
+        let lane = &network.lanes[vehicle.lane as usize];
+        let ahead_m = lane.stop?.s_m - vehicle.s_m - vehicle.kind.size_m().x * 0.5;
+        let lights = lane.successors.iter().map(|next| network.light_between(vehicle.lane, *next));
+        let shown = lights.map(|light| Some(signals::phase(network, self.drive.seed, light?, tick).0));
+        // Without a light one may go.
+        Some((shown.collect::<Option<Vec<_>>>()?.into_iter().max()?, ahead_m))
     }
 
     fn lights(&mut self, vehicles: &[Vehicle], tick: Tick) {

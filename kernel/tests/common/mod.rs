@@ -29,8 +29,14 @@ pub fn ring() -> Arc<RoadNetwork> {
     for inside in [false, true] {
         network.lanes.extend((0..ARCS).map(|arc| lane(arc, inside)));
     }
-    network.junctions.push(Junction { lanes: vec![LIT_ARC], light_groups: vec![0, 1], ..Default::default() });
-    network.light_groups = (0..2).map(|place| LightGroup { junction: 0, place }).collect();
+    network.junctions.push(Junction {
+        lanes: vec![LIT_ARC],
+        light_groups: vec![0, 1],
+        cycle_ticks: 1800,
+        ..Default::default()
+    });
+    let light = |k: u32| LightGroup { junction: 0, green_from_ticks: 900 * k, green_ticks: 600, yellow_ticks: 180 };
+    network.light_groups = (0..2).map(light).collect();
     network.surfaces = vec![
         band(SurfaceKind::Road, RING_M - LANE_M, RING_M + LANE_M, 0.0),
         band(SurfaceKind::Sidewalk, RING_M + LANE_M, RING_M + 2.0 * LANE_M, 0.12),
@@ -95,6 +101,7 @@ fn lane(arc: u32, inside: bool) -> Lane {
         junction: lit.then_some(0),
         turn: if lit { Turn::Left } else { Turn::Straight },
         stop: (!inside && arc + 1 == LIT_ARC).then_some(StopLine { s_m: length_m - 2.0, kind: StopKind::Light(0) }),
+        light: None,
         conflicts: vec![],
     }
 }

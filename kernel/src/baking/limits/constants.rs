@@ -51,7 +51,9 @@ pub const JUNCTIONS: usize = 20_000;
 pub const JUNCTION_ROADS: usize = 400;
 /// Connections of a junction.
 pub const CONNECTIONS: usize = 2_000;
-/// Lane links of a connection, and priorities of a junction.
+/// Controllers of signals.
+pub const CONTROLLERS: usize = 20_000;
+/// Lane links of a connection, priorities and controllers of a junction, and signals of a controller.
 pub const LINKS: usize = 1_000;
 
 /// Steps of computing of what grows with the product of two numbers: stations of a lane times

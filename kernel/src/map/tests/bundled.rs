@@ -25,6 +25,7 @@ fn maps_are_sound() {
     for name in BUNDLED {
         let map = bundled(name).unwrap();
         check_sound(&map);
+        super::signals::check_programmes(&map);
         super::features::check_ground(&map);
     }
 }

@@ -4,6 +4,7 @@ mod broken;
 mod bundled;
 mod features;
 mod places;
+mod signals;
 
 use glam::Vec3;
 

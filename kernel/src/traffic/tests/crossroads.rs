@@ -59,6 +59,7 @@ fn lane(points: &[Vec2], name: String) -> Lane {
         junction: None,
         turn: Turn::Straight,
         stop: None,
+        light: None,
         conflicts: Vec::new(),
     }
 }
@@ -111,8 +112,12 @@ pub fn crossroads(signs: Signs) -> Arc<RoadNetwork> {
     add_conflicts(&mut lanes, signs);
     let junction_lanes: Vec<LaneId> = (8..lanes.len() as u32).collect();
     let lights = if signs == Signs::Lights { (0..4).collect() } else { Vec::new() };
-    let junction = Junction { name: "1".into(), lanes: junction_lanes, light_groups: lights, center: Vec3::ZERO };
-    let light_groups = junction.light_groups.iter().map(|g| LightGroup { junction: 0, place: *g }).collect();
+    // One approach after the other: green 10 s, yellow 3 s, then 2 s in which all are red.
+    let cycle_ticks = 900 * lights.len() as u32;
+    let light = |g: &u32| LightGroup { junction: 0, green_from_ticks: 900 * g, green_ticks: 600, yellow_ticks: 180 };
+    let light_groups = lights.iter().map(light).collect();
+    let (name, center) = ("1".into(), Vec3::ZERO);
+    let junction = Junction { name, lanes: junction_lanes, light_groups: lights, cycle_ticks, center };
     let (crosswalks, walk_nodes, walk_edges) = walks(signs);
     let map = MapData {
         name: "crossroads".into(),
@@ -121,6 +126,7 @@ pub fn crossroads(signs: Signs) -> Arc<RoadNetwork> {
         junctions: vec![junction],
         light_groups,
         light_heads: Vec::new(),
+        bus_stops: Vec::new(),
         crosswalks,
         walk_nodes,
         walk_edges,

@@ -1,5 +1,6 @@
 //! Invariants of traffic, on a crossroads built in code and on the bundled maps.
 
+mod buses;
 mod crossroads;
 mod encroachment;
 mod free_road;
