@@ -4,6 +4,10 @@ use glam::Vec3;
 
 use crate::state_enum;
 
+/// Parked cars that were pushed are actors with ids from here on: this plus the car's number among those of the map, in
+/// the order of its props. Others have lower ids.
+pub const FIRST_PARKED_ID: u32 = 1 << 16;
+
 state_enum! {
     /// What an actor is.
     pub enum ActorKind {

@@ -1,5 +1,6 @@
 //! What everybody sees in a tick, gathered once for all.
 
+use crate::actor::FIRST_PARKED_ID;
 use crate::controls::Controls;
 use crate::map_data::{LaneKind, Place, Projection, StopKind, Turn};
 use crate::signals::{self, LightPhase};
@@ -150,7 +151,7 @@ impl Sight {
     fn gather_hazards(&mut self, actors: &Actors, around: &Surroundings<'_>) {
         let (vehicles, walkers) = (&actors.state.vehicles, &actors.state.walkers);
         let first_walker = walkers.first().map_or(u32::MAX, |w| u32::from(w.id));
-        let is_walker = |id: u32| id >= first_walker;
+        let is_walker = |id: u32| (first_walker..FIRST_PARKED_ID).contains(&id);
         self.hazards.clear();
         self.hazards.push(Hazard::of(&around.ego, false));
         self.hazards.extend(around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id))));

@@ -150,7 +150,8 @@ impl World {
         self.traffic.step(&Surroundings { tick, ego, ego_flags, loose: obstacles, conditions });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
         self.traffic.told_near(ego.position).for_each(|(kind, actor)| log.with(kind, actor));
-        bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
+        let parked = &self.network.places().parked;
+        bodies.prepare(self.traffic.bodies(), parked, car, &mut self.physics, near);
         let water = Water::of(&self.scenario.weather_at(tick));
         self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car, &water);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
