@@ -43,7 +43,7 @@ pub(super) struct Sight {
     steps: Vec<Step>,
     plans: Vec<Plan>,
     members: Members,
-    /// The ego car, loose actors and vehicles that stand aside first, then people on the road.
+    /// The ego car, loose actors, vehicles that stand aside and open doors first, then people on the road.
     hazards: Vec<Hazard>,
     free: usize,
     /// Vehicles, the ego car and loose actors.
@@ -157,6 +157,7 @@ impl Sight {
         self.hazards.extend(around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id))));
         let aside = vehicles.iter().zip(&actors.bodies).filter(|(v, _)| v.is_aside() && !around.holds(v.id));
         self.hazards.extend(aside.map(|(_, body)| Hazard::of_body(body)));
+        self.hazards.extend(actors.door_hazards(around));
         self.free = self.hazards.len();
         self.blocks.clear();
         self.blocks.extend(self.hazards.iter().filter(|h| !h.walker));

@@ -18,6 +18,7 @@ use crate::traffic::Missing;
 use crate::watch::Watch;
 use crate::weather::Water;
 
+use super::doors;
 use super::keyframe::{self, FieldDifference, Keyframe};
 use super::snapshot::PARTS;
 use super::tick::World;
@@ -64,7 +65,7 @@ impl World {
                 wheel_angle_rad: car.gear.wheel_angle_rad,
                 lamps: lamps_of(&self.parts.output.applied.controls),
             },
-            actors: self.actors().chain(self.pushed_cars()).collect(),
+            actors: self.actors().chain(self.pushed_cars()).chain(self.doors()).collect(),
             lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
             weather: self.scenario.weather_at(tick),
         };
@@ -106,6 +107,12 @@ impl World {
                 lamps: 0,
             }
         })
+    }
+
+    /// Open doors of parked cars.
+    fn doors(&self) -> impl Iterator<Item = ActorScene> + '_ {
+        let doors = doors::open_doors(&self.traffic, &self.parts.bodies, self.tick(), &self.parts.ego.car);
+        doors.map(|door| doors::scene_of(&door))
     }
 
     /// What the HUD shows.
