@@ -4,6 +4,12 @@ use glam::Vec3;
 
 use crate::state_enum;
 
+/// Parked cars that were pushed are actors with ids from here on: this plus the car's number among those of the map, in
+/// the order of its props. Others have lower ids.
+pub const FIRST_PARKED_ID: u32 = 1 << 16;
+/// Open doors are actors with ids from here on: this plus the number of the parked car.
+pub const FIRST_DOOR_ID: u32 = 1 << 28;
+
 state_enum! {
     /// What an actor is.
     pub enum ActorKind {
@@ -29,6 +35,8 @@ state_enum! {
         CargoBike = 9,
         /// Patrol car or ambulance on a van's body, without siren.
         Emergency = 10,
+        /// Open door of a parked car; x is from its hinge to its edge.
+        Door = 11,
     }
 }
 
@@ -47,6 +55,7 @@ impl ActorKind {
             Self::Scooter => Vec3::new(1.9, 0.75, 1.6),
             Self::CargoBike => Vec3::new(2.5, 0.7, 1.75),
             Self::Emergency => Vec3::new(4.9, 1.9, 2.25),
+            Self::Door => Vec3::new(1.1, 0.12, 1.4),
         }
     }
 
@@ -64,6 +73,7 @@ impl ActorKind {
             Self::Scooter => 200.0,
             Self::CargoBike => 150.0,
             Self::Emergency => 2800.0,
+            Self::Door => 35.0,
         }
     }
 
@@ -89,6 +99,6 @@ impl ActorKind {
 
     /// A motor vehicle with four wheels or more.
     pub fn is_car_or_heavier(self) -> bool {
-        !self.is_on_foot() && !self.is_pedalled() && !self.is_motorcycle()
+        !self.is_on_foot() && !self.is_pedalled() && !self.is_motorcycle() && self != Self::Door
     }
 }

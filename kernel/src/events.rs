@@ -43,6 +43,8 @@ state_enum! {
         HazardPullOut = 16,
         /// It ran into another vehicle, or that into it.
         HazardCollision = 17,
+        /// A door of a parked car begins to open into a lane; `actor` names the door.
+        HazardDoor = 18,
     }
 }
 

@@ -33,6 +33,8 @@ pub enum Stream {
     Courtesy = 20,
     /// Mistakes of people at the wheel.
     Lapse = 14,
+    /// Doors of parked cars.
+    Door = 21,
 }
 
 fn mix(z: u64) -> u64 {

@@ -9,7 +9,7 @@ use crate::light::LightPhase;
 use crate::time::Tick;
 use crate::{ops, state};
 
-pub use crate::actor::ActorKind;
+pub use crate::actor::{ActorKind, FIRST_DOOR_ID, FIRST_PARKED_ID};
 pub use crate::weather::Weather;
 
 state! {
@@ -33,7 +33,8 @@ state! {
     /// Another road user.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct ActorScene {
-        /// Stable number of the actor within the run, 1 or more.
+        /// Stable number of the actor within the run, 1 or more; from [`FIRST_PARKED_ID`] on a parked car that was pushed,
+        /// which is no longer where the map has it, and from [`FIRST_DOOR_ID`] on an open door.
         pub id: u32,
         /// What it is.
         pub kind: ActorKind,

@@ -83,6 +83,7 @@ fn every_file_shows_its_hazard() {
         ("cut-ins", EventKind::HazardCutIn),
         ("hard-braking", EventKind::HazardBraking),
         ("pull-outs", EventKind::HazardPullOut),
+        ("doors", EventKind::HazardDoor),
     ];
     for (name, kind) in kinds {
         let (found, _) = drive(&scenario(name), Some(kind));
@@ -104,5 +105,5 @@ fn there_is_a_test_for_every_file() {
     let files = std::fs::read_dir(folder()).expect("the folder is there");
     let tomls =
         files.filter(|file| file.as_ref().is_ok_and(|file| file.path().extension().is_some_and(|e| e == "toml")));
-    assert_eq!(tomls.count(), 7);
+    assert_eq!(tomls.count(), 8);
 }

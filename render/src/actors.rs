@@ -10,7 +10,7 @@ use kernel::time::{TICK_HZ, Tick};
 
 use crate::camera::EGO_MIDDLE_M;
 use crate::horizon::Horizon;
-use crate::instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
+use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
 use crate::mesh::actor::{actor_model, ego_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
@@ -38,11 +38,18 @@ pub(crate) struct Moving {
 /// The models that have been needed so far.
 #[derive(Default)]
 pub(crate) struct Cast {
+    /// The looks of parked cars by number, which they keep when they are pushed.
+    parked_looks: Vec<u32>,
     models: BTreeMap<(ActorKind, u32, Detail), Model>,
     heads: BTreeMap<(LightPhase, Detail), Mesh>,
 }
 
 impl Cast {
+    /// With the looks of the map's parked cars.
+    pub(crate) fn new(parked_looks: Vec<u32>) -> Self {
+        Self { parked_looks, ..Self::default() }
+    }
+
     /// Poses what a view sees, nearest first.
     pub(crate) fn pose(
         &mut self,
@@ -95,12 +102,19 @@ impl Cast {
             return;
         }
         let detail = view.detail(centre, radius);
+        let parked = parked_number(actor.id).and_then(|number| self.parked_looks.get(number));
+        let variant = parked.copied().unwrap_or(actor.variant);
         let model = self
             .models
-            .entry((actor.kind, actor.variant, detail))
-            .or_insert_with(|| actor_model(actor.kind, actor.variant, detail));
-        let instance = actor.id.min(u32::from(FIRST_PARKED_INSTANCE) - 1) as u16;
-        moving.append(model, frame, [actor.phase_rad, actor.speed_mps], instance, flashing(actor.lamps, tick));
+            .entry((actor.kind, variant, detail))
+            .or_insert_with(|| actor_model(actor.kind, variant, detail));
+        moving.append(
+            model,
+            frame,
+            [actor.phase_rad, actor.speed_mps],
+            instance_of_actor(actor.id),
+            flashing(actor.lamps, tick),
+        );
     }
 
     fn pose_head(&mut self, head: &LightHead, phase: LightPhase, view: &View, moving: &mut Moving) {

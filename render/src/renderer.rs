@@ -8,7 +8,7 @@ use crate::blob::{self, BlobVertex};
 use crate::gpu::{Draws, Gpu, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
 use crate::rain;
-use crate::scenery::Scenery;
+use crate::scenery::{Scenery, gone, parked_looks};
 use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, RenderError};
 
@@ -61,8 +61,8 @@ pub struct Renderer {
     moving: Moving,
     blobs: Vec<BlobVertex>,
     targets: Option<Targets>,
-    /// What the shadow map shows.
-    shadowed: Option<ShadowBox>,
+    /// What the shadow map shows, and which parked cars it leaves out.
+    shadowed: Option<(ShadowBox, Vec<usize>)>,
 }
 
 impl Renderer {
@@ -84,7 +84,7 @@ impl Renderer {
             scenery,
             heads: network.light_heads.clone(),
             light_groups: network.light_groups.len(),
-            cast: Cast::default(),
+            cast: Cast::new(parked_looks(network)),
             moving: Moving::default(),
             blobs: Vec::new(),
             targets: None,
@@ -106,14 +106,16 @@ impl Renderer {
             }
         }
         let shadow = ShadowBox::ahead_of(view.eye, view.ahead, light.sun, self.quality.shadow_reach_m);
-        let stale = self.quality.moving_shadows || self.shadowed != Some(shadow);
+        let gone = gone(scene);
+        let shadowed = self.shadowed.as_ref().is_some_and(|(last, left_out)| *last == shadow && *left_out == gone);
+        let stale = self.quality.moving_shadows || !shadowed;
         let texel = 1.0 / self.quality.shadow_side as f32;
         let draws = Draws {
             uniform: SceneUniform::new(&view, scene, &light, shadow.matrix(), texel),
             moving_vertices: &self.moving.vertices,
             moving_indices: &self.moving.indices,
-            fixed_indices: self.scenery.visible(&view),
-            casters: stale.then(|| self.scenery.near_line(shadow.centre, light.sun, 1.42 * shadow.reach_m)),
+            fixed_indices: self.scenery.visible(&view, &gone),
+            casters: stale.then(|| self.scenery.near_line(shadow.centre, light.sun, 1.42 * shadow.reach_m, &gone)),
             moving_casts: self.quality.moving_shadows,
             blobs: &self.blobs,
             weather: rain::is_drawn(&scene.weather),
@@ -126,7 +128,7 @@ impl Renderer {
             _ => Targets::new(&self.gpu, width, height, self.quality.samples),
         };
         self.passes.submit(&self.gpu, &draws, &targets);
-        self.shadowed = Some(shadow);
+        self.shadowed = Some((shadow, gone));
         self.targets.insert(targets).read(&self.gpu, scene.tick)
     }
 

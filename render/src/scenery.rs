@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use glam::Vec3;
+use kernel::SceneSnapshot;
 use kernel::map::{Prop, PropKind, RoadNetwork};
 
 use crate::horizon::{Horizon, Occluder};
-use crate::instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE};
+use crate::instance_ids::{instance_of_parked, parked_number};
 use crate::mesh::model::Detail;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, surface};
 use crate::view::View;
@@ -31,8 +32,17 @@ struct Level {
 struct Piece {
     centre: Vec3,
     radius_m: f32,
+    /// Of a parked car its number.
+    parked: Option<usize>,
     /// In the order of [`Detail::ALL`].
     levels: [Level; Detail::ALL.len()],
+}
+
+impl Piece {
+    /// Whether it is not one of the parked cars that are gone.
+    fn stands(&self, gone: &[usize]) -> bool {
+        gone.is_empty() || self.parked.is_none_or(|number| !gone.contains(&number))
+    }
 }
 
 /// The static world of a map.
@@ -49,18 +59,19 @@ impl Scenery {
         let houses = network.props.iter().filter_map(Occluder::of).collect();
         let mut scenery = Self { houses, ..Default::default() };
         for mut cell in surface::cells(network).into_iter().chain([surface::plain(network)]) {
-            scenery.add(Detail::ALL.map(|detail| {
+            let levels = Detail::ALL.map(|detail| {
                 cell = simplify::simplified(&cell, detail.error_m().max(FLAT_M));
                 cell.clone()
-            }));
+            });
+            scenery.add(levels, None);
         }
-        for (object, instance) in instances(network) {
-            scenery.add(Detail::ALL.map(|detail| placed(object, instance, detail)));
+        for (object, parked) in numbered(network) {
+            scenery.add(Detail::ALL.map(|detail| placed(object, parked, detail)), parked);
         }
         scenery
     }
 
-    fn add(&mut self, meshes: [Mesh; Detail::ALL.len()]) {
+    fn add(&mut self, meshes: [Mesh; Detail::ALL.len()], parked: Option<usize>) {
         if meshes[0].is_empty() {
             return;
         }
@@ -70,7 +81,7 @@ impl Scenery {
             let same = i > 0 && meshes[i] == meshes[i - 1];
             levels[i] = if same { levels[i - 1].clone() } else { self.store(&meshes[i]) };
         }
-        self.pieces.push(Piece { centre, radius_m, levels });
+        self.pieces.push(Piece { centre, radius_m, parked, levels });
     }
 
     fn store(&mut self, mesh: &Mesh) -> Level {
@@ -89,12 +100,13 @@ impl Scenery {
         Horizon::new(eye, &self.houses, HOUSES_M)
     }
 
-    /// Indices of what a view sees for each finish, front to back.
-    pub(crate) fn visible(&self, view: &View) -> [Vec<u32>; FINISHES] {
+    /// Indices of what a view sees for each finish, front to back, without the parked cars that are gone.
+    pub(crate) fn visible(&self, view: &View, gone: &[usize]) -> [Vec<u32>; FINISHES] {
         let large = |p: &&Piece| view.pixels(2.0 * p.radius_m, p.centre, p.radius_m) > SMALLEST_PX;
         let mut seen: Vec<(f32, &Piece)> = self
             .pieces
             .iter()
+            .filter(|p| p.stands(gone))
             .filter(|p| view.sees(p.centre, p.radius_m))
             .filter(large)
             .map(|p| (p.centre.truncate().distance(view.eye.truncate()) - p.radius_m, p))
@@ -106,10 +118,11 @@ impl Scenery {
     }
 
     /// Indices of all coarse pieces that come closer than `reach_m` to the line through `centre`
-    /// along `direction`, all finishes together.
-    pub(crate) fn near_line(&self, centre: Vec3, direction: Vec3, reach_m: f32) -> Vec<u32> {
+    /// along `direction`, all finishes together, without the parked cars that are gone.
+    pub(crate) fn near_line(&self, centre: Vec3, direction: Vec3, reach_m: f32, gone: &[usize]) -> Vec<u32> {
         let near = |p: &&Piece| (p.centre - centre).reject_from(direction).length() < reach_m + p.radius_m;
-        self.gather(self.pieces.iter().filter(near).map(|p| &p.levels[Detail::Coarse as usize])).concat()
+        let pieces = self.pieces.iter().filter(|p| p.stands(gone)).filter(near);
+        self.gather(pieces.map(|p| &p.levels[Detail::Coarse as usize])).concat()
     }
 
     fn gather<'a>(&self, levels: impl Iterator<Item = &'a Level>) -> [Vec<u32>; FINISHES] {
@@ -123,21 +136,29 @@ impl Scenery {
     }
 }
 
-/// The static objects with their instances.
-fn instances(network: &RoadNetwork) -> impl Iterator<Item = (&Prop, u16)> {
-    let mut next = FIRST_PARKED_INSTANCE;
-    network.props.iter().map(move |object| {
-        if object.kind != PropKind::ParkedCar {
-            return (object, 0);
-        }
-        let instance = next;
-        next = (next + 1).min(EGO_INSTANCE - 1);
-        (object, instance)
-    })
+/// The static objects, parked cars with their numbers.
+fn numbered(network: &RoadNetwork) -> impl Iterator<Item = (&Prop, Option<usize>)> {
+    let mut numbers = 0..;
+    network.props.iter().map(move |object| (object, if is_parked(object) { numbers.next() } else { None }))
+}
+
+fn is_parked(object: &Prop) -> bool {
+    object.kind == PropKind::ParkedCar
+}
+
+/// What selects the looks of each parked car.
+pub(crate) fn parked_looks(network: &RoadNetwork) -> Vec<u32> {
+    network.props.iter().filter(|object| is_parked(object)).map(prop::look).collect()
+}
+
+/// The numbers of the parked cars that are somewhere else.
+pub(crate) fn gone(scene: &SceneSnapshot) -> Vec<usize> {
+    scene.actors.iter().filter_map(|actor| parked_number(actor.id)).collect()
 }
 
 /// The mesh of an object in the world's frame.
-fn placed(object: &Prop, instance: u16, detail: Detail) -> Mesh {
+fn placed(object: &Prop, parked: Option<usize>, detail: Detail) -> Mesh {
+    let instance = parked.map_or(0, instance_of_parked);
     let mut mesh = prop::mesh(object, detail);
     prop::place(&mut mesh, object.position, object.heading_rad);
     mesh.vertices.iter_mut().for_each(|v| v.instance = instance);

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::digest::{digested, digested_codes};
+use crate::actor::ActorKind;
 use crate::state_enum;
 
 state_enum! {
@@ -53,7 +54,7 @@ state_enum! {
         Sign = 4,
         /// The pole of a signal head.
         SignalPole = 5,
-        /// A parked car; part of the static world.
+        /// A parked car; part of the static world until somebody runs into it.
         ParkedCar = 6,
         /// A fence; `size.x` is its length.
         Fence = 7,
@@ -82,6 +83,16 @@ digested! {
         pub size: Vec3,
         /// Selects colour, shape or sign.
         pub variant: u32,
+    }
+}
+
+/// Parked cars taller than this are vans, metres.
+const VAN_M: f32 = 1.8;
+
+impl Prop {
+    /// What a parked car is among the kinds of road users.
+    pub fn parked_kind(&self) -> ActorKind {
+        if self.size.z > VAN_M { ActorKind::Van } else { ActorKind::Car }
     }
 }
 

@@ -7,7 +7,7 @@ use rapier3d::prelude::*;
 
 use super::build::{ACTORS, EGO, GROUND, PROPS, free, groups, mass, parameters};
 use super::statics::{Statics, is_soft};
-use crate::actor::ActorKind;
+use crate::actor::{ActorKind, FIRST_PARKED_ID};
 use crate::car::{self, CarSetup, Footing, Footprint, WHEELS};
 use crate::controls::Controls;
 use crate::ego::Ego;
@@ -20,6 +20,11 @@ const GRAVITY: Vec3 = Vec3::new(0.0, 0.0, -car::GRAVITY_MPS2);
 const LEAST_NORMAL_Z: f32 = 0.3;
 /// Impulse within a tick from which contact counts as a collision, N s.
 const COLLISION_IMPULSE_NS: f32 = 1.0;
+
+/// Friction of what was hit, and of a parked car, whose brakes are on. With that of the ground it comes to the mean: tyres
+/// that slide on a dry road have 0.7.
+const FRICTION: f32 = 0.6;
+const PARKED_FRICTION: f32 = 0.8;
 
 /// How an actor is in the physics world.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +74,7 @@ pub struct Physics {
     parameters: IntegrationParameters,
     ego: RigidBodyHandle,
     ego_collider: ColliderHandle,
+    parked: Option<ColliderHandle>,
     off_road: bool,
     footprints: [Footprint; WHEELS],
     actors: Vec<Actor>,
@@ -92,6 +98,7 @@ impl Clone for Physics {
             parameters: self.parameters,
             ego: self.ego,
             ego_collider: self.ego_collider,
+            parked: self.parked,
             off_road: self.off_road,
             footprints: self.footprints,
             actors: self.actors.clone(),
@@ -129,6 +136,7 @@ impl Physics {
             parameters: parameters(),
             ego: body,
             ego_collider,
+            parked: statics.parked,
             off_road: false,
             footprints: Default::default(),
             actors: Vec::new(),
@@ -154,7 +162,7 @@ impl Physics {
         let shape = ColliderBuilder::cuboid(0.5 * size.x, 0.5 * size.y, 0.5 * size.z)
             .translation(Vec3::Z * 0.5 * size.z)
             .density(0.0)
-            .friction(0.6)
+            .friction(if id < FIRST_PARKED_ID { FRICTION } else { PARKED_FRICTION })
             .restitution(0.1)
             .collision_groups(groups(ACTORS, GROUND | PROPS | ACTORS | EGO));
         let collider = self.colliders.insert_with_parent(shape, body, &mut self.bodies);
@@ -175,6 +183,14 @@ impl Physics {
                 &mut self.soft_bodies,
                 true,
             );
+        }
+    }
+
+    /// Leaves of the parked cars only those that are not pushed.
+    pub fn unpark(&mut self, pushed: impl Fn(u32) -> bool) {
+        if let Some(parked) = self.parked {
+            self.colliders.remove(parked, &mut self.islands, &mut self.bodies, &mut self.soft_bodies, true);
+            self.parked = self.statics.parked_without(pushed).map(|parked| self.colliders.insert(parked));
         }
     }
 
@@ -259,8 +275,8 @@ impl Physics {
             let other = if pair.collider1 == self.ego_collider { pair.collider2 } else { pair.collider1 };
             if let Some(actor) = self.actors.iter().find(|actor| actor.collider == other) {
                 touched.actors.push((actor.id, pushed));
-            } else if Some(other) == self.statics.scenery {
-                touched.scenery = Some(pushed);
+            } else if Some(other) == self.statics.scenery || Some(other) == self.parked {
+                touched.scenery = Some(pushed || touched.scenery == Some(true));
             }
         }
         touched.actors.sort_unstable();

@@ -21,6 +21,10 @@ pub struct Statics {
     paint: Option<Ground>,
     floor_m: f32,
     pub(super) scenery: Option<ColliderHandle>,
+    /// All parked cars as one; who is pushed leaves it.
+    pub(super) parked: Option<ColliderHandle>,
+    /// Their boxes, by number.
+    parked_cars: Vec<(Pose, SharedShape)>,
 }
 
 /// Surfaces of some kinds as one mesh.
@@ -66,11 +70,26 @@ impl Statics {
             insert(mesh.shape.clone(), ground);
         }
         let floor = insert(SharedShape::halfspace(Vec3::Z), ground);
-        let boxes: Vec<_> = map.props.iter().map(solid).collect();
-        let scenery = (!boxes.is_empty()).then(|| insert(SharedShape::compound(boxes), groups(PROPS, ACTORS | EGO)));
+        let (parked, fixed): (Vec<&Prop>, Vec<&Prop>) = map.props.iter().partition(|p| p.kind == PropKind::ParkedCar);
+        let boxes = |props: &[&Prop]| props.iter().map(|prop| solid(prop)).collect::<Vec<_>>();
+        let (boxes, parked_cars) = (boxes(&fixed), boxes(&parked));
+        let mut compound = |boxes: Vec<_>| {
+            (!boxes.is_empty()).then(|| insert(SharedShape::compound(boxes), groups(PROPS, ACTORS | EGO)))
+        };
+        let (scenery, parked) = (compound(boxes), compound(parked_cars.clone()));
         let floor_m = map.bounds[0].z - CATCH_DEPTH_M;
         colliders[floor].set_translation(Vec3::new(0.0, 0.0, floor_m));
-        Self { broad_phase: filled(&mut colliders), colliders, ground: meshes, paint, floor_m, scenery }
+        let broad_phase = filled(&mut colliders);
+        Self { broad_phase, colliders, ground: meshes, paint, floor_m, scenery, parked, parked_cars }
+    }
+
+    /// The parked cars without some, as one collider; `pushed` says of a number whether it is gone.
+    pub(super) fn parked_without(&self, pushed: impl Fn(u32) -> bool) -> Option<Collider> {
+        let left = self.parked_cars.iter().zip(0..).filter(|(_, number)| !pushed(*number));
+        let boxes: Vec<_> = left.map(|(car, _)| car.clone()).collect();
+        let collider =
+            |boxes| ColliderBuilder::compound(boxes).collision_groups(groups(PROPS, ACTORS | EGO)).friction(0.6);
+        (!boxes.is_empty()).then(|| collider(boxes).build())
     }
 
     /// The first ground on the way from a place in a direction of unit length: how far away, metres, its normal, and

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::ground::{Ground, GroundGrid};
+use super::parked::ParkedCars;
 use super::roads::{LaneGrid, Roads};
 use crate::map_data::MapData;
 
@@ -15,12 +16,15 @@ pub(crate) struct Places {
     pub map: Arc<MapData>,
     lanes: LaneGrid,
     ground: GroundGrid,
+    /// The parked cars.
+    pub parked: ParkedCars,
 }
 
 impl Places {
     /// Those of a map.
     pub fn new(map: &Arc<MapData>) -> Self {
-        Self { map: map.clone(), lanes: LaneGrid::new(&map.lanes), ground: GroundGrid::new(&map.surfaces) }
+        let (lanes, ground) = (LaneGrid::new(&map.lanes), GroundGrid::new(&map.surfaces));
+        Self { map: map.clone(), lanes, ground, parked: ParkedCars::new(&map.props) }
     }
 
     /// The highest ground at most 1 m above `position` and below it; `None` beyond the map.

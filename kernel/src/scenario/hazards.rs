@@ -18,6 +18,7 @@ pub(super) struct Hazards {
     cut_ins_per_h: Given<f32>,
     hard_brakings_per_h: Given<f32>,
     pull_outs_per_h: Given<f32>,
+    doors_per_h: Given<f32>,
     inattention: Given<f32>,
 }
 
@@ -45,6 +46,7 @@ impl Hazards {
             &mut to.hard_brakings_per_h,
         )?;
         reader.take("hazards.pull_outs_per_h", self.pull_outs_per_h, per_h, &mut to.pull_outs_per_h)?;
+        reader.take("hazards.doors_per_h", self.doors_per_h, 0.0..=180.0, &mut to.doors_per_h)?;
         reader.take("hazards.inattention", self.inattention, 0.0..=2.0, &mut to.inattention)
     }
 }
@@ -52,12 +54,12 @@ impl Hazards {
 /// The section that is read back as these rates. It names no level: that may come to mean others.
 pub(super) fn print_hazards(rates: &HazardRates) -> String {
     let HazardRates { red_light_runners, rolling_stops, tailgaters, .. } = rates;
-    let HazardRates { cut_ins_per_h, hard_brakings_per_h, pull_outs_per_h, inattention, .. } = rates;
+    let HazardRates { cut_ins_per_h, hard_brakings_per_h, pull_outs_per_h, doors_per_h, inattention, .. } = rates;
     format!(
         "[hazards]\nred_light_runners = {red_light_runners:?}\nrolling_stops = {rolling_stops:?}\n\
          tailgaters = {tailgaters:?}\ncut_ins_per_h = {cut_ins_per_h:?}\n\
          hard_brakings_per_h = {hard_brakings_per_h:?}\npull_outs_per_h = {pull_outs_per_h:?}\n\
-         inattention = {inattention:?}\n"
+         doors_per_h = {doors_per_h:?}\ninattention = {inattention:?}\n"
     )
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::body::Body;
 use super::counts::TrafficCounts;
+use super::doors::Doors;
 use super::rates::HazardRates;
 use super::state::TrafficState;
 use super::traits::{Driver, WalkerTraits, driver, walker_traits};
@@ -26,6 +27,8 @@ pub(super) struct Actors {
     pub places: Vec<Place>,
     /// At the places of the state.
     pub bodies: Vec<Body>,
+    /// Which open about this time.
+    pub doors: Doors,
     /// The weather that drivers and walkers heed.
     conditions: Conditions,
 }
@@ -43,6 +46,7 @@ impl Actors {
             places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),
             state,
             bodies: Vec::new(),
+            doors: Doors::default(),
             conditions: Conditions::default(),
         };
         actors.know_drivers();

@@ -61,6 +61,11 @@ pub struct Body {
 impl Surroundings<'_> {
     /// Whether physics holds the actor.
     pub(super) fn holds(&self, id: u16) -> bool {
-        self.loose.binary_search_by_key(&u32::from(id), |o| o.id).is_ok()
+        self.is_loose(u32::from(id))
+    }
+
+    /// The same of a parked car too.
+    pub(super) fn is_loose(&self, id: u32) -> bool {
+        self.loose.binary_search_by_key(&id, |o| o.id).is_ok()
     }
 }

@@ -1,5 +1,6 @@
 //! What everybody sees in a tick, gathered once for all.
 
+use crate::actor::FIRST_PARKED_ID;
 use crate::controls::Controls;
 use crate::map_data::{LaneKind, Place, Projection, Turn};
 use crate::signals::{self, LightPhase};
@@ -41,7 +42,7 @@ pub(super) struct Sight {
     /// Of those who decide, and of those whom others have to know about.
     plans: Vec<Plan>,
     members: Members,
-    /// The ego car, loose actors and vehicles that stand aside first, then people on the road.
+    /// The ego car, loose actors, vehicles that stand aside and open doors first, then people on the road.
     hazards: Vec<Hazard>,
     free: usize,
     /// Vehicles, the ego car and loose actors.
@@ -157,12 +158,13 @@ impl Sight {
     fn gather_hazards(&mut self, actors: &Actors, around: &Surroundings<'_>) {
         let (vehicles, walkers) = (&actors.state.vehicles, &actors.state.walkers);
         let first_walker = walkers.first().map_or(u32::MAX, |w| u32::from(w.id));
-        let is_walker = |id: u32| id >= first_walker;
+        let is_walker = |id: u32| (first_walker..FIRST_PARKED_ID).contains(&id);
         self.hazards.clear();
         self.hazards.push(Hazard::of(&around.ego, false));
         self.hazards.extend(around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id))));
         let aside = vehicles.iter().zip(&actors.bodies).filter(|(v, _)| v.is_aside() && !around.holds(v.id));
         self.hazards.extend(aside.map(|(_, body)| Hazard::of_body(body)));
+        self.hazards.extend(actors.door_hazards(around));
         self.free = self.hazards.len();
         self.blocks.clear();
         self.blocks.extend(self.hazards.iter().filter(|h| !h.walker));

@@ -18,6 +18,7 @@ mod courtesy;
 mod crash;
 mod crosswalk;
 mod crowd;
+mod doors;
 mod drive;
 mod hazard;
 mod horn;
@@ -60,12 +61,14 @@ use glam::Vec3;
 
 use crate::actor::ActorKind;
 use crate::events::EventKind;
+use crate::time::Tick;
 use actors::Actors;
 use look::Sight;
 use passage::Told;
 
 pub use body::{Body, Obstacle, Surroundings};
 pub use counts::{Missing, TrafficCounts};
+pub(crate) use doors::Door;
 pub use lapse::Lapse;
 pub use manoeuvre::Manoeuvre;
 pub use population::Population;
@@ -76,7 +79,7 @@ pub use walker::{Walker, WalkerMode};
 pub use ways::Ways;
 
 /// Mistakes of others within this distance are events of the ego car's run, metres.
-const SIGHT_M: f32 = 100.0;
+pub(crate) const SIGHT_M: f32 = 100.0;
 
 /// All traffic of a world: its state, and what is derived from it and the map.
 #[derive(Clone, Debug)]
@@ -151,11 +154,22 @@ impl Traffic {
         self.told.iter().copied().filter(move |(kind, id)| !mistakes::is_mistake(*kind) || near(*id))
     }
 
+    /// Looks up which doors open about a tick; a step does it by itself.
+    pub(crate) fn know_doors(&mut self, tick: Tick) {
+        self.actors.know_doors(tick);
+    }
+
+    /// The doors of parked cars that stand open at the end of a tick.
+    pub(crate) fn open_doors(&self, tick: Tick, ego: Obstacle) -> impl Iterator<Item = Door> {
+        self.actors.open_doors(tick, ego)
+    }
+
     /// Advances everyone by one tick.
     pub fn step(&mut self, surroundings: &Surroundings<'_>) {
         let Self { actors, sight, told } = self;
         told.clear();
         actors.heed(&surroundings.conditions);
+        actors.know_doors(surroundings.tick);
         sight.look(actors, surroundings);
         let (mut next, mut places) = (std::mem::take(&mut sight.next), std::mem::take(&mut sight.places));
         places.clear();

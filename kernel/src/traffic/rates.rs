@@ -19,6 +19,8 @@ state! {
         pub hard_brakings_per_h: f32,
         /// Stops at the kerb that end without a look, 1/h, of cars on roads with room for that.
         pub pull_outs_per_h: f32,
+        /// Doors that open without a look, 1/h, of a parked car beside a lane.
+        pub doors_per_h: f32,
         /// Reaction times and errors of judgement, as a multiple of the published ones, 0 to 2.
         pub inattention: f32,
     }
@@ -64,6 +66,7 @@ impl HazardLevel {
                 cut_ins_per_h: 2.0,
                 hard_brakings_per_h: 0.1,
                 pull_outs_per_h: 0.2,
+                doors_per_h: 0.05,
                 inattention: 1.0,
             },
             Self::Raised => HazardRates {
@@ -73,6 +76,7 @@ impl HazardLevel {
                 cut_ins_per_h: 120.0,
                 hard_brakings_per_h: 40.0,
                 pull_outs_per_h: 30.0,
+                doors_per_h: 3.0,
                 inattention: 1.5,
             },
         }
@@ -88,6 +92,7 @@ impl HazardRates {
         cut_ins_per_h: 0.0,
         hard_brakings_per_h: 0.0,
         pull_outs_per_h: 0.0,
+        doors_per_h: 0.0,
         inattention: 0.0,
     };
 }

@@ -100,7 +100,7 @@ pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKin
         ActorKind::Motorcycle => (between(0.9, 1.1, t(0)) + more, 40.0, 2.2, Some(1.2)),
         ActorKind::Truck | ActorKind::Bus => (between(0.8, 0.95, t(0)) + more, 25.0, 1.0, None),
         ActorKind::Van => (cars, 38.0, between(1.1, 1.6, t(1)), None),
-        ActorKind::Car | ActorKind::Suv | ActorKind::Emergency | ActorKind::Pedestrian => {
+        ActorKind::Car | ActorKind::Suv | ActorKind::Emergency | ActorKind::Door | ActorKind::Pedestrian => {
             (cars, 40.0, between(1.3, 2.0, t(1)), None)
         }
     };

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+use super::doors::{DoorSpot, door_spots};
 use super::lane_way::{CrosswalkSpan, LaneWay, directions, lane_ways};
 use super::links::LEAST_HALF_M;
 use super::routes::{Class, Routes};
@@ -45,6 +46,8 @@ pub struct Ways {
     pub(super) entries: Vec<LaneId>,
     /// Those on which bicycles do; all where there is none.
     pub(super) bicycle_entries: Vec<LaneId>,
+    /// Doors of parked cars that open into a lane.
+    pub(super) door_spots: Vec<DoorSpot>,
     /// The side of slow traffic: -1 (right) where one drives on the right, 1 (left) where on the left.
     pub(super) kerb: i8,
 }
@@ -63,6 +66,7 @@ impl Ways {
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
             bicycle_entries: Vec::new(),
+            door_spots: door_spots(places),
             kerb,
         };
         let cycled = ways.entries.iter().copied().filter(|lane| ways.may_start(ActorKind::Bicycle, *lane));

@@ -2,11 +2,13 @@
 
 use glam::{Vec3, Vec3Swizzles};
 
-use crate::actor::ActorKind;
+use crate::actor::{ActorKind, FIRST_PARKED_ID};
 use crate::ego::{self, Ego};
 use crate::geometry::{rectangles_overlap, rotation};
+use crate::map_data::Prop;
 use crate::motion::Motion;
 use crate::physics::{Hold, Physics};
+use crate::places::ParkedCars;
 use crate::time::{TICK_S, seconds};
 use crate::traffic::{Body, Obstacle};
 use crate::{ops, state};
@@ -29,7 +31,7 @@ const LEAST_LOOSE_TICKS: u16 = seconds(1) as u16;
 const MOST_LOOSE_TICKS: u16 = seconds(10) as u16;
 
 state! {
-    /// An actor that was hit. It is no traffic any more.
+    /// An actor that was hit, or a parked car that was. It is no traffic any more.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Loose {
         /// Id of the actor.
@@ -51,7 +53,7 @@ state! {
     pub struct Bodies {
         /// Actors near the ego car: those in the physics world.
         pub near: Vec<u32>,
-        /// Actors that were hit, near or far.
+        /// Actors and parked cars that were hit, near or far.
         pub loose: Vec<Loose>,
     }
 }
@@ -59,6 +61,13 @@ state! {
 impl Loose {
     fn hold(&self) -> Hold {
         if self.resting { Hold::Resting(self.motion) } else { Hold::Free(self.motion) }
+    }
+
+    /// As an actor that is nowhere else.
+    fn body(&self) -> Body {
+        let Motion { position, rotation, velocity_mps, .. } = self.motion;
+        let (variant, phase_rad, lamps) = (0, 0.0, 0);
+        Body { id: self.id, kind: self.kind, variant, position, rotation, velocity_mps, phase_rad, lamps }
     }
 
     /// What the others see of it.
@@ -84,12 +93,22 @@ impl Bodies {
         self.loose.binary_search_by_key(&id, |loose| loose.id)
     }
 
+    /// Parked cars that were pushed, by ascending id.
+    pub fn pushed(&self) -> &[Loose] {
+        &self.loose[self.loose.partition_point(|loose| loose.id < FIRST_PARKED_ID)..]
+    }
+
     /// Puts every near actor into a fresh physics world, in the order of ids.
     pub fn insert_all(&self, traffic: &[Body], physics: &mut Physics) {
         for &id in &self.near {
-            if let Some(body) = find(traffic, id) {
-                physics.hold(id, body.kind, &self.hold(body));
+            let guided = || find(traffic, id).map(|body| (body.kind, self.hold(body)));
+            let held = self.loose(id).map(|loose| (loose.kind, loose.hold())).or_else(guided);
+            if let Some((kind, hold)) = held {
+                physics.hold(id, kind, &hold);
             }
+        }
+        if !self.pushed().is_empty() {
+            physics.unpark(|number| self.loose(FIRST_PARKED_ID + number).is_some());
         }
     }
 
@@ -100,29 +119,74 @@ impl Bodies {
 
     /// Lets actors in and out by their distance, guides the near ones to their new places, and
     /// frees those that the car is about to hit. `near` is working memory.
-    pub fn prepare(&mut self, traffic: &[Body], car: &Ego, physics: &mut Physics, near: &mut Vec<u32>) {
+    pub fn prepare(
+        &mut self,
+        traffic: &[Body],
+        parked: &ParkedCars,
+        car: &Ego,
+        physics: &mut Physics,
+        near: &mut Vec<u32>,
+    ) {
         near.clear();
-        let middle = car.middle();
+        let mover = Mover::of_car(car);
         for body in traffic {
-            let place = self.loose(body.id).map_or(body.position, |loose| loose.motion.position);
-            let distance = (place - middle).xy().length();
-            let was_near = self.near.binary_search(&body.id).is_ok();
-            if distance > if was_near { LEAVE_M } else { ENTER_M } {
-                if was_near {
-                    self.leave(body.id, physics);
-                }
-                continue;
-            }
-            near.push(body.id);
-            if !was_near {
-                physics.hold(body.id, body.kind, &self.hold(body));
-            }
-            if distance < REACH_M {
-                self.free_if_hit(body, car, physics);
-            }
-            physics.guide(body.id, body.position, body.rotation);
+            self.attend(body, &mover, physics, near);
         }
+        for at in self.loose.len() - self.pushed().len()..self.loose.len() {
+            let body = self.loose[at].body();
+            self.attend(&body, &mover, physics, near);
+        }
+        self.push_parked(parked, &mover, physics, near);
         std::mem::swap(&mut self.near, near);
+    }
+
+    /// Looks after one body.
+    fn attend(&mut self, body: &Body, car: &Mover, physics: &mut Physics, near: &mut Vec<u32>) {
+        let place = self.loose(body.id).map_or(body.position, |loose| loose.motion.position);
+        let distance = (place - car.middle).xy().length();
+        let was_near = self.near.binary_search(&body.id).is_ok();
+        if distance > if was_near { LEAVE_M } else { ENTER_M } {
+            if was_near {
+                self.leave(body.id, physics);
+            }
+            return;
+        }
+        near.push(body.id);
+        if !was_near {
+            physics.hold(body.id, body.kind, &self.hold(body));
+        }
+        if distance < REACH_M {
+            self.free_if_hit(body, car, physics);
+        }
+        physics.guide(body.id, body.position, body.rotation);
+    }
+
+    /// Parked cars that the car or a loose body is about to hit are loose from now on.
+    fn push_parked(&mut self, parked: &ParkedCars, car: &Mover, physics: &mut Physics, near: &mut Vec<u32>) {
+        let mut hit = Vec::new();
+        let moving = self.loose.iter().filter(|loose| !loose.resting).map(Mover::of_loose);
+        for mover in std::iter::once(*car).chain(moving) {
+            let numbers = parked.around(mover.middle, mover.size_m.x);
+            let stands = numbers.filter(|number| self.loose(FIRST_PARKED_ID + number).is_none());
+            hit.extend(stands.filter(|number| {
+                let prop = &parked.cars[*number as usize];
+                mover.will_touch(&standing(prop), prop.size)
+            }));
+        }
+        if hit.is_empty() {
+            return;
+        }
+        hit.sort_unstable();
+        hit.dedup();
+        for number in hit {
+            let (id, prop) = (FIRST_PARKED_ID + number, &parked.cars[number as usize]);
+            let loose = Loose { id, kind: prop.parked_kind(), motion: standing(prop), ticks: 0, resting: false };
+            let at = self.loose_place(id).unwrap_or_else(|at| at);
+            self.loose.insert(at, loose);
+            near.insert(near.partition_point(|near| *near < id), id);
+            physics.hold(id, loose.kind, &loose.hold());
+        }
+        physics.unpark(|number| self.loose(FIRST_PARKED_ID + number).is_some());
     }
 
     fn leave(&mut self, id: u32, physics: &mut Physics) {
@@ -133,14 +197,14 @@ impl Bodies {
     }
 
     /// A guided body would push the car like a wall, so it is freed in the tick before the hit.
-    fn free_if_hit(&mut self, body: &Body, car: &Ego, physics: &mut Physics) {
+    fn free_if_hit(&mut self, body: &Body, car: &Mover, physics: &mut Physics) {
         let found = self.loose_place(body.id);
         let motion = match found {
             Ok(at) if !self.loose[at].resting => return,
             Ok(at) => self.loose[at].motion,
             Err(_) => before(body),
         };
-        if !will_touch(car, &motion, body.kind.size_m()) {
+        if !car.will_touch(&motion, body.kind.size_m()) {
             return;
         }
         let loose = Loose { id: body.id, kind: body.kind, motion, ticks: 0, resting: false };
@@ -193,19 +257,49 @@ fn before(body: &Body) -> Motion {
     }
 }
 
-/// Whether the boxes of the car and of a body overlap after a tick of straight motion, seen from
-/// above and in height.
-fn will_touch(car: &Ego, other: &Motion, size_m: Vec3) -> bool {
-    if (car.motion.velocity_mps - other.velocity_mps).length() < LEAST_HIT_MPS {
-        return false;
+/// A parked car before anybody touched it.
+fn standing(car: &Prop) -> Motion {
+    let (position, rotation) = (car.position, rotation(car.heading_rad));
+    Motion { position, rotation, velocity_mps: Vec3::ZERO, spin_radps: Vec3::ZERO }
+}
+
+/// A box that runs into others.
+#[derive(Clone, Copy)]
+struct Mover {
+    /// Middle of its footprint, metres.
+    middle: Vec3,
+    heading_rad: f32,
+    velocity_mps: Vec3,
+    turn_radps: f32,
+    size_m: Vec3,
+}
+
+impl Mover {
+    fn of_car(car: &Ego) -> Self {
+        let Motion { velocity_mps, spin_radps, .. } = car.motion;
+        let (middle, heading_rad) = (car.middle(), car.heading_rad());
+        Self { middle, heading_rad, velocity_mps, turn_radps: spin_radps.z, size_m: ego::SIZE_M }
     }
-    let forward = other.rotation * Vec3::X;
-    let turned = rotation(car.heading_rad()).conjugate();
-    let gap = other.position + other.velocity_mps * TICK_S - (car.middle() + (car.motion.velocity_mps * TICK_S));
-    let (gap, axis) = (turned * gap, turned * forward);
-    if gap.z.abs() > ego::SIZE_M.z + size_m.z {
-        return false;
+
+    fn of_loose(loose: &Loose) -> Self {
+        let Obstacle { position, heading_rad, velocity_mps, size_m, .. } = loose.obstacle();
+        Self { middle: position, heading_rad, velocity_mps, turn_radps: loose.motion.spin_radps.z, size_m }
     }
-    let (half_car, half) = (ego::SIZE_M.xy() * 0.5 + GAP_M, size_m.xy() * 0.5 + GAP_M);
-    rectangles_overlap(half_car, gap.xy(), axis.xy(), half)
+
+    /// Whether its box and that of a body overlap after a tick of straight motion, seen from above and in height.
+    fn will_touch(&self, other: &Motion, size_m: Vec3) -> bool {
+        let swings_mps = 0.5 * self.size_m.x * self.turn_radps.abs();
+        if (self.velocity_mps - other.velocity_mps).length() + swings_mps < LEAST_HIT_MPS {
+            return false;
+        }
+        let forward = other.rotation * Vec3::X;
+        let turned = rotation(self.heading_rad + self.turn_radps * TICK_S).conjugate();
+        let gap = other.position + other.velocity_mps * TICK_S - (self.middle + self.velocity_mps * TICK_S);
+        let (gap, axis) = (turned * gap, turned * forward);
+        if gap.z.abs() > self.size_m.z + size_m.z {
+            return false;
+        }
+        let (half_self, half) = (self.size_m.xy() * 0.5 + GAP_M, size_m.xy() * 0.5 + GAP_M);
+        rectangles_overlap(half_self, gap.xy(), axis.xy(), half)
+    }
 }

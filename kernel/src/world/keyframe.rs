@@ -153,6 +153,10 @@ pub(super) fn check(parts: &Parts, network: &RoadNetwork) -> Result<(), String> 
     if !ascending(&mut bodies.near.iter().copied()) || !ascending(&mut bodies.loose.iter().map(|l| l.id)) {
         return Err("the ids of bodies do not ascend".to_owned());
     }
+    let parked = &network.places().parked;
+    if let Some(unknown) = bodies.pushed().iter().find(|loose| parked.of_id(loose.id).is_none()) {
+        return Err(format!("body {} is loose, expected a parked car of map {}", unknown.id, network.name));
+    }
     match bodies.loose.iter().find(|loose| !fits(&loose.motion)) {
         Some(loose) => Err(format!("motion of actor {} is {:?}, expected a possible motion", loose.id, loose.motion)),
         None => Ok(()),

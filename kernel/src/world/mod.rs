@@ -1,6 +1,7 @@
 //! The world: everything that happens in a tick.
 
 mod bodies;
+mod doors;
 mod error;
 mod keyframe;
 mod output;

@@ -6,7 +6,6 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::arbiter::After;
 use crate::controls::{Controls, TickInput};
-use crate::ego;
 use crate::events::EventKind;
 use crate::light::LightPhase;
 use crate::map::RoadNetwork;
@@ -23,7 +22,7 @@ use super::error::WorldError;
 use super::keyframe::{self, Keyframe};
 use super::output::TickOutput;
 use super::snapshot::{PARTS, Parts, origin};
-use super::{bodies, start};
+use super::{bodies, doors, start};
 
 /// How long a keyframe that is due waits while the ego car touches an actor.
 pub const KEYFRAME_GRACE_TICKS: Tick = seconds(2);
@@ -82,6 +81,8 @@ impl World {
     }
 
     fn assemble(scenario: Arc<Scenario>, network: &Arc<RoadNetwork>, parts: Parts, traffic: Traffic) -> Self {
+        let mut traffic = traffic;
+        traffic.know_doors(parts.input.tick);
         let mut physics = Physics::new(network.statics(), &parts.ego.car.motion);
         parts.bodies.insert_all(traffic.bodies(), &mut physics);
         let (network, ends) = (network.clone(), Default::default());
@@ -137,20 +138,15 @@ impl World {
         let (car, bodies) = (&mut self.parts.ego.car, &mut self.parts.bodies);
         obstacles.clear();
         obstacles.extend(bodies.loose.iter().map(bodies::Loose::obstacle));
-        let ego = Obstacle {
-            id: 0,
-            position: car.middle(),
-            heading_rad: car.heading_rad(),
-            velocity_mps: car.motion.velocity_mps,
-            size_m: ego::SIZE_M,
-        };
+        let ego = doors::ego_obstacle(car);
         let (tick, ego_flags) = (self.parts.input.tick, self.parts.output.applied.controls.flags);
         // People notice the weather once a second.
         let conditions = Conditions::of(&self.scenario.weather_at(tick - tick % seconds(1)));
         self.traffic.step(&Surroundings { tick, ego, ego_flags, loose: obstacles, conditions });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
         self.traffic.told_near(ego.position).for_each(|(kind, actor)| log.with(kind, actor));
-        bodies.prepare(self.traffic.bodies(), car, &mut self.physics, near);
+        let parked = &self.network.places().parked;
+        bodies.prepare(self.traffic.bodies(), parked, car, &mut self.physics, near);
         let water = Water::of(&self.scenario.weather_at(tick));
         self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car, &water);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
@@ -159,14 +155,16 @@ impl World {
     /// Finds what began in this tick, and whether it ends the run.
     fn watch(&mut self) {
         let (tick, network) = (self.tick(), &*self.network);
-        let Parts { ego, run, output, .. } = &mut self.parts;
+        let Parts { ego, bodies, run, output, .. } = &mut self.parts;
         let (car, speed_mps) = (&ego.car, ego.car.speed_mps());
         let light = ego.route.light_ahead(network);
         let strayed = ego.route.follow(network, self.scenario.seed, car.middle(), car.heading_rad());
         let mut log = Log { events: &mut output.events, speed_mps };
 
-        self.physics.touched(&mut self.scratch.touched);
-        let collided = run.watch.contacts(&self.scratch.touched, &mut log);
+        let touched = &mut self.scratch.touched;
+        self.physics.touched(touched);
+        doors::heed(doors::open_doors(&self.traffic, bodies, tick, car), car, touched, &mut log);
+        let collided = run.watch.contacts(touched, &mut log);
         let red = |group| signals::phase(network, self.scenario.seed, group, tick).0 == LightPhase::Red;
         if light.is_some_and(|light| !strayed && red(light.group) && ego.route.passed(network, &light)) {
             log.note(EventKind::RedLight);

@@ -10,6 +10,7 @@ use crate::car::Footing;
 use crate::controls::Controls;
 use crate::events::{Event, Hud};
 use crate::map::{RoadNetwork, SurfaceKind};
+use crate::motion::Motion;
 use crate::scenario::Scenario;
 use crate::scene::{ActorScene, EgoScene, SceneSnapshot, lamps, quantise};
 use crate::signals;
@@ -17,6 +18,7 @@ use crate::traffic::Missing;
 use crate::watch::Watch;
 use crate::weather::Water;
 
+use super::doors;
 use super::keyframe::{self, FieldDifference, Keyframe};
 use super::snapshot::PARTS;
 use super::tick::World;
@@ -63,7 +65,7 @@ impl World {
                 wheel_angle_rad: car.gear.wheel_angle_rad,
                 lamps: lamps_of(&self.parts.output.applied.controls),
             },
-            actors: self.actors().collect(),
+            actors: self.actors().chain(self.pushed_cars()).chain(self.doors()).collect(),
             lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
             weather: self.scenario.weather_at(tick),
         };
@@ -87,6 +89,30 @@ impl World {
                 lamps: if loose.is_none() { body.lamps } else { 0 },
             }
         })
+    }
+
+    /// Parked cars that were pushed, where they are now.
+    fn pushed_cars(&self) -> impl Iterator<Item = ActorScene> + '_ {
+        let parked = &self.network.places().parked;
+        self.parts.bodies.pushed().iter().map(|loose| {
+            let Motion { position, rotation, velocity_mps, .. } = loose.motion;
+            ActorScene {
+                id: loose.id,
+                kind: loose.kind,
+                variant: parked.of_id(loose.id).map_or(0, |prop| prop.variant),
+                position,
+                rotation,
+                speed_mps: velocity_mps.dot(rotation * Vec3::X),
+                phase_rad: 0.0,
+                lamps: 0,
+            }
+        })
+    }
+
+    /// Open doors of parked cars.
+    fn doors(&self) -> impl Iterator<Item = ActorScene> + '_ {
+        let doors = doors::open_doors(&self.traffic, &self.parts.bodies, self.tick(), &self.parts.ego.car);
+        doors.map(|door| doors::scene_of(&door))
     }
 
     /// What the HUD shows.

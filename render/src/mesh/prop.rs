@@ -2,18 +2,17 @@
 
 use glam::{Quat, Vec3};
 use kernel::map::{Prop, PropKind};
+use kernel::scene::ActorKind;
 
 use super::model::Detail;
 use super::variety::Variety;
-use super::{Mesh, barrier, building, car, furniture, signal, tree};
+use super::{Mesh, barrier, building, car, furniture, heavy, signal, tree};
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
 /// footprint on the ground, z up.
 pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
     let Prop { size, .. } = *prop;
-    // Maps have few variants; where a thing stands tells it apart from its neighbours.
-    let place = prop.position.x.to_bits().rotate_left(16) ^ prop.position.y.to_bits();
-    let variant = if prop.kind == PropKind::Sign { prop.variant } else { prop.variant ^ Variety::of(place).bits() };
+    let variant = if prop.kind == PropKind::Sign { prop.variant } else { look(prop) };
     match prop.kind {
         PropKind::Building => building::building(variant, size, detail),
         PropKind::Tree => tree::tree(variant, size.x, size.z, detail),
@@ -21,12 +20,19 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
         PropKind::Lamp => furniture::lamp(size.z, detail),
         PropKind::Sign => furniture::sign(variant, size.z, detail),
         PropKind::SignalPole => signal::pole(size.z, detail),
+        PropKind::ParkedCar if prop.parked_kind() == ActorKind::Van => heavy::van(variant, detail),
         PropKind::ParkedCar => car::car(variant, detail),
         PropKind::Fence => barrier::fence(variant, size, detail),
         PropKind::Wall => barrier::wall(variant, size),
         PropKind::GuardRail => barrier::guard_rail(size, detail),
         PropKind::Furniture => furniture::furniture(variant, size),
     }
+}
+
+/// What selects colour and shape. Maps have few variants; where a thing stands tells it apart from its neighbours.
+pub fn look(prop: &Prop) -> u32 {
+    let place = prop.position.x.to_bits().rotate_left(16) ^ prop.position.y.to_bits();
+    prop.variant ^ Variety::of(place).bits()
 }
 
 /// Moves a mesh from the frame of an object standing at `position` with a heading into the world.

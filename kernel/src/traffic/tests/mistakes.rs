@@ -6,10 +6,11 @@ use std::sync::Arc;
 use super::crossroads::{Signs, crossroads};
 use super::{MINUTE, counts, nowhere, overlaps};
 use crate::events::EventKind;
-use crate::map::{RoadNetwork, StopKind, bake};
+use crate::map::{RoadNetwork, StopKind, bake, bundled};
 use crate::signals::{LightPhase, phase};
 use crate::state::State;
 use crate::time::{Tick, seconds};
+use crate::traffic::doors::CELL_TICKS;
 use crate::traffic::drive::View;
 use crate::traffic::look::Sight;
 use crate::traffic::step::LINE_MARGIN_M;
@@ -218,6 +219,55 @@ fn so_often_is_halted_at_the_kerb_as_is_asked_for() {
     let can = |view: &View<'_>, i: usize| view.can_halt(&view.plans[i], &view.vehicles[i]);
     let [k, n] = by_the_hour(&mut traffic, 30, Lapse::Parks, can);
     agrees("halts", k, n, 30.0 / 3600.0);
+}
+
+#[test]
+fn so_often_do_doors_open_as_is_asked_for() {
+    let city = bundled("city").expect("a bundled map");
+    let rates = HazardRates { doors_per_h: 9.0, ..HazardRates::NONE };
+    let mut traffic = Traffic::spawn(&counts(0), 5, city.ways(), nowhere().position).with_hazards(&rates);
+    let (mut opened, cells) = (0, 3 * 60);
+    for cell in 0..cells {
+        traffic.know_doors(cell * CELL_TICKS);
+        let openings = &traffic.actors.doors.openings;
+        let within = cell * CELL_TICKS..=(cell + 1) * CELL_TICKS;
+        assert!(openings.iter().all(|o| within.contains(&o.ticks[0]) && within.contains(&o.ticks[1])));
+        opened += openings.len() as u64;
+    }
+    let doors = city.ways().door_spots.len() as u64;
+    assert!(doors > 150, "{doors} doors");
+    agrees("doors", opened, doors * cells, 9.0 * 20.0 / 3600.0);
+}
+
+#[test]
+fn doors_that_open_are_passed_and_hold_nobody_up_for_long() {
+    let city = bundled("city").expect("a bundled map");
+    let rates = HazardRates { doors_per_h: 60.0, ..HazardRates::NONE };
+    let counts = TrafficCounts { cars: 60, bicycles: 10, ..counts(0) };
+    let mut traffic = Traffic::spawn(&counts, 2, city.ways(), nowhere().position).with_hazards(&rates);
+    let (mut open, mut wide) = (0, 0);
+    watch(
+        &mut traffic,
+        6,
+        |_| {},
+        |t, tick| {
+            assert_eq!(told(t, EventKind::Stuck) + told(t, EventKind::HazardCollision), 0, "tick {tick}");
+            if tick % 10 == 0 {
+                assert_eq!(overlaps(t), [], "tick {tick}");
+                let hazards = t.actors.door_hazards(&Surroundings {
+                    tick,
+                    ego: nowhere(),
+                    ego_flags: 0,
+                    loose: &[],
+                    conditions: Conditions::default(),
+                });
+                open += hazards.count();
+                wide += t.open_doors(tick, nowhere()).count();
+            }
+        },
+    );
+    // Who cannot keep off one any more is let by.
+    assert!(open > 1000 && wide <= open && wide * 50 > open * 49, "{wide} of {open}");
 }
 
 #[test]
