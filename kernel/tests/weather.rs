@@ -34,14 +34,19 @@ fn drive(network: &Arc<RoadNetwork>, counts: &TrafficCounts, weather: &Weather, 
 
 /// A straight one-way road without anything on it but what is asked for.
 fn road() -> Arc<RoadNetwork> {
+    road_of("asphalt")
+}
+
+/// The same, made of something.
+fn road_of(material: &str) -> Arc<RoadNetwork> {
     let text = "<?xml version=\"1.0\"?><OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>\
         <road id=\"0\" length=\"6000\" junction=\"-1\"><planView>\
         <geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"6000\"><line/></geometry></planView>\
         <type s=\"0\" type=\"rural\"><speed max=\"100\" unit=\"km/h\"/></type>\
         <lanes><laneSection s=\"0\"><center><lane id=\"0\" type=\"none\"/></center><right>\
-        <lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane>\
-        </right></laneSection></lanes></road></OpenDRIVE>";
-    Arc::new(kernel::map::bake("road", text).expect("it bakes"))
+        <lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/>\
+        <material sOffset=\"0\" surface=\"MATERIAL\"/></lane></right></laneSection></lanes></road></OpenDRIVE>";
+    Arc::new(kernel::map::bake("road", &text.replace("MATERIAL", material)).expect("it bakes"))
 }
 
 /// The speed of the only car after a minute, m/s.
@@ -159,4 +164,15 @@ fn a_world_resumed_while_the_weather_changes_stays_identical() {
     let dry = Scenario { later: None, ..scenario };
     assert_eq!(World::new(&dry, &network).expect("it fits").friction(), 1.0);
     assert!(original.friction() < 0.76, "{}", original.friction());
+}
+
+#[test]
+fn the_road_under_the_ego_car_says_how_it_holds() {
+    for (material, dry, wet) in [("asphalt", 1.0, 0.75), ("gravel", 0.6, 0.55), ("cobblestone", 0.7, 0.45)] {
+        for (weather, expected) in [(DRY, dry), (Weather { wetness_pct: 100.0, ..DRY }, wet)] {
+            let scenario = Scenario { weather, ..Scenario::default_for("road", 1) };
+            let world = World::new(&scenario, &road_of(material)).expect("it fits");
+            assert!((world.friction() - expected).abs() < 1e-3, "{material}: {}", world.friction());
+        }
+    }
 }

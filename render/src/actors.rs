@@ -168,3 +168,42 @@ fn posed(v: &Vertex, frame: &Affine3A, instance: u16, lamps: u8) -> Vertex {
     };
     Vertex { position, normal: [n.x as i8, n.y as i8, n.z as i8], instance, code, colour, ..*v }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+    use kernel::weather::Weather;
+
+    use super::*;
+    use crate::Camera;
+    use crate::mesh::CODE_HEAD;
+
+    /// Colours of the lamps of the ego car that shine at a tick, seen from behind and above.
+    fn shining(lamps: u8, tick: Tick) -> Vec<[u8; 3]> {
+        let ego =
+            EgoScene { position: Vec3::ZERO, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0, lamps };
+        let weather = Weather::dry(0.0, 0.0, 45.0, 0.0);
+        let scene = SceneSnapshot { tick, ego, actors: Vec::new(), lights: Vec::new(), weather };
+        let view = View::new(&Camera::chase(320, 200), &scene.ego);
+        let mut moving = Moving::default();
+        Cast::default().pose(&scene, &[], &view, Horizon::new(view.eye, &[], 100.0), &mut moving);
+        assert!(moving.vertices.iter().any(|v| v.code == CODE_HEAD || v.code == CODE_LIT), "the car is there");
+        let mut lit: Vec<_> = moving.vertices.iter().filter(|v| v.code == CODE_LIT).map(|v| v.colour).collect();
+        lit.sort_unstable();
+        lit.dedup();
+        lit
+    }
+
+    #[test]
+    fn the_lamps_of_the_ego_car_shine_and_its_indicators_flash() {
+        let (red, white) = ([255, 44, 36], [255, 250, 230]);
+        let off = FLASH_TICKS / 2;
+        assert_eq!(shining(0, 0), Vec::<[u8; 3]>::new());
+        assert_eq!(shining(lamps::BRAKE, off), [red]);
+        for side in [lamps::LEFT, lamps::RIGHT, lamps::LEFT | lamps::RIGHT] {
+            assert_eq!((shining(side, 0), shining(side, off)), (vec![AMBER], Vec::new()));
+        }
+        assert_eq!(shining(lamps::HEADLIGHTS | lamps::LEFT, off), [white], "head lamps do not flash");
+        assert_eq!(shining(lamps::HEADLIGHTS | lamps::BRAKE | lamps::LEFT, 0), [red, AMBER, white]);
+    }
+}

@@ -126,17 +126,20 @@ impl World {
         self.parts.ego.car.gear.aligning_torque_nm
     }
 
-    /// Greatest coefficient of friction of asphalt without puddles in the present weather, at the ego car's speed.
+    /// Greatest coefficient of friction of the road under the ego car without paint and puddles in the present weather,
+    /// at its speed; beside roads that of asphalt.
     pub fn friction(&self) -> f32 {
-        let water = Water::of(&self.scenario.weather_at(self.tick()));
+        let (water, car) = (Water::of(&self.scenario.weather_at(self.tick())), &self.parts.ego.car);
+        let below = self.network.ground(car.middle()).map(|ground| ground.kind);
+        let kind = below.filter(|kind| matches!(kind, SurfaceKind::Gravel | SurfaceKind::Setts));
         let road = Footing {
             distance_m: 0.0,
             normal: Vec3::Z,
-            kind: SurfaceKind::Road,
+            kind: kind.unwrap_or(SurfaceKind::Road),
             wet: water.wet,
             water_mm: water.film_mm,
         };
-        road.grip(self.parts.ego.car.speed_mps()).peak
+        road.grip(car.speed_mps()).peak
     }
 
     /// What goes on around the ego car; its beginnings are the events.
