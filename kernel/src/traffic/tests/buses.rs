@@ -44,12 +44,12 @@ fn ring(lanes: i32, right: bool) -> Arc<RoadNetwork> {
     Arc::new(bake("ring", &text).expect("it bakes"))
 }
 
-/// Traffic on which every fifth car is a bus.
+/// Traffic on which every third car is a bus.
 fn with_buses(network: &Arc<RoadNetwork>, cars: u16, seed: u64) -> Traffic {
     let counts = TrafficCounts { cars, motorcycles: 0, bicycles: 0, pedestrians: 0, ..counts(0) };
     let mut state = Traffic::spawn(&counts, seed, network.ways(), nowhere().position).state().clone();
     for vehicle in &mut state.vehicles {
-        vehicle.kind = if vehicle.id.is_multiple_of(5) { ActorKind::Bus } else { ActorKind::Car };
+        vehicle.kind = if vehicle.id.is_multiple_of(3) { ActorKind::Bus } else { ActorKind::Car };
     }
     Traffic::with(&counts, seed, network.ways(), state)
 }
