@@ -123,7 +123,7 @@ def crossing(m, node, roads):
     control = "lights" if node in LIGHTS else "stop" if node in STOPS else "yield"
     if (node[0] + 2 * node[1]) % 7 == 3 and node not in LIGHTS and node not in STOPS:
         control, major = "none", []
-    m.junction(around, control, major if control != "lights" else (), zebras=zebras)
+    m.junction(around, control, major if control != "lights" else (), zebras=zebras, pairs=True)
 
 
 def roads_level(road, roads):

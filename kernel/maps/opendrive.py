@@ -220,7 +220,8 @@ class Junction:
     major: set = field(default_factory=set)  # ids of roads with right of way
     z: float = 0.0
     connections: list = field(default_factory=list)
-    controllers: list = field(default_factory=list)
+    controllers: list = field(default_factory=list)  # (id, id of its signal, place in the sequence)
+    pairs: bool = False  # whether lights of opposing arms switch together
 
 
 class Map:
@@ -241,8 +242,9 @@ class Map:
         both = bool(a.profile.sidewalk and b.profile.sidewalk)
         a.walk_on["end"] = b.walk_on["start"] = both
 
-    def junction(self, arms, control, major=(), z=0.0, zebras=()):
+    def junction(self, arms, control, major=(), z=0.0, zebras=(), pairs=False):
         j = Junction(self.id(), sorted(arms, key=lambda a: wrap(a.heading)), control, {r.id for r in major}, z)
+        j.pairs = pairs
         for arm in j.arms:
             arm.road.ends[arm.contact] = ("junction", j.id, None)
         for k, arm in enumerate(j.arms):
@@ -291,7 +293,7 @@ class Map:
             sign = self.id()
             arm.road.signals.append(signal(sign, arm, "1000001", 0.6, 3.2))
             controller = self.id()
-            j.controllers.append((controller, sign))
+            j.controllers.append((controller, sign, sequence(j, arm)))
         elif j.control == "references":
             self._referenced_light(j, arm)
         elif j.control in ("stop", "yield") and minor:
@@ -309,6 +311,12 @@ class Map:
                     f'<signalReference id="{sid}" s="0" t="0" orientation="+">'
                     f'<validity fromLane="-1" toLane="-1"/></signalReference>'
                 )
+
+
+def sequence(j, arm):
+    """The place of an arm's light among those of its junction: one after the other, or those of an axis together."""
+    axes = [round(math.cos(2 * a.heading) * 1e3) if j.pairs else a.heading for a in j.arms]
+    return list(dict.fromkeys(axes)).index(axes[j.arms.index(arm)])
 
 
 def signal(sid, arm, kind, before, z):
@@ -503,7 +511,7 @@ def junction_text(j):
         major = [c for c in j.connections if c.source.road.id in j.major]
         minor = [c for c in j.connections if c.source.road.id not in j.major]
         out += "".join(f'<priority high="{h.id}" low="{l.id}"/>' for h in major for l in minor)
-    out += "".join(f'<controller id="{c}" type="0" sequence="{n}"/>' for n, (c, _) in enumerate(j.controllers))
+    out += "".join(f'<controller id="{c}" type="0" sequence="{n}"/>' for c, _, n in j.controllers)
     return f'<junction id="{j.id}" name="" type="default">{out}</junction>\n'
 
 
@@ -511,7 +519,7 @@ def write(m, folder):
     controllers = "".join(
         f'<controller id="{c}" name="" sequence="{n}"><control signalId="{s}" type="0"/></controller>\n'
         for j in m.junctions
-        for n, (c, s) in enumerate(j.controllers)
+        for c, s, n in j.controllers
     )
     text = (
         '<?xml version="1.0" encoding="UTF-8"?>\n<!-- Written by author.py; change that instead. -->\n'

@@ -79,7 +79,7 @@ impl View<'_> {
             }
         }
         next.flags &= !(Vehicle::TURNS_LEFT | Vehicle::TURNS_RIGHT);
-        if next.wants_out() {
+        if next.wants_out() || next.lapse == Lapse::Departs {
             self.indicate(-self.ways.kerb, next);
         }
     }

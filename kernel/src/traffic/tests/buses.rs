@@ -8,7 +8,7 @@ use crate::actor::ActorKind;
 use crate::map::{RoadNetwork, bake};
 use crate::scene::lamps;
 use crate::time::Tick;
-use crate::traffic::{Lapse, Traffic, TrafficCounts};
+use crate::traffic::{Lapse, Traffic, TrafficCounts, Vehicle};
 
 /// A ring of so many lanes with two stops, driven on the right or on the left.
 fn ring(lanes: i32, right: bool) -> Arc<RoadNetwork> {
@@ -44,12 +44,15 @@ fn ring(lanes: i32, right: bool) -> Arc<RoadNetwork> {
     Arc::new(bake("ring", &text).expect("it bakes"))
 }
 
-/// Traffic on which every fifth car is a bus.
+/// Traffic on which every second car with room for it is a bus.
 fn with_buses(network: &Arc<RoadNetwork>, cars: u16, seed: u64) -> Traffic {
     let counts = TrafficCounts { cars, motorcycles: 0, bicycles: 0, pedestrians: 0, ..counts(0) };
     let mut state = Traffic::spawn(&counts, seed, network.ways(), nowhere().position).state().clone();
+    let others = state.vehicles.clone();
     for vehicle in &mut state.vehicles {
-        vehicle.kind = if vehicle.id.is_multiple_of(5) { ActorKind::Bus } else { ActorKind::Car };
+        let near = |v: &&Vehicle| v.lane == vehicle.lane && (v.s_m - vehicle.s_m).abs() < 30.0;
+        let roomy = others.iter().filter(near).count() == 1;
+        vehicle.kind = if roomy && vehicle.id.is_multiple_of(2) { ActorKind::Bus } else { ActorKind::Car };
     }
     Traffic::with(&counts, seed, network.ways(), state)
 }
