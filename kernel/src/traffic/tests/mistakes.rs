@@ -253,14 +253,14 @@ fn doors_that_open_are_passed_and_hold_nobody_up_for_long() {
             assert_eq!(told(t, EventKind::Stuck) + told(t, EventKind::HazardCollision), 0, "tick {tick}");
             if tick % 10 == 0 {
                 assert_eq!(overlaps(t), [], "tick {tick}");
-                let hazards = t.actors.door_hazards(&Surroundings {
+                let around = Surroundings {
                     tick,
                     ego: nowhere(),
                     ego_flags: 0,
                     loose: &[],
                     conditions: Conditions::default(),
-                });
-                open += hazards.count();
+                };
+                open += t.actors.door_hazards(&around).count();
                 wide += t.open_doors(tick, nowhere()).count();
             }
         },
