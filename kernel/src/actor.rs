@@ -37,11 +37,20 @@ state_enum! {
         Emergency = 10,
         /// Open door of a parked car; x is from its hinge to its edge.
         Door = 11,
+        /// Child on foot, about nine years old.
+        Child = 12,
+        /// Person on foot who pushes a pram.
+        Pram = 13,
+        /// Person in a wheelchair.
+        Wheelchair = 14,
+        /// Tram of three sections.
+        Tram = 15,
     }
 }
 
 impl ActorKind {
-    /// Length, width and height of the box around an actor, metres.
+    /// Length, width and height of the box around an actor, metres. A child is as tall as the median of nine years in the
+    /// WHO growth reference, an occupied wheelchair is as large as ISO 7176-5 allows.
     pub fn size_m(self) -> Vec3 {
         match self {
             Self::Car => Vec3::new(4.5, 1.85, 1.5),
@@ -56,6 +65,10 @@ impl ActorKind {
             Self::CargoBike => Vec3::new(2.5, 0.7, 1.75),
             Self::Emergency => Vec3::new(4.9, 1.9, 2.25),
             Self::Door => Vec3::new(1.1, 0.12, 1.4),
+            Self::Child => Vec3::new(0.4, 0.45, 1.33),
+            Self::Pram => Vec3::new(1.5, 0.6, 1.75),
+            Self::Wheelchair => Vec3::new(1.2, 0.7, 1.35),
+            Self::Tram => Vec3::new(30.0, 2.4, 3.5),
         }
     }
 
@@ -74,12 +87,16 @@ impl ActorKind {
             Self::CargoBike => 150.0,
             Self::Emergency => 2800.0,
             Self::Door => 35.0,
+            Self::Child => 28.0,
+            Self::Pram => 95.0,
+            Self::Wheelchair => 100.0,
+            Self::Tram => 40000.0,
         }
     }
 
-    /// On foot, not in traffic's lanes.
+    /// On foot, not in traffic's lanes: also who sits in a wheelchair.
     pub fn is_on_foot(self) -> bool {
-        self == Self::Pedestrian
+        matches!(self, Self::Pedestrian | Self::Child | Self::Pram | Self::Wheelchair)
     }
 
     /// Pedalled: keeps to the kerb, is passed with room, and is not on motorways.
@@ -92,9 +109,9 @@ impl ActorKind {
         matches!(self, Self::Motorcycle | Self::Scooter)
     }
 
-    /// Lorry or bus: long and heavy.
+    /// Lorry, bus or tram: long and heavy.
     pub fn is_heavy(self) -> bool {
-        matches!(self, Self::Truck | Self::Bus)
+        matches!(self, Self::Truck | Self::Bus | Self::Tram)
     }
 
     /// A motor vehicle with four wheels or more.

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use common::{on_ring, ring, script};
 use glam::Vec3;
 use kernel::map::bundled;
-use kernel::scene::ActorKind;
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Obstacle, Population, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::{Conditions, Weather, WeatherChange, WeatherPreset};
@@ -109,7 +108,7 @@ fn traffic_flows_in_a_downpour() {
         let mut driven_m = 0.0;
         for tick in 1..=seconds(300) {
             traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions });
-            let vehicles = traffic.bodies().iter().filter(|body| body.kind != ActorKind::Pedestrian);
+            let vehicles = traffic.bodies().iter().filter(|body| !body.kind.is_on_foot());
             driven_m += vehicles.map(|body| f64::from(body.velocity_mps.length())).sum::<f64>() / 60.0;
         }
         driven_m / 1000.0

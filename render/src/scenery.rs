@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 use kernel::SceneSnapshot;
 use kernel::map::{Prop, PropKind, RoadNetwork};
+use kernel::scene::ActorKind;
 
 use crate::horizon::{Horizon, Occluder};
 use crate::instance_ids::{instance_of_parked, parked_number};
@@ -153,7 +154,8 @@ pub(crate) fn parked_looks(network: &RoadNetwork) -> Vec<u32> {
 
 /// The numbers of the parked cars that are somewhere else.
 pub(crate) fn gone(scene: &SceneSnapshot) -> Vec<usize> {
-    scene.actors.iter().filter_map(|actor| parked_number(actor.id)).collect()
+    let cars = scene.actors.iter().filter(|actor| actor.kind != ActorKind::Door);
+    cars.filter_map(|actor| parked_number(actor.id)).collect()
 }
 
 /// The mesh of an object in the world's frame.

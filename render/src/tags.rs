@@ -89,6 +89,8 @@ tags! {
     Motorcycle = 67, "Motorcycle", [0, 0, 230], Vehicles;
     /// Bicycle without its rider.
     Bicycle = 68, "Bicycle", [119, 11, 32], Vehicles;
+    /// Tram.
+    Train = 69, "Train", [0, 80, 100], Vehicles;
 }
 
 /// The number of tags in CARLA 0.9.10.

@@ -20,6 +20,7 @@ VERSION = 2
 EVENTS = ["CollisionActor", "CollisionScenery", "RedLight", "Speeding", "OffRoad", "WrongWay", "Armed", "Intervention"]
 EVENTS += ["Seen", "Ended", "Stuck", "Dissolved"]
 EVENTS += ["HazardRedLight", "HazardRollingStop", "HazardBraking", "HazardCutIn", "HazardPullOut", "HazardCollision"]
+EVENTS += ["HazardDoor"]
 NOTES = ["unit bound", "unit armed", "unit lost", "unit returned"]
 
 

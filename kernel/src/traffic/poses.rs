@@ -2,7 +2,6 @@
 
 use glam::{Mat3, Quat, Vec3};
 
-use crate::actor::ActorKind;
 use crate::map_data::{LaneId, Place};
 use crate::ops;
 use crate::scene::lamps;
@@ -115,7 +114,7 @@ pub(super) fn walker_body(walker: &Walker, traits: &WalkerTraits, place: &Place)
     let sign = if walker.forward { 1.0 } else { -1.0 };
     Body {
         id: u32::from(walker.id),
-        kind: ActorKind::Pedestrian,
+        kind: traits.kind,
         variant: traits.variant,
         position: place.beside(walker.offset_m),
         rotation: Quat::from_xyzw(0.0, 0.0, sin, cos),

@@ -11,6 +11,9 @@ const EMERGENCY_MPS2: f32 = 8.0;
 
 use super::population::Population;
 
+/// What draws the kind of somebody on foot, as a key of random numbers.
+const WALKER_KIND: u64 = 32;
+
 /// How somebody drives. Parameters of the intelligent driver model (Treiber, Hennecke and Helbing
 /// 2000) around the values of its section on city traffic.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +65,9 @@ impl Driver {
 /// How somebody walks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WalkerTraits {
-    /// Speed aimed at, m/s: 0.8 to 1.8, half of all between 1.1 and 1.5.
+    /// Alone, a child, with a pram or in a wheelchair.
+    pub kind: ActorKind,
+    /// Speed aimed at, m/s: 0.8 to 1.8, half of all between 1.1 and 1.5; less with wheels.
     pub speed_mps: f32,
     /// Preferred place across the way, -1 (right edge as the edge runs) to 1.
     pub place: f32,
@@ -98,11 +103,9 @@ pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKin
         // 125 cm³.
         ActorKind::Scooter => (between(0.85, 1.05, t(0)) + more, 26.0, 1.8, Some(1.1)),
         ActorKind::Motorcycle => (between(0.9, 1.1, t(0)) + more, 40.0, 2.2, Some(1.2)),
-        ActorKind::Truck | ActorKind::Bus => (between(0.8, 0.95, t(0)) + more, 25.0, 1.0, None),
+        ActorKind::Truck | ActorKind::Bus | ActorKind::Tram => (between(0.8, 0.95, t(0)) + more, 25.0, 1.0, None),
         ActorKind::Van => (cars, 38.0, between(1.1, 1.6, t(1)), None),
-        ActorKind::Car | ActorKind::Suv | ActorKind::Emergency | ActorKind::Door | ActorKind::Pedestrian => {
-            (cars, 40.0, between(1.3, 2.0, t(1)), None)
-        }
+        _ => (cars, 40.0, between(1.3, 2.0, t(1)), None),
     };
     Driver {
         limit_share,
@@ -122,10 +125,33 @@ pub(super) fn driver(population: &Population, seed: u64, id: u16, kind: ActorKin
 /// The walker `id`.
 pub(super) fn walker_traits(seed: u64, id: u16) -> WalkerTraits {
     let t = |which| trait_unit(seed, id, which);
+    let kind = walker_kind(t(WALKER_KIND));
     WalkerTraits {
-        speed_mps: between(0.8, 1.8, 0.5 * (t(0) + t(1))),
+        kind,
+        speed_mps: pace(kind) * between(0.8, 1.8, 0.5 * (t(0) + t(1))),
         place: between(-1.0, 1.0, t(2)),
         variant: variant(seed, id),
+    }
+}
+
+/// Among people on foot: children by their share of 6 to 14 years in the EU's population (Eurostat 2023: 9 %), prams and
+/// wheelchairs by assumption.
+fn walker_kind(drawn: f32) -> ActorKind {
+    match drawn {
+        0.0..0.09 => ActorKind::Child,
+        0.09..0.11 => ActorKind::Pram,
+        0.11..0.12 => ActorKind::Wheelchair,
+        _ => ActorKind::Pedestrian,
+    }
+}
+
+/// Pace as a share of that of others of the same haste: 1.08 m/s in wheelchairs (US Access Board: 3.55 ft/s), with prams by
+/// assumption.
+fn pace(kind: ActorKind) -> f32 {
+    match kind {
+        ActorKind::Pram => 0.9,
+        ActorKind::Wheelchair => 1.08 / 1.3,
+        _ => 1.0,
     }
 }
 
@@ -162,6 +188,23 @@ mod tests {
                 let faster = hasty.limit_share - usual.limit_share;
                 assert!(kind.is_pedalled() && faster == 0.0 || faster > 0.15, "{kind:?}: {faster}");
             }
+        }
+    }
+
+    #[test]
+    fn people_on_foot_are_of_all_kinds_in_their_shares() {
+        let people: Vec<WalkerTraits> = (1..=20_000).map(|id| walker_traits(5, id)).collect();
+        let of = |kind| people.iter().filter(move |walker| walker.kind == kind);
+        for (kind, share, pace_mps) in [
+            (ActorKind::Pedestrian, 0.88, 1.3),
+            (ActorKind::Child, 0.09, 1.3),
+            (ActorKind::Pram, 0.02, 1.17),
+            (ActorKind::Wheelchair, 0.01, 1.08),
+        ] {
+            let count = of(kind).count() as f32;
+            assert!(kind.is_on_foot() && (count / 2e4 - share).abs() < 0.007, "{kind:?}: {count}");
+            let mean_mps = of(kind).map(|walker| walker.speed_mps).sum::<f32>() / count;
+            assert!((mean_mps - pace_mps).abs() < 0.04, "{kind:?}: {mean_mps}");
         }
     }
 

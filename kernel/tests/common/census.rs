@@ -7,7 +7,6 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use kernel::RoadNetwork;
 use kernel::events::EventKind;
-use kernel::scene::ActorKind;
 use kernel::signals::{self, LightPhase};
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, HazardRates, Obstacle, Surroundings, Traffic, TrafficCounts, Vehicle};
@@ -237,7 +236,7 @@ impl<'a> Watcher<'a> {
                 }
             }
         }
-        let walks = |id: u32| bodies.iter().any(|b| b.id == id && b.kind == ActorKind::Pedestrian);
+        let walks = |id: u32| bodies.iter().any(|b| b.id == id && b.kind.is_on_foot());
         for (a, b) in now.difference(&self.overlapping) {
             self.found.overlaps[usize::from(walks(*a)) + usize::from(walks(*b))] += 1;
             if std::env::var("AEYE_TRAFFIC_WHO").is_ok_and(|who| !walks(*a) || who == "all") {
@@ -269,7 +268,7 @@ fn leader(bodies: &[Body], index: usize) -> Option<usize> {
 /// Whether two road users overlap: vehicles as boxes, people as circles.
 fn overlap(a: &Body, b: &Body) -> bool {
     let way = (b.position - a.position).truncate();
-    match (a.kind == ActorKind::Pedestrian, b.kind == ActorKind::Pedestrian) {
+    match (a.kind.is_on_foot(), b.kind.is_on_foot()) {
         (true, true) => way.length() < 2.0 * PERSON_M,
         (true, false) => box_meets_circle(b, -way),
         (false, true) => box_meets_circle(a, way),

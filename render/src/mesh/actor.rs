@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use kernel::scene::ActorKind;
 
 use super::model::{Detail, Model};
-use super::{car, heavy, person, two_wheeler};
+use super::{car, heavy, person, tram, two_wheeler, wheeled};
 
 /// The model of an actor.
 pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
@@ -21,6 +21,11 @@ pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
         ActorKind::Scooter => two_wheeler::scooter(variant, detail),
         ActorKind::CargoBike => two_wheeler::cargo_bike(variant, detail),
         ActorKind::Pedestrian => person::walker(variant, detail),
+        ActorKind::Child => person::child(variant, detail),
+        ActorKind::Pram => wheeled::pram(variant, detail),
+        ActorKind::Wheelchair => wheeled::wheelchair(variant, detail),
+        ActorKind::Tram => Model::rigid(tram::tram(variant, detail)),
+        ActorKind::Door => Model::rigid(car::door(variant)),
     }
 }
 

@@ -99,8 +99,27 @@ pub fn suv(variant: u32, detail: Detail) -> Mesh {
     mesh
 }
 
+/// The open door of a car of that variant, seen from the middle of its footprint; its hinge is behind.
+pub fn door(variant: u32) -> Mesh {
+    let mut variety = Variety::of(variant);
+    // The first choice of a car is its shape.
+    variety.bits();
+    let lacquer = lacquer(&mut variety);
+    let glass = Paint::plain(lacquer.tag, GLASS).glossy(230);
+    let mut mesh = Mesh::default();
+    mesh.cuboid(lacquer, Vec3::new(-0.55, -0.06, 0.28), Vec3::new(0.55, 0.06, 0.92));
+    mesh.cuboid(glass, Vec3::new(-0.3, -0.02, 0.92), Vec3::new(0.5, 0.02, 1.36));
+    mesh.cuboid(lacquer, Vec3::new(0.48, -0.03, 0.92), Vec3::new(0.54, 0.03, 1.4));
+    mesh.cuboid(lacquer, Vec3::new(-0.3, -0.03, 1.36), Vec3::new(0.54, 0.03, 1.4));
+    mesh
+}
+
+fn lacquer(variety: &mut Variety) -> Paint {
+    Paint::plain(SemanticTag::Vehicles, variety.colour(&LACQUERS)).glossy(110)
+}
+
 fn shaped(variety: &mut Variety, shape: &Shape, detail: Detail) -> Mesh {
-    let lacquer = Paint::plain(SemanticTag::Vehicles, variety.colour(&LACQUERS)).glossy(110);
+    let lacquer = lacquer(variety);
     let mut mesh = Mesh::default();
     if detail == Detail::Rough {
         silhouette(&mut mesh, lacquer, shape);

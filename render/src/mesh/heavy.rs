@@ -13,7 +13,7 @@ const BOXES: [[u8; 3]; 5] = [[226, 226, 222], [196, 200, 204], [52, 92, 150], [2
 const LIVERIES: [[u8; 3]; 5] = [[206, 48, 40], [226, 182, 44], [48, 112, 170], [66, 132, 84], [228, 226, 218]];
 
 /// A solid of class `paint.tag` whose upper edges are rounded off by `bevel` metres.
-fn hull(mesh: &mut Mesh, paint: Paint, low: Vec3, high: Vec3, bevel: f32) {
+pub(super) fn hull(mesh: &mut Mesh, paint: Paint, low: Vec3, high: Vec3, bevel: f32) {
     let ring = |inset: f32, z: f32| {
         let (a, b) = (low + Vec3::splat(inset), high - Vec3::splat(inset));
         [Vec3::new(a.x, a.y, z), Vec3::new(b.x, a.y, z), Vec3::new(b.x, b.y, z), Vec3::new(a.x, b.y, z)]
@@ -25,7 +25,7 @@ fn hull(mesh: &mut Mesh, paint: Paint, low: Vec3, high: Vec3, bevel: f32) {
 }
 
 /// A window band on both flanks from `x[0]` to `x[1]`.
-fn side_windows(mesh: &mut Mesh, glass: Paint, x: [f32; 2], half_width: f32, z: [f32; 2]) {
+pub(super) fn side_windows(mesh: &mut Mesh, glass: Paint, x: [f32; 2], half_width: f32, z: [f32; 2]) {
     let y = half_width + 0.01;
     let at = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
     mesh.polygon(glass, &[at(x[1], y, z[0]), at(x[0], y, z[0]), at(x[0], y, z[1]), at(x[1], y, z[1])]);
@@ -33,7 +33,7 @@ fn side_windows(mesh: &mut Mesh, glass: Paint, x: [f32; 2], half_width: f32, z: 
 }
 
 /// Lamps at both ends of a vehicle that reaches from `-length / 2` to `length / 2`.
-fn lamps(mesh: &mut Mesh, tag: SemanticTag, length: f32, half_width: f32) {
+pub(super) fn lamps(mesh: &mut Mesh, tag: SemanticTag, length: f32, half_width: f32) {
     let head = Paint::plain(tag, [236, 238, 228]).glossy(200);
     let brake = Paint::plain(tag, [150, 14, 16]).coded(CODE_BRAKE);
     let plate = Paint::plain(tag, [226, 226, 220]);

@@ -16,9 +16,11 @@ pub mod shape;
 pub mod signal;
 pub mod simplify;
 pub mod surface;
+pub mod tram;
 pub mod tree;
 pub mod two_wheeler;
 pub mod variety;
+pub mod wheeled;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};

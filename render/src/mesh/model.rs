@@ -102,6 +102,15 @@ impl Model {
         self.parts.len() - 1
     }
 
+    /// The same smaller or larger.
+    pub fn scaled(mut self, factor: f32) -> Self {
+        for part in &mut self.parts {
+            part.pivot *= factor;
+            part.mesh.scale(Vec3::splat(factor));
+        }
+        self
+    }
+
     /// The transform of each part to the model's frame.
     pub fn pose(&self, phase_rad: f32, speed_mps: f32) -> Vec<Affine3A> {
         let mut poses: Vec<Affine3A> = Vec::with_capacity(self.parts.len());

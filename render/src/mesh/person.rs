@@ -185,8 +185,28 @@ fn stride(rest_rad: f32, amplitude_rad: f32, lead_rad: f32) -> Option<Swing> {
     Some(Swing { axis: Vec3::Y, rest_rad, amplitude_rad, lead_rad, full_speed_mps: STRIDE_MPS })
 }
 
+/// A child's height as a share of that of a grown person.
+const CHILD: f32 = 0.76;
+/// Upper arms and elbows of one who pushes something, radians.
+const PUSHES_RAD: [f32; 2] = [-0.55, -0.5];
+
 /// A person on foot of class Pedestrian, about 1.75 m tall.
 pub fn walker(variant: u32, detail: Detail) -> Model {
+    strolling(variant, detail, None)
+}
+
+/// A child of about nine years.
+pub fn child(variant: u32, detail: Detail) -> Model {
+    walker(variant, detail).scaled(CHILD)
+}
+
+/// A walker who holds something before the chest.
+pub(super) fn pusher(variant: u32, detail: Detail) -> Model {
+    strolling(variant, detail, Some(PUSHES_RAD.map(|rad| Swing::rigid(Vec3::Y, rad))))
+}
+
+/// A walker whose arms swing, or are held.
+fn strolling(variant: u32, detail: Detail, arms: Option<[Swing; 2]>) -> Model {
     let mut variety = Variety::of(variant);
     let look = Look::of(&mut variety, SemanticTag::Pedestrian, detail);
     let mut model = Model::default();
@@ -198,8 +218,10 @@ pub fn walker(variant: u32, detail: Detail) -> Model {
         model.add(Some(thigh), Vec3::new(0.0, 0.0, -0.44), stride(0.22, 0.32, lead + 0.9), look.shin());
         // Arms swing against the leg of their side.
         let shoulder = Vec3::new(0.0, side * 0.225, 0.47);
-        let upper = model.add(Some(trunk), shoulder, stride(0.02, 0.42, lead + PI), look.upper_arm());
-        model.add(Some(upper), Vec3::new(0.0, 0.0, -0.27), stride(-0.25, 0.18, lead + PI), look.lower_arm());
+        let swings = (stride(0.02, 0.42, lead + PI), stride(-0.25, 0.18, lead + PI));
+        let (at_shoulder, at_elbow) = arms.map_or(swings, |[shoulder, elbow]| (Some(shoulder), Some(elbow)));
+        let upper = model.add(Some(trunk), shoulder, at_shoulder, look.upper_arm());
+        model.add(Some(upper), Vec3::new(0.0, 0.0, -0.27), at_elbow, look.lower_arm());
     }
     model
 }

@@ -17,7 +17,7 @@ const FRAMES: [[u8; 3]; 7] =
 const HELMETS: [[u8; 3]; 4] = [[230, 230, 226], [30, 30, 34], [190, 36, 36], [36, 70, 140]];
 
 /// A tyre as a ring in the x-z plane, seen from both sides.
-fn ring(mesh: &mut Mesh, paint: Paint, hub: Vec3, radius: f32, thick: f32, sides: u32) {
+pub(super) fn ring(mesh: &mut Mesh, paint: Paint, hub: Vec3, radius: f32, thick: f32, sides: u32) {
     let at = |i: u32, r: f32, y: f32| {
         let angle = TAU * i as f32 / sides as f32;
         hub + Vec3::new(r * ops::cos(angle), y, r * ops::sin(angle))
@@ -32,7 +32,8 @@ fn ring(mesh: &mut Mesh, paint: Paint, hub: Vec3, radius: f32, thick: f32, sides
     }
 }
 
-fn sides(detail: Detail) -> u32 {
+/// Corners of a wheel.
+pub(super) fn sides(detail: Detail) -> u32 {
     match detail {
         Detail::Fine => 14,
         Detail::Coarse => 8,

@@ -34,6 +34,11 @@ pub fn road_user(kind: ActorKind) -> &'static str {
         ActorKind::Scooter => "scooter",
         ActorKind::CargoBike => "cargo bike",
         ActorKind::Emergency => "emergency vehicle",
+        ActorKind::Door => "car door",
+        ActorKind::Child => "child",
+        ActorKind::Pram => "person with a pram",
+        ActorKind::Wheelchair => "person in a wheelchair",
+        ActorKind::Tram => "tram",
     }
 }
 
@@ -64,6 +69,7 @@ pub fn event(event: &Event) -> String {
         EventKind::HazardBraking => return format!("vehicle {} brakes hard for no reason", event.actor),
         EventKind::HazardCutIn => return format!("vehicle {} cuts in", event.actor),
         EventKind::HazardPullOut => return format!("vehicle {} pulls out from the kerb without a look", event.actor),
+        EventKind::HazardDoor => return format!("door {} of a parked car opens into the lane", event.actor),
         EventKind::HazardCollision => return format!("vehicle {} is in a collision with another", event.actor),
     };
     // The tick of a collision ends with what the impact has left of the speed.

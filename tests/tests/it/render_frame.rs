@@ -2,7 +2,6 @@
 //! drawn is refused with a sentence.
 
 use glam::{Quat, Vec3};
-use kernel::scene::ActorKind;
 use kernel::{Scenario, World, map};
 use render::{AdapterChoice, Camera, Frame, Preset, RenderError, RenderOptions, Renderer, SemanticTag};
 use tests::street;
@@ -56,7 +55,7 @@ fn planes_belong_together() {
         assert_eq!(frame.depth_m[at].is_infinite(), fine == SemanticTag::Sky);
         let actor = scene.actors.iter().find(|a| a.id == u32::from(frame.instance_ids[at]));
         if let Some(actor) = actor {
-            let walks = actor.kind == ActorKind::Pedestrian;
+            let walks = actor.kind.is_on_foot();
             assert_eq!(fine == SemanticTag::Pedestrian, walks, "instance {} is {fine:?}", actor.id);
             people += u32::from(walks);
         }

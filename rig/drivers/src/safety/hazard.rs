@@ -5,7 +5,7 @@ use glam::Vec2;
 use kernel::car::GRAVITY_MPS2;
 use kernel::events::Hud;
 use kernel::map::PropKind;
-use kernel::scene::{ActorKind, ActorScene, SceneSnapshot};
+use kernel::scene::{ActorKind, ActorScene, FIRST_PARKED_ID, SceneSnapshot};
 use kernel::signals::LightPhase;
 use kernel::{World, ego, ops};
 use replay::Label;
@@ -114,7 +114,10 @@ impl<'a> Others<'a> {
         let near = |p: glam::Vec3| (p.truncate() - middle(&scene.ego)).length() < NEAR_M;
         let actors = scene.actors.iter().filter(|a| near(a.position) && matters(world, scene, a)).collect();
         let parked = world.network().props.iter().filter(|p| p.kind == PropKind::ParkedCar).enumerate();
-        let parked = parked.filter(|(_, p)| near(p.position)).map(|(n, p)| (n, Footprint::of_prop(p))).collect();
+        // Those that were pushed are among the actors.
+        let gone = |n: usize| scene.actors.iter().any(|a| a.id == FIRST_PARKED_ID + n as u32);
+        let parked =
+            parked.filter(|(n, p)| near(p.position) && !gone(*n)).map(|(n, p)| (n, Footprint::of_prop(p))).collect();
         Some(Self { world, looks, actors, parked })
     }
 

@@ -7,7 +7,7 @@ use kernel::events::EventKind;
 use kernel::scene::{ActorKind, ActorScene};
 use kernel::time::Tick;
 use kernel::{SceneSnapshot, World};
-use render::FIRST_PARKED_INSTANCE;
+use render::{instance_of_actor, instance_of_parked};
 use replay::{Label, Log};
 use serde::{Deserialize, Serialize};
 
@@ -57,7 +57,8 @@ impl Witness {
     /// What has been seen of a log, whose frames have these ticks.
     pub fn facts(&self, log: &Log, ticks: Vec<Tick>) -> Facts {
         let kernel = &log.manifest.kernel;
-        let people = self.touched.iter().flatten().filter(|t| matches!(t, Touched::Actor(_, ActorKind::Pedestrian)));
+        let people =
+            self.touched.iter().flatten().filter(|t| matches!(t, Touched::Actor(_, kind) if kind.is_on_foot()));
         let mut people_on_path: Vec<u16> = people.map(|t| instance(*t)).collect();
         people_on_path.sort_unstable();
         people_on_path.dedup();
@@ -94,8 +95,8 @@ fn label_of_touched(touched: Touched) -> Label {
 /// As [`render::Frame::instance_ids`] numbers them.
 fn instance(touched: Touched) -> u16 {
     match touched {
-        Touched::Actor(id, _) => id.min(u32::from(FIRST_PARKED_INSTANCE) - 1) as u16,
-        Touched::Parked(number) => (usize::from(FIRST_PARKED_INSTANCE) + number).min(usize::from(u16::MAX) - 1) as u16,
+        Touched::Actor(id, _) => instance_of_actor(id),
+        Touched::Parked(number) => instance_of_parked(number),
     }
 }
 

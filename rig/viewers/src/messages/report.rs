@@ -23,6 +23,7 @@ pub fn event(event: &Event, said: &str, time_ns: u64) -> Line {
         | EventKind::HazardRollingStop
         | EventKind::HazardBraking
         | EventKind::HazardCutIn
+        | EventKind::HazardDoor
         | EventKind::HazardPullOut => Level::Info,
     };
     line(level, DRIVE, words::event(event) + said, time_ns)

@@ -103,6 +103,7 @@ fn mark(kind: EventKind) -> (Color32, &'static str) {
         EventKind::HazardBraking => (TEXT, "other brakes"),
         EventKind::HazardCutIn => (TEXT, "cut-in"),
         EventKind::HazardPullOut => (TEXT, "pull-out"),
+        EventKind::HazardDoor => (TEXT, "door"),
         EventKind::HazardCollision => (TEXT, "others collide"),
     }
 }
