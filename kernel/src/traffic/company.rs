@@ -1,67 +1,95 @@
 //! How people on foot get past each other.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 use super::body::Body;
 use super::crowd::Crowd;
 
-/// People look this far ahead for each other, metres.
-const SIGHT_M: f32 = 2.5;
-/// Sideways distance that they like to keep between their middles, metres.
-const SHOULDER_M: f32 = 0.7;
-/// Nearer to each other than this, sideways or ahead, nobody goes, metres.
-const PERSON_M: f32 = 0.5;
-/// Whoever is less far ahead than this is beside, metres.
-const BESIDE_M: f32 = 0.25;
-/// The distance to whoever is ahead is used up in this time at the soonest, s.
-const CLOSE_S: f32 = 0.6;
+/// People look this far for each other, metres.
+pub(super) const SIGHT_M: f32 = 2.5;
+/// Sideways distance between their middles at which they pass each other, metres.
+const SHOULDER_M: f32 = 0.55;
+/// Whoever is farther aside is in nobody's way, metres.
+const ASIDE_M: f32 = 0.45;
+/// Whoever is less far ahead is beside, metres.
+const BESIDE_M: f32 = 0.05;
+/// Before whoever is ahead one comes to a stand at this distance, metres, and uses up the rest in this time at the
+/// soonest, s.
+const BEFORE_M: f32 = 0.48;
+const CLOSE_S: f32 = 0.5;
+/// People turn aside for those whom they would reach within this time, s.
+const SOON_S: f32 = 3.0;
+/// Faster than this somebody comes, or goes, m/s.
+const MOVES_MPS: f32 = 0.15;
+/// Less to the left or right is straight ahead, metres.
+const STRAIGHT_M: f32 = 0.15;
 /// People at heights farther apart than this do not meet, metres.
 const LEVEL_M: f32 = 2.0;
+
+/// Another person, as somebody sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    /// From the one to the other, metres.
+    pub to: Vec2,
+    pub distance_m: f32,
+    pub velocity: Vec2,
+    pub id: u32,
+}
+
+/// Everybody in sight of `index`.
+pub(super) fn gather(crowd: &Crowd, bodies: &[Body], index: usize, near: &mut Vec<Near>) {
+    near.clear();
+    let here = bodies[index].position;
+    for other in crowd.near(index, SIGHT_M) {
+        let body = &bodies[other];
+        let to = body.position - here;
+        let (flat, rise_m) = (to.truncate(), to.z.abs());
+        if flat.length_squared() < SIGHT_M * SIGHT_M && rise_m < LEVEL_M {
+            let velocity = body.velocity_mps.truncate();
+            near.push(Near { to: flat, distance_m: flat.length(), velocity, id: body.id });
+        }
+    }
+}
 
 /// What others leave to somebody who walks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leeway {
     /// Greatest speed ahead, m/s.
     pub most_mps: f32,
-    /// To the left, metres: how far away from whoever is ahead, where somebody is to be passed.
+    /// To the left, metres: how far to step aside from whoever is ahead.
     pub aside_m: Option<f32>,
-    /// Least and greatest step to the left that runs into nobody, metres.
-    pub free_m: [f32; 2],
 }
 
-/// What the others leave to `index`, who wants to walk along `ahead` at a speed.
-pub(super) fn leeway(crowd: &Crowd, bodies: &[Body], index: usize, ahead: Vec2, wants_mps: f32) -> Leeway {
-    let here = bodies[index].position;
+/// What the others leave to one who wants to walk along `ahead` at a speed, with so much room to the right (negative)
+/// and to the left, metres.
+pub(super) fn leeway(near: &[Near], ahead: Vec2, wants_mps: f32, room_m: [f32; 2]) -> Leeway {
     let left = ahead.perp();
-    let mut found = Leeway { most_mps: f32::MAX, aside_m: None, free_m: [f32::MIN, f32::MAX] };
-    let mut nearest = (SIGHT_M, u32::MAX);
-    for body in crowd.near(index, SIGHT_M).map(|other| &bodies[other]) {
-        let Some((ahead_m, aside_m)) = seen(here, body.position, ahead, left) else { continue };
-        if ahead_m < BESIDE_M {
-            let side = usize::from(aside_m > 0.0);
-            let gap_m = (aside_m.abs() - PERSON_M).max(0.0);
-            let free = &mut found.free_m[side];
-            *free = if side == 1 { free.min(gap_m) } else { free.max(-gap_m) };
+    let mut found = Leeway { most_mps: f32::MAX, aside_m: None };
+    let mut first = (SOON_S, u32::MAX);
+    for other in near {
+        let (ahead_m, aside_m) = (other.to.dot(ahead), other.to.dot(left));
+        if ahead_m < BESIDE_M || aside_m.abs() > SHOULDER_M {
             continue;
         }
-        let along_mps = body.velocity_mps.truncate().dot(ahead);
-        if along_mps < wants_mps && (ahead_m, body.id) < nearest {
-            nearest = (ahead_m, body.id);
-            // To the right where both come straight at each other.
-            let side = if aside_m.abs() > 0.15 { -aside_m.signum() } else { -1.0 };
-            found.aside_m = Some(aside_m + side * (SHOULDER_M + 0.1));
+        let along_mps = other.velocity.dot(ahead);
+        let room_ahead_m = (ahead_m - BEFORE_M).max(0.0);
+        if aside_m.abs() < ASIDE_M {
+            found.most_mps = found.most_mps.min(along_mps.max(0.0) + room_ahead_m / CLOSE_S);
         }
-        if aside_m.abs() < PERSON_M {
-            found.most_mps = found.most_mps.min(along_mps.max(0.0) + (ahead_m - PERSON_M).max(0.0) / CLOSE_S);
+        let soon = (room_ahead_m / (wants_mps - along_mps).max(1e-3), other.id);
+        if along_mps < wants_mps && soon < first {
+            first = soon;
+            found.aside_m = Some(past(aside_m, along_mps, room_m));
         }
     }
     found
 }
 
-/// How far ahead and to the left another is, if that matters.
-fn seen(here: Vec3, there: Vec3, ahead: Vec2, left: Vec2) -> Option<(f32, f32)> {
-    let to = there - here;
-    let (ahead_m, aside_m) = (to.truncate().dot(ahead), to.truncate().dot(left));
-    let matters = ahead_m > -BESIDE_M && ahead_m < SIGHT_M && aside_m.abs() < SHOULDER_M + 0.1 && to.z.abs() < LEVEL_M;
-    matters.then_some((ahead_m, aside_m))
+/// How far to step to the left to pass somebody who is so far to the left, and goes along at a speed: on the nearer side,
+/// if there is room; straight ahead on the right of who comes, and on the left of who goes the same way.
+fn past(aside_m: f32, along_mps: f32, room_m: [f32; 2]) -> f32 {
+    let [right_m, left_m] = [aside_m - SHOULDER_M, aside_m + SHOULDER_M];
+    let rightwards = if aside_m.abs() > STRAIGHT_M { aside_m > 0.0 } else { along_mps < MOVES_MPS };
+    let [fits_right, fits_left] = [right_m > room_m[0], left_m < room_m[1]];
+    if (rightwards && fits_right) || !fits_left { right_m } else { left_m }
 }

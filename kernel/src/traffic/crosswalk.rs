@@ -10,11 +10,14 @@ use crate::time::{TICK_HZ, Tick};
 use super::hazard::Hazard;
 use super::horn::{Horn, PEOPLE_ASIDE_M};
 use super::lists::{Entry, Lists};
+use super::vehicle::Vehicle;
 use super::walker::Walker;
 use super::ways::Ways;
 
 /// Vehicles stop for people who reach their lane within this time, s.
 const APPROACH_S: f32 = 4.0;
+/// Slower than this, across the lanes, somebody stands on a crosswalk, m/s.
+const STANDS_MPS: f32 = 0.2;
 /// Share of those who step onto a crosswalk without lights and without looking.
 const CARELESS: f32 = 0.06;
 /// Vehicles slower than this let people go, m/s.
@@ -23,6 +26,9 @@ const CREEP_MPS: f32 = 1.2;
 const CARELESS_BRAKE_MPS2: f32 = 3.5;
 /// Time that people want to have left when the vehicle arrives, s.
 const SPARE_S: f32 = 0.5;
+/// Vehicles that have stood for this long heed those who wait no more, s, who then let them go, if they stand so near, metres.
+pub(super) const HEED_S: u8 = 15;
+const LET_GO_M: std::ops::Range<f32> = -1.0..6.0;
 /// Vehicles farther away than this are not waited for, metres.
 const WATCH_M: f32 = 45.0;
 
@@ -47,7 +53,8 @@ fn crosses(claim: &Claim, place: &Place) -> bool {
     let left = place.left();
     let at_m = (claim.position - place.position.truncate()).dot(left);
     let speed = claim.velocity.dot(left);
-    let reach_m = place.half_width_m + 0.7;
+    // Who stands at the kerb is in nobody's way.
+    let reach_m = place.half_width_m + if speed.abs() > STANDS_MPS { 0.7 } else { 0.35 };
     let comes = at_m * speed < 0.0 && at_m.abs() < reach_m + speed.abs() * APPROACH_S;
     at_m.abs() < reach_m || comes
 }
@@ -59,6 +66,7 @@ pub(super) struct Gaps<'a> {
     pub ways: &'a Ways,
     pub seed: u64,
     pub lists: &'a Lists,
+    pub vehicles: &'a [Vehicle],
     pub lights: &'a [(LightPhase, Tick)],
     /// The ego car and loose actors.
     pub free: &'a [Hazard],
@@ -78,7 +86,7 @@ impl Gaps<'_> {
             let (phase, left) = self.lights[*group as usize];
             phase == LightPhase::Red && left > needed
         };
-        if !lights.iter().all(red) {
+        if !lights.iter().all(red) || (lights.is_empty() && self.lets_go(crosswalk)) {
             return false;
         }
         let careless = unit(self.seed, Stream::Walk, u64::from(walker.id), !u64::from(walker.hops)) < CARELESS;
@@ -102,6 +110,19 @@ impl Gaps<'_> {
         let further =
             |p: &LaneId| self.overruns(*p, s_m + self.map.lanes[*p as usize].length_m, half_width_m, depth + 1);
         early || (depth < 2 && s_m < WATCH_M && self.map.lanes[lane as usize].predecessors.iter().any(further))
+    }
+
+    /// Whether a vehicle that has stood before a crosswalk for long is let go by those who are not on it yet: in a stream of
+    /// people it would never get over.
+    fn lets_go(&self, crosswalk: u32) -> bool {
+        let crossed = &self.map.crosswalks[crosswalk as usize];
+        crossed.lanes.iter().any(|&(lane, s_m)| {
+            self.lists.on(lane).iter().any(|entry| {
+                let gap_m = s_m - crossed.half_width_m - entry.s_m - entry.half_m;
+                let stands = entry.speed_mps < CREEP_MPS && LET_GO_M.contains(&gap_m);
+                stands && self.vehicles[entry.vehicle as usize].stuck_s >= HEED_S
+            })
+        })
     }
 
     /// Whether a vehicle stands on a crosswalk, so that nobody can cross whoever waits for them.

@@ -36,8 +36,6 @@ const INDICATE_M: f32 = 40.0;
 const INDICATE_TICKS: Tick = 15;
 /// Braking at most for people at a crosswalk who are not in the way yet, m/s².
 const CROSSWALK_BRAKE_MPS2: f32 = 4.5;
-/// After standing this long people who only wait are not waited for any more, s.
-const HEED_S: u8 = 15;
 /// Sideways by so much for each metre driven.
 const DRIFT: f32 = 0.08;
 /// The same to pass something.
@@ -279,7 +277,7 @@ impl View<'_> {
         let driver = &self.drivers[index];
         let front_m = driver.size_m.x * 0.5;
         let crossing = next.flags & Vehicle::CROSSING != 0;
-        let heeds_waiting = !crossing && next.stuck_s < HEED_S && !self.is_honked_at(index);
+        let heeds_waiting = !crossing && next.stuck_s < crosswalk::HEED_S && !self.is_honked_at(index);
         let mut wall_m = plan.dead_end_m.map_or(f32::MAX, |m| m - front_m - 1.0);
         if let Some(line) = plan.line.filter(|_| next.flags & Vehicle::GRANTED == 0) {
             wall_m = wall_m.min(line.ahead_m - LINE_MARGIN_M);

@@ -127,6 +127,7 @@ impl Sight {
             ways: &actors.ways,
             seed: actors.seed,
             lists: &self.lists,
+            vehicles: &actors.state.vehicles,
             lights: &self.lights,
             free: &self.hazards[..self.free],
             horn: self.horn,

@@ -42,6 +42,7 @@ mod poses;
 mod rates;
 mod routes;
 mod sideways;
+mod slack;
 mod spawn;
 mod state;
 mod step;
@@ -175,12 +176,12 @@ impl Traffic {
         places.clear();
         next.vehicles.clear();
         next.walkers.clear();
-        let (view, streets) = (sight.view(actors), sight.streets(actors));
+        let (view, streets, mut near) = (sight.view(actors), sight.streets(actors), Vec::new());
         let driven = |i: usize, v: &Vehicle| if surroundings.holds(v.id) { *v } else { view.drive(i) };
         next.vehicles.extend(actors.state.vehicles.iter().enumerate().map(|(i, v)| driven(i, v)));
         for (i, walker) in actors.state.walkers.iter().enumerate() {
             let held = surroundings.holds(walker.id);
-            let (walker, place) = if held { (*walker, actors.places[i]) } else { streets.walk(i) };
+            let (walker, place) = if held { (*walker, actors.places[i]) } else { streets.walk(i, &mut near) };
             next.walkers.push(walker);
             places.push(place);
         }

@@ -8,11 +8,12 @@ use crate::rng::{self, Stream};
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
-use super::company::{Leeway, leeway};
+use super::company::{Leeway, Near, gather, leeway};
 use super::crosswalk::Gaps;
 use super::crowd::Crowd;
 use super::hazard::Hazard;
 use super::jaywalk;
+use super::slack;
 use super::traits::WalkerTraits;
 use super::walker::{Walker, WalkerMode, turns};
 use super::ways::Ways;
@@ -23,10 +24,10 @@ const ACCEL_MPS2: f32 = 1.5;
 const DRIFT: f32 = 0.35;
 /// Sideways speed of somebody who gets out of another's way, m/s.
 const SIDESTEP_MPS: f32 = 0.35;
-/// Pace of somebody who squeezes past others, m/s.
-const SHUFFLE_MPS: f32 = 0.3;
-/// Whoever has stood before others for this long does that, so that no crowd can jam.
-const SQUEEZE_TICKS: u16 = seconds(4) as u16;
+/// Whoever is slower than this is held up by others, m/s.
+const HELD_UP_MPS: f32 = 0.3;
+/// Whoever has stood before others for this long goes back, so that no crowd can jam.
+const GIVE_WAY_TICKS: u16 = seconds(6) as u16;
 /// Whoever waits steps back from vehicles that come by within this of their sides, metres.
 const SWEPT_M: f32 = 0.4;
 /// And the farther the longer a vehicle is: by so much for each metre beyond a car's half length.
@@ -39,14 +40,24 @@ const BACK_MPS: f32 = 1.2;
 const LOOK_TICKS: Tick = 6;
 /// A queue before a crosswalk is at most so long, metres.
 const QUEUE_M: f32 = 4.0;
+/// Where so many are in sight nobody joins those who cross the road, but goes another way.
+const CROWD: usize = 8;
+/// Distance kept from vehicles, metres.
+const OFF_VEHICLES_M: f32 = 0.3;
 /// Distance walked in one cycle of the gait (two steps), metres.
 const STRIDE_M: f32 = 1.45;
 /// Fastest turn of the body, 2^-16 turns a tick (about 270 degrees a second).
 const TURN_PER_TICK: i16 = 820;
-/// Distance kept from the edge of the way, metres.
-const EDGE_MARGIN_M: f32 = 0.35;
-/// The same when passing others.
-const PASSING_MARGIN_M: f32 = 0.1;
+/// After that long it has turned to where it will go.
+const TURNED_TICKS: u16 = 60;
+/// Whoever moves less than this in a tick turns to where it wants to go, metres.
+const FACES_M: f32 = 0.003;
+/// How far to the right of the middle people keep, metres.
+const RIGHT_M: f32 = 0.3;
+/// Past others one goes so far beyond the border of the way, metres: the outermost half metre of the pavement is not part of it.
+const VERGE_M: f32 = 0.25;
+/// Room to both sides of somebody who crosses the road, metres.
+const SIDE_ROOM_M: f32 = 2.0;
 /// Whoever has waited this long at a kerb goes another way.
 const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
@@ -92,27 +103,74 @@ pub(super) struct Streets<'a> {
 }
 
 impl Streets<'_> {
-    /// The next state of walker `index`, and where that is on its way.
-    pub fn walk(&self, index: usize) -> (Walker, Place) {
+    /// The next state of walker `index`, and where that is on its way. `near` is scratch.
+    pub fn walk(&self, index: usize, near: &mut Vec<Near>) -> (Walker, Place) {
         let mut next = self.walkers[index];
         if self.jaywalker == Some(index) {
             next.mode = WalkerMode::Jaywalk;
             next.forward = jaywalk::road_is_left(self.map, self.ways, &next);
         }
-        let before = self.bodies[index].position.truncate();
         match next.mode {
-            WalkerMode::Walk => self.stroll(index, &mut next),
+            WalkerMode::Wait if !self.looks(&next) => {
+                next.wait_ticks = next.wait_ticks.saturating_add(1);
+                if next.wait_ticks < TURNED_TICKS {
+                    self.face(self.waiting_direction(&next), &mut next);
+                }
+                return (next, self.places[index]);
+            }
             WalkerMode::Wait => self.wait(index, &mut next),
-            WalkerMode::Jaywalk => self.jaywalk(index, &mut next),
+            WalkerMode::Walk => {
+                gather(self.crowd, self.bodies, index, near);
+                self.stroll(index, near, &mut next);
+            }
+            WalkerMode::Jaywalk => {
+                gather(self.crowd, self.bodies, index, near);
+                self.jaywalk(index, near, &mut next);
+            }
         }
-        let place = self.ways.walker_place(&next);
-        let moved = place.beside(next.offset_m).truncate() - before;
-        next.phase = next.phase.wrapping_add((moved.length() / STRIDE_M * 65536.0) as u16);
-        self.face(moved, &place, &mut next);
+        self.settle(index, near, next)
+    }
+
+    /// Goes as far towards what was decided as others leave room for.
+    fn settle(&self, index: usize, near: &mut Vec<Near>, mut next: Walker) -> (Walker, Place) {
+        let was = &self.walkers[index];
+        if was.mode == WalkerMode::Wait {
+            gather(self.crowd, self.bodies, index, near);
+        }
+        let before = self.bodies[index].position.truncate();
+        let step_to = |next: &Walker| {
+            let place = self.ways.walker_place(next);
+            (place, place.beside(next.offset_m).truncate() - before)
+        };
+        let (mut place, mut step) = step_to(&next);
+        if !slack::is_free(near, step) {
+            let change = slack::free_part(near, step) - step;
+            next.s_m += change.dot(place.forward.truncate().normalize_or(Vec2::X));
+            next.offset_m += change.dot(place.left());
+            (place, step) = step_to(&next);
+            next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
+        }
+        if !slack::is_free(near, step) || (self.is_on_road(was) && self.runs_into_vehicle(before, step)) {
+            next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
+            (place, step) = (self.places[index], Vec2::ZERO);
+        }
+        next.phase = next.phase.wrapping_add((step.length() / STRIDE_M * 65536.0) as u16);
+        let ahead = if next.mode == WalkerMode::Jaywalk { place.left() } else { place.forward.truncate() };
+        let toward = match next.mode {
+            WalkerMode::Wait => self.waiting_direction(&next),
+            _ if step.length_squared() > FACES_M * FACES_M => step,
+            _ => ahead * if next.forward { 1.0 } else { -1.0 },
+        };
+        self.face(toward, &mut next);
         (next, place)
     }
 
-    fn stroll(&self, index: usize, next: &mut Walker) {
+    /// Whether somebody who waits looks around in this tick.
+    fn looks(&self, walker: &Walker) -> bool {
+        (self.tick + Tick::from(walker.id)).is_multiple_of(LOOK_TICKS)
+    }
+
+    fn stroll(&self, index: usize, near: &[Near], next: &mut Walker) {
         let edge = &self.map.walk_edges[next.edge as usize];
         let direction = if next.forward { 1.0 } else { -1.0 };
         let place = self.places[index];
@@ -120,70 +178,62 @@ impl Streets<'_> {
         let pace_mps = self.walker_traits[index].speed_mps;
         // Across the road people hurry a little.
         let wants_mps = if edge.crosswalk.is_some() { (pace_mps * 1.15).max(1.0) } else { pace_mps };
-        let leeway = leeway(self.crowd, self.bodies, index, ahead, wants_mps);
-        let aim_mps = if edge.crosswalk.is_some() && self.blocked(index, ahead) {
+        let leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
+        let held_up = leeway.most_mps < HELD_UP_MPS;
+        if edge.crosswalk.is_some() && self.blocked(index, ahead) {
             halt(next);
-            0.0
-        } else {
-            wants_mps.min(self.among_others(&leeway, next))
-        };
-        let hindered = leeway.most_mps < 2.0 * SHUFFLE_MPS;
-        if hindered && self.joins_those_who_wait(index, edge, next) {
+        } else if held_up && self.joins_those_who_wait(index, near, edge, next) {
             return;
+        } else {
+            give_way(held_up, next);
+            approach_speed(next, wants_mps.min(leeway.most_mps));
         }
-        approach_speed(next, aim_mps);
         let moved_m = next.speed_mps * TICK_S;
         next.s_m += direction * moved_m;
         self.drift(index, edge, direction, &leeway, moved_m, next);
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         if left_m <= 0.0 {
-            self.turn_or_wait(index, next);
+            self.turn_or_wait(index, near, next);
         }
     }
 
+    /// Moves sideways: to where somebody likes to walk, or past others.
+    fn drift(&self, index: usize, edge: &WalkEdge, direction: f32, leeway: &Leeway, moved_m: f32, next: &mut Walker) {
+        let half_m = edge.half_width_m;
+        // To the right, as people mostly keep, and the more so the narrower the way is.
+        let likes_m = self.walker_traits[index].place * (half_m - RIGHT_M).max(0.1) - direction * RIGHT_M;
+        let aim_m = leeway.aside_m.map_or(likes_m, |aside_m| next.offset_m + direction * aside_m);
+        // Whoever comes back from the road goes straight for the way.
+        let astray = next.offset_m.abs() > half_m + VERGE_M;
+        let least_m = if leeway.aside_m.is_some() { SIDESTEP_MPS * TICK_S } else { 0.0 };
+        let most_m = if astray { moved_m } else { (DRIFT * moved_m).max(least_m) };
+        let room_m = if leeway.aside_m.is_some() { half_m + VERGE_M } else { half_m };
+        next.offset_m += (aim_m.clamp(-room_m, room_m) - next.offset_m).clamp(-most_m, most_m);
+    }
+
     /// Whoever is held up by others shortly before a crosswalk that is not free waits behind them.
-    fn joins_those_who_wait(&self, index: usize, edge: &WalkEdge, next: &mut Walker) -> bool {
+    fn joins_those_who_wait(&self, index: usize, near: &[Near], edge: &WalkEdge, next: &mut Walker) -> bool {
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         let wanted = || wanted_crosswalk(self.map, self.seed, next);
         let waits =
             left_m < QUEUE_M && edge.crosswalk.is_none() && wanted().is_some_and(|c| !self.may_cross(index, c, next));
+        if waits && near.len() > CROWD {
+            next.hops = next.hops.wrapping_add(1);
+            return false;
+        }
         if waits {
             begin_waiting(next);
         }
         waits
     }
 
-    /// The speed that others leave; whoever stood before them for long squeezes past.
-    fn among_others(&self, leeway: &Leeway, next: &mut Walker) -> f32 {
-        if leeway.most_mps >= 2.0 * SHUFFLE_MPS {
-            next.wait_ticks = 0;
-            return leeway.most_mps;
-        }
-        next.wait_ticks = next.wait_ticks.saturating_add(1);
-        if next.wait_ticks > SQUEEZE_TICKS { leeway.most_mps.max(SHUFFLE_MPS) } else { leeway.most_mps }
-    }
-
-    /// Moves sideways: to where somebody likes to walk, or past others.
-    fn drift(&self, index: usize, edge: &WalkEdge, direction: f32, leeway: &Leeway, moved_m: f32, next: &mut Walker) {
-        let room_m = |margin_m: f32| (edge.half_width_m - margin_m).max(0.0);
-        // A third of the way to the right, as people mostly keep.
-        let likes_m = (self.walker_traits[index].place - direction * 0.33).clamp(-1.0, 1.0) * room_m(EDGE_MARGIN_M);
-        let aim_m = leeway.aside_m.map_or(likes_m, |aside_m| next.offset_m + direction * aside_m);
-        // Whoever comes back from the road goes straight for the way.
-        let astray = next.offset_m.abs() > edge.half_width_m;
-        let least_m = if leeway.aside_m.is_some() { SIDESTEP_MPS * TICK_S } else { 0.0 };
-        let most_m = if astray { moved_m } else { (DRIFT * moved_m).max(least_m) };
-        let room_m = room_m(if leeway.aside_m.is_some() { PASSING_MARGIN_M } else { EDGE_MARGIN_M });
-        let step_m = (aim_m.clamp(-room_m, room_m) - next.offset_m).clamp(-most_m, most_m);
-        let [right_m, left_m] = leeway.free_m;
-        next.offset_m += direction * (direction * step_m).clamp(right_m, left_m);
-    }
-
     /// At the end of an edge: takes the next one, or waits at the kerb.
-    fn turn_or_wait(&self, index: usize, next: &mut Walker) {
+    fn turn_or_wait(&self, index: usize, near: &[Near], next: &mut Walker) {
         let edge = next_edge(self.map, self.seed, next);
         let crosswalk = self.map.walk_edges[edge as usize].crosswalk.filter(|_| edge != next.edge);
-        if crosswalk.is_some_and(|c| !self.may_cross(index, c, next)) {
+        if crosswalk.is_some() && near.len() > CROWD {
+            next.hops = next.hops.wrapping_add(1);
+        } else if crosswalk.is_some_and(|c| !self.may_cross(index, c, next)) {
             begin_waiting(next);
         } else {
             self.enter(edge, next);
@@ -198,12 +248,10 @@ impl Streets<'_> {
     }
 
     fn wait(&self, index: usize, next: &mut Walker) {
-        if (self.tick + Tick::from(next.id)).is_multiple_of(LOOK_TICKS) {
-            let away = self.swept_from(index) * (BACK_MPS * TICK_S * LOOK_TICKS as f32);
-            let place = self.places[index];
-            next.s_m += away.dot(place.forward.truncate());
-            next.offset_m += away.dot(place.left());
-        }
+        let away = self.swept_from(index) * (BACK_MPS * TICK_S * LOOK_TICKS as f32);
+        let place = self.places[index];
+        next.s_m += away.dot(place.forward.truncate());
+        next.offset_m += away.dot(place.left());
         next.wait_ticks = next.wait_ticks.saturating_add(1);
         if next.wait_ticks > GIVE_UP_TICKS {
             next.hops = next.hops.wrapping_add(1);
@@ -234,7 +282,7 @@ impl Streets<'_> {
         next.wait_ticks = 0;
     }
 
-    fn jaywalk(&self, index: usize, next: &mut Walker) {
+    fn jaywalk(&self, index: usize, near: &[Near], next: &mut Walker) {
         let place = self.places[index];
         let sign = if next.forward { 1.0 } else { -1.0 };
         let Some(goal) = jaywalk::goal(self.map, self.ways, next) else {
@@ -243,13 +291,16 @@ impl Streets<'_> {
         };
         let blocked = self.blocked(index, place.left() * sign);
         let pace_mps = jaywalk::pace(self.seed, next, &self.walker_traits[index]);
-        let leeway = leeway(self.crowd, self.bodies, index, place.left() * sign, pace_mps);
-        let aim_mps = if blocked { 0.0 } else { pace_mps.min(leeway.most_mps.max(SHUFFLE_MPS)) };
+        let leeway = leeway(near, place.left() * sign, pace_mps, [-SIDE_ROOM_M, SIDE_ROOM_M]);
         if blocked {
             halt(next);
+        } else {
+            approach_speed(next, pace_mps.min(leeway.most_mps));
         }
-        approach_speed(next, aim_mps);
         next.offset_m += sign * next.speed_mps * TICK_S;
+        // Seen along the way, the left of who goes to the left is backwards.
+        let aside_m = leeway.aside_m.unwrap_or(0.0).clamp(-SIDESTEP_MPS * TICK_S, SIDESTEP_MPS * TICK_S);
+        next.s_m -= sign * aside_m;
         if next.offset_m * sign >= goal.distance_m {
             jaywalk::arrive(self.ways, self.seed, &goal, next);
         }
@@ -263,6 +314,25 @@ impl Streets<'_> {
             let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
             x.abs() < block.half.x + 0.2 && y.abs() < block.half.y + 0.2
         })
+    }
+
+    fn is_on_road(&self, walker: &Walker) -> bool {
+        let edge = &self.map.walk_edges[walker.edge as usize];
+        edge.crosswalk.is_some() || walker.mode != WalkerMode::Walk || walker.offset_m.abs() > edge.half_width_m + 0.3
+    }
+
+    /// Whether a step leads nearer to a vehicle that is within reach.
+    fn runs_into_vehicle(&self, from: Vec2, step: Vec2) -> bool {
+        step != Vec2::ZERO
+            && self.blocks.iter().any(|block| {
+                let apart_m = |place: Vec2| {
+                    let offset = place - block.position.truncate();
+                    let (x, y) = (offset.dot(block.forward).abs(), block.forward.perp_dot(offset).abs());
+                    (Vec2::new(x, y) - block.half).max(Vec2::ZERO).length()
+                };
+                let then_m = apart_m(from + step);
+                then_m < OFF_VEHICLES_M && then_m < apart_m(from)
+            })
     }
 
     /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where
@@ -283,16 +353,8 @@ impl Streets<'_> {
         })
     }
 
-    /// Turns the body towards where it goes; who stands still looks along the next way.
-    fn face(&self, moved: Vec2, place: &Place, next: &mut Walker) {
-        let ahead = if next.mode == WalkerMode::Jaywalk { place.left() } else { place.forward.truncate() };
-        let toward = if moved.length_squared() > 1e-8 {
-            moved
-        } else if next.mode == WalkerMode::Wait {
-            self.waiting_direction(next)
-        } else {
-            ahead * if next.forward { 1.0 } else { -1.0 }
-        };
+    /// Turns the body towards a direction.
+    fn face(&self, toward: Vec2, next: &mut Walker) {
         let aim = turns(ops::atan2(toward.y, toward.x));
         let turn = (aim.wrapping_sub(next.heading) as i16).clamp(-TURN_PER_TICK, TURN_PER_TICK);
         next.heading = next.heading.wrapping_add(turn as u16);
@@ -304,6 +366,21 @@ impl Streets<'_> {
         let forward = to.nodes[0] == end_node(self.map, walker);
         let direction = self.ways.edge_place(edge, if forward { 0.0 } else { to.length_m }).forward.truncate();
         if forward { direction } else { -direction }
+    }
+}
+
+/// The room to the right (negative) and to the left of somebody on a way, metres.
+fn room_m(edge: &WalkEdge, walker: &Walker, direction: f32) -> [f32; 2] {
+    let (most_m, at_m) = (edge.half_width_m + VERGE_M, walker.offset_m * direction);
+    [-most_m - at_m, most_m - at_m]
+}
+
+/// Whoever has stood before others for long turns back.
+fn give_way(held_up: bool, next: &mut Walker) {
+    next.wait_ticks = if held_up { next.wait_ticks + 1 } else { 0 };
+    if next.wait_ticks > GIVE_WAY_TICKS {
+        next.wait_ticks = 0;
+        next.forward = !next.forward;
     }
 }
 

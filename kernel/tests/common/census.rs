@@ -40,6 +40,9 @@ pub struct Census {
     pub vehicle_h: f64,
     /// Distance that all vehicles together drove, km.
     pub vehicle_km: f64,
+    /// Hours that all people on foot together were there, and the distance that they went, km.
+    pub walker_h: f64,
+    pub walker_km: f64,
     /// Vehicles that stood for [`STAND_S`] without a red light.
     pub stood: u32,
     /// Times that two vehicles, a vehicle and a person, and two persons began to overlap.
@@ -58,10 +61,17 @@ pub struct Census {
 }
 
 impl Census {
+    /// Mean speed of people on foot, those who wait among them, m/s.
+    pub fn walker_mps(&self) -> f64 {
+        self.walker_km / self.walker_h.max(1e-9) / 3.6
+    }
+
     /// Adds another one.
     pub fn add(&mut self, other: &Self) {
         self.vehicle_h += other.vehicle_h;
         self.vehicle_km += other.vehicle_km;
+        self.walker_h += other.walker_h;
+        self.walker_km += other.walker_km;
         self.stood += other.stood;
         (0..3).for_each(|k| self.overlaps[k] += other.overlaps[k]);
         self.red += other.red;
@@ -78,10 +88,10 @@ impl fmt::Display for Census {
         let [cars, person, persons] = self.overlaps;
         let (h, km_h) = (self.vehicle_h, self.vehicle_km / self.vehicle_h.max(1e-9));
         let (stood, red, missing, dissolved) = (self.stood, self.red, self.missing, self.dissolved);
-        let (collided, mistakes) = (self.collided, self.mistakes);
+        let (collided, mistakes, walker_mps) = (self.collided, self.mistakes, self.walker_mps());
         write!(
             f,
-            "{h:7.1} vehicle-h at {km_h:4.1} km/h: {stood:3} stood, overlaps {cars:4} vehicles {person:4} with a person \
+            "{h:7.1} vehicle-h at {km_h:4.1} km/h, people at {walker_mps:4.2} m/s: {stood:3} stood, overlaps {cars:4} vehicles {person:4} with a person \
              {persons:6} persons, {red:2} at red, {missing:4} missing, {dissolved:3} dissolved, \
              {mistakes:4} mistakes, {collided:2} collided"
         )
@@ -115,6 +125,8 @@ struct Watcher<'a> {
     /// For each vehicle, the seconds it has stood without a red light.
     stands_s: Vec<u32>,
     before: Vec<Vehicle>,
+    /// Where people were a second ago.
+    walked_from: Vec<Vec3>,
     overlapping: BTreeSet<(u32, u32)>,
 }
 
@@ -129,6 +141,7 @@ impl<'a> Watcher<'a> {
             found: Census { missing, ..Census::default() },
             stands_s: vec![0; vehicles.len()],
             before: vehicles.clone(),
+            walked_from: people(traffic).collect(),
             overlapping: BTreeSet::new(),
         }
     }
@@ -157,6 +170,10 @@ impl<'a> Watcher<'a> {
         }
         if tick.is_multiple_of(seconds(1)) {
             self.standing(traffic, tick);
+            let moved = self.walked_from.iter().zip(people(traffic)).map(|(from, to)| f64::from(from.distance(to)));
+            self.found.walker_km += moved.sum::<f64>() / 1000.0;
+            self.found.walker_h += self.walked_from.len() as f64 / 3600.0;
+            self.walked_from = people(traffic).collect();
         }
         self.before.clone_from(vehicles);
     }
@@ -248,6 +265,11 @@ impl<'a> Watcher<'a> {
         }
         self.overlapping = now;
     }
+}
+
+/// Where the people on foot are.
+fn people(traffic: &Traffic) -> impl Iterator<Item = Vec3> {
+    traffic.bodies()[traffic.state().vehicles.len()..].iter().map(|body| body.position)
 }
 
 /// The vehicle that stands closely before another.
