@@ -20,7 +20,8 @@ fn origins() -> Vec<String> {
     let cross =
         ["cross_none", "cross_lights", "cross_stop", "cross_yield", "cross_hill", "cross_wide", "cross_references"];
     let read = |path: String| std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
-    let mut texts = vec![roads::winding(2, 60.0), roads::crossing(2, 60.0)];
+    let track = roads::winding(1, 60.0).replace("</lane>", "<material sOffset=\"21.5\" surface=\"gravel\"/></lane>");
+    let mut texts = vec![roads::winding(2, 60.0), roads::crossing(2, 60.0), track];
     texts.extend(cross.map(|name| read(format!("{maps}{name}.xodr"))));
     texts.push(read(concat!(env!("CARGO_MANIFEST_DIR"), "/maps/rural.xodr").to_owned()));
     // A folder of further maps to start from.
