@@ -55,7 +55,9 @@ pub fn fractions(rgb: [u8; 3]) -> [f32; 3] {
 
 fn class(kind: ActorKind) -> SemanticTag {
     match kind {
-        ActorKind::Car | ActorKind::Van | ActorKind::Suv | ActorKind::Emergency | ActorKind::Door => SemanticTag::Vehicles,
+        ActorKind::Car | ActorKind::Van | ActorKind::Suv | ActorKind::Emergency | ActorKind::Door => {
+            SemanticTag::Vehicles
+        }
         ActorKind::Truck => SemanticTag::Truck,
         ActorKind::Bus => SemanticTag::Bus,
         ActorKind::Motorcycle | ActorKind::Scooter => SemanticTag::Motorcycle,

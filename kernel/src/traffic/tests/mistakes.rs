@@ -253,13 +253,8 @@ fn doors_that_open_are_passed_and_hold_nobody_up_for_long() {
             assert_eq!(told(t, EventKind::Stuck) + told(t, EventKind::HazardCollision), 0, "tick {tick}");
             if tick % 10 == 0 {
                 assert_eq!(overlaps(t), [], "tick {tick}");
-                let around = Surroundings {
-                    tick,
-                    ego: nowhere(),
-                    ego_flags: 0,
-                    loose: &[],
-                    conditions: Conditions::default(),
-                };
+                let around =
+                    Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[], conditions: Conditions::default() };
                 open += t.actors.door_hazards(&around).count();
                 wide += t.open_doors(tick, nowhere()).count();
             }

@@ -116,7 +116,8 @@ impl<'a> Others<'a> {
         let parked = world.network().props.iter().filter(|p| p.kind == PropKind::ParkedCar).enumerate();
         // Those that were pushed are among the actors.
         let gone = |n: usize| scene.actors.iter().any(|a| a.id == FIRST_PARKED_ID + n as u32);
-        let parked = parked.filter(|(n, p)| near(p.position) && !gone(*n)).map(|(n, p)| (n, Footprint::of_prop(p))).collect();
+        let parked =
+            parked.filter(|(n, p)| near(p.position) && !gone(*n)).map(|(n, p)| (n, Footprint::of_prop(p))).collect();
         Some(Self { world, looks, actors, parked })
     }
 

@@ -57,7 +57,8 @@ impl Witness {
     /// What has been seen of a log, whose frames have these ticks.
     pub fn facts(&self, log: &Log, ticks: Vec<Tick>) -> Facts {
         let kernel = &log.manifest.kernel;
-        let people = self.touched.iter().flatten().filter(|t| matches!(t, Touched::Actor(_, kind) if kind.is_on_foot()));
+        let people =
+            self.touched.iter().flatten().filter(|t| matches!(t, Touched::Actor(_, kind) if kind.is_on_foot()));
         let mut people_on_path: Vec<u16> = people.map(|t| instance(*t)).collect();
         people_on_path.sort_unstable();
         people_on_path.dedup();
