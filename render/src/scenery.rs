@@ -176,3 +176,18 @@ fn bounding_sphere(mesh: &Mesh) -> (Vec3, f32) {
     });
     (0.5 * (low + high), 0.5 * (high - low).length())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parked_car_that_is_gone_is_not_drawn() {
+        let city = kernel::map::bundled("city").expect("a bundled map");
+        let scenery = Scenery::new(&city);
+        let (car, _) = numbered(&city).find(|(_, parked)| *parked == Some(5)).expect("the city has parked cars");
+        let drawn = |gone: &[usize]| scenery.near_line(car.position, Vec3::Z, 0.5, gone).len();
+        assert!(drawn(&[5]) < drawn(&[]));
+        assert_eq!(drawn(&[900]), drawn(&[]));
+    }
+}

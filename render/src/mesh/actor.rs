@@ -37,3 +37,29 @@ pub fn ego_model() -> &'static Model {
     static EGO: OnceLock<Model> = OnceLock::new();
     EGO.get_or_init(|| actor_model(ActorKind::Car, EGO_VARIANT, Detail::Fine))
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    /// Mirrors and heads may stand out by this, metres.
+    const OVER_M: f32 = 0.18;
+
+    #[test]
+    fn every_kind_is_drawn_as_large_as_it_is() {
+        for &kind in ActorKind::ALL {
+            for (detail, variant) in Detail::ALL.into_iter().flat_map(|detail| (0..12).map(move |v| (detail, v))) {
+                let (model, size) = (actor_model(kind, variant, detail), kind.size_m());
+                let mut most = Vec3::ZERO;
+                for (part, pose) in model.parts.iter().zip(model.pose(0.0, 0.0)) {
+                    let corners = part.mesh.vertices.iter().map(|v| pose.transform_point3(Vec3::from(v.position)));
+                    most = corners.fold(most, |most, p| most.max(Vec3::new(p.x.abs() * 2.0, p.y.abs() * 2.0, p.z)));
+                }
+                let over = (most - size) * Vec3::new(0.5, 0.5, 1.0);
+                assert!(over.max_element() < OVER_M && most.z > 0.85 * size.z, "{kind:?} {detail:?}: {most} of {size}");
+            }
+        }
+    }
+}

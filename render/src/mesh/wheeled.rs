@@ -3,6 +3,7 @@
 use core::f32::consts::TAU;
 
 use glam::Vec3;
+use kernel::ops;
 
 use super::car::RUBBER;
 use super::model::{Detail, Model};
@@ -66,7 +67,8 @@ fn chair(cloth: Paint, detail: Detail) -> Mesh {
         ring(&mut mesh, rubber, Vec3::new(0.32, side * 0.22, 0.09), 0.09, 0.05, sides(detail));
         if detail == Detail::Fine {
             for spoke in 0..6 {
-                let (sin, cos) = (TAU * spoke as f32 / 6.0).sin_cos();
+                let angle = TAU * spoke as f32 / 6.0;
+                let (sin, cos) = (ops::sin(angle), ops::cos(angle));
                 mesh.tube(steel, hub, hub + Vec3::new(0.27 * cos, 0.0, 0.27 * sin), 0.006, 0.006, 4);
             }
         }

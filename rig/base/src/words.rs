@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use kernel::Seat;
 use kernel::events::{Event, EventKind};
-use kernel::scene::{ActorKind, ActorScene};
+use kernel::scene::{ActorKind, ActorScene, FIRST_DOOR_ID, FIRST_PARKED_ID};
 
 /// What people and files call the seats.
 pub const SEATS: [&str; 2] = ["semantic", "safety"];
@@ -47,10 +47,19 @@ pub fn actor(actor: &ActorScene) -> String {
     format!("{} {}", road_user(actor.kind), actor.id)
 }
 
+/// Whom or what an actor's number names.
+fn collided(actor: u32) -> String {
+    match actor {
+        FIRST_DOOR_ID.. => format!("a door of parked car {}", actor - FIRST_DOOR_ID),
+        FIRST_PARKED_ID.. => format!("parked car {}", actor - FIRST_PARKED_ID),
+        _ => format!("actor {actor}"),
+    }
+}
+
 /// What happened to the ego car, as in `red light passed at 43 km/h`, or to traffic.
 pub fn event(event: &Event) -> String {
     let what = match event.kind {
-        EventKind::CollisionActor => format!("collision with actor {}", event.actor),
+        EventKind::CollisionActor => format!("collision with {}", collided(event.actor)),
         EventKind::CollisionScenery => "collision with scenery".into(),
         EventKind::RedLight => "red light passed".into(),
         EventKind::Speeding => "limit exceeded".into(),
@@ -69,7 +78,9 @@ pub fn event(event: &Event) -> String {
         EventKind::HazardBraking => return format!("vehicle {} brakes hard for no reason", event.actor),
         EventKind::HazardCutIn => return format!("vehicle {} cuts in", event.actor),
         EventKind::HazardPullOut => return format!("vehicle {} pulls out from the kerb without a look", event.actor),
-        EventKind::HazardDoor => return format!("door {} of a parked car opens into the lane", event.actor),
+        EventKind::HazardDoor => {
+            return format!("a door of parked car {} opens into the lane", event.actor.saturating_sub(FIRST_DOOR_ID));
+        }
         EventKind::HazardCollision => return format!("vehicle {} is in a collision with another", event.actor),
     };
     // The tick of a collision ends with what the impact has left of the speed.
@@ -90,6 +101,14 @@ pub fn event_at(tick: u64, event: &Event) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_hit_has_a_name() {
+        let said = |actor| event(&Event { kind: EventKind::CollisionActor, actor, speed_mps: 5.0 });
+        assert_eq!(said(7), "collision with actor 7, after it at 18 km/h");
+        assert_eq!(said(FIRST_PARKED_ID + 3), "collision with parked car 3, after it at 18 km/h");
+        assert_eq!(said(FIRST_DOOR_ID + 3), "collision with a door of parked car 3, after it at 18 km/h");
+    }
 
     #[test]
     fn one_is_not_many() {
