@@ -120,7 +120,10 @@ proptest! {
         let high = low + (1.0 - low) * more;
         let throttled = |throttle| driven(kind, from, pedals(throttle, 0.0), ticks);
         let (less, most) = (throttled(low), throttled(high));
-        prop_assert!(most.0 >= less.0 - 0.001 && most.1 >= less.1 - 0.005, "{most:?} {less:?}");
+        // Wheels that spin hold less until traction control has caught them: so much speed, and the way that it costs.
+        let lost_mps = 0.005;
+        let lost_m = 0.001 + 0.5 * lost_mps * ticks as f32 * TICK_S;
+        prop_assert!(most.0 >= less.0 - lost_m && most.1 >= less.1 - lost_mps, "{most:?} {less:?}");
         let braked = |brake| driven(kind, from, pedals(0.0, brake), ticks);
         let (less, most) = (braked(low), braked(high));
         prop_assert!(most.0 <= less.0 + ROCKING.0, "{most:?} {less:?}");
