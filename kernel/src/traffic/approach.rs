@@ -17,6 +17,8 @@ const HALT_TICKS: u16 = seconds(1) as u16;
 const RETHINK_TICKS: u16 = seconds(15) as u16;
 /// Before it asks for a junction a vehicle looks this far for what stands in its way, metres.
 const STANDING_M: f32 = 60.0;
+/// Slower than this it stands, or comes the other way, m/s.
+const STANDS_MPS: f32 = 0.5;
 
 impl View<'_> {
     /// Asks for grants, gives them back, waits and halts.
@@ -95,13 +97,15 @@ impl View<'_> {
         junction::near_enough(next, line, 0.0) && signal == Signal::Open && free && room()
     }
 
-    /// From a vehicle's middle to the nearest thing that stands in its way and cannot be passed, metres.
+    /// From a vehicle's middle to the nearest thing that stands in its way and cannot be passed, metres. Who passes somebody
+    /// on the lane that it wants to leave by is such a thing: both would wait for each other.
     fn standing_m(&self, index: usize, steps: &[Step]) -> f32 {
         let seeker = Seeker { speed_mps: 0.0, horizon_m: STANDING_M, ..self.seeker(index) };
         let free = &self.hazards[..self.free];
         let aim_m = side(self.map, steps, &seeker, free, seeker.offset_m);
-        let seen = free.iter().filter(|h| h.stands()).filter_map(|h| sight(self.map, steps, &seeker, h));
-        let blocking = seen.filter(|seen| seen.blocks(aim_m, seeker.half.y));
+        let others = self.changing.iter().filter(|h| h.position != seeker.position);
+        let seen = free.iter().filter(|h| h.stands()).chain(others).filter_map(|h| sight(self.map, steps, &seeker, h));
+        let blocking = seen.filter(|seen| seen.speed_mps < STANDS_MPS && seen.blocks(aim_m, seeker.half.y));
         blocking.map(|seen| seen.gap_m + seeker.half.x).fold(f32::MAX, f32::min)
     }
 }

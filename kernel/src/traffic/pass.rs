@@ -10,6 +10,7 @@ use crate::ops;
 
 use super::drive::{View, follow_idm};
 use super::hazard::{BICYCLE_M, Hazard, Seeker, sight};
+use super::junction::stopping_m;
 use super::lists::Entry;
 use super::plan::Plan;
 use super::step::Step;
@@ -209,7 +210,7 @@ impl View<'_> {
         let known = self.steps_of(plan).last().map_or(0.0, |s| s.start_m + self.map.lanes[s.lane as usize].length_m);
         !ends
             && known >= way_m
-            && self.has_room_after(index, plan, passed)
+            && self.has_room_after(index, plan, passed, past_m)
             && self.nobody_comes(index, way_m, time_s, side)
             && self.is_first(index)
             && self.is_open(plan, way_m, side)
@@ -246,14 +247,17 @@ impl View<'_> {
         beside.iter().any(comes)
     }
 
-    /// Whether there is room in the lane again before whom one has passed.
-    fn has_room_after(&self, index: usize, plan: &Plan, passed: &Passed) -> bool {
+    /// Whether there is room in the lane again before whom one has passed, `past_m` ahead: also if whoever is there now
+    /// comes to a stand, as one would block both lanes beside a queue.
+    fn has_room_after(&self, index: usize, plan: &Plan, passed: &Passed, past_m: f32) -> bool {
         let size_m = self.drivers[index].size_m.x;
         let stays_m = passed.beyond_m + AFTER_M + size_m + ROOM_M;
         let in_the_way = |step: &Step, e: &Entry| {
             let tail_m = step.start_m + e.s_m - e.half_m;
+            let stands_m = tail_m + stopping_m(e.speed_mps);
+            let near = tail_m < stays_m || stands_m < past_m + AFTER_M + 0.5 * size_m;
             let kind = self.vehicles[e.vehicle as usize].kind;
-            e.vehicle as usize != index && !kind.is_pedalled() && tail_m > -size_m && tail_m < stays_m
+            e.vehicle as usize != index && !kind.is_pedalled() && tail_m > -size_m && near
         };
         self.steps_of(plan).iter().all(|step| !self.lists.on(step.lane).iter().any(|e| in_the_way(step, e)))
     }

@@ -91,7 +91,11 @@ fn on_crosswalks(traffic: &Traffic) -> usize {
 /// Nobody drives into anybody, nobody is stuck, and people get across; vehicles are so fast in every minute and
 /// in all.
 fn flows(network: &Arc<RoadNetwork>, actors: u16, minutes: Tick, [least_mps, mean_mps]: [f32; 2]) {
-    let mut traffic = start(network, actors, 3);
+    flows_on(network, actors, 3, minutes, [least_mps, mean_mps]);
+}
+
+fn flows_on(network: &Arc<RoadNetwork>, actors: u16, seed: u64, minutes: Tick, [least_mps, mean_mps]: [f32; 2]) {
+    let mut traffic = start(network, actors, seed);
     let (mut crossing, mut jaywalking, mut all) = (0, 0, 0.0);
     for minute in 0..minutes {
         let mut mean = 0.0;
@@ -120,6 +124,12 @@ fn lights_keep_a_full_crossroads_flowing() {
 fn stop_signs_keep_a_full_crossroads_flowing() {
     // With people on all four crosswalks, one bad minute is no jam.
     flows(&crossroads(Signs::StopOnTwo), 50, 10, [1.2, 2.0]);
+}
+
+#[test]
+fn who_passes_beside_a_queue_locks_no_junction() {
+    // One that passed a bicycle stood beside it, and before a lorry that left the junction.
+    flows_on(&crossroads(Signs::Yield), 50, 12, 10, [1.2, 2.0]);
 }
 
 #[test]
