@@ -12,6 +12,7 @@ use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
 use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
+use kernel::scenario::HazardLevel;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use render::AdapterChoice;
 use serde::Serialize;
@@ -27,6 +28,8 @@ const CASES: u32 = 3;
 const RUN_SECONDS: u32 = 180;
 /// People on foot: more than by default, so that three cases do not take long.
 const PEDESTRIANS: u16 = 300;
+/// And more mistakes of others.
+const HAZARDS: HazardLevel = HazardLevel::Raised;
 
 /// What the demo is made from.
 #[derive(Clone, Debug)]
@@ -116,7 +119,7 @@ fn campaign_options(options: &Options, checkpoint: CheckpointChoice, out: &Path)
         scenario: None,
         until: Until::Cases(CASES),
         pedestrians: Some(PEDESTRIANS),
-        hazards: None,
+        hazards: Some(HAZARDS),
         weather: None,
         run_seconds: RUN_SECONDS,
         seed: options.seed,
