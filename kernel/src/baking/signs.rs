@@ -1,6 +1,6 @@
 //! Which signals and signs of the file are for which lanes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::catalogue::{Meaning, meaning};
 use super::source::{Approach, Source};
@@ -65,7 +65,7 @@ pub(super) fn governed(source: &Source, lanes: &[Lane]) -> Vec<Governed> {
 fn before_junction(lanes: &[Lane], lane: LaneId, meaning: Meaning) -> Vec<(u32, LaneId, Vec<LaneId>)> {
     let here = &lanes[lane as usize];
     if let Some(junction) = here.junction {
-        return here.predecessors.iter().map(|&p| (junction, p, vec![lane])).collect();
+        return entrances(lanes, lane, junction);
     }
     let most_m = if meaning == Meaning::Priority { PRIORITY_AHEAD_M } else { AHEAD_M };
     let (mut at, mut gone) = (lane, 0.0);
@@ -81,4 +81,19 @@ fn before_junction(lanes: &[Lane], lane: LaneId, meaning: Meaning) -> Vec<(u32, 
             _ => return Vec::new(),
         }
     }
+}
+
+/// The lanes before a junction that lead to a lane inside, each with the first one inside.
+fn entrances(lanes: &[Lane], lane: LaneId, junction: u32) -> Vec<(u32, LaneId, Vec<LaneId>)> {
+    let (mut found, mut seen, mut open) = (Vec::new(), BTreeSet::new(), vec![lane]);
+    while let Some(at) = open.pop() {
+        for &before in &lanes[at as usize].predecessors {
+            if lanes[before as usize].junction != Some(junction) {
+                found.push((junction, before, vec![at]));
+            } else if seen.insert(before) {
+                open.push(before);
+            }
+        }
+    }
+    found
 }

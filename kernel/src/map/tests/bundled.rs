@@ -76,6 +76,7 @@ fn the_city_has_what_a_city_has() {
     assert!(stops(|k| k == StopKind::Stop) >= 4 && stops(|k| k == StopKind::Yield) >= 10);
     let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
     assert!(props(PropKind::Building) > 300 && props(PropKind::ParkedCar) > 200 && props(PropKind::Tree) > 80);
+    assert_eq!(map.bus_stops.len(), 12);
     let limits: Vec<f32> = map.lanes.iter().map(|l| (l.speed_limit_mps * 3.6).round()).collect();
     assert!(limits.contains(&30.0) && limits.contains(&50.0));
     assert!(map.lanes.iter().filter(|l| l.kind == LaneKind::Driving).map(|l| l.length_m).sum::<f32>() > 10_000.0);

@@ -204,6 +204,34 @@ fn without_another_light_those_whom_no_arrow_holds_give_way() {
 }
 
 #[test]
+fn a_light_referred_to_from_far_inside_holds_those_before_the_junction() {
+    let references = include_str!("../../../../tests/maps/cross_references.xodr");
+    let lane = "<lane id=\"-1\" type=\"driving\"><link><predecessor id=\"-1\"/><successor id=\"-1\"/></link>\
+        <width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane>";
+    let far = format!(
+        "<laneSection s=\"12\"><center><lane id=\"0\" type=\"none\"/></center><right>{lane}</right></laneSection>"
+    );
+    // Of every straight way through the junction.
+    let halves = references.split_inclusive("</road>").map(|road| {
+        if road.contains("<road length=\"24\"") {
+            road.replace("</laneSection></lanes>", &format!("</laneSection>{far}</lanes>"))
+                .replace("s=\"0\" t=\"0\" orientation=\"+\"", "s=\"13\" t=\"0\" orientation=\"+\"")
+        } else {
+            road.to_owned()
+        }
+    });
+    let text: String = halves.collect();
+    assert!(text.contains("s=\"13\"") && text.contains("laneSection s=\"12\""));
+    let map = baked(&text);
+    for lane in map.lanes.iter().filter(|l| l.kind == LaneKind::Driving) {
+        let enters =
+            lane.junction.is_none() && lane.successors.iter().any(|n| map.lanes[*n as usize].junction.is_some());
+        let lit = lane.stop.is_some_and(|stop| matches!(stop.kind, StopKind::Light(_)));
+        assert_eq!(lit, enters, "lane {}", lane.name);
+    }
+}
+
+#[test]
 fn lights_of_people_on_foot_hold_nobody_else() {
     let map =
         baked(&with_signal(NONE, 1, "type=\"1000002\" subtype=\"-1\"").replace("dynamic=\"no\"", "dynamic=\"yes\""));
