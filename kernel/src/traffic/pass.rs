@@ -74,11 +74,13 @@ pub(super) struct Passed {
     speed_mps: f32,
 }
 
-/// Whether one of two vehicles passes and is clear of the other's way.
+/// Whether one of two vehicles passes the other, or something else beside it, and is clear of its way. Who passes comes back
+/// into the lane, so nobody but a bicycle, which may be whom it passes, rides up beside it.
 pub(super) fn apart(vehicles: &[Vehicle], drivers: &[Driver], index: usize, other: &Entry) -> bool {
     let (me, them) = (&vehicles[index], &vehicles[other.vehicle as usize]);
     let half_m = (drivers[index].size_m.y + drivers[other.vehicle as usize].size_m.y) * 0.5;
-    (me.manoeuvre.passes() || them.manoeuvre.passes()) && (me.offset_m - them.offset_m).abs() > half_m + 0.3
+    let passes = if them.manoeuvre.passes() { me.kind.is_pedalled() } else { me.manoeuvre.passes() };
+    passes && (me.offset_m - them.offset_m).abs() > half_m + 0.3
 }
 
 impl Passed {
