@@ -8,6 +8,10 @@
 //! counter-clockwise. Steering is positive to the right, as devices and CARLA have it.
 
 mod actor;
+/// Some helpers of tests are for those beside `src` too.
+#[cfg(test)]
+extern crate self as kernel;
+
 pub mod arbiter;
 mod baking;
 pub mod car;

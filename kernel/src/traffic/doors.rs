@@ -10,31 +10,22 @@ use crate::geometry::{direction, rectangles_overlap};
 use crate::map_data::{LaneKind, Prop};
 use crate::ops;
 use crate::places::Places;
-use crate::rng::{Stream, below, unit};
 use crate::time::{Tick, seconds};
 
-use super::actors::Actors;
-use super::body::{Obstacle, Surroundings};
-use super::hazard::Hazard;
+use super::body::Obstacle;
 
 /// Whether a door opens is drawn for so long at once; it then opens and shuts within that time.
 pub(super) const CELL_TICKS: Tick = seconds(20);
-/// Least and greatest time from when it begins to open until it is shut.
-const OPEN_TICKS: [Tick; 2] = [seconds(4), seconds(8)];
 /// It swings so long in either direction.
 const SWING_TICKS: Tick = seconds(1);
 /// Angle of a door that is fully open, radians: 65 degrees, the last detent of most.
-const OPEN_RAD: f32 = 1.134;
+pub(super) const OPEN_RAD: f32 = 1.134;
 /// From the middle of a car to the hinges of its front doors, as a share of its length.
 const HINGE: f32 = 0.2;
 /// Roads at heights farther apart than this are not beside the car, metres.
 const LEVEL_M: f32 = 2.0;
 /// Slower than this somebody is let by with the door pulled to, m/s.
-const SLOW_MPS: f32 = 2.0;
-/// Behind its front by more than this, the ego car passes a door and does not drive into it, metres.
-const FRONT_M: f32 = 1.0;
-/// Who is farther away is not beside it, metres.
-const BESIDE_M: f32 = 20.0;
+pub(super) const SLOW_MPS: f32 = 2.0;
 
 /// A door that opens into a lane.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +49,7 @@ pub(super) struct Opening {
 /// The doors that are open at some time of a cell.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Doors {
-    cell: Option<Tick>,
+    pub cell: Option<Tick>,
     pub openings: Vec<Opening>,
 }
 
@@ -111,111 +102,36 @@ fn spot(car: &Prop, parked: u32, side: f32) -> DoorSpot {
 
 impl DoorSpot {
     /// Direction of the door that is open by an angle.
-    fn leaf(&self, angle_rad: f32) -> Vec2 {
+    pub fn leaf(&self, angle_rad: f32) -> Vec2 {
         self.shut * ops::cos(angle_rad) + self.out * ops::sin(angle_rad)
     }
 
     /// Middle of the door then.
-    fn middle(&self, leaf: Vec2) -> Vec3 {
+    pub fn middle(&self, leaf: Vec2) -> Vec3 {
         self.hinge + (leaf * (0.5 * ActorKind::Door.size_m().x)).extend(0.0)
     }
 }
 
 impl Opening {
-    fn is_open(&self, tick: Tick) -> bool {
+    pub fn is_open(&self, tick: Tick) -> bool {
         (self.ticks[0]..self.ticks[1]).contains(&tick)
     }
 
     /// How far it is open, if nobody is beside it.
-    fn angle_rad(&self, tick: Tick) -> f32 {
+    pub fn angle_rad(&self, tick: Tick) -> f32 {
         let swung = (tick + 1 - self.ticks[0]).min(self.ticks[1] - tick).min(SWING_TICKS);
         OPEN_RAD * (swung as f32 / SWING_TICKS as f32)
     }
 }
 
-impl Actors {
-    /// Draws which doors open about this time.
-    pub(super) fn know_doors(&mut self, tick: Tick) {
-        let cell = tick / CELL_TICKS;
-        if self.rates.doors_per_h <= 0.0 || self.doors.cell == Some(cell) {
-            return;
-        }
-        let chance = self.rates.doors_per_h * (CELL_TICKS as f32 / seconds(3600) as f32);
-        let drawn = |spot: &DoorSpot, of: u64| (u64::from(spot.parked) << 2 | of, cell);
-        let seed = self.seed;
-        let opens = |(spot, index): (&DoorSpot, u32)| {
-            let (entity, cell) = drawn(spot, 0);
-            if unit(seed, Stream::Door, entity, cell) >= chance {
-                return None;
-            }
-            let within = |of: u64, [least, most]: [Tick; 2]| {
-                let (entity, cell) = drawn(spot, of);
-                least + Tick::from(below(seed, Stream::Door, entity, cell, (most - least) as u32))
-            };
-            let open_ticks = within(1, OPEN_TICKS);
-            let from = cell * CELL_TICKS + within(2, [0, CELL_TICKS - open_ticks]);
-            Some(Opening { spot: index, ticks: [from, from + open_ticks] })
-        };
-        let openings = self.ways.door_spots.iter().zip(0..).filter_map(opens).collect();
-        self.doors = Doors { cell: Some(cell), openings };
-    }
-
-    fn open_spots(&self, tick: Tick) -> impl Iterator<Item = (&Opening, &DoorSpot)> {
-        let open = self.doors.openings.iter().filter(move |opening| opening.is_open(tick));
-        open.map(|opening| (opening, &self.ways.door_spots[opening.spot as usize]))
-    }
-
-    /// What those who drive by expect of doors: that they are open as far as they go.
-    pub(super) fn door_hazards(&self, around: &Surroundings<'_>) -> impl Iterator<Item = Hazard> {
-        let stays = |spot: &DoorSpot| !around.is_loose(FIRST_PARKED_ID + spot.parked);
-        self.open_spots(around.tick).filter(move |(_, spot)| stays(spot)).map(|(_, spot)| {
-            let leaf = spot.leaf(OPEN_RAD);
-            Hazard::of(
-                &Obstacle {
-                    id: FIRST_DOOR_ID + spot.parked,
-                    position: spot.middle(leaf),
-                    heading_rad: ops::atan2(leaf.y, leaf.x),
-                    velocity_mps: Vec3::ZERO,
-                    size_m: ActorKind::Door.size_m(),
-                },
-                false,
-            )
-        })
-    }
-
-    /// The doors that stand open, each as far as those beside it let it.
-    pub(super) fn open_doors(&self, tick: Tick, ego: Obstacle) -> impl Iterator<Item = Door> {
-        self.open_spots(tick).filter_map(move |(opening, spot)| {
-            let angle_rad = opening.angle_rad(tick);
-            let leaf = [1.0, 0.75, 0.5, 0.25].map(|share| spot.leaf(share * angle_rad));
-            let leaf = leaf.into_iter().find(|leaf| self.has_room(spot, *leaf, &ego))?;
-            let (id, begins) = (FIRST_DOOR_ID + spot.parked, tick == opening.ticks[0]);
-            Some(Door { id, position: spot.middle(leaf), heading_rad: ops::atan2(leaf.y, leaf.x), begins })
-        })
-    }
-
-    /// Whether a door meets nobody there who is beside it already.
-    fn has_room(&self, spot: &DoorSpot, leaf: Vec2, ego: &Obstacle) -> bool {
-        let middle = spot.middle(leaf);
-        let ego_front_m = if ego.velocity_mps.length() < SLOW_MPS { 0.0 } else { FRONT_M };
-        let near = |body: &&super::Body| body.position.distance_squared(middle) < BESIDE_M * BESIDE_M;
-        let mut bodies = self.bodies.iter().filter(near);
-        !overlap(ego, ego_front_m, middle, leaf)
-            && !bodies.any(|body| {
-                let forward = (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X);
-                touches(body.position, forward, body.kind.size_m().truncate() * 0.5, middle, leaf)
-            })
-    }
-}
-
 /// Whether the ego car without so much of its front shares ground with a door.
-fn overlap(ego: &Obstacle, front_m: f32, door: Vec3, leaf: Vec2) -> bool {
+pub(super) fn overlap(ego: &Obstacle, front_m: f32, door: Vec3, leaf: Vec2) -> bool {
     let forward = direction(ego.heading_rad);
     let half = Vec2::new(0.5 * (ego.size_m.x - front_m), 0.5 * ego.size_m.y);
     touches(ego.position - (forward * (0.5 * front_m)).extend(0.0), forward, half, door, leaf)
 }
 
-fn touches(middle: Vec3, forward: Vec2, half: Vec2, door: Vec3, leaf: Vec2) -> bool {
+pub(super) fn touches(middle: Vec3, forward: Vec2, half: Vec2, door: Vec3, leaf: Vec2) -> bool {
     let to = door - middle;
     let turned = |v: Vec2| Vec2::new(v.dot(forward), forward.perp_dot(v));
     let door_half = ActorKind::Door.size_m().truncate() * 0.5;

@@ -143,7 +143,7 @@ impl View<'_> {
         let was_braking = next.flags & Vehicle::BRAKING != 0;
         let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
         next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };
-        next.accel_mmps2 = ops::round(accel * 1000.0) as i16;
+        next.accel_cmps2 = ops::round(accel * 100.0) as i16;
         next.drift_aim = side.drift_aim(next);
     }
 
@@ -349,7 +349,7 @@ impl View<'_> {
 
     /// Drives on for a tick as the driver holds pedals and wheel.
     fn roll(&self, driver: &Driver, next: &mut Vehicle) {
-        let accel = f32::from(next.accel_mmps2) * 0.001;
+        let accel = f32::from(next.accel_cmps2) * 0.01;
         let before = next.speed_mps;
         next.speed_mps = (before + accel * TICK_S).max(0.0);
         if accel < 0.05 && next.speed_mps < 0.02 {

@@ -33,6 +33,7 @@ mod look;
 mod manoeuvre;
 mod meets;
 mod mistakes;
+mod openings;
 mod pass;
 mod passage;
 mod perception;

@@ -90,7 +90,7 @@ impl Actors {
         let offset_m = driver.keeps_to_m(half_width_m, self.ways.kerb);
         let (trips, flags) = (vehicle.trips.wrapping_add(1), vehicle.flags & Vehicle::BRAKING);
         let fresh = Vehicle { wait_ticks: 0, stuck_s: 0, manoeuvre: Manoeuvre::Keep, signal_ticks: 0, ..vehicle };
-        let fresh = Vehicle { accel_mmps2: 0, drift: 0, drift_aim: 0, ..fresh };
+        let fresh = Vehicle { accel_cmps2: 0, drift: 0, drift_aim: 0, ..fresh };
         let fresh = Vehicle { lapse: Lapse::None, lapse_left: 0, late_ticks: 0, ..fresh };
         Vehicle { lane, before: lane, s_m, offset_m, flags, trips, speed_mps: ENTRY_MPS, ..fresh }
     }

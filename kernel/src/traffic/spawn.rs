@@ -216,7 +216,7 @@ impl Spawner<'_> {
             s_m,
             offset_m,
             speed_mps,
-            accel_mmps2: 0,
+            accel_cmps2: 0,
             trips: 0,
             wait_ticks: 0,
             phase: bits(self.seed, Stream::Spawn, u64::from(id), TRIES + 1) as u16,

@@ -31,8 +31,8 @@ state! {
         pub offset_m: f32,
         /// Speed, m/s, never negative.
         pub speed_mps: f32,
-        /// Acceleration that its driver holds, 1/1000 m/s².
-        pub accel_mmps2: i16,
+        /// Acceleration that its driver holds, 1/100 m/s².
+        pub accel_cmps2: i16,
         /// Journeys begun after the first (wrapping): the counter of its drawn goals.
         pub trips: u16,
         /// Ticks it has waited at the line before it, saturating.
@@ -138,7 +138,7 @@ mod tests {
                 s_m: 0.0,
                 offset_m: 0.0,
                 speed_mps: 0.0,
-                accel_mmps2: 0,
+                accel_cmps2: 0,
                 trips: 0,
                 wait_ticks: 0,
                 phase: 0,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use kernel::map::bundled;
 use replay::{Error, Recording, verify};
 
 /// What is expected of a file: its kernel, its ticks, whether it was finished, and scenes of a case.
@@ -42,7 +43,11 @@ fn every_old_recording_opens_and_holds_what_it_held() {
 fn none_is_said_to_diverge() {
     for name in expected().keys() {
         let recording = Recording::open(&folder().join(name)).expect("it opens");
-        let network = recording.network().unwrap_or_else(|e| panic!("{name}: {e}"));
+        // Maps are baked otherwise than they were, which is said; who has one as it was hears of the kernel.
+        let network = recording.network().unwrap_or_else(|error| {
+            assert!(matches!(error, Error::Map { .. }), "{name}: {error}");
+            bundled("city").expect("a bundled map")
+        });
         let error = verify(recording.log(), &network).expect_err("another kernel made it");
         assert!(matches!(error, Error::Kernel { .. }), "{name}: {error}");
         let (made, this) = (&recording.log().manifest.kernel, kernel::identity());

@@ -2,6 +2,11 @@
 
 use super::*;
 
+#[path = "../../../tests/common/programmes.rs"]
+mod programmes;
+
+pub(super) use programmes::check_programmes;
+
 use crate::signals::{LightPhase, phase};
 
 const LIGHTS: &str = include_str!("../../../../tests/maps/cross_lights.xodr");
@@ -50,43 +55,6 @@ fn starts(map: &RoadNetwork) -> Vec<u32> {
 fn turning(map: &RoadNetwork, road: u32, turn: Turn) -> (LaneId, &Lane) {
     let mut next = lane_of(map, road).successors.iter().map(|l| (*l, &map.lanes[*l as usize]));
     next.find(|(_, lane)| lane.turn == turn).unwrap()
-}
-
-/// Lanes whose lights are green or yellow at once overlap only where one turns off across oncoming traffic and gives way,
-/// and every light is green once in each cycle, then yellow.
-pub(super) fn check_programmes(map: &RoadNetwork) {
-    let light = |l: LaneId| map.lanes[l as usize].predecessors.iter().find_map(|p| map.light_between(*p, l));
-    for (id, lane) in map.lanes.iter().enumerate() {
-        let Some(ours) = light(id as LaneId) else { continue };
-        for other in lane.conflicts.iter().filter(|conflict| !conflict.other_first) {
-            let Some(theirs) = light(other.lane).filter(|theirs| *theirs != ours) else { continue };
-            let there = &map.lanes[other.lane as usize];
-            let oncoming = direction(lane.start().heading_rad).dot(direction(there.start().heading_rad)) < -0.5;
-            let turns = lane.turn != Turn::Straight || there.turn != Turn::Straight;
-            let protected = [lane.light, there.light].into_iter().flatten().next().is_some();
-            let cycle = u64::from(map.junctions[lane.junction.unwrap() as usize].cycle_ticks);
-            let both = (0..cycle).step_by(7).any(|tick| {
-                let goes = |group| phase(map, 3, group, tick).0 != LightPhase::Red;
-                goes(ours) && goes(theirs)
-            });
-            assert!(!both || oncoming && turns && !protected, "{} and {} at once", lane.name, there.name);
-        }
-    }
-    for (group, light) in map.light_groups.iter().enumerate() {
-        let cycle = u64::from(map.junctions[light.junction as usize].cycle_ticks);
-        let shown: Vec<_> = (0..cycle).map(|tick| phase(map, 3, group as LightGroupId, tick)).collect();
-        let count = |wanted| shown.iter().filter(|(phase, _)| *phase == wanted).count() as u32;
-        assert_eq!((count(LightPhase::Green), count(LightPhase::Yellow)), (light.green_ticks, light.yellow_ticks));
-        for (tick, (now, left)) in shown.iter().enumerate() {
-            let then = |ahead: u64| shown[((tick as u64 + ahead) % cycle) as usize].0;
-            assert!(then(left - 1) == *now && then(*left) != *now, "group {group}, tick {tick}");
-        }
-        let after = shown.iter().zip(shown.iter().cycle().skip(1)).filter(|((now, _), (then, _))| now != then);
-        assert!(
-            after.clone().count() == 3
-                && after.into_iter().all(|((now, _), (then, _))| (*now, *then) != (LightPhase::Green, LightPhase::Red))
-        );
-    }
 }
 
 #[test]
@@ -349,28 +317,4 @@ fn a_limit_holds_from_its_sign_on() {
     assert_eq!(at(80), [60.0, 30.0, 30.0]);
     assert_eq!(at(120), [60.0, 30.0, 30.0]);
     assert_eq!(at(270), [60.0; 3]);
-}
-
-/// Where the real maps are, the controllers of each junction are its phases.
-#[test]
-#[allow(clippy::disallowed_methods, reason = "tests may read files")]
-fn controllers_of_real_towns_are_phases() {
-    let roots = ["../../shared/maps", "../../../shared/maps"].map(std::path::Path::new);
-    let Some(root) = roots.into_iter().find(|root| root.is_dir()) else { return };
-    for (town, junctions) in [("Town01", 12), ("Town02", 8), ("Town06", 8)] {
-        let text = std::fs::read_to_string(root.join(format!("{town}.xodr"))).unwrap();
-        let map = bake(town, &text).unwrap();
-        check_programmes(&map);
-        let lit = map.junctions.iter().filter(|j| !j.light_groups.is_empty());
-        assert_eq!(lit.clone().count(), junctions, "{town}");
-        for junction in lit {
-            let mut starts: Vec<_> =
-                junction.light_groups.iter().map(|g| map.light_groups[*g as usize].green_from_ticks).collect();
-            assert!(starts.is_sorted(), "{town}, {}: in the order of the file", junction.name);
-            starts.dedup();
-            let file = text.split(&format!("<junction id=\"{}\"", junction.name)).nth(1).unwrap();
-            let controllers = file.split("</junction>").next().unwrap().matches("<controller ").count();
-            assert!(starts.len() == controllers, "{town}, {}: {starts:?} of {controllers}", junction.name);
-        }
-    }
 }
