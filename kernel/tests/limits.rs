@@ -150,6 +150,8 @@ fn objects_are_counted_as_often_as_they_are_repeated() {
         file(&[Road { extra, ..road() }])
     };
     baked(&repeated(5.0, 1.0));
+    // However many they are, the sentence stays one.
+    assert!(refusal(&repeated(1e-300, 1.0)).len() < 200);
     refused(&repeated(1e-6, 1.0), &["road 7, object 5", "objects"]);
     // Long ones one in the other are looked at every metre.
     refused(&repeated(0.002, 48.0), &["road 7, object 5", "m² below objects"]);

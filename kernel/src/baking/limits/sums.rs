@@ -6,6 +6,9 @@ use super::constants::{ALL_ROADS_M, COPIED_BYTES, COVERED, DASHES, LANE_POINTS, 
 use super::place::refused;
 use crate::baking::error::BakeError;
 
+/// Numbers from this on are said by their order alone.
+const MOST_DIGITS: f64 = 1e12;
+
 /// What adds up over a file, each with its limit.
 #[derive(Clone, Copy, Debug)]
 pub enum Sum {
@@ -52,7 +55,8 @@ impl Sums {
         if *total <= limit {
             return Ok(());
         }
-        Err(refused(node, format!("expected at most {limit} {what} in the file, but with these it has {total:.0}")))
+        let total = if *total < MOST_DIGITS { format!("{total:.0}") } else { format!("{total:.0e}") };
+        Err(refused(node, format!("expected at most {limit} {what} in the file, but with these it has {total}")))
     }
 }
 
