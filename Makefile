@@ -10,14 +10,15 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test matrix bench oracles peers kills fuzz check-long headless setup tools build
+.PHONY: demo test matrix bench oracles peers kills fuzz properties check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
 	$(AEYE) demo --out out/demo
 
-## Everything that CI runs; more builds than here: make matrix.
+## Everything that CI runs; more builds than here: make matrix. Property tests try the same cases everywhere.
 test: PACKAGES += $(TEST_PACKAGES)
+test: export PROPTEST_RNG_SEED ?= 1
 test: setup tools
 	cargo fmt --all --check
 	cargo machete
@@ -55,7 +56,12 @@ kills: setup
 fuzz: setup
 	tests/fuzz.sh
 
-## What takes long: oracles, benchmarks and kills. docs/check-long.txt says when all of it passed, and of which commit.
+## All tests, with cases of the property tests that were never tried before.
+properties: PACKAGES += $(TEST_PACKAGES)
+properties: setup
+	cargo test --release --workspace
+
+## What takes long: oracles, benchmarks, kills and new cases. docs/check-long.txt says when all of it passed, and of which commit.
 check-long:
 	tests/check_long.sh
 

@@ -10,10 +10,10 @@ if [ -n "$(git status --porcelain)" ]; then
 fi
 commit=$(git rev-parse HEAD)
 passed=""
-for part in oracles bench kills; do
+for part in oracles bench kills properties; do
     started=$SECONDS
     make --no-print-directory "$part"
-    passed+=$(printf '%-8s passed in %d s' "$part" $((SECONDS - started)))$'\n'
+    passed+=$(printf '%-10s passed in %d s' "$part" $((SECONDS - started)))$'\n'
 done
 {
     echo "What \`make check-long\` passed last."

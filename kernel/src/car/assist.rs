@@ -27,7 +27,7 @@ const HELD_SLIPS: f32 = 0.75;
 /// Slower than this anti-lock brakes let the wheels lock, m/s.
 const ABS_LEAST_MPS: f32 = 1.5;
 /// Sliding that traction control allows at any speed, m/s.
-const TRACTION_MPS: f32 = 0.3;
+const TRACTION_MPS: f32 = 0.2;
 
 /// The spin below which anti-lock brakes do not brake a wheel whose hub moves at a speed along it, m/s; rad/s.
 pub fn least_radps(tyre: &Tyre, hub_mps: f32) -> f32 {
