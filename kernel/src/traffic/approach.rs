@@ -102,9 +102,10 @@ impl View<'_> {
     fn standing_m(&self, index: usize, steps: &[Step]) -> f32 {
         let seeker = Seeker { speed_mps: 0.0, horizon_m: STANDING_M, ..self.seeker(index) };
         let free = &self.hazards[..self.free];
-        let aim_m = side(self.map, steps, &seeker, free, seeker.offset_m);
+        let standing = || free.iter().filter(|h| h.stands());
+        let aim_m = side(self.map, steps, &seeker, standing(), seeker.offset_m);
         let others = self.changing.iter().filter(|h| h.position != seeker.position);
-        let seen = free.iter().filter(|h| h.stands()).chain(others).filter_map(|h| sight(self.map, steps, &seeker, h));
+        let seen = standing().chain(others).filter_map(|h| sight(self.map, steps, &seeker, h));
         let blocking = seen.filter(|seen| seen.speed_mps < STANDS_MPS && seen.blocks(aim_m, seeker.half.y));
         blocking.map(|seen| seen.gap_m + seeker.half.x).fold(f32::MAX, f32::min)
     }

@@ -51,8 +51,8 @@ const LEAST_HALF_M: f32 = 1.3;
 const LASTING_M: f32 = 60.0;
 /// A change is over at this distance from where the vehicle wants to drive, metres.
 const THERE_M: f32 = 0.2;
-/// Before those who come the other way one stands so far off, metres.
-const ONCOMING_M: f32 = 8.0;
+/// Before those who come the other way one stands so far off, and by their length, metres.
+const ONCOMING_M: f32 = 4.0;
 /// Who is nearer ahead than this is beside, and kept off so far to the side, metres.
 const BESIDE_M: f32 = 1.0;
 const ASIDE_M: f32 = 0.4;
@@ -149,15 +149,24 @@ impl View<'_> {
         follow: &mut impl FnMut(f32, f32),
     ) {
         let forward = (self.bodies[index].rotation * glam::Vec3::X).truncate();
+        let between = self.vehicles[index].manoeuvre.is_between_lanes();
         let heed = |hazard: &Hazard| {
             let Some(seen) = sight(self.map, self.steps_of(plan), seeker, hazard) else { return };
-            // Who meets one that comes the other way needs room to get back into the lane.
-            let gap_m = if hazard.forward.dot(forward) < -0.3 { seen.gap_m - ONCOMING_M } else { seen.gap_m };
-            if seen.blocks(offset_at(seen.gap_m.max(0.0)), seeker.half.y) {
+            let comes_mps = -seen.speed_mps;
+            let (mut gap_m, mut ahead_m) = (seen.gap_m, seen.gap_m);
+            if hazard.forward.dot(forward) < -0.3 {
+                // Each drives a part of the way to where they meet.
+                let mps = seeker.speed_mps.max(LEAST_MPS);
+                ahead_m *= mps / (mps + comes_mps.max(0.0));
+                // Who comes between lanes needs room to get back into its own.
+                gap_m -= if between { 0.0 } else { ONCOMING_M + 2.0 * hazard.half.x };
+            }
+            let slow_mps = seeker.speed_mps + hazard.velocity.length();
+            if seen.blocks_at(offset_at(ahead_m.max(0.0)), seeker.half.y, slow_mps) {
                 follow(gap_m, seen.speed_mps);
             }
         };
-        if self.vehicles[index].manoeuvre.is_between_lanes() {
+        if between {
             self.near(index, seeker).for_each(heed);
         } else {
             let reach_m = seeker.horizon_m + 20.0;

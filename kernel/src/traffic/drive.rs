@@ -16,6 +16,7 @@ use super::lane_way::{ConflictKind, LaneConflict};
 use super::lapse::Lapse;
 use super::lists::{Entry, Lists};
 use super::plan::{self, Plan, stopping_speed};
+use super::poses::leads_m;
 use super::rates::HazardRates;
 use super::sideways::{EDGE_M, drift, pass_drift};
 use super::step::{LINE_MARGIN_M, Step};
@@ -40,11 +41,11 @@ const CROSSWALK_BRAKE_MPS2: f32 = 4.5;
 const DRIFT: f32 = 0.08;
 /// The same to pass something.
 const PASS_DRIFT: f32 = 0.2;
-/// Right before what stands one creeps by, metres.
-const CREEP_M: f32 = 1.5;
 /// Sideways motion fades out over this, metres and seconds.
 const SWING_M: f32 = 1.5;
 const SWING_S: f32 = 0.5;
+/// Nobody turns without driving: by 1/100 at most in so much of its length (the turning circle of a car).
+const STEERING: f32 = 0.011;
 /// Distance that one turn of the pedals drives a bicycle, metres.
 const PEDAL_M: f32 = 5.0;
 
@@ -100,6 +101,12 @@ impl Side {
     }
 }
 
+/// By how much a vehicle on its way from `s_m` on may turn in a tick, 1/100.
+fn steered(driver: &Driver, s_m: f32, moved_m: f32) -> i8 {
+    let each_m = STEERING * driver.size_m.x;
+    i8::from((s_m / each_m) as i32 != ((s_m + moved_m) / each_m) as i32)
+}
+
 impl View<'_> {
     /// The next state of vehicle `index`.
     pub fn drive(&self, index: usize) -> Vehicle {
@@ -137,6 +144,7 @@ impl View<'_> {
         }
         let side = self.side(index, plan, &seeker);
         let halt_mps2 = self.lapse_mps2(next).min(self.call_mps2(index, plan, next));
+        let halt_mps2 = halt_mps2.min(self.falls_back_mps2(index, plan, &seeker));
         let behind = self.behind_leader_mps2(index, plan, next).min(halt_mps2);
         let accel =
             self.acceleration(index, plan, next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
@@ -174,9 +182,8 @@ impl View<'_> {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
             let ahead_m = if hazard.stands() { seen.gap_m.max(0.0) } else { 0.0 };
             let offset_m = side.after(seeker.offset_m, ahead_m);
-            let creeps = hazard.stands() && seen.gap_m < CREEP_M;
-            let blocks =
-                if creeps { seen.blocks_at(offset_m, seeker.half.y, v) } else { seen.blocks(offset_m, seeker.half.y) };
+            let slow_mps = if hazard.stands() { v } else { f32::MAX };
+            let blocks = seen.blocks_at(offset_m, seeker.half.y, slow_mps);
             if blocks {
                 follow(seen.gap_m, seen.speed_mps);
                 if hazard.stands() {
@@ -195,7 +202,7 @@ impl View<'_> {
         let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
         Seeker {
             position: self.bodies[index].position,
-            offset_m: vehicle.offset_m,
+            offset_m: vehicle.offset_m + leads_m(vehicle, driver),
             speed_mps: vehicle.speed_mps,
             half: driver.size_m.truncate() * 0.5,
             horizon_m: plan::horizon_m(vehicle.speed_mps, driver),
@@ -238,11 +245,18 @@ impl View<'_> {
         }
         let (vehicle, likes_m) = (&self.vehicles[index], self.likes_m(index));
         let passing = vehicle.manoeuvre.passes().then(|| vehicle.manoeuvre.side());
-        let passed = passing.and_then(|side| self.passed(index, plan, seeker, side));
-        if let Some(passed) = passed {
-            return Side { aim_m: passed.aim_m, drift: pass_drift(vehicle.speed_mps) };
+        let beside_m = passing.and_then(|side| {
+            let passed = self.passed(index, plan, seeker, side)?;
+            self.beside_m(index, seeker, &passed, side)
+        });
+        if let Some(aim_m) = beside_m {
+            return Side { aim_m, drift: pass_drift(vehicle.speed_mps) };
         }
-        let aim_m = side(self.map, self.steps_of(plan), seeker, &self.hazards[..self.free], likes_m);
+        let standing = self.hazards[..self.free].iter().filter(|h| h.stands());
+        let forward = (self.bodies[index].rotation * glam::Vec3::X).truncate();
+        // Who comes the other way and reaches over the border is given room.
+        let coming = self.changing.iter().filter(|h| h.forward.dot(forward) < -0.3);
+        let aim_m = side(self.map, self.steps_of(plan), seeker, standing.chain(coming), likes_m);
         let drift = match vehicle.manoeuvre {
             manoeuvre if manoeuvre.moves() => drift(vehicle.speed_mps, seeker.half.x),
             manoeuvre if manoeuvre.passes() => pass_drift(vehicle.speed_mps),
@@ -356,12 +370,13 @@ impl View<'_> {
             next.speed_mps = 0.0;
         }
         let moved_m = 0.5 * (before + next.speed_mps) * TICK_S;
+        let steered = steered(driver, next.s_m, moved_m);
         next.s_m += moved_m;
         let turns = moved_m / PEDAL_M;
         next.phase = next.phase.wrapping_add((turns * 65536.0) as u16);
         self.change_lane(driver, next);
         if moved_m > 0.0 {
-            next.drift += (next.drift_aim - next.drift).clamp(-1, 1);
+            next.drift += (next.drift_aim - next.drift).clamp(-steered, steered);
             next.offset_m += f32::from(next.drift) * 0.01 * moved_m;
         }
     }

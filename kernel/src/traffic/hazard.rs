@@ -13,9 +13,14 @@ const REACH_M: f32 = 6.5;
 /// Sideways distance kept, metres, and from bicycles: more than the 1.5 m of most road traffic acts.
 const CLEARANCE_M: f32 = 0.35;
 pub(super) const BICYCLE_M: f32 = 1.55;
+/// Right before what is in the way one creeps by, metres, no faster than this, m/s.
+const CREEP_M: f32 = 1.5;
+const CREEP_MPS: f32 = 2.3;
 /// Sideways distance at a walking pace, metres, and so much more for each m/s, s.
 const CREEPING_M: f32 = 0.12;
 const CREEPING_S: f32 = 0.1;
+/// Before one who comes the other way over the border one drives so far onto the verge, metres.
+const VERGE_M: f32 = 0.4;
 /// What is passed within the lane is passed at so much more, metres.
 const STEERED_M: f32 = 0.05;
 /// How far ahead the crossing of a walker is expected to go on, seconds.
@@ -101,6 +106,8 @@ pub(super) struct Sighted {
     pub speed_mps: f32,
     /// Its middle is before the vehicle's.
     pub ahead: bool,
+    /// It faces the other way.
+    comes: bool,
     /// Its middle to the left of that of the way, metres: least and greatest until the vehicle is there.
     aside_m: [f32; 2],
     /// Half of its extent across the way, metres.
@@ -117,8 +124,11 @@ impl Sighted {
         self.ahead && self.aside_m[0] - offset_m < reach_m && self.aside_m[1] - offset_m > -reach_m
     }
 
-    /// Whether it is in the way of one that comes by what stands so slowly: at a walking pace a hand's breadth is enough.
+    /// The same right before it, for those who come by each other this slowly: at a walking pace a hand's breadth is enough.
     pub fn blocks_at(&self, offset_m: f32, half_m: f32, speed_mps: f32) -> bool {
+        if self.gap_m > CREEP_M || speed_mps > CREEP_MPS {
+            return self.blocks(offset_m, half_m);
+        }
         let clearance_m = self.clearance_m.min(CREEPING_M + CREEPING_S * speed_mps);
         Sighted { clearance_m, ..*self }.blocks(offset_m, half_m)
     }
@@ -138,22 +148,29 @@ impl Sighted {
         if side > 0.0 { self.aside_m[1] + self.half_m } else { self.aside_m[0] - self.half_m }
     }
 
-    /// Where to pass it within the lane, if there is room: the place nearest to `offset_m`.
+    /// Where to pass it within the lane, or right beside that in front of one who comes, if there is room: the place nearest
+    /// to `offset_m`.
     fn passed_at(&self, offset_m: f32, half_m: f32) -> Option<f32> {
         // Steering comes close to its aim, not to the millimetre.
         let reach_m = self.half_m + half_m + self.clearance_m + STEERED_M;
-        let room_m = self.way_half_m - half_m;
+        let room_m = self.way_half_m - half_m + if self.comes { VERGE_M } else { 0.0 };
         let sides = [self.aside_m[1] + reach_m, self.aside_m[0] - reach_m];
         let free = sides.into_iter().filter(|m| m.abs() <= room_m);
         free.min_by(|a, b| (a - offset_m).abs().total_cmp(&(b - offset_m).abs()))
     }
 }
 
-/// Where across its way a vehicle drives that keeps to `offset_m` otherwise: it passes what stands in
-/// it, where its lane has the room.
-pub(super) fn side(map: &MapData, steps: &[Step], seeker: &Seeker, free: &[Hazard], offset_m: f32) -> f32 {
+/// Where across its way a vehicle drives that keeps to `offset_m` otherwise: it passes what is in it, where its lane has
+/// the room.
+pub(super) fn side<'a>(
+    map: &MapData,
+    steps: &[Step],
+    seeker: &Seeker,
+    passed: impl Iterator<Item = &'a Hazard>,
+    offset_m: f32,
+) -> f32 {
     let mut aim_m = offset_m;
-    for hazard in free.iter().filter(|h| h.stands()) {
+    for hazard in passed {
         let seen = sight(map, steps, seeker, hazard).filter(|seen| seen.gap_m < PASS_M);
         if let Some(seen) = seen.filter(|seen| seen.obstructs(aim_m, seeker.half.y)) {
             aim_m = seen.passed_at(seeker.offset_m, seeker.half.y).unwrap_or(aim_m);
@@ -192,6 +209,7 @@ fn sight_near(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -
         length_m: 2.0 * half_along_m,
         speed_mps: hazard.velocity.dot(forward),
         ahead: at_m > 0.0,
+        comes: !hazard.walker && hazard.forward.dot(forward) < -0.3,
         aside_m: [now_m.min(then_m), now_m.max(then_m)],
         half_m: hazard.half_along(left),
         way_half_m: place.half_width_m,

@@ -40,6 +40,8 @@ const ROOM_M: f32 = 12.0;
 const SPARE_S: f32 = 2.0;
 /// Share of the greatest acceleration that is counted with.
 const SPEEDING_UP: f32 = 0.8;
+/// Those who may come the other way speed up like this, m/s².
+const SPEEDS_UP_MPS2: f32 = 1.5;
 /// Distance to those who come the other way at the end, metres.
 const SPARE_M: f32 = 15.0;
 /// Nobody passes where the road bends more than this on the way, radians.
@@ -50,6 +52,12 @@ const LONG_SWING_OUT_M: f32 = 20.0;
 const SWING_OUT_MPS2: f32 = 2.5;
 /// What stands nearer than this to a junction waits there, metres.
 const QUEUE_M: f32 = 40.0;
+/// Bicycles slower than this queue, m/s. Beside them one falls back by so much, m/s, taken up in so long, s.
+const QUEUE_MPS: f32 = 1.5;
+const FALL_BACK_MPS: f32 = 0.6;
+const FALL_BACK_S: f32 = 1.0;
+/// From this gap on one is behind whom one passes, metres.
+const BEHIND_M: f32 = 0.3;
 /// The lane for the other direction is met at this distance beyond the border of one's own, metres.
 const ONCOMING_M: f32 = 1.2;
 /// Those who come the other way may be so far to the side, metres.
@@ -72,6 +80,8 @@ pub(super) struct Passed {
     beyond_m: f32,
     /// Speed of the fastest, m/s.
     speed_mps: f32,
+    /// They ride.
+    ride: bool,
 }
 
 /// Whether one of two vehicles passes the other, or something else beside it, and is clear of its way. Who passes comes back
@@ -84,6 +94,11 @@ pub(super) fn apart(vehicles: &[Vehicle], drivers: &[Driver], index: usize, othe
 }
 
 impl Passed {
+    /// Whether they ride so slowly that those before them must stand or wait: there is no way past.
+    fn queues(&self) -> bool {
+        self.ride && self.speed_mps < QUEUE_MPS
+    }
+
     /// Both as one; `side` as of [`Manoeuvre::side`](super::manoeuvre::Manoeuvre::side).
     fn with(self, next: &Self, side: f32) -> Self {
         Self {
@@ -91,6 +106,7 @@ impl Passed {
             gap_m: self.gap_m.min(next.gap_m),
             beyond_m: self.beyond_m.max(next.beyond_m),
             speed_mps: self.speed_mps.max(next.speed_mps),
+            ride: self.ride && next.ride,
         }
     }
 }
@@ -124,42 +140,48 @@ impl View<'_> {
             _ => NEXT_M + NEXT_S * seeker.speed_mps,
         };
         let steps = self.steps_of(plan);
-        let mut found = self.bicycles_ahead(index, steps, seeker, reach_m, side);
+        let mut found = self.bicycles_ahead(index, steps, seeker, side);
         let likes_m = self.likes_m(index);
         for hazard in self.hazards[..self.free].iter().filter(|h| passing || h.stands()) {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
-            if seen.gap_m < reach_m && seen.obstructs(likes_m, seeker.half.y) && (hazard.stands() || seen.gap_m < 0.0) {
+            if seen.gap_m < REACH_M && seen.obstructs(likes_m, seeker.half.y) && (hazard.stands() || seen.gap_m < 0.0) {
                 found.push(Passed {
                     aim_m: seen.edge_m(side) + side * (STANDING_M + seeker.half.y),
                     gap_m: seen.gap_m,
                     beyond_m: seen.gap_m + seeker.half.x + seen.length_m,
                     speed_mps: seen.speed_mps.max(0.0),
+                    ride: false,
                 });
             }
         }
         found.sort_unstable_by(|a, b| a.gap_m.total_cmp(&b.gap_m));
-        // Before those who leave room one gets back into the lane.
-        let joined = |all: Passed, next: &Passed| {
-            let leaves_room = next.gap_m + seeker.half.x > all.beyond_m + 2.0 * seeker.half.x + ROOM_M;
-            if leaves_room { all } else { all.with(next, side) }
-        };
-        let (first, rest) = found.split_first()?;
-        Some(rest.iter().fold(*first, joined))
+        let (first, rest) = found.split_first().filter(|(first, _)| first.gap_m < reach_m)?;
+        // Before one who leaves room one gets back into the lane.
+        let room_m = 2.0 * seeker.half.x + ROOM_M;
+        let mut all = *first;
+        for next in rest {
+            if next.gap_m + seeker.half.x > all.beyond_m + room_m {
+                break;
+            }
+            all = all.with(next, side);
+        }
+        Some(all)
     }
 
-    fn bicycles_ahead(&self, index: usize, steps: &[Step], seeker: &Seeker, reach_m: f32, side: f32) -> Vec<Passed> {
-        let near = |step: &&Step| step.start_m < reach_m + seeker.half.x;
+    fn bicycles_ahead(&self, index: usize, steps: &[Step], seeker: &Seeker, side: f32) -> Vec<Passed> {
+        let near = |step: &&Step| step.start_m < REACH_M + seeker.half.x;
         let entries = steps.iter().take_while(near).flat_map(|s| self.lists.on(s.lane).iter().map(move |e| (s, e)));
         let bicycle = |(step, entry): (&Step, &Entry)| {
             let them = &self.vehicles[entry.vehicle as usize];
             let gap_m = step.start_m + entry.s_m - entry.half_m - seeker.half.x;
-            let is_near = gap_m < reach_m && gap_m + 2.0 * (entry.half_m + seeker.half.x) > -1.0;
+            let is_near = gap_m < REACH_M && gap_m + 2.0 * (entry.half_m + seeker.half.x) > -1.0;
             let half_m = self.drivers[entry.vehicle as usize].size_m.y * 0.5;
             let passed = Passed {
                 aim_m: them.offset_m + side * (half_m + BICYCLE_M + MORE_M + seeker.half.y),
                 gap_m,
                 beyond_m: gap_m + seeker.half.x + 2.0 * entry.half_m,
                 speed_mps: them.speed_mps,
+                ride: true,
             };
             let other = entry.vehicle as usize != index && them.kind.is_pedalled();
             (other && is_near).then_some(passed)
@@ -181,7 +203,7 @@ impl View<'_> {
 
     /// The side on which a vehicle passes somebody now, if it wishes to and may.
     pub(super) fn wish_to_pass(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Option<i8> {
-        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
+        let vehicle = &self.vehicles[index];
         let lane = &self.map.lanes[vehicle.lane as usize];
         let busy = vehicle.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0;
         // Long vehicles need more of a bend than their lane.
@@ -189,9 +211,7 @@ impl View<'_> {
         if slow || busy || self.ways.lanes[vehicle.lane as usize].zone.is_some() {
             return None;
         }
-        let wish_mps = (lane.speed_limit_mps * driver.limit_share)
-            .min(driver.top_mps)
-            .min(self.ways.lanes[vehicle.lane as usize].curve_speed(lane, vehicle.s_m));
+        let wish_mps = self.wish_mps(index);
         [(1, lane.left), (-1, lane.right)].into_iter().find_map(|(side, neighbour)| {
             let passed = self.passed(index, plan, seeker, side)?;
             let near = passed.gap_m < START_M + START_S * vehicle.speed_mps && passed.gap_m > 0.5;
@@ -204,9 +224,7 @@ impl View<'_> {
 
     /// Whether the way is free for passing over the border of the lane.
     fn has_way(&self, index: usize, plan: &Plan, seeker: &Seeker, passed: &Passed, wish_mps: f32, side: i8) -> bool {
-        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
-        let gain_m = passed.beyond_m + seeker.half.x + AFTER_M;
-        let (past_s, past_m) = catch_up(driver, vehicle.speed_mps, wish_mps, passed.speed_mps, gain_m);
+        let (past_s, past_m) = self.past(index, seeker, passed, wish_mps);
         let (time_s, way_m) = (past_s + SPARE_S, past_m + wish_mps * SPARE_S);
         let ends = plan.line.is_some_and(|line| line.ahead_m < way_m) || plan.dead_end_m.is_some_and(|m| m < way_m);
         let known = self.steps_of(plan).last().map_or(0.0, |s| s.start_m + self.map.lanes[s.lane as usize].length_m);
@@ -216,6 +234,43 @@ impl View<'_> {
             && self.nobody_comes(index, way_m, time_s, side)
             && self.is_first(index)
             && self.is_open(plan, way_m, side)
+    }
+
+    /// The speed that a vehicle would drive at where it is, m/s.
+    fn wish_mps(&self, index: usize) -> f32 {
+        let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
+        let lane = &self.map.lanes[vehicle.lane as usize];
+        let curve_mps = self.ways.lanes[vehicle.lane as usize].curve_speed(lane, vehicle.s_m);
+        (lane.speed_limit_mps * driver.limit_share).min(driver.top_mps).min(curve_mps)
+    }
+
+    /// Time, s, and distance, metres, until a vehicle is past those whom it passes.
+    fn past(&self, index: usize, seeker: &Seeker, passed: &Passed, wish_mps: f32) -> (f32, f32) {
+        let gain_m = passed.beyond_m + seeker.half.x + AFTER_M;
+        catch_up(&self.drivers[index], self.vehicles[index].speed_mps, wish_mps, passed.speed_mps, gain_m)
+    }
+
+    /// Where one who passes drives beside the others, metres to the left of the middle. None where it is still behind them
+    /// and gets back into its lane, since somebody comes, or they queue.
+    pub(super) fn beside_m(&self, index: usize, seeker: &Seeker, passed: &Passed, side: i8) -> Option<f32> {
+        if passed.gap_m < BEHIND_M {
+            return Some(passed.aim_m);
+        }
+        let (past_s, past_m) = self.past(index, seeker, passed, self.wish_mps(index));
+        let way_is_free = || self.nobody_comes(index, past_m, past_s, side);
+        (!passed.queues() && way_is_free()).then_some(passed.aim_m)
+    }
+
+    /// The greatest acceleration of one who passes, m/s²: beside those who queue it falls back.
+    pub(super) fn falls_back_mps2(&self, index: usize, plan: &Plan, seeker: &Seeker) -> f32 {
+        let vehicle = &self.vehicles[index];
+        let side = vehicle.manoeuvre.side();
+        let passed = if vehicle.manoeuvre.passes() { self.passed(index, plan, seeker, side) } else { None };
+        let queue = passed.filter(|passed| passed.queues() && passed.gap_m < BEHIND_M);
+        queue.map_or(f32::MAX, |queue| {
+            let mps = (queue.speed_mps - FALL_BACK_MPS).max(0.0);
+            ((mps - vehicle.speed_mps) / FALL_BACK_S).max(-SWING_OUT_MPS2)
+        })
     }
 
     /// Whether the road goes about straight on for so far, without crosswalks and beside a lane for the other direction.
@@ -268,16 +323,20 @@ impl View<'_> {
     fn nobody_comes(&self, index: usize, way_m: f32, time_s: f32, side: i8) -> bool {
         let me = &self.bodies[index];
         let forward = (me.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
+        let limit_mps = self.map.lanes[self.vehicles[index].lane as usize].speed_limit_mps;
         let clear = |other: &Hazard| {
             let to = (other.position - me.position).truncate();
             let (ahead_m, aside_m) = (to.dot(forward), f32::from(side) * forward.perp_dot(to));
             let comes_mps = (-other.velocity.dot(forward)).max(0.0);
+            // Who waits or turns into the road speeds up as far as the limit lets it.
+            let speeds_up_m = if other.walker { 0.0 } else { 0.5 * SPEEDS_UP_MPS2 * time_s * time_s };
+            let comes_m = (comes_mps * time_s + speeds_up_m).min(limit_mps.max(comes_mps) * time_s);
             let same_way = !other.walker && other.forward.dot(forward) > 0.3;
-            // Beyond the way the road may bend.
-            let bend_m = (ahead_m - way_m).max(0.0) * BENDS;
+            // The road may bend, the more so beyond the way.
+            let bend_m = ahead_m.clamp(0.0, way_m) * BEND_RAD + (ahead_m - way_m).max(0.0) * BENDS;
             let near = -ASIDE_M * 0.5 - bend_m..=ASIDE_M + bend_m;
             let beside = !near.contains(&aside_m) || (other.position.z - me.position.z).abs() > LEVEL_M + bend_m;
-            same_way || beside || ahead_m < -5.0 || ahead_m > way_m + comes_mps * time_s + SPARE_M
+            same_way || beside || ahead_m < -5.0 || ahead_m > way_m + comes_m + SPARE_M
         };
         let passes = |i: u32, other: &Hazard| {
             let near = other.position.distance_squared(me.position) < OTHERS_M * OTHERS_M;

@@ -21,6 +21,11 @@ const LONG_M: f32 = 5.0;
 /// From the middle to an axle, as a share of the length.
 const AXLE: f32 = 0.28;
 
+/// How much farther to the left the middle of a vehicle is than its rear axle, which does not slip sideways, metres.
+pub(super) fn leads_m(vehicle: &Vehicle, driver: &Driver) -> f32 {
+    0.01 * f32::from(vehicle.drift) * AXLE * driver.size_m.x
+}
+
 /// Rotation whose x axis is `forward` and whose y axis is level.
 fn level_rotation(forward: Vec3) -> Quat {
     let left = Vec3::new(-forward.y, forward.x, 0.0).normalize_or(Vec3::Y);
@@ -77,18 +82,19 @@ impl Actors {
 
     pub(super) fn vehicle_body(&self, vehicle: &Vehicle, driver: &Driver) -> Body {
         let (middle, ahead) = self.vehicle_place(vehicle, driver);
-        let forward = match vehicle.drift {
-            0 => ahead,
+        let (position, forward) = match vehicle.drift {
+            0 => (middle, ahead),
             drift => {
                 let left = Vec3::new(-ahead.y, ahead.x, 0.0).normalize_or(Vec3::Y);
-                (ahead + left * (0.01 * f32::from(drift))).normalize_or(ahead)
+                let turned = (ahead + left * (0.01 * f32::from(drift))).normalize_or(ahead);
+                (middle + left * leads_m(vehicle, driver), turned)
             }
         };
         Body {
             id: u32::from(vehicle.id),
             kind: vehicle.kind,
             variant: driver.variant,
-            position: middle,
+            position,
             rotation: level_rotation(forward),
             velocity_mps: forward * vehicle.speed_mps,
             phase_rad: f32::from(vehicle.phase) * TURN_RAD,

@@ -44,6 +44,11 @@ const QUEUE_M: f32 = 4.0;
 const CROWD: usize = 8;
 /// Distance kept from vehicles, metres.
 const OFF_VEHICLES_M: f32 = 0.3;
+/// Whoever goes round one keeps off by so much more, and so far out of the way if need be, metres.
+const ROUND_M: f32 = 0.1;
+const DETOUR_M: f32 = 1.2;
+/// A step along one may lead nearer by so little, metres.
+const ALONG_M: f32 = 1e-4;
 /// Distance walked in one cycle of the gait (two steps), metres.
 const STRIDE_M: f32 = 1.45;
 /// Fastest turn of the body, 2^-16 turns a tick (about 270 degrees a second).
@@ -143,14 +148,16 @@ impl Streets<'_> {
             (place, place.beside(next.offset_m).truncate() - before)
         };
         let (mut place, mut step) = step_to(&next);
-        if !slack::is_free(near, step) {
-            let change = slack::free_part(near, step) - step;
+        let on_road = self.is_on_road(was);
+        let free = self.free_step(near, before, step, on_road);
+        if free != step {
+            let change = free - step;
             next.s_m += change.dot(place.forward.truncate().normalize_or(Vec2::X));
             next.offset_m += change.dot(place.left());
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
         }
-        if !slack::is_free(near, step) || (self.is_on_road(was) && self.runs_into_vehicle(before, step)) {
+        if !slack::is_free(near, step) || (on_road && self.runs_into_vehicle(before, step)) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
         }
@@ -178,10 +185,12 @@ impl Streets<'_> {
         let pace_mps = self.walker_traits[index].speed_mps;
         // Across the road people hurry a little.
         let wants_mps = if edge.crosswalk.is_some() { (pace_mps * 1.15).max(1.0) } else { pace_mps };
-        let leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
+        let mut leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
         let held_up = leeway.most_mps < HELD_UP_MPS;
-        if edge.crosswalk.is_some() && self.blocked(index, ahead) {
+        let blocks = edge.crosswalk.and_then(|_| self.blocked(index, ahead));
+        if let Some(block) = blocks {
             halt(next);
+            leeway.aside_m = Some(past_front_m(block, ahead));
         } else if held_up && self.joins_those_who_wait(index, near, edge, next) {
             return;
         } else {
@@ -204,10 +213,11 @@ impl Streets<'_> {
         let likes_m = self.walker_traits[index].place * (half_m - RIGHT_M).max(0.1) - direction * RIGHT_M;
         let aim_m = leeway.aside_m.map_or(likes_m, |aside_m| next.offset_m + direction * aside_m);
         // Whoever comes back from the road goes straight for the way.
-        let astray = next.offset_m.abs() > half_m + VERGE_M;
+        let over_m = if edge.crosswalk.is_some() { DETOUR_M } else { VERGE_M };
+        let astray = next.offset_m.abs() > half_m + over_m;
         let least_m = if leeway.aside_m.is_some() { SIDESTEP_MPS * TICK_S } else { 0.0 };
         let most_m = if astray { moved_m } else { (DRIFT * moved_m).max(least_m) };
-        let room_m = if leeway.aside_m.is_some() { half_m + VERGE_M } else { half_m };
+        let room_m = if leeway.aside_m.is_some() { half_m + over_m } else { half_m };
         next.offset_m += (aim_m.clamp(-room_m, room_m) - next.offset_m).clamp(-most_m, most_m);
     }
 
@@ -289,11 +299,12 @@ impl Streets<'_> {
             next.mode = WalkerMode::Walk;
             return;
         };
-        let blocked = self.blocked(index, place.left() * sign);
+        let blocks = self.blocked(index, place.left() * sign);
         let pace_mps = jaywalk::pace(self.seed, next, &self.walker_traits[index]);
-        let leeway = leeway(near, place.left() * sign, pace_mps, [-SIDE_ROOM_M, SIDE_ROOM_M]);
-        if blocked {
+        let mut leeway = leeway(near, place.left() * sign, pace_mps, [-SIDE_ROOM_M, SIDE_ROOM_M]);
+        if let Some(block) = blocks {
             halt(next);
+            leeway.aside_m = Some(past_front_m(block, place.left() * sign));
         } else {
             approach_speed(next, pace_mps.min(leeway.most_mps));
         }
@@ -306,14 +317,10 @@ impl Streets<'_> {
         }
     }
 
-    /// Whether a vehicle stands right before a walker who goes along `direction`.
-    fn blocked(&self, index: usize, direction: Vec2) -> bool {
+    /// The vehicle that stands right before a walker who goes along `direction`.
+    fn blocked(&self, index: usize, direction: Vec2) -> Option<&Hazard> {
         let toe = self.bodies[index].position.truncate() + direction.normalize_or_zero() * 0.6;
-        self.blocks.iter().any(|block| {
-            let offset = toe - block.position.truncate();
-            let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
-            x.abs() < block.half.x + 0.2 && y.abs() < block.half.y + 0.2
-        })
+        self.blocks.iter().find(|block| to_nearest(block, toe).length() < OFF_VEHICLES_M + ROUND_M)
     }
 
     fn is_on_road(&self, walker: &Walker) -> bool {
@@ -321,18 +328,29 @@ impl Streets<'_> {
         edge.crosswalk.is_some() || walker.mode != WalkerMode::Walk || walker.offset_m.abs() > edge.half_width_m + 0.3
     }
 
+    /// The part of a step that leaves others room, and on the road keeps off vehicles: it goes along what is in its way.
+    fn free_step(&self, near: &[Near], from: Vec2, step: Vec2, on_road: bool) -> Vec2 {
+        let mut part = step;
+        if on_road && self.runs_into_vehicle(from, step) {
+            for block in self.blocks {
+                let to = to_nearest(block, from);
+                let off_m = to.length();
+                let toward_m = if off_m > 0.0 { step.dot(to) / off_m } else { 0.0 };
+                if toward_m > 0.0 && off_m - toward_m < OFF_VEHICLES_M {
+                    part -= to / off_m * toward_m;
+                }
+            }
+        }
+        if slack::is_free(near, part) { part } else { slack::free_part(near, part) }
+    }
+
     /// Whether a step leads nearer to a vehicle that is within reach.
     fn runs_into_vehicle(&self, from: Vec2, step: Vec2) -> bool {
-        step != Vec2::ZERO
-            && self.blocks.iter().any(|block| {
-                let apart_m = |place: Vec2| {
-                    let offset = place - block.position.truncate();
-                    let (x, y) = (offset.dot(block.forward).abs(), block.forward.perp_dot(offset).abs());
-                    (Vec2::new(x, y) - block.half).max(Vec2::ZERO).length()
-                };
-                let then_m = apart_m(from + step);
-                then_m < OFF_VEHICLES_M && then_m < apart_m(from)
-            })
+        let nearer = |block: &Hazard| {
+            let then_m = to_nearest(block, from + step).length();
+            then_m < OFF_VEHICLES_M && then_m < to_nearest(block, from).length() - ALONG_M
+        };
+        step != Vec2::ZERO && self.blocks.iter().any(nearer)
     }
 
     /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where
@@ -373,6 +391,20 @@ impl Streets<'_> {
 fn room_m(edge: &WalkEdge, walker: &Walker, direction: f32) -> [f32; 2] {
     let (most_m, at_m) = (edge.half_width_m + VERGE_M, walker.offset_m * direction);
     [-most_m - at_m, most_m - at_m]
+}
+
+/// From a place to the nearest of a vehicle; nothing from inside of it.
+fn to_nearest(block: &Hazard, place: Vec2) -> Vec2 {
+    let offset = block.position.truncate() - place;
+    let local = Vec2::new(offset.dot(block.forward), block.forward.perp_dot(offset));
+    let to = local - local.clamp(-block.half, block.half);
+    block.forward * to.x + block.forward.perp() * to.y
+}
+
+/// To the left of somebody who goes along `ahead` and stands before a vehicle: the side on which its front is, since whoever
+/// goes round behind it is not seen.
+fn past_front_m(block: &Hazard, ahead: Vec2) -> f32 {
+    ahead.perp_dot(block.forward).signum()
 }
 
 /// Whoever has stood before others for long turns back.

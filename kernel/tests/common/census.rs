@@ -20,6 +20,8 @@ const LOOK_TICKS: Tick = 6;
 const PERSON_M: f32 = 0.2;
 /// Touching by less than this is none, metres.
 const SKIN_M: f32 = 0.025;
+/// Who stands in the way of one is within this, metres.
+const AROUND_M: f32 = 45.0;
 /// A vehicle stands behind another at a gap of at most this, metres.
 const BEHIND_M: f32 = 8.0;
 
@@ -151,7 +153,9 @@ impl<'a> Watcher<'a> {
         for (_, id) in dissolved {
             self.found.dissolved += 1;
             if std::env::var("AEYE_TRAFFIC_WHO").is_ok() {
-                eprintln!("tick {tick}: dissolved {:?}", self.before.iter().find(|v| u32::from(v.id) == *id));
+                let seed = self.drive.seed;
+                eprintln!("seed {seed} tick {tick}: dissolved {id}, of those around it");
+                self.around(traffic, *id);
             }
         }
         let collided = |kind: &EventKind| *kind == EventKind::HazardCollision;
@@ -166,7 +170,7 @@ impl<'a> Watcher<'a> {
         self.found.vehicle_h += vehicles.len() as f64 / seconds(3600) as f64;
         self.lights(vehicles, tick);
         if tick.is_multiple_of(LOOK_TICKS) {
-            self.overlaps(traffic.bodies());
+            self.overlaps(traffic);
         }
         if tick.is_multiple_of(seconds(1)) {
             self.standing(traffic, tick);
@@ -176,6 +180,22 @@ impl<'a> Watcher<'a> {
             self.walked_from = people(traffic).collect();
         }
         self.before.clone_from(vehicles);
+    }
+
+    /// Prints the vehicles around one as they were a tick ago.
+    fn around(&self, traffic: &Traffic, id: u32) {
+        let network = &self.drive.network;
+        let place = |v: &Vehicle| network.lanes[v.lane as usize].straight_on(v.s_m).beside(v.offset_m);
+        let Some(me) = self.before.iter().find(|v| u32::from(v.id) == id) else { return };
+        for v in self.before.iter().filter(|v| place(v).distance(place(me)) < AROUND_M) {
+            let heading = network.lanes[v.lane as usize].at(v.s_m).heading_rad.to_degrees();
+            let at = place(v);
+            eprintln!("  at {:.1} {:.1} {heading:.0} deg: {v:?}", at.x, at.y);
+        }
+        let on_foot = traffic.bodies()[self.before.len()..].iter().zip(&traffic.state().walkers);
+        for (body, walker) in on_foot.filter(|(body, _)| body.position.distance(place(me)) < AROUND_M * 0.2) {
+            eprintln!("  at {:.1} {:.1} on foot: {walker:?}", body.position.x, body.position.y);
+        }
     }
 
     /// What the light before a vehicle shows, and the distance to its line; of several for the ways on the one that shows
@@ -241,7 +261,8 @@ impl<'a> Watcher<'a> {
         false
     }
 
-    fn overlaps(&mut self, bodies: &[Body]) {
+    fn overlaps(&mut self, traffic: &Traffic) {
+        let bodies = traffic.bodies();
         let mut order: Vec<&Body> = bodies.iter().collect();
         order.sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
         let mut now = BTreeSet::new();
@@ -260,7 +281,10 @@ impl<'a> Watcher<'a> {
                 let who = |id| bodies.iter().find(|body| body.id == id).expect("it is there");
                 let told = |b: &Body| (b.id, b.kind, b.position, b.velocity_mps);
                 let lane = |id| self.before.iter().find(|v| u32::from(v.id) == id);
-                eprintln!("overlap {:?} {:?}\n  {:?}\n  {:?}", told(who(*a)), told(who(*b)), lane(*a), lane(*b));
+                let walker = traffic.state().walkers.iter().find(|w| u32::from(w.id) == *b);
+                let seed = self.drive.seed;
+                eprintln!("overlap, seed {seed} {:?} {:?} {walker:?}", told(who(*a)), told(who(*b)));
+                eprintln!("  {:?}\n  {:?}", lane(*a), lane(*b));
             }
         }
         self.overlapping = now;
