@@ -22,8 +22,9 @@ use super::pass;
 use super::plan::{self, Plan};
 use super::state::TrafficState;
 use super::step::Step;
+use super::turns::Turns;
 use super::vehicle::Vehicle;
-use super::walk::{Streets, wanted_crosswalk};
+use super::walk::Streets;
 use super::walker::{Walker, WalkerMode};
 
 /// The ego car is expected at a junction that it reaches within this time, s.
@@ -196,7 +197,8 @@ impl Sight {
 
     /// The crosswalk without lights at which a walker waits, if it could go when vehicles stopped.
     fn wanted_unlit_crosswalk(&self, actors: &Actors, walker: &Walker) -> Option<u32> {
-        let wanted = wanted_crosswalk(actors.map(), actors.seed, walker);
+        let turns = Turns { map: actors.map(), ways: &actors.ways, seed: actors.seed };
+        let wanted = turns.wanted_crosswalk(walker);
         let unlit = wanted.filter(|c| actors.ways.crosswalk_lights[*c as usize].is_empty());
         unlit.filter(|c| !self.gaps(actors).is_blocked(*c))
     }

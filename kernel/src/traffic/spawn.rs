@@ -47,33 +47,39 @@ const EMERGENCY_PCT: u64 = 1;
 const SCOOTERS_PCT: u64 = 30;
 const CARGO_PCT: u64 = 6;
 
-/// A stretch on which actors may start: an index, its length, and the sum of lengths up to its end.
+/// A stretch on which actors may start: an index, where on that it begins, its length, how much each metre of it counts,
+/// and the sum of what all metres up to its end do.
 struct Stretch {
     index: u32,
+    from_m: f32,
     length_m: f32,
-    end_m: f32,
+    weight: f32,
+    end: f32,
 }
 
-fn stretches(items: impl Iterator<Item = (u32, f32)>) -> Vec<Stretch> {
-    let mut end_m = 0.0;
-    let add = |(index, length_m): (u32, f32)| {
-        end_m += length_m;
-        Stretch { index, length_m, end_m }
+/// Stretches of an index, a beginning, a length and a weight.
+fn stretches(items: impl Iterator<Item = (u32, f32, f32, f32)>) -> Vec<Stretch> {
+    let mut end = 0.0;
+    let add = |(index, from_m, length_m, weight): (u32, f32, f32, f32)| {
+        end += length_m * weight;
+        Stretch { index, from_m, length_m, weight, end }
     };
     items.map(add).collect()
 }
 
 /// The stretch and the place on it for a number in [0, 1).
 fn pick(stretches: &[Stretch], t: f32) -> (u32, f32) {
-    let at_m = t * stretches.last().map_or(0.0, |s| s.end_m);
-    let i = stretches.partition_point(|s| s.end_m <= at_m).min(stretches.len() - 1);
+    let at = t * stretches.last().map_or(0.0, |s| s.end);
+    let i = stretches.partition_point(|s| s.end <= at).min(stretches.len() - 1);
     let stretch = &stretches[i];
-    (stretch.index, (at_m - (stretch.end_m - stretch.length_m)).clamp(0.0, stretch.length_m))
+    let left_m = (stretch.end - at) / stretch.weight;
+    (stretch.index, stretch.from_m + (stretch.length_m - left_m).clamp(0.0, stretch.length_m))
 }
 
 /// Tries all places, as far apart as a search looks, from a random one on.
 fn search(stretches: &[Stretch], from: f32, mut fits: impl FnMut((u32, f32)) -> bool) -> bool {
-    let total_m = stretches.last().map_or(0.0, |s| s.end_m);
+    // Nothing counts less than 1.
+    let total_m = stretches.last().map_or(0.0, |s| s.end);
     let count = (total_m / SEARCH_M) as u32 + 1;
     (0..count).any(|k| {
         let t = from + k as f32 / count as f32;
@@ -134,7 +140,7 @@ impl Spawner<'_> {
     fn vehicles(&mut self) {
         let lanes = self.map.lanes.iter().enumerate();
         let usable = lanes.filter(|(_, l)| l.kind == LaneKind::Driving && l.junction.is_none() && l.length_m > 10.0);
-        let stretches = stretches(usable.map(|(i, l)| (i as u32, l.length_m)));
+        let stretches = stretches(usable.map(|(i, l)| (i as u32, 0.0, l.length_m, 1.0)));
         if stretches.is_empty() {
             return;
         }
@@ -233,8 +239,12 @@ impl Spawner<'_> {
     }
 
     fn walkers(&mut self) {
-        let edges = self.map.walk_edges.iter().enumerate();
-        let stretches = stretches(edges.filter(|(_, e)| e.crosswalk.is_none()).map(|(i, e)| (i as u32, e.length_m)));
+        let edges = self.map.walk_edges.iter().zip(&self.ways.edges).enumerate();
+        let pieces = edges.filter(|(_, (edge, _))| edge.crosswalk.is_none()).flat_map(|(i, (edge, way))| {
+            let (pieces, length_m) = (&way.draw.pieces, edge.length_m / way.draw.pieces.len() as f32);
+            pieces.iter().enumerate().map(move |(k, draw)| (i as u32, k as f32 * length_m, length_m, *draw))
+        });
+        let stretches = stretches(pieces);
         if stretches.is_empty() {
             return;
         }

@@ -4,7 +4,6 @@ use glam::Vec2;
 
 use crate::map_data::{MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
-use crate::rng::{self, Stream};
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
@@ -15,6 +14,7 @@ use super::hazard::Hazard;
 use super::jaywalk;
 use super::slack;
 use super::traits::WalkerTraits;
+use super::turns::{Turns, end_node};
 use super::walker::{Walker, WalkerMode, turns};
 use super::ways::Ways;
 
@@ -63,25 +63,6 @@ const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
 const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 
-/// The edge a walker takes at the end of its own.
-pub(super) fn next_edge(map: &MapData, seed: u64, walker: &Walker) -> WalkEdgeId {
-    let node = end_node(map, walker);
-    let others = || map.walk_nodes[node as usize].edges.iter().copied().filter(|e| *e != walker.edge);
-    let count = others().count() as u32;
-    let pick = rng::below(seed, Stream::Walk, u64::from(walker.id), u64::from(walker.hops), count);
-    others().nth(pick as usize).unwrap_or(walker.edge)
-}
-
-fn end_node(map: &MapData, walker: &Walker) -> u32 {
-    map.walk_edges[walker.edge as usize].nodes[usize::from(walker.forward)]
-}
-
-/// The crosswalk that a waiting walker wants to take.
-pub(super) fn wanted_crosswalk(map: &MapData, seed: u64, walker: &Walker) -> Option<u32> {
-    let next = next_edge(map, seed, walker);
-    map.walk_edges[next as usize].crosswalk.filter(|_| next != walker.edge)
-}
-
 /// What every walker sees of the previous tick.
 pub(super) struct Streets<'a> {
     pub map: &'a MapData,
@@ -103,6 +84,10 @@ pub(super) struct Streets<'a> {
 }
 
 impl Streets<'_> {
+    fn turns(&self) -> Turns<'_> {
+        Turns { map: self.map, ways: self.ways, seed: self.seed }
+    }
+
     /// The next state of walker `index`, and where that is on its way. `near` is scratch.
     pub fn walk(&self, index: usize, near: &mut Vec<Near>) -> (Walker, Place) {
         let mut next = self.walkers[index];
@@ -175,7 +160,8 @@ impl Streets<'_> {
         let direction = if next.forward { 1.0 } else { -1.0 };
         let place = self.places[index];
         let ahead = place.forward.truncate().normalize_or(Vec2::X) * direction;
-        let pace_mps = self.walker_traits[index].speed_mps;
+        let idling = self.ways.edges[next.edge as usize].draw.pace(self.seed, next, edge.length_m);
+        let pace_mps = self.walker_traits[index].speed_mps * idling;
         // Across the road people hurry a little.
         let wants_mps = if edge.crosswalk.is_some() { (pace_mps * 1.15).max(1.0) } else { pace_mps };
         let leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
@@ -214,7 +200,7 @@ impl Streets<'_> {
     /// Whoever is held up by others shortly before a crosswalk that is not free waits behind them.
     fn joins_those_who_wait(&self, index: usize, near: &[Near], edge: &WalkEdge, next: &mut Walker) -> bool {
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
-        let wanted = || wanted_crosswalk(self.map, self.seed, next);
+        let wanted = || self.turns().wanted_crosswalk(next);
         let waits =
             left_m < QUEUE_M && edge.crosswalk.is_none() && wanted().is_some_and(|c| !self.may_cross(index, c, next));
         if waits && near.len() > CROWD {
@@ -229,7 +215,7 @@ impl Streets<'_> {
 
     /// At the end of an edge: takes the next one, or waits at the kerb.
     fn turn_or_wait(&self, index: usize, near: &[Near], next: &mut Walker) {
-        let edge = next_edge(self.map, self.seed, next);
+        let edge = self.turns().next_edge(next);
         let crosswalk = self.map.walk_edges[edge as usize].crosswalk.filter(|_| edge != next.edge);
         if crosswalk.is_some() && near.len() > CROWD {
             next.hops = next.hops.wrapping_add(1);
@@ -257,7 +243,7 @@ impl Streets<'_> {
             next.hops = next.hops.wrapping_add(1);
             next.wait_ticks = 0;
         }
-        let edge = next_edge(self.map, self.seed, next);
+        let edge = self.turns().next_edge(next);
         match self.map.walk_edges[edge as usize].crosswalk {
             Some(crosswalk) if edge != next.edge && !self.may_cross(index, crosswalk, next) => {}
             _ => self.enter(edge, next),
@@ -361,7 +347,7 @@ impl Streets<'_> {
     }
 
     fn waiting_direction(&self, walker: &Walker) -> Vec2 {
-        let edge = next_edge(self.map, self.seed, walker);
+        let edge = self.turns().next_edge(walker);
         let to = &self.map.walk_edges[edge as usize];
         let forward = to.nodes[0] == end_node(self.map, walker);
         let direction = self.ways.edge_place(edge, if forward { 0.0 } else { to.length_m }).forward.truncate();

@@ -1,0 +1,64 @@
+//! People on foot: where they are, and with whom.
+
+use std::sync::Arc;
+
+use super::{MINUTE, counts, nowhere, run};
+use crate::map::{RoadNetwork, bundled};
+use crate::traffic::{Traffic, TrafficCounts};
+
+/// So many people on foot and little traffic.
+fn with_people(network: &Arc<RoadNetwork>, pedestrians: u16, seed: u64) -> Traffic {
+    let counts = TrafficCounts { pedestrians, jaywalks_per_min: 0.0, ..counts(20) };
+    Traffic::spawn(&counts, seed, network.ways(), nowhere().position)
+}
+
+/// People on each metre of sidewalks where there are so many reasons to be.
+#[derive(Default)]
+struct Density {
+    people: [f32; 2],
+    length_m: [f32; 2],
+}
+
+impl Density {
+    /// How many times as dense people are where the draw is above this.
+    fn ratio(&self) -> f32 {
+        let [few, many] = [0, 1].map(|k| self.people[k] / self.length_m[k]);
+        many / few
+    }
+
+    /// Adds who is on a sidewalk at this moment.
+    fn add(&mut self, traffic: &Traffic, least: f32) {
+        let (ways, map) = (&traffic.actors.ways, traffic.actors.map());
+        for (edge, way) in map.walk_edges.iter().zip(&ways.edges).filter(|(edge, _)| edge.crosswalk.is_none()) {
+            for draw in &way.draw.pieces {
+                self.length_m[usize::from(*draw >= least)] += edge.length_m / way.draw.pieces.len() as f32;
+            }
+        }
+        for walker in &traffic.state().walkers {
+            let edge = &map.walk_edges[walker.edge as usize];
+            if edge.crosswalk.is_none() {
+                let draw = ways.edges[walker.edge as usize].draw.at(walker.s_m.max(0.0), edge.length_m);
+                self.people[usize::from(draw >= least)] += 1.0;
+            }
+        }
+    }
+}
+
+#[test]
+fn people_are_where_there_is_a_reason_and_stay_there() {
+    // In the city houses are everywhere.
+    let (network, least) = (bundled("city").expect("it is bundled"), 3.0);
+    let (mut first, mut last) = (Density::default(), Density::default());
+    for seed in 2101..2105 {
+        let mut traffic = with_people(&network, 200, seed);
+        first.add(&traffic, least);
+        run(&mut traffic, 1..25 * MINUTE, |t, tick| {
+            if tick > 20 * MINUTE && tick % 600 == 0 {
+                last.add(t, least);
+            }
+        });
+    }
+    let (first, last) = (first.ratio(), last.ratio());
+    println!("{first} times as many at the start, {last} times as many after 20 min");
+    assert!(first > 1.5 && last > 1.4, "{first} {last}");
+}
