@@ -55,7 +55,8 @@ pub(super) fn starter(actors: &Actors, around: &Surroundings<'_>) -> Option<usiz
         let walker = &walkers[*i];
         let place = ways.walker_place(walker).beside(walker.offset_m);
         let far = !(seek_ego && is_before(ego, place));
-        (far, bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
+        // Who goes alone leaves nobody behind.
+        (far, !actors.groups.is_alone(*i), bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
     };
     let horn = Horn::of(around);
     let hears = |w: &Walker| horn.is_some_and(|h| h.is_for(ways.walker_place(w).position.truncate(), PEOPLE_ASIDE_M));

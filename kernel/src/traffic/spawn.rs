@@ -9,6 +9,7 @@ use crate::ops;
 use crate::rng::{Stream, bits, unit};
 
 use super::counts::TrafficCounts;
+use super::groups::first_of_group;
 use super::lapse::Lapse;
 use super::manoeuvre::Manoeuvre;
 use super::plan::stopping_speed;
@@ -28,6 +29,9 @@ const WALKER_SPACE_M: Vec2 = Vec2::splat(0.2);
 const TRIES: u64 = 40;
 /// Who finds none of these free looks all over the map, at places so far apart, metres.
 const SEARCH_M: f32 = 2.5;
+/// Places beside and behind somebody at which those start who walk together, metres along the way and aside.
+const BESIDE_M: [[f32; 2]; 8] =
+    [[0.0, 0.95], [0.0, -0.95], [0.95, 0.0], [-0.95, 0.0], [0.95, 0.95], [0.95, -0.95], [-0.95, 0.95], [-0.95, -0.95]];
 /// Half the extent of a person, metres.
 const WALKER_M: f32 = 0.25;
 /// Half the width of a lane that is wide enough to start on, metres.
@@ -252,7 +256,8 @@ impl Spawner<'_> {
         for number in first..first + u64::from(self.counts.pedestrians) {
             let t = |attempt| unit(self.seed, Stream::Spawn, number, attempt);
             let (drawn, from): (Vec<f32>, f32) = ((0..TRIES).map(t).collect(), t(TRIES + 2));
-            let found = drawn.into_iter().any(|t| self.walker(number, pick(&stretches, t)))
+            let found = self.joins(number)
+                || drawn.into_iter().any(|t| self.walker(number, pick(&stretches, t)))
                 || search(&stretches, from, |place| self.walker(number, place));
             if !found {
                 return;
@@ -260,19 +265,39 @@ impl Spawner<'_> {
         }
     }
 
+    /// Puts somebody beside the one before, if they walk together and there is room.
+    fn joins(&mut self, number: u64) -> bool {
+        let Some(before) = self.state.walkers.last().copied() else { return false };
+        let group = |id| first_of_group(self.seed, id);
+        if group(before.id) != group(self.next_id()) {
+            return false;
+        }
+        let way = &self.map.walk_edges[before.edge as usize];
+        BESIDE_M.into_iter().any(|[along_m, aside_m]| {
+            let (s_m, offset_m) = (before.s_m + along_m, before.offset_m + aside_m);
+            let fits = (0.0..way.length_m).contains(&s_m) && offset_m.abs() <= way.half_width_m;
+            fits && self.walker_at(number, before.edge, s_m, offset_m, before.forward)
+        })
+    }
+
     fn walker(&mut self, number: u64, (edge, s_m): (u32, f32)) -> bool {
+        let traits = walker_traits(self.seed, self.next_id());
+        let way = &self.map.walk_edges[edge as usize];
+        let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
+        let forward = bits(self.seed, Stream::Spawn, number, TRIES + 1) & 1 == 0;
+        self.walker_at(number, edge, s_m, offset_m, forward)
+    }
+
+    fn walker_at(&mut self, number: u64, edge: u32, s_m: f32, offset_m: f32, forward: bool) -> bool {
         let id = self.next_id();
         let traits = walker_traits(self.seed, id);
-        let way = &self.map.walk_edges[edge as usize];
         let place = self.ways.edge_place(edge, s_m);
-        let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
         let middle = place.beside(offset_m).truncate();
         let half = Vec2::splat(WALKER_M) + WALKER_SPACE_M;
         if !self.take(Taken { middle, forward: Vec2::X, half }) {
             return false;
         }
         let random = bits(self.seed, Stream::Spawn, number, TRIES + 1);
-        let forward = random & 1 == 0;
         let ahead = if forward { place.forward } else { -place.forward };
         self.state.walkers.push(Walker {
             id,

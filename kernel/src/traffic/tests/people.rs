@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use super::{MINUTE, counts, nowhere, run};
+use glam::Vec3;
+
 use crate::map::{RoadNetwork, bundled};
+use crate::time::Tick;
 use crate::traffic::{Traffic, TrafficCounts};
 
 /// So many people on foot and little traffic.
@@ -61,4 +64,37 @@ fn people_are_where_there_is_a_reason_and_stay_there() {
     let (first, last) = (first.ratio(), last.ratio());
     println!("{first} times as many at the start, {last} times as many after 20 min");
     assert!(first > 1.5 && last > 1.4, "{first} {last}");
+}
+
+/// How often people who walk together are within so many metres of who leads, and how many of them are so side by side.
+fn together(traffic: &mut Traffic, minutes: Tick, near_m: f32) -> [f32; 2] {
+    let (mut near, mut beside, mut all) = (0, 0, 0);
+    run(traffic, 1..minutes * MINUTE, |t, tick| {
+        if tick % 120 != 0 {
+            return;
+        }
+        let people = &t.actors.bodies[t.state().vehicles.len()..];
+        for index in 0..people.len() {
+            let Some(leader) = t.actors.groups.leader(index) else { continue };
+            let to = people[index].position - people[leader].position;
+            let ahead = people[leader].rotation * Vec3::X;
+            all += 1;
+            near += u32::from(to.length() < near_m);
+            beside += u32::from(to.length() < near_m && to.dot(ahead).abs() < 0.5 * to.length());
+        }
+    });
+    [near, beside].map(|count| count as f32 / all as f32)
+}
+
+#[test]
+fn who_walks_together_stays_together() {
+    for (map, pedestrians, least) in [("city", 200, 0.8), ("rural", 60, 0.8)] {
+        let network = bundled(map).expect("it is bundled");
+        for seed in 2101..2104 {
+            let mut traffic = with_people(&network, pedestrians, seed);
+            let [near, beside] = together(&mut traffic, 20, 5.0);
+            println!("{map} {seed}: within 5 m {near} of the time, side by side {beside}");
+            assert!(near > least, "{map} {seed}: {near}");
+        }
+    }
 }
