@@ -138,9 +138,21 @@ impl Streets<'_> {
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
         }
-        if !slack::is_free(near, step) || (self.is_on_road(was) && self.runs_into_vehicle(before, step)) {
+        let is_hindered = |step: Vec2| self.is_on_road(was) && self.runs_into_vehicle(before, step);
+        let mut hindered = is_hindered(step);
+        if hindered && next.mode == WalkerMode::Walk && next.edge == was.edge {
+            // Beside a vehicle one goes straight on.
+            next.offset_m = was.offset_m;
+            (place, step) = step_to(&next);
+            hindered = is_hindered(step);
+        }
+        if hindered || !slack::is_free(near, step) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
+            if hindered && was.mode == WalkerMode::Walk {
+                next.wait_ticks = was.wait_ticks;
+                halt(&mut next);
+            }
         }
         next.phase = next.phase.wrapping_add((step.length() / STRIDE_M * 65536.0) as u16);
         let ahead = if next.mode == WalkerMode::Jaywalk { place.left() } else { place.forward.truncate() };

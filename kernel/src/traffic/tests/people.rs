@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use super::{MINUTE, counts, nowhere, run};
+use super::crossroads::{Signs, crossroads};
+use super::{MINUTE, car_at, counts, nowhere, run};
 use glam::Vec3;
 
 use crate::map::{RoadNetwork, bundled};
 use crate::time::Tick;
-use crate::traffic::{Traffic, TrafficCounts};
+use crate::traffic::{Surroundings, Traffic, TrafficCounts, Walker};
+use crate::weather::Conditions;
 
 /// So many people on foot and little traffic.
 fn with_people(network: &Arc<RoadNetwork>, pedestrians: u16, seed: u64) -> Traffic {
@@ -97,4 +99,26 @@ fn who_walks_together_stays_together() {
             assert!(near > least, "{map} {seed}: {near}");
         }
     }
+}
+
+#[test]
+fn who_crosses_close_before_a_car_gets_past_it() {
+    let network = crossroads(Signs::Yield);
+    let mut state = with_people(&network, 1, 2101).state().clone();
+    state.vehicles.clear();
+    let crosswalk = network.walk_edges.iter().position(|e| e.crosswalk.is_some()).expect("there is one");
+    let edge = &network.walk_edges[crosswalk];
+    // Beside the crosswalk, so that it wants back to it, where the car stands that waits for it.
+    let (s_m, offset_m) = (edge.length_m * 0.5, edge.half_width_m + 0.8);
+    state.walkers[0] = Walker { edge: crosswalk as u32, s_m, offset_m, ..state.walkers[0] };
+    let place = network.ways().walker_place(&state.walkers[0]);
+    let left = place.left();
+    let car = place.beside(offset_m) - left.extend(0.0) * (0.28 + 2.25);
+    let mut traffic = Traffic::with(&counts(1), 2101, network.ways(), state);
+    let ego = car_at(car, crate::ops::atan2(left.y, left.x));
+    for tick in 1..10 * 60 {
+        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+    }
+    let away_m = traffic.bodies()[0].position.distance(place.beside(offset_m));
+    assert!(away_m > 4.0, "{away_m} m: {:?}", traffic.state().walkers[0]);
 }
