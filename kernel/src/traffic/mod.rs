@@ -15,6 +15,7 @@ mod change;
 mod company;
 mod counts;
 mod courtesy;
+mod cover;
 mod crash;
 mod crosswalk;
 mod crowd;

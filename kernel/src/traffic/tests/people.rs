@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use crate::map::{RoadNetwork, bundled};
 use crate::time::Tick;
-use crate::traffic::{Surroundings, Traffic, TrafficCounts, Walker};
+use crate::traffic::{Surroundings, Traffic, TrafficCounts, Walker, WalkerMode, cover, jaywalk};
 use crate::weather::Conditions;
 
 /// So many people on foot and little traffic.
@@ -121,4 +121,33 @@ fn who_crosses_close_before_a_car_gets_past_it() {
     }
     let away_m = traffic.bodies()[0].position.distance(place.beside(offset_m));
     assert!(away_m > 4.0, "{away_m} m: {:?}", traffic.state().walkers[0]);
+}
+
+#[test]
+fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car() {
+    let network = bundled("city").expect("it is bundled");
+    let (minutes, a_minute) = (10, 6.0);
+    let (mut all, mut hidden) = (0, 0);
+    for seed in 2101..2105 {
+        let counts = TrafficCounts { jaywalks_per_min: a_minute, ..counts(100) };
+        let mut traffic = Traffic::spawn(&counts, seed, network.ways(), nowhere().position);
+        let mut before = traffic.actors.clone();
+        run(&mut traffic, 1..minutes * MINUTE, |t, tick| {
+            let starts = |i: &usize| {
+                t.state().walkers[*i].mode == WalkerMode::Jaywalk && before.state.walkers[*i].mode == WalkerMode::Walk
+            };
+            for i in (0..t.state().walkers.len()).filter(starts) {
+                let walker = &before.state.walkers[i];
+                let way = jaywalk::way_across(before.map(), &before.ways, walker).expect("it goes");
+                all += 1;
+                hidden += u32::from(cover::hides(&before, walker, way));
+                assert!(jaywalk::can_stop(&before, way[0], way[1]), "walker {} at tick {tick}", walker.id);
+            }
+            before.clone_from(&t.actors);
+        });
+    }
+    println!("{all} jaywalks, {hidden} of them from behind something that stands");
+    let expected = 4.0 * minutes as f32 * a_minute;
+    assert!((all as f32 - expected).abs() < 3.0 * expected.sqrt(), "{all} where {expected} are asked for");
+    assert!(hidden as f32 > 0.25 * all as f32, "{hidden} of {all}");
 }
