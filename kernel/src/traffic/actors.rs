@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::body::Body;
 use super::counts::TrafficCounts;
 use super::doors::Doors;
+use super::groups::Groups;
 use super::rates::HazardRates;
 use super::state::TrafficState;
 use super::traits::{Driver, WalkerTraits, driver, walker_traits};
@@ -23,6 +24,8 @@ pub(super) struct Actors {
     pub state: TrafficState,
     pub drivers: Vec<Driver>,
     pub walker_traits: Vec<WalkerTraits>,
+    /// Who walks with whom.
+    pub groups: Groups,
     /// Where walkers stand on their ways, before what they are beside the middle.
     pub places: Vec<Place>,
     /// At the places of the state.
@@ -42,7 +45,8 @@ impl Actors {
             counts: *counts,
             rates: HazardRates::NONE,
             drivers: Vec::new(),
-            walker_traits: state.walkers.iter().map(|w| walker_traits(seed, w.id)).collect(),
+            walker_traits: Vec::new(),
+            groups: Groups::new(seed, &state.walkers),
             places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),
             state,
             bodies: Vec::new(),
@@ -50,8 +54,18 @@ impl Actors {
             conditions: Conditions::default(),
         };
         actors.know_drivers();
+        actors.know_walkers();
         actors.place_bodies();
         actors
+    }
+
+    /// How everybody on foot walks in this weather: in company as fast as the slowest.
+    fn know_walkers(&mut self) {
+        let Self { seed, conditions, groups, state, .. } = self;
+        let own: Vec<_> = state.walkers.iter().map(|w| walker_traits(*seed, w.id).heeding(conditions)).collect();
+        let slowest_mps = |i: usize| groups.members(i).map(|k| own[k].speed_mps).fold(f32::MAX, f32::min);
+        let known = own.iter().enumerate().map(|(i, known)| WalkerTraits { speed_mps: slowest_mps(i), ..*known });
+        self.walker_traits = known.collect();
     }
 
     /// How everybody at the wheel drives: by nature, with the habits that the rates ask for, in this weather.
@@ -72,8 +86,7 @@ impl Actors {
         }
         self.conditions = *conditions;
         self.know_drivers();
-        let walkers = self.state.walkers.iter().zip(&mut self.walker_traits);
-        walkers.for_each(|(w, known)| *known = walker_traits(self.seed, w.id).heeding(conditions));
+        self.know_walkers();
     }
 
     /// The map they are on.

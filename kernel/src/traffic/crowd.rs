@@ -11,12 +11,15 @@ fn along(body: &Body) -> f32 {
     body.position.truncate().dot(AXIS)
 }
 
+/// The place in the order of who is not present.
+const ABSENT: u32 = u32::MAX;
+
 /// People by their place.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Crowd {
     /// Place along the axis and index of everybody who is present, ascending.
     order: Vec<(f32, u32)>,
-    /// For each index its place in the order.
+    /// For each index its place in the order; [`ABSENT`] for who is not present.
     rank: Vec<u32>,
 }
 
@@ -34,7 +37,8 @@ impl Crowd {
             self.order.extend(there.map(|i| (along(&bodies[i as usize]), i)));
             self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         }
-        self.rank.resize(bodies.len(), 0);
+        self.rank.clear();
+        self.rank.resize(bodies.len(), ABSENT);
         for (rank, (_, index)) in self.order.iter().enumerate() {
             self.rank[*index as usize] = rank as u32;
         }
@@ -50,6 +54,11 @@ impl Crowd {
                 at -= 1;
             }
         }
+    }
+
+    /// Whether somebody is present.
+    pub fn has(&self, index: usize) -> bool {
+        self.rank[index] != ABSENT
     }
 
     /// Indices of those within `reach_m` of somebody, and of some farther away.

@@ -9,13 +9,19 @@ use crate::time::TICK_HZ;
 
 use super::actors::Actors;
 use super::body::{Body, Obstacle, Surroundings};
+use super::cover;
 use super::horn::{Horn, PEOPLE_ASIDE_M};
 use super::traits::WalkerTraits;
+use super::vehicle::Vehicle;
 use super::walker::{Walker, WalkerMode};
 use super::ways::Ways;
 
 /// Share of all jaywalking that happens just before the ego car, when somebody walks there.
 const BEFORE_EGO: f32 = 0.5;
+/// Share of it that happens, where there is somebody to do it, from behind a parked car or a bus at its stop (assumption).
+const FROM_COVER: f32 = 0.3;
+/// What draws that, as a key of random numbers.
+const COVER_KEY: u64 = u64::MAX - 1;
 /// Share of jaywalkers who run.
 const RUNNERS: f32 = 0.25;
 /// Speed of those, m/s.
@@ -51,11 +57,15 @@ pub(super) fn starter(actors: &Actors, around: &Surroundings<'_>) -> Option<usiz
         return None;
     }
     let seek_ego = unit(seed, Stream::Jaywalk, u64::MAX, tick) < BEFORE_EGO;
+    let seek_cover = unit(seed, Stream::Jaywalk, COVER_KEY, tick) < FROM_COVER;
     let rank = |i: &usize| {
         let walker = &walkers[*i];
         let place = ways.walker_place(walker).beside(walker.offset_m);
         let far = !(seek_ego && is_before(ego, place));
-        (far, bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
+        let is_hidden = |way: [Vec2; 2]| is_free(map, way[0], way[1]) && cover::hides(actors, walker, way);
+        let open = seek_cover && !way_across(map, ways, walker).is_some_and(is_hidden);
+        // Who goes alone leaves nobody behind.
+        (far, open, !actors.groups.is_alone(*i), bits(seed, Stream::Jaywalk, u64::from(walker.id), tick))
     };
     let horn = Horn::of(around);
     let hears = |w: &Walker| horn.is_some_and(|h| h.is_for(ways.walker_place(w).position.truncate(), PEOPLE_ASIDE_M));
@@ -73,8 +83,18 @@ pub(super) fn starter(actors: &Actors, around: &Surroundings<'_>) -> Option<usiz
 
 /// Whether every vehicle in traffic can still stop before a way across the road. Of the ego car a
 /// jaywalker does not think.
-fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
-    let overruns = |body: &Body| {
+pub(super) fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
+    let passes = |body: &Body| {
+        let (middle, axis) = (body.position.truncate(), (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X));
+        let local = |p: Vec2| Vec2::new((p - middle).dot(axis), axis.perp_dot(p - middle));
+        let half = body.kind.size_m().truncate() * 0.5 + WALKER_M;
+        !segment_meets_box(local(from), local(to), half)
+    };
+    let overruns = |(vehicle, body): (&Vehicle, &Body)| {
+        // Who stays at a stop or kerb is passed closely.
+        if cover::stays(vehicle) {
+            return !passes(body);
+        }
         let speed = body.velocity_mps.truncate().length();
         let forward = (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X);
         let half_m = body.kind.size_m().x * 0.5;
@@ -87,7 +107,7 @@ fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
             (aside_m < 3.0 && ahead_m > -half_m && ahead_m < stop_m) || way.length() < half_m + NEAR_M
         })
     };
-    !actors.bodies[..actors.state.vehicles.len()].iter().any(overruns)
+    !actors.state.vehicles.iter().zip(&actors.bodies).any(overruns)
 }
 
 fn beside_road(map: &MapData, walker: &Walker) -> bool {
@@ -113,7 +133,7 @@ fn is_before(ego: &Obstacle, place: Vec3) -> bool {
 }
 
 /// From where to where a walker would cross the road.
-fn way_across(map: &MapData, ways: &Ways, walker: &Walker) -> Option<[Vec2; 2]> {
+pub(super) fn way_across(map: &MapData, ways: &Ways, walker: &Walker) -> Option<[Vec2; 2]> {
     let start = Walker { forward: road_is_left(map, ways, walker), ..*walker };
     let goal = goal(map, ways, &start)?;
     let place = ways.walker_place(&start);

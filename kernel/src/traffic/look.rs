@@ -22,8 +22,9 @@ use super::pass;
 use super::plan::{self, Plan};
 use super::state::TrafficState;
 use super::step::Step;
+use super::turns::Turns;
 use super::vehicle::Vehicle;
-use super::walk::{Streets, wanted_crosswalk};
+use super::walk::Streets;
 use super::walker::{Walker, WalkerMode};
 
 /// The ego car is expected at a junction that it reaches within this time, s.
@@ -111,6 +112,7 @@ impl Sight {
             seed: actors.seed,
             walkers: &actors.state.walkers,
             walker_traits: &actors.walker_traits,
+            groups: &actors.groups,
             places: &actors.places,
             bodies: &actors.bodies[actors.state.vehicles.len()..],
             crowd: &self.crowd,
@@ -179,10 +181,10 @@ impl Sight {
         let changing = self.driven.iter().filter(|(i, _)| vehicles[*i as usize].manoeuvre.is_between_lanes());
         self.changing.extend(changing.map(|(_, hazard)| *hazard));
         self.claims.clear();
-        for (walker, body) in walkers.iter().zip(walked).filter(|(w, _)| !around.holds(w.id)) {
+        for (i, (walker, body)) in walkers.iter().zip(walked).enumerate().filter(|(_, (w, _))| !around.holds(w.id)) {
             let crosswalk = actors.map().walk_edges[walker.edge as usize].crosswalk;
             let waits = walker.mode == WalkerMode::Wait;
-            let claimed = if waits { self.wanted_unlit_crosswalk(actors, walker) } else { crosswalk };
+            let claimed = if waits { self.wanted_unlit_crosswalk(actors, i, walker) } else { crosswalk };
             let astray = walker.offset_m.abs() > actors.map().walk_edges[walker.edge as usize].half_width_m + 0.3;
             if crosswalk.is_some() || astray {
                 self.hazards.push(Hazard::of_body(body));
@@ -195,8 +197,11 @@ impl Sight {
     }
 
     /// The crosswalk without lights at which a walker waits, if it could go when vehicles stopped.
-    fn wanted_unlit_crosswalk(&self, actors: &Actors, walker: &Walker) -> Option<u32> {
-        let wanted = wanted_crosswalk(actors.map(), actors.seed, walker);
+    fn wanted_unlit_crosswalk(&self, actors: &Actors, index: usize, walker: &Walker) -> Option<u32> {
+        let Actors { ways, seed, groups, state, .. } = actors;
+        let (walkers, crowd) = (&state.walkers, &self.crowd);
+        let turns = Turns { map: actors.map(), ways, seed: *seed, walkers, groups, crowd };
+        let wanted = turns.wanted_crosswalk(index, walker);
         let unlit = wanted.filter(|c| actors.ways.crosswalk_lights[*c as usize].is_empty());
         unlit.filter(|c| !self.gaps(actors).is_blocked(*c))
     }

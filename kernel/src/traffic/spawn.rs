@@ -9,6 +9,7 @@ use crate::ops;
 use crate::rng::{Stream, bits, unit};
 
 use super::counts::TrafficCounts;
+use super::groups::first_of_group;
 use super::lapse::Lapse;
 use super::manoeuvre::Manoeuvre;
 use super::plan::stopping_speed;
@@ -28,6 +29,9 @@ const WALKER_SPACE_M: Vec2 = Vec2::splat(0.2);
 const TRIES: u64 = 40;
 /// Who finds none of these free looks all over the map, at places so far apart, metres.
 const SEARCH_M: f32 = 2.5;
+/// Places beside and behind somebody at which those start who walk together, metres along the way and aside.
+const BESIDE_M: [[f32; 2]; 8] =
+    [[0.0, 0.95], [0.0, -0.95], [0.95, 0.0], [-0.95, 0.0], [0.95, 0.95], [0.95, -0.95], [-0.95, 0.95], [-0.95, -0.95]];
 /// Half the extent of a person, metres.
 const WALKER_M: f32 = 0.25;
 /// Half the width of a lane that is wide enough to start on, metres.
@@ -47,33 +51,39 @@ const EMERGENCY_PCT: u64 = 1;
 const SCOOTERS_PCT: u64 = 30;
 const CARGO_PCT: u64 = 6;
 
-/// A stretch on which actors may start: an index, its length, and the sum of lengths up to its end.
+/// A stretch on which actors may start: an index, where on that it begins, its length, how much each metre of it counts,
+/// and the sum of what all metres up to its end do.
 struct Stretch {
     index: u32,
+    from_m: f32,
     length_m: f32,
-    end_m: f32,
+    weight: f32,
+    end: f32,
 }
 
-fn stretches(items: impl Iterator<Item = (u32, f32)>) -> Vec<Stretch> {
-    let mut end_m = 0.0;
-    let add = |(index, length_m): (u32, f32)| {
-        end_m += length_m;
-        Stretch { index, length_m, end_m }
+/// Stretches of an index, a beginning, a length and a weight.
+fn stretches(items: impl Iterator<Item = (u32, f32, f32, f32)>) -> Vec<Stretch> {
+    let mut end = 0.0;
+    let add = |(index, from_m, length_m, weight): (u32, f32, f32, f32)| {
+        end += length_m * weight;
+        Stretch { index, from_m, length_m, weight, end }
     };
     items.map(add).collect()
 }
 
 /// The stretch and the place on it for a number in [0, 1).
 fn pick(stretches: &[Stretch], t: f32) -> (u32, f32) {
-    let at_m = t * stretches.last().map_or(0.0, |s| s.end_m);
-    let i = stretches.partition_point(|s| s.end_m <= at_m).min(stretches.len() - 1);
+    let at = t * stretches.last().map_or(0.0, |s| s.end);
+    let i = stretches.partition_point(|s| s.end <= at).min(stretches.len() - 1);
     let stretch = &stretches[i];
-    (stretch.index, (at_m - (stretch.end_m - stretch.length_m)).clamp(0.0, stretch.length_m))
+    let left_m = (stretch.end - at) / stretch.weight;
+    (stretch.index, stretch.from_m + (stretch.length_m - left_m).clamp(0.0, stretch.length_m))
 }
 
 /// Tries all places, as far apart as a search looks, from a random one on.
 fn search(stretches: &[Stretch], from: f32, mut fits: impl FnMut((u32, f32)) -> bool) -> bool {
-    let total_m = stretches.last().map_or(0.0, |s| s.end_m);
+    // Nothing counts less than 1.
+    let total_m = stretches.last().map_or(0.0, |s| s.end);
     let count = (total_m / SEARCH_M) as u32 + 1;
     (0..count).any(|k| {
         let t = from + k as f32 / count as f32;
@@ -134,7 +144,7 @@ impl Spawner<'_> {
     fn vehicles(&mut self) {
         let lanes = self.map.lanes.iter().enumerate();
         let usable = lanes.filter(|(_, l)| l.kind == LaneKind::Driving && l.junction.is_none() && l.length_m > 10.0);
-        let stretches = stretches(usable.map(|(i, l)| (i as u32, l.length_m)));
+        let stretches = stretches(usable.map(|(i, l)| (i as u32, 0.0, l.length_m, 1.0)));
         if stretches.is_empty() {
             return;
         }
@@ -233,8 +243,12 @@ impl Spawner<'_> {
     }
 
     fn walkers(&mut self) {
-        let edges = self.map.walk_edges.iter().enumerate();
-        let stretches = stretches(edges.filter(|(_, e)| e.crosswalk.is_none()).map(|(i, e)| (i as u32, e.length_m)));
+        let edges = self.map.walk_edges.iter().zip(&self.ways.edges).enumerate();
+        let pieces = edges.filter(|(_, (edge, _))| edge.crosswalk.is_none()).flat_map(|(i, (edge, way))| {
+            let (pieces, length_m) = (&way.draw.pieces, edge.length_m / way.draw.pieces.len() as f32);
+            pieces.iter().enumerate().map(move |(k, draw)| (i as u32, k as f32 * length_m, length_m, *draw))
+        });
+        let stretches = stretches(pieces);
         if stretches.is_empty() {
             return;
         }
@@ -242,7 +256,8 @@ impl Spawner<'_> {
         for number in first..first + u64::from(self.counts.pedestrians) {
             let t = |attempt| unit(self.seed, Stream::Spawn, number, attempt);
             let (drawn, from): (Vec<f32>, f32) = ((0..TRIES).map(t).collect(), t(TRIES + 2));
-            let found = drawn.into_iter().any(|t| self.walker(number, pick(&stretches, t)))
+            let found = self.joins(number)
+                || drawn.into_iter().any(|t| self.walker(number, pick(&stretches, t)))
                 || search(&stretches, from, |place| self.walker(number, place));
             if !found {
                 return;
@@ -250,19 +265,39 @@ impl Spawner<'_> {
         }
     }
 
+    /// Puts somebody beside the one before, if they walk together and there is room.
+    fn joins(&mut self, number: u64) -> bool {
+        let Some(before) = self.state.walkers.last().copied() else { return false };
+        let group = |id| first_of_group(self.seed, id);
+        if group(before.id) != group(self.next_id()) {
+            return false;
+        }
+        let way = &self.map.walk_edges[before.edge as usize];
+        BESIDE_M.into_iter().any(|[along_m, aside_m]| {
+            let (s_m, offset_m) = (before.s_m + along_m, before.offset_m + aside_m);
+            let fits = (0.0..way.length_m).contains(&s_m) && offset_m.abs() <= way.half_width_m;
+            fits && self.walker_at(number, before.edge, s_m, offset_m, before.forward)
+        })
+    }
+
     fn walker(&mut self, number: u64, (edge, s_m): (u32, f32)) -> bool {
+        let traits = walker_traits(self.seed, self.next_id());
+        let way = &self.map.walk_edges[edge as usize];
+        let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
+        let forward = bits(self.seed, Stream::Spawn, number, TRIES + 1) & 1 == 0;
+        self.walker_at(number, edge, s_m, offset_m, forward)
+    }
+
+    fn walker_at(&mut self, number: u64, edge: u32, s_m: f32, offset_m: f32, forward: bool) -> bool {
         let id = self.next_id();
         let traits = walker_traits(self.seed, id);
-        let way = &self.map.walk_edges[edge as usize];
         let place = self.ways.edge_place(edge, s_m);
-        let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
         let middle = place.beside(offset_m).truncate();
         let half = Vec2::splat(WALKER_M) + WALKER_SPACE_M;
         if !self.take(Taken { middle, forward: Vec2::X, half }) {
             return false;
         }
         let random = bits(self.seed, Stream::Spawn, number, TRIES + 1);
-        let forward = random & 1 == 0;
         let ahead = if forward { place.forward } else { -place.forward };
         self.state.walkers.push(Walker {
             id,

@@ -4,17 +4,18 @@ use glam::Vec2;
 
 use crate::map_data::{MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
-use crate::rng::{self, Stream};
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::body::Body;
 use super::company::{Leeway, Near, gather, leeway};
 use super::crosswalk::Gaps;
 use super::crowd::Crowd;
+use super::groups::Groups;
 use super::hazard::Hazard;
 use super::jaywalk;
 use super::slack;
 use super::traits::WalkerTraits;
+use super::turns::{Turns, end_node};
 use super::walker::{Walker, WalkerMode, turns};
 use super::ways::Ways;
 
@@ -68,25 +69,6 @@ const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
 const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 
-/// The edge a walker takes at the end of its own.
-pub(super) fn next_edge(map: &MapData, seed: u64, walker: &Walker) -> WalkEdgeId {
-    let node = end_node(map, walker);
-    let others = || map.walk_nodes[node as usize].edges.iter().copied().filter(|e| *e != walker.edge);
-    let count = others().count() as u32;
-    let pick = rng::below(seed, Stream::Walk, u64::from(walker.id), u64::from(walker.hops), count);
-    others().nth(pick as usize).unwrap_or(walker.edge)
-}
-
-fn end_node(map: &MapData, walker: &Walker) -> u32 {
-    map.walk_edges[walker.edge as usize].nodes[usize::from(walker.forward)]
-}
-
-/// The crosswalk that a waiting walker wants to take.
-pub(super) fn wanted_crosswalk(map: &MapData, seed: u64, walker: &Walker) -> Option<u32> {
-    let next = next_edge(map, seed, walker);
-    map.walk_edges[next as usize].crosswalk.filter(|_| next != walker.edge)
-}
-
 /// What every walker sees of the previous tick.
 pub(super) struct Streets<'a> {
     pub map: &'a MapData,
@@ -94,6 +76,7 @@ pub(super) struct Streets<'a> {
     pub seed: u64,
     pub walkers: &'a [Walker],
     pub walker_traits: &'a [WalkerTraits],
+    pub groups: &'a Groups,
     /// Where they stand on their ways.
     pub places: &'a [Place],
     /// Their bodies.
@@ -108,6 +91,11 @@ pub(super) struct Streets<'a> {
 }
 
 impl Streets<'_> {
+    fn turns(&self) -> Turns<'_> {
+        let Self { map, ways, seed, walkers, groups, crowd, .. } = *self;
+        Turns { map, ways, seed, walkers, groups, crowd }
+    }
+
     /// The next state of walker `index`, and where that is on its way. `near` is scratch.
     pub fn walk(&self, index: usize, near: &mut Vec<Near>) -> (Walker, Place) {
         let mut next = self.walkers[index];
@@ -119,7 +107,7 @@ impl Streets<'_> {
             WalkerMode::Wait if !self.looks(&next) => {
                 next.wait_ticks = next.wait_ticks.saturating_add(1);
                 if next.wait_ticks < TURNED_TICKS {
-                    self.face(self.waiting_direction(&next), &mut next);
+                    self.face(self.waiting_direction(index, &next), &mut next);
                 }
                 return (next, self.places[index]);
             }
@@ -157,14 +145,19 @@ impl Streets<'_> {
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
         }
-        if !slack::is_free(near, step) || (on_road && self.runs_into_vehicle(before, step)) {
+        let hindered = on_road && self.runs_into_vehicle(before, step);
+        if hindered || !slack::is_free(near, step) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
+            if hindered && was.mode == WalkerMode::Walk {
+                next.wait_ticks = was.wait_ticks;
+                halt(&mut next);
+            }
         }
         next.phase = next.phase.wrapping_add((step.length() / STRIDE_M * 65536.0) as u16);
         let ahead = if next.mode == WalkerMode::Jaywalk { place.left() } else { place.forward.truncate() };
         let toward = match next.mode {
-            WalkerMode::Wait => self.waiting_direction(&next),
+            WalkerMode::Wait => self.waiting_direction(index, &next),
             _ if step.length_squared() > FACES_M * FACES_M => step,
             _ => ahead * if next.forward { 1.0 } else { -1.0 },
         };
@@ -182,9 +175,12 @@ impl Streets<'_> {
         let direction = if next.forward { 1.0 } else { -1.0 };
         let place = self.places[index];
         let ahead = place.forward.truncate().normalize_or(Vec2::X) * direction;
-        let pace_mps = self.walker_traits[index].speed_mps;
+        let idling = self.ways.edges[next.edge as usize].draw.pace(self.seed, next, edge.length_m);
+        let own_mps = self.walker_traits[index].speed_mps * idling;
         // Across the road people hurry a little.
-        let wants_mps = if edge.crosswalk.is_some() { (pace_mps * 1.15).max(1.0) } else { pace_mps };
+        let pace_mps = if edge.crosswalk.is_some() { (own_mps * 1.15).max(1.0) } else { own_mps };
+        let together = self.together(index, near, next, pace_mps);
+        let wants_mps = together.speed_mps.unwrap_or(pace_mps);
         let mut leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
         let held_up = leeway.most_mps < HELD_UP_MPS;
         let blocks = edge.crosswalk.and_then(|_| self.blocked(index, ahead));
@@ -195,39 +191,32 @@ impl Streets<'_> {
             return;
         } else {
             give_way(held_up, next);
+            next.forward ^= together.back && !held_up;
             approach_speed(next, wants_mps.min(leeway.most_mps));
         }
         let moved_m = next.speed_mps * TICK_S;
         next.s_m += direction * moved_m;
-        self.drift(index, edge, direction, &leeway, moved_m, next);
+        let likes_m = together.aside_m.unwrap_or_else(|| self.likes_m(index, edge, direction));
+        drift(edge, direction, likes_m, &leeway, moved_m, next);
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         if left_m <= 0.0 {
             self.turn_or_wait(index, near, next);
         }
     }
 
-    /// Moves sideways: to where somebody likes to walk, or past others.
-    fn drift(&self, index: usize, edge: &WalkEdge, direction: f32, leeway: &Leeway, moved_m: f32, next: &mut Walker) {
-        let half_m = edge.half_width_m;
+    /// Where somebody likes to walk, metres to the left of the way.
+    fn likes_m(&self, index: usize, edge: &WalkEdge, direction: f32) -> f32 {
         // To the right, as people mostly keep, and the more so the narrower the way is.
-        let likes_m = self.walker_traits[index].place * (half_m - RIGHT_M).max(0.1) - direction * RIGHT_M;
-        let aim_m = leeway.aside_m.map_or(likes_m, |aside_m| next.offset_m + direction * aside_m);
-        // Whoever comes back from the road goes straight for the way.
-        let over_m = if edge.crosswalk.is_some() { DETOUR_M } else { VERGE_M };
-        let astray = next.offset_m.abs() > half_m + over_m;
-        let least_m = if leeway.aside_m.is_some() { SIDESTEP_MPS * TICK_S } else { 0.0 };
-        let most_m = if astray { moved_m } else { (DRIFT * moved_m).max(least_m) };
-        let room_m = if leeway.aside_m.is_some() { half_m + over_m } else { half_m };
-        next.offset_m += (aim_m.clamp(-room_m, room_m) - next.offset_m).clamp(-most_m, most_m);
+        self.walker_traits[index].place * (edge.half_width_m - RIGHT_M).max(0.1) - direction * RIGHT_M
     }
 
     /// Whoever is held up by others shortly before a crosswalk that is not free waits behind them.
     fn joins_those_who_wait(&self, index: usize, near: &[Near], edge: &WalkEdge, next: &mut Walker) -> bool {
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
-        let wanted = || wanted_crosswalk(self.map, self.seed, next);
+        let wanted = || self.turns().wanted_crosswalk(index, next);
         let waits =
             left_m < QUEUE_M && edge.crosswalk.is_none() && wanted().is_some_and(|c| !self.may_cross(index, c, next));
-        if waits && near.len() > CROWD {
+        if waits && near.len() > CROWD && self.groups.leader(index).is_none() {
             next.hops = next.hops.wrapping_add(1);
             return false;
         }
@@ -239,9 +228,9 @@ impl Streets<'_> {
 
     /// At the end of an edge: takes the next one, or waits at the kerb.
     fn turn_or_wait(&self, index: usize, near: &[Near], next: &mut Walker) {
-        let edge = next_edge(self.map, self.seed, next);
+        let edge = self.turns().next_edge(index, next);
         let crosswalk = self.map.walk_edges[edge as usize].crosswalk.filter(|_| edge != next.edge);
-        if crosswalk.is_some() && near.len() > CROWD {
+        if crosswalk.is_some() && near.len() > CROWD && self.groups.leader(index).is_none() {
             next.hops = next.hops.wrapping_add(1);
         } else if crosswalk.is_some_and(|c| !self.may_cross(index, c, next)) {
             begin_waiting(next);
@@ -267,7 +256,7 @@ impl Streets<'_> {
             next.hops = next.hops.wrapping_add(1);
             next.wait_ticks = 0;
         }
-        let edge = next_edge(self.map, self.seed, next);
+        let edge = self.turns().next_edge(index, next);
         match self.map.walk_edges[edge as usize].crosswalk {
             Some(crosswalk) if edge != next.edge && !self.may_cross(index, crosswalk, next) => {}
             _ => self.enter(edge, next),
@@ -378,8 +367,8 @@ impl Streets<'_> {
         next.heading = next.heading.wrapping_add(turn as u16);
     }
 
-    fn waiting_direction(&self, walker: &Walker) -> Vec2 {
-        let edge = next_edge(self.map, self.seed, walker);
+    fn waiting_direction(&self, index: usize, walker: &Walker) -> Vec2 {
+        let edge = self.turns().next_edge(index, walker);
         let to = &self.map.walk_edges[edge as usize];
         let forward = to.nodes[0] == end_node(self.map, walker);
         let direction = self.ways.edge_place(edge, if forward { 0.0 } else { to.length_m }).forward.truncate();
@@ -405,6 +394,19 @@ fn to_nearest(block: &Hazard, place: Vec2) -> Vec2 {
 /// goes round behind it is not seen.
 fn past_front_m(block: &Hazard, ahead: Vec2) -> f32 {
     ahead.perp_dot(block.forward).signum()
+}
+
+/// Moves sideways: to where somebody likes to walk, or past others.
+fn drift(edge: &WalkEdge, direction: f32, likes_m: f32, leeway: &Leeway, moved_m: f32, next: &mut Walker) {
+    let half_m = edge.half_width_m;
+    let aim_m = leeway.aside_m.map_or(likes_m, |aside_m| next.offset_m + direction * aside_m);
+    // Whoever comes back from the road goes straight for the way.
+    let over_m = if edge.crosswalk.is_some() { DETOUR_M } else { VERGE_M };
+    let astray = next.offset_m.abs() > half_m + over_m;
+    let least_m = if leeway.aside_m.is_some() { SIDESTEP_MPS * TICK_S } else { 0.0 };
+    let most_m = if astray { moved_m } else { (DRIFT * moved_m).max(least_m) };
+    let room_m = if leeway.aside_m.is_some() { half_m + over_m } else { half_m };
+    next.offset_m += (aim_m.clamp(-room_m, room_m) - next.offset_m).clamp(-most_m, most_m);
 }
 
 /// Whoever has stood before others for long turns back.

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use super::doors::{DoorSpot, door_spots};
 use super::lane_way::{CrosswalkSpan, LaneWay, directions, lane_ways};
 use super::links::LEAST_HALF_M;
+use super::reasons::{Draw, draws};
 use super::routes::{Class, Routes};
 use super::walker::Walker;
 use crate::actor::ActorKind;
@@ -30,6 +31,8 @@ pub(super) struct EdgeWay {
     pub forward: Vec<Vec3>,
     /// Sidewalks that may lie across the road.
     pub facing: Vec<u32>,
+    /// How much it draws people.
+    pub draw: Draw,
 }
 
 /// What traffic looks up in a map.
@@ -62,7 +65,7 @@ impl Ways {
             places: places.clone(),
             routes: Routes::new(&map.lanes, &lanes, kerb),
             lanes,
-            edges: (0..map.walk_edges.len()).map(|e| edge_way(map, e)).collect(),
+            edges: draws(map, kerb).into_iter().enumerate().map(|(e, draw)| edge_way(map, e, draw)).collect(),
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
             bicycle_entries: Vec::new(),
@@ -167,14 +170,14 @@ fn kerb(places: &Places) -> i8 {
     if count(-1.0) > count(1.0) { 1 } else { -1 }
 }
 
-fn edge_way(map: &MapData, index: usize) -> EdgeWay {
+fn edge_way(map: &MapData, index: usize, draw: Draw) -> EdgeWay {
     let edge = &map.walk_edges[index];
     let mut s_m = vec![0.0];
     for pair in edge.points.windows(2) {
         s_m.push(s_m[s_m.len() - 1] + pair[0].truncate().distance(pair[1].truncate()));
     }
     let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(map, index) } else { Vec::new() };
-    EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing }
+    EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing, draw }
 }
 
 fn facing(map: &MapData, index: usize) -> Vec<u32> {

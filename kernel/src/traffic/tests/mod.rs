@@ -5,6 +5,7 @@ mod crossroads;
 mod encroachment;
 mod free_road;
 mod mistakes;
+mod people;
 
 use std::sync::Arc;
 

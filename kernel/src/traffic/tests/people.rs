@@ -1,0 +1,153 @@
+//! People on foot: where they are, and with whom.
+
+use std::sync::Arc;
+
+use super::crossroads::{Signs, crossroads};
+use super::{MINUTE, car_at, counts, nowhere, run};
+use glam::Vec3;
+
+use crate::map::{RoadNetwork, bundled};
+use crate::time::Tick;
+use crate::traffic::{Surroundings, Traffic, TrafficCounts, Walker, WalkerMode, cover, jaywalk};
+use crate::weather::Conditions;
+
+/// So many people on foot and little traffic.
+fn with_people(network: &Arc<RoadNetwork>, pedestrians: u16, seed: u64) -> Traffic {
+    let counts = TrafficCounts { pedestrians, jaywalks_per_min: 0.0, ..counts(20) };
+    Traffic::spawn(&counts, seed, network.ways(), nowhere().position)
+}
+
+/// People on each metre of sidewalks where there are so many reasons to be.
+#[derive(Default)]
+struct Density {
+    people: [f32; 2],
+    length_m: [f32; 2],
+}
+
+impl Density {
+    /// How many times as dense people are where the draw is above this.
+    fn ratio(&self) -> f32 {
+        let [few, many] = [0, 1].map(|k| self.people[k] / self.length_m[k]);
+        many / few
+    }
+
+    /// Adds who is on a sidewalk at this moment.
+    fn add(&mut self, traffic: &Traffic, least: f32) {
+        let (ways, map) = (&traffic.actors.ways, traffic.actors.map());
+        for (edge, way) in map.walk_edges.iter().zip(&ways.edges).filter(|(edge, _)| edge.crosswalk.is_none()) {
+            for draw in &way.draw.pieces {
+                self.length_m[usize::from(*draw >= least)] += edge.length_m / way.draw.pieces.len() as f32;
+            }
+        }
+        for walker in &traffic.state().walkers {
+            let edge = &map.walk_edges[walker.edge as usize];
+            if edge.crosswalk.is_none() {
+                let draw = ways.edges[walker.edge as usize].draw.at(walker.s_m.max(0.0), edge.length_m);
+                self.people[usize::from(draw >= least)] += 1.0;
+            }
+        }
+    }
+}
+
+#[test]
+fn people_are_where_there_is_a_reason_and_stay_there() {
+    // In the city houses are everywhere.
+    let (network, least) = (bundled("city").expect("it is bundled"), 3.0);
+    let (mut first, mut last) = (Density::default(), Density::default());
+    for seed in 2101..2105 {
+        let mut traffic = with_people(&network, 200, seed);
+        first.add(&traffic, least);
+        run(&mut traffic, 1..25 * MINUTE, |t, tick| {
+            if tick > 20 * MINUTE && tick % 600 == 0 {
+                last.add(t, least);
+            }
+        });
+    }
+    let (first, last) = (first.ratio(), last.ratio());
+    println!("{first} times as many at the start, {last} times as many after 20 min");
+    assert!(first > 1.5 && last > 1.4, "{first} {last}");
+}
+
+/// How often people who walk together are within so many metres of who leads, and how many of them are so side by side.
+fn together(traffic: &mut Traffic, minutes: Tick, near_m: f32) -> [f32; 2] {
+    let (mut near, mut beside, mut all) = (0, 0, 0);
+    run(traffic, 1..minutes * MINUTE, |t, tick| {
+        if tick % 120 != 0 {
+            return;
+        }
+        let people = &t.actors.bodies[t.state().vehicles.len()..];
+        for index in 0..people.len() {
+            let Some(leader) = t.actors.groups.leader(index) else { continue };
+            let to = people[index].position - people[leader].position;
+            let ahead = people[leader].rotation * Vec3::X;
+            all += 1;
+            near += u32::from(to.length() < near_m);
+            beside += u32::from(to.length() < near_m && to.dot(ahead).abs() < 0.5 * to.length());
+        }
+    });
+    [near, beside].map(|count| count as f32 / all as f32)
+}
+
+#[test]
+fn who_walks_together_stays_together() {
+    for (map, pedestrians, least) in [("city", 200, 0.8), ("rural", 60, 0.8)] {
+        let network = bundled(map).expect("it is bundled");
+        for seed in 2101..2104 {
+            let mut traffic = with_people(&network, pedestrians, seed);
+            let [near, beside] = together(&mut traffic, 20, 5.0);
+            println!("{map} {seed}: within 5 m {near} of the time, side by side {beside}");
+            assert!(near > least, "{map} {seed}: {near}");
+        }
+    }
+}
+
+#[test]
+fn who_crosses_close_before_a_car_gets_past_it() {
+    let network = crossroads(Signs::Yield);
+    let mut state = with_people(&network, 1, 2101).state().clone();
+    state.vehicles.clear();
+    let crosswalk = network.walk_edges.iter().position(|e| e.crosswalk.is_some()).expect("there is one");
+    let edge = &network.walk_edges[crosswalk];
+    // Beside the crosswalk, so that it wants back to it, where the car stands that waits for it.
+    let (s_m, offset_m) = (edge.length_m * 0.5, edge.half_width_m + 0.8);
+    state.walkers[0] = Walker { edge: crosswalk as u32, s_m, offset_m, ..state.walkers[0] };
+    let place = network.ways().walker_place(&state.walkers[0]);
+    let left = place.left();
+    let car = place.beside(offset_m) - left.extend(0.0) * (0.28 + 2.25);
+    let mut traffic = Traffic::with(&counts(1), 2101, network.ways(), state);
+    let ego = car_at(car, crate::ops::atan2(left.y, left.x));
+    for tick in 1..10 * 60 {
+        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+    }
+    let away_m = traffic.bodies()[0].position.distance(place.beside(offset_m));
+    assert!(away_m > 4.0, "{away_m} m: {:?}", traffic.state().walkers[0]);
+}
+
+#[test]
+fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car() {
+    let network = bundled("city").expect("it is bundled");
+    let (minutes, a_minute) = (10, 6.0);
+    let (mut all, mut hidden) = (0, 0);
+    for seed in 2101..2105 {
+        let counts = TrafficCounts { jaywalks_per_min: a_minute, ..counts(100) };
+        let mut traffic = Traffic::spawn(&counts, seed, network.ways(), nowhere().position);
+        let mut before = traffic.actors.clone();
+        run(&mut traffic, 1..minutes * MINUTE, |t, tick| {
+            let starts = |i: &usize| {
+                t.state().walkers[*i].mode == WalkerMode::Jaywalk && before.state.walkers[*i].mode == WalkerMode::Walk
+            };
+            for i in (0..t.state().walkers.len()).filter(starts) {
+                let walker = &before.state.walkers[i];
+                let way = jaywalk::way_across(before.map(), &before.ways, walker).expect("it goes");
+                all += 1;
+                hidden += u32::from(cover::hides(&before, walker, way));
+                assert!(jaywalk::can_stop(&before, way[0], way[1]), "walker {} at tick {tick}", walker.id);
+            }
+            before.clone_from(&t.actors);
+        });
+    }
+    println!("{all} jaywalks, {hidden} of them from behind something that stands");
+    let expected = 4.0 * minutes as f32 * a_minute;
+    assert!((all as f32 - expected).abs() < 3.0 * expected.sqrt(), "{all} where {expected} are asked for");
+    assert!(hidden as f32 > 0.25 * all as f32, "{hidden} of {all}");
+}
