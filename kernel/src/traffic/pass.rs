@@ -264,9 +264,10 @@ impl View<'_> {
     /// The greatest acceleration of one who passes, m/s²: beside those who queue it falls back.
     pub(super) fn falls_back_mps2(&self, index: usize, plan: &Plan, seeker: &Seeker) -> f32 {
         let vehicle = &self.vehicles[index];
-        let side = vehicle.manoeuvre.side();
-        let passed = if vehicle.manoeuvre.passes() { self.passed(index, plan, seeker, side) } else { None };
-        let queue = passed.filter(|passed| passed.queues() && passed.gap_m < BEHIND_M);
+        let passes = vehicle.manoeuvre.passes() && vehicle.flags & Vehicle::GRANTED == 0;
+        let passed = if passes { self.passed(index, plan, seeker, vehicle.manoeuvre.side()) } else { None };
+        // Who stands goes on only when the others do, or when this one has gone.
+        let queue = passed.filter(|passed| passed.queues() && passed.gap_m < BEHIND_M && passed.speed_mps > 0.0);
         queue.map_or(f32::MAX, |queue| {
             let mps = (queue.speed_mps - FALL_BACK_MPS).max(0.0);
             ((mps - vehicle.speed_mps) / FALL_BACK_S).max(-SWING_OUT_MPS2)

@@ -33,6 +33,11 @@ const LEAST_CONTRAST_LN: f32 = 3.912;
 /// begin to call fog.
 const DENSEST_FOG_M: f32 = 50.0;
 
+/// Headlights are on while the sun is lower than this, where one sees less far than this, and from so much rain on.
+const DUSK_DEG: f32 = 5.0;
+const LIT_FOG_M: f32 = 300.0;
+const LIT_RAIN_PCT: f32 = 30.0;
+
 impl Weather {
     /// Weather without rain, wetness and fog.
     pub const fn dry(cloudiness_pct: f32, wind_pct: f32, sun_altitude_deg: f32, sun_azimuth_deg: f32) -> Self {
@@ -47,6 +52,13 @@ impl Weather {
             fog_density_pct: 0.0,
             fog_distance_m: 0.0,
         }
+    }
+
+    /// Whether one drives with headlights: at dusk, in the dark, and where fog or rain hinder sight much (StVO section 17; the
+    /// limits are assumptions).
+    pub fn calls_for_headlights(&self) -> bool {
+        let hinders = self.visibility_m() < LIT_FOG_M || self.precipitation_pct >= LIT_RAIN_PCT;
+        self.sun_altitude_deg < DUSK_DEG || hinders
     }
 
     /// Extinction of light by the fog, 1/m.
@@ -67,6 +79,17 @@ impl Weather {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn headlights_are_on_in_the_dark_in_fog_and_in_rain() {
+        let day = Weather::dry(50.0, 0.0, 45.0, 0.0);
+        let fog = Weather { fog_density_pct: 60.0, ..day };
+        let drizzle = Weather { precipitation_pct: 15.0, fog_density_pct: 5.0, ..day };
+        assert!(![day, drizzle].iter().any(Weather::calls_for_headlights));
+        let rain = Weather { precipitation_pct: 60.0, ..day };
+        let dusk = Weather { sun_altitude_deg: 1.0, ..day };
+        assert!([fog, rain, dusk].iter().all(Weather::calls_for_headlights));
+    }
 
     #[test]
     fn one_sees_as_far_as_fog_lets_two_percent_of_the_contrast_through() {

@@ -14,7 +14,7 @@ use crate::motion::Motion;
 use crate::scenario::Scenario;
 use crate::scene::{ActorScene, EgoScene, SceneSnapshot, lamps, quantise};
 use crate::signals;
-use crate::traffic::Missing;
+use crate::traffic::{Body, Missing};
 use crate::watch::Watch;
 use crate::weather::Water;
 
@@ -56,6 +56,7 @@ impl World {
     pub fn scene(&self) -> SceneSnapshot {
         let (tick, car) = (self.tick(), &self.parts.ego.car);
         let phase = |group| signals::phase(&self.network, self.scenario.seed, group, tick).0;
+        let weather = self.scenario.weather_at(tick);
         let mut scene = SceneSnapshot {
             tick,
             ego: EgoScene {
@@ -65,16 +66,17 @@ impl World {
                 wheel_angle_rad: car.gear.wheel_angle_rad,
                 lamps: lamps_of(&self.parts.output.applied.controls),
             },
-            actors: self.actors().chain(self.pushed_cars()).chain(self.doors()).collect(),
+            actors: self.actors(weather.calls_for_headlights()).chain(self.pushed_cars()).chain(self.doors()).collect(),
             lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
-            weather: self.scenario.weather_at(tick),
+            weather,
         };
         quantise(&mut scene);
         scene
     }
 
-    fn actors(&self) -> impl Iterator<Item = ActorScene> + '_ {
-        self.traffic.bodies().iter().map(|body| {
+    fn actors(&self, lit: bool) -> impl Iterator<Item = ActorScene> + '_ {
+        let lights = move |body: &Body| if lit && !body.kind.is_on_foot() { lamps::HEADLIGHTS } else { 0 };
+        self.traffic.bodies().iter().map(move |body| {
             let loose = self.parts.bodies.loose(body.id).map(|loose| loose.motion);
             let (position, rotation) = loose.map_or((body.position, body.rotation), |m| (m.position, m.rotation));
             let velocity = loose.map_or(body.velocity_mps, |m| m.velocity_mps);
@@ -86,7 +88,7 @@ impl World {
                 rotation,
                 speed_mps: velocity.dot(rotation * Vec3::X),
                 phase_rad: body.phase_rad,
-                lamps: if loose.is_none() { body.lamps } else { 0 },
+                lamps: if loose.is_none() { body.lamps | lights(body) } else { 0 },
             }
         })
     }
