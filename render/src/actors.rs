@@ -19,6 +19,9 @@ use crate::view::View;
 /// Actors smaller than this many pixels are left out.
 const SMALLEST_PX: f32 = 1.2;
 
+/// Who comes this close to the eye is not drawn, metres: it would fill the picture.
+const EYE_ROOM_M: f32 = 0.5;
+
 /// Indicators flash 1.5 times a second (UN regulation 48: 60 to 120 times a minute).
 const FLASH_TICKS: Tick = TICK_HZ as Tick * 2 / 3;
 const AMBER: [u8; 3] = [255, 158, 32];
@@ -98,7 +101,7 @@ impl Cast {
         if pixels > 4.0 && view.sees(centre, radius + SHADOW_M) {
             moving.shadows.push((frame, size));
         }
-        if pixels < SMALLEST_PX || !view.sees(centre, radius) {
+        if pixels < SMALLEST_PX || !view.sees(centre, radius) || is_around(actor, view.eye) {
             return;
         }
         let detail = view.detail(centre, radius);
@@ -133,6 +136,13 @@ impl Cast {
 fn sphere(actor: &ActorScene) -> (Vec3, f32) {
     let size = actor.kind.size_m();
     (actor.position + Vec3::Z * 0.5 * size.z, 0.5 * size.length() + 0.4)
+}
+
+/// Whether an eye looks out of an actor, or from right above its roof: a chase camera does, when somebody follows closely.
+fn is_around(actor: &ActorScene, eye: Vec3) -> bool {
+    let half = 0.5 * actor.kind.size_m();
+    let local = actor.rotation.inverse() * (eye - actor.position) - Vec3::Z * half.z;
+    (local.abs() - half).max_element() < EYE_ROOM_M
 }
 
 impl Moving {
@@ -178,20 +188,53 @@ mod tests {
     use crate::Camera;
     use crate::mesh::CODE_HEAD;
 
-    /// Colours of the lamps of the ego car that shine at a tick, seen from behind and above.
-    fn shining(lamps: u8, tick: Tick) -> Vec<[u8; 3]> {
+    /// What is drawn of the ego car and others, seen from behind and above.
+    fn drawn(lamps: u8, tick: Tick, actors: Vec<ActorScene>) -> Vec<Vertex> {
         let ego =
             EgoScene { position: Vec3::ZERO, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0, lamps };
         let weather = Weather::dry(0.0, 0.0, 45.0, 0.0);
-        let scene = SceneSnapshot { tick, ego, actors: Vec::new(), lights: Vec::new(), weather };
+        let scene = SceneSnapshot { tick, ego, actors, lights: Vec::new(), weather };
         let view = View::new(&Camera::chase(320, 200), &scene.ego);
         let mut moving = Moving::default();
         Cast::default().pose(&scene, &[], &view, Horizon::new(view.eye, &[], 100.0), &mut moving);
-        assert!(moving.vertices.iter().any(|v| v.code == CODE_HEAD || v.code == CODE_LIT), "the car is there");
-        let mut lit: Vec<_> = moving.vertices.iter().filter(|v| v.code == CODE_LIT).map(|v| v.colour).collect();
+        moving.vertices
+    }
+
+    /// Colours of lamps that shine.
+    fn lit(vertices: &[Vertex]) -> Vec<[u8; 3]> {
+        let mut lit: Vec<_> = vertices.iter().filter(|v| v.code == CODE_LIT).map(|v| v.colour).collect();
         lit.sort_unstable();
         lit.dedup();
         lit
+    }
+
+    fn actor(kind: ActorKind, x: f32, lamps: u8) -> ActorScene {
+        let (position, rotation) = (Vec3::X * x, Quat::IDENTITY);
+        ActorScene { id: 1, kind, variant: 4, position, rotation, speed_mps: 0.0, phase_rad: 0.0, lamps }
+    }
+
+    /// Colours of the lamps of the ego car that shine at a tick.
+    fn shining(lamps: u8, tick: Tick) -> Vec<[u8; 3]> {
+        let vertices = drawn(lamps, tick, Vec::new());
+        assert!(vertices.iter().any(|v| v.code == CODE_HEAD || v.code == CODE_LIT), "the car is there");
+        lit(&vertices)
+    }
+
+    #[test]
+    fn all_lamps_of_every_motor_vehicle_shine() {
+        let all = lamps::HEADLIGHTS | lamps::BRAKE | lamps::LEFT | lamps::RIGHT;
+        for &kind in ActorKind::ALL {
+            let lit = lit(&drawn(0, 0, vec![actor(kind, 20.0, all)]));
+            let has_lamps = kind.is_car_or_heavier() || kind.is_motorcycle();
+            assert_eq!(lit.len(), if has_lamps { 3 } else { 0 }, "{kind:?}: {lit:?}");
+        }
+    }
+
+    #[test]
+    fn who_stands_at_the_eye_is_not_drawn() {
+        let is_drawn = |x: f32| drawn(0, 0, vec![actor(ActorKind::Truck, x, 0)]).iter().any(|v| v.instance == 1);
+        assert!(!is_drawn(-6.0), "the eye is above its roof");
+        assert!(is_drawn(20.0) && is_drawn(-1.0));
     }
 
     #[test]

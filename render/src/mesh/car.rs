@@ -24,6 +24,9 @@ const LACQUERS: [[u8; 3]; 12] = [
 
 pub(super) const GLASS: [u8; 3] = [30, 38, 46];
 pub(super) const RUBBER: [u8; 3] = [26, 26, 28];
+/// Brake lamps and indicators that are off, which also in the sun look darker than those that shine.
+pub(super) const BRAKE_LAMP: [u8; 3] = [96, 10, 12];
+pub(super) const INDICATOR: [u8; 3] = [132, 70, 18];
 pub(super) const RIM: [u8; 3] = [150, 152, 156];
 
 /// Side view of a car: points (x, z) in metres, the origin below its middle, all at rest height.
@@ -240,12 +243,12 @@ fn lights(mesh: &mut Mesh, shape: &Shape) {
     let (front, rear) = (shape.belt[1], shape.belt[shape.belt.len() - 1]);
     let w = shape.half_width - 0.08;
     let lamp = Paint::plain(tag, [236, 238, 228]).glossy(200).coded(CODE_HEAD);
-    let brake = Paint::plain(tag, [150, 14, 16]).coded(CODE_BRAKE);
+    let brake = Paint::plain(tag, BRAKE_LAMP).coded(CODE_BRAKE);
     for side in [-1.0f32, 1.0] {
         let (y0, y1) = (side * w, side * (w - 0.36));
         facing(mesh, lamp, front.0 + 0.015, [y0, y1], [front.1 - 0.02, front.1 + 0.13]);
         facing(mesh, brake, -(rear.0.abs() + 0.02), [y0, side * (w - 0.28)], [0.68, 0.86]);
-        let amber = Paint::plain(tag, [176, 92, 20]).coded(if side > 0.0 { CODE_LEFT } else { CODE_RIGHT });
+        let amber = Paint::plain(tag, INDICATOR).coded(if side > 0.0 { CODE_LEFT } else { CODE_RIGHT });
         facing(mesh, amber, front.0 + 0.02, [y0, side * (w - 0.12)], [front.1 - 0.09, front.1 - 0.03]);
         facing(mesh, amber, -(rear.0.abs() + 0.02), [y0, side * (w - 0.28)], [0.58, 0.67]);
     }

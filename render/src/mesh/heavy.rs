@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use super::car::{GLASS, facing, wheel};
+use super::car::{BRAKE_LAMP, GLASS, INDICATOR, facing, wheel};
 use super::model::Detail;
 use super::variety::Variety;
-use super::{CODE_BRAKE, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
+use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 
 const CABS: [[u8; 3]; 6] = [[224, 224, 220], [170, 36, 32], [36, 74, 138], [214, 150, 32], [58, 98, 66], [70, 74, 80]];
@@ -34,25 +34,26 @@ pub(super) fn side_windows(mesh: &mut Mesh, glass: Paint, x: [f32; 2], half_widt
 
 /// Lamps at both ends of a vehicle that reaches from `-length / 2` to `length / 2`.
 pub(super) fn lamps(mesh: &mut Mesh, tag: SemanticTag, length: f32, half_width: f32) {
-    let head = Paint::plain(tag, [236, 238, 228]).glossy(200);
-    let brake = Paint::plain(tag, [150, 14, 16]).coded(CODE_BRAKE);
+    let head = Paint::plain(tag, [236, 238, 228]).glossy(200).coded(CODE_HEAD);
+    let brake = Paint::plain(tag, BRAKE_LAMP).coded(CODE_BRAKE);
     let plate = Paint::plain(tag, [226, 226, 220]);
     let end = 0.5 * length + 0.015;
     for side in [-1.0f32, 1.0] {
         let y = [side * (half_width - 0.08), side * (half_width - 0.42)];
         facing(mesh, head, end, y, [0.6, 0.8]);
         facing(mesh, brake, -end, y, [0.7, 0.92]);
-        let amber = Paint::plain(tag, [176, 92, 20]).coded(if side > 0.0 { CODE_LEFT } else { CODE_RIGHT });
+        let amber = Paint::plain(tag, INDICATOR).coded(if side > 0.0 { CODE_LEFT } else { CODE_RIGHT });
         facing(mesh, amber, end, y, [0.48, 0.58]);
         facing(mesh, amber, -end, y, [0.57, 0.68]);
     }
     facing(mesh, plate, -end, [-0.26, 0.26], [0.5, 0.62]);
 }
 
+/// Wheels whose faces stand out of the flanks a little, as those have no arches.
 fn wheels(mesh: &mut Mesh, tag: SemanticTag, axles: &[f32], half_width: f32, detail: Detail) {
     for &x in axles {
         for side in [-1.0, 1.0] {
-            wheel(mesh, tag, Vec3::new(x, side * (half_width - 0.12), 0.48), side, 0.48, detail);
+            wheel(mesh, tag, Vec3::new(x, side * (half_width - 0.09), 0.48), side, 0.48, detail);
         }
     }
 }
@@ -143,7 +144,7 @@ pub fn bus(variant: u32, detail: Detail) -> Mesh {
     bus_windows(&mut mesh, glass, detail);
     let skirt = livery.shaded(0.55);
     side_windows(&mut mesh, skirt, [-5.4, 5.4], 1.25, [0.34, 0.62]);
-    wheels(&mut mesh, tag, &[2.9, -3.0], 1.24, detail);
+    wheels(&mut mesh, tag, &[2.9, -3.0], 1.25, detail);
     lamps(&mut mesh, tag, 11.0, 1.2);
     mesh
 }

@@ -62,6 +62,16 @@ impl Look {
         }
     }
 
+    /// Dressed for a saddle.
+    pub(super) fn riding(self) -> Self {
+        Self { skirt: false, ..self }
+    }
+
+    /// Dressed for a chair with a back.
+    pub(super) fn sitting(self) -> Self {
+        Self { bag: false, ..self.riding() }
+    }
+
     fn paint(&self, colour: [u8; 3]) -> Paint {
         Paint::plain(self.tag, colour)
     }

@@ -5,11 +5,11 @@ use core::f32::consts::TAU;
 use glam::Vec3;
 use kernel::ops;
 
-use super::car::RUBBER;
+use super::car::{BRAKE_LAMP, INDICATOR, RUBBER};
 use super::model::{Detail, Model};
 use super::person::{Look, Seat, ride};
 use super::variety::Variety;
-use super::{CODE_BRAKE, Mesh, Paint};
+use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 
 const FRAMES: [[u8; 3]; 7] =
@@ -61,11 +61,9 @@ pub fn motorcycle(variant: u32, detail: Detail) -> Model {
         mesh.tube(dark, Vec3::new(0.72, y, 0.31), Vec3::new(0.45, y, 0.98), 0.035, 0.035, 5);
     }
     mesh.rod(dark, Vec3::new(0.42, -0.34, 1.02), Vec3::new(0.42, 0.34, 1.02), 0.025, 5);
-    mesh.disc(Paint::plain(tag, [238, 238, 228]).glossy(200), Vec3::new(0.83, 0.0, 0.9), Vec3::X, 0.09, 8);
-    let brake = Paint::plain(tag, [150, 14, 16]).coded(CODE_BRAKE);
-    mesh.disc(brake, Vec3::new(-0.93, 0.0, 0.69), Vec3::NEG_X, 0.06, 6);
+    lamps(&mut mesh);
     let mut model = Model::rigid(mesh);
-    let look = Look::of(&mut variety, SemanticTag::Rider, detail);
+    let look = Look::of(&mut variety, SemanticTag::Rider, detail).riding();
     let seat = Seat {
         hip: Vec3::new(-0.28, 0.0, 0.88),
         lean_rad: 0.32,
@@ -75,6 +73,21 @@ pub fn motorcycle(variant: u32, detail: Detail) -> Model {
     };
     ride(&mut model, &look, &seat, Some(variety.pick(&HELMETS)));
     model
+}
+
+/// Head lamp, brake lamp and indicators of a motorcycle.
+fn lamps(mesh: &mut Mesh) {
+    let tag = SemanticTag::Motorcycle;
+    let head = Paint::plain(tag, [238, 238, 228]).glossy(200).coded(CODE_HEAD);
+    mesh.disc(head, Vec3::new(0.83, 0.0, 0.9), Vec3::X, 0.09, 8);
+    let brake = Paint::plain(tag, BRAKE_LAMP).coded(CODE_BRAKE);
+    mesh.disc(brake, Vec3::new(-0.93, 0.0, 0.69), Vec3::NEG_X, 0.06, 6);
+    for (side, code) in [(1.0, CODE_LEFT), (-1.0, CODE_RIGHT)] {
+        let amber = Paint::plain(tag, INDICATOR).coded(code);
+        for at in [Vec3::new(0.6, 0.26, 0.94), Vec3::new(-0.86, 0.16, 0.74)] {
+            mesh.ellipsoid(amber, at * Vec3::new(1.0, side, 1.0), Vec3::new(0.05, 0.04, 0.04), 3, 5);
+        }
+    }
 }
 
 /// A scooter of class Motorcycle under a rider of class Rider: a smaller motorcycle.
@@ -134,7 +147,7 @@ fn pedalled(variant: u32, detail: Detail, carries: bool) -> Model {
         cargo(&mut mesh, &mut { variety }, detail);
     }
     let mut model = Model::rigid(mesh);
-    let look = Look::of(&mut variety, SemanticTag::Rider, detail);
+    let look = Look::of(&mut variety, SemanticTag::Rider, detail).riding();
     let seat = Seat {
         hip: Vec3::new(-0.22, 0.0, 1.0),
         lean_rad: 0.42,

@@ -45,7 +45,7 @@ pub fn pram(variant: u32, detail: Detail) -> Model {
 /// Somebody in a wheelchair.
 pub fn wheelchair(variant: u32, detail: Detail) -> Model {
     let mut variety = Variety::of(variant);
-    let look = Look::of(&mut variety, TAG, detail);
+    let look = Look::of(&mut variety, TAG, detail).sitting();
     let mut model = Model::rigid(chair(Paint::plain(TAG, variety.colour(&CLOTHS)), detail));
     let seat = Seat {
         hip: Vec3::new(-0.14, 0.0, 0.56),
