@@ -33,11 +33,11 @@ struct Drive {
 /// rain begins.
 const DRIVES: [Drive; 3] = [
     Drive { name: "city", map: "city", seed: 101, scenario: "" },
-    Drive { name: "rural", map: "rural", seed: 1, scenario: "" },
+    Drive { name: "rural", map: "rural", seed: 2, scenario: "" },
     Drive {
         name: "mistakes",
         map: "city",
-        seed: 102,
+        seed: 116,
         scenario: "[hazards]\nlevel = \"raised\"\nred_light_runners = 1.0\nrolling_stops = 1.0\ncut_ins_per_h = 600.0\n\
                    hard_brakings_per_h = 120.0\npull_outs_per_h = 600.0\n\
                    [weather.later]\npreset = \"HardRainNoon\"\nover_s = 40.0\n",

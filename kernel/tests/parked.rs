@@ -169,7 +169,7 @@ fn nothing_changes_while_nobody_touches_them() {
 
 /// Drives into a car and on for so many seconds; the world, and its last keyframe with the inputs and hashes since.
 fn pushed_world(cars: u16, seconds: u32) -> (World, Keyframe, Vec<(TickInput, kernel::StateHash)>) {
-    let network = street(&[parked(FIRST_M, 0.6), parked(FIRST_M + 6.0, 0.6)]);
+    let network = street(&[parked(FIRST_M, 0.6), parked(FIRST_M + 12.0, 0.6)]);
     let mut world = World::new(&scenario(cars), &network).expect("the scenario fits");
     let (mut keyframe, mut since) = (world.initial_keyframe(), Vec::new());
     let mut hit = false;

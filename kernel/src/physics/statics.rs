@@ -126,6 +126,9 @@ fn filled(colliders: &mut ColliderSet) -> BroadPhaseBvh {
     broad_phase
 }
 
+/// Boxes that slide over the ground do not catch on the edges between its triangles.
+const SMOOTH: TriMeshFlags = TriMeshFlags::FIX_INTERNAL_EDGES;
+
 /// All surfaces of some kinds as one mesh; none where the map has no such surface.
 fn mesh(map: &MapData, wanted: fn(SurfaceKind) -> bool) -> Option<Ground> {
     let (mut vertices, mut triangles, mut kinds) = (Vec::new(), Vec::new(), Vec::new());
@@ -135,7 +138,7 @@ fn mesh(map: &MapData, wanted: fn(SurfaceKind) -> bool) -> Option<Ground> {
         vertices.extend_from_slice(&surface.positions);
         triangles.extend(surface.triangles.iter().map(|t| t.map(|v| v + first)));
     }
-    Some(Ground { shape: SharedShape::trimesh(vertices, triangles).ok()?, kinds })
+    Some(Ground { shape: SharedShape::trimesh_with_flags(vertices, triangles, SMOOTH).ok()?, kinds })
 }
 
 /// The solid box of a prop: of a tree its trunk, of a lamp or a sign its post.

@@ -56,6 +56,10 @@ const ONCOMING_M: f32 = 4.0;
 /// Who is nearer ahead than this is beside, and kept off so far to the side, metres.
 const BESIDE_M: f32 = 1.0;
 const ASIDE_M: f32 = 0.4;
+/// People on the road so near ahead, metres and seconds, and aside, metres, are let by before a change.
+const PEOPLE_M: f32 = 20.0;
+const PEOPLE_S: f32 = 4.0;
+const PEOPLE_ASIDE_M: f32 = 9.0;
 /// How far others are looked for, metres, over so many lanes at most ahead and behind.
 const REACH_M: f32 = 80.0;
 const LANES: usize = 4;
@@ -117,7 +121,7 @@ impl View<'_> {
         // A grant is for the way from this lane.
         let granted = next.flags & Vehicle::GRANTED != 0;
         let ready = next.manoeuvre.signals() && next.signal_ticks >= SIGNAL_TICKS && !granted;
-        if !ready || !turn || next.lane != vehicle.lane {
+        if !ready || !turn || next.lane != vehicle.lane || self.people_are_ahead(index) {
             return;
         }
         let Some(there) = self.target(index, plan, next.manoeuvre.side()).filter(|there| self.is_safe(index, there))
@@ -153,15 +157,15 @@ impl View<'_> {
         let heed = |hazard: &Hazard| {
             let Some(seen) = sight(self.map, self.steps_of(plan), seeker, hazard) else { return };
             let comes_mps = -seen.speed_mps;
-            let (mut gap_m, mut ahead_m) = (seen.gap_m, seen.gap_m);
+            let (mut gap_m, mut ahead_m, mut slow_mps) = (seen.gap_m, seen.gap_m, f32::MAX);
             if hazard.forward.dot(forward) < -0.3 {
                 // Each drives a part of the way to where they meet.
                 let mps = seeker.speed_mps.max(LEAST_MPS);
                 ahead_m *= mps / (mps + comes_mps.max(0.0));
                 // Who comes between lanes needs room to get back into its own.
                 gap_m -= if between { 0.0 } else { ONCOMING_M + 2.0 * hazard.half.x };
+                slow_mps = seeker.speed_mps + hazard.velocity.length();
             }
-            let slow_mps = seeker.speed_mps + hazard.velocity.length();
             if seen.blocks_at(offset_at(ahead_m.max(0.0)), seeker.half.y, slow_mps) {
                 follow(gap_m, seen.speed_mps);
             }
@@ -321,6 +325,17 @@ impl View<'_> {
                 leaves(&n) && safe(&self.drivers[n.vehicle as usize], n.speed_mps, n.gap_m, vehicle.speed_mps)
             });
         free && self.is_free_of_hazards(index, there, bears) && self.is_first(index)
+    }
+
+    /// Whether people are on the road ahead, who count on vehicles to keep their lanes.
+    fn people_are_ahead(&self, index: usize) -> bool {
+        let (me, mps) = (&self.bodies[index], self.vehicles[index].speed_mps);
+        let forward = (me.rotation * glam::Vec3::X).truncate();
+        self.hazards[self.free..].iter().any(|person| {
+            let to = (person.position - me.position).truncate();
+            let ahead_m = to.dot(forward);
+            ahead_m > 0.0 && ahead_m < PEOPLE_M + PEOPLE_S * mps && forward.perp_dot(to).abs() < PEOPLE_ASIDE_M
+        })
     }
 
     /// Whether the ego car and loose actors leave room on the other lane.

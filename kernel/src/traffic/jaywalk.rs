@@ -11,6 +11,7 @@ use super::actors::Actors;
 use super::body::{Body, Obstacle, Surroundings};
 use super::cover;
 use super::horn::{Horn, PEOPLE_ASIDE_M};
+use super::manoeuvre::Manoeuvre;
 use super::traits::WalkerTraits;
 use super::vehicle::Vehicle;
 use super::walker::{Walker, WalkerMode};
@@ -35,6 +36,8 @@ const BRAKE_MPS2: f32 = 3.5;
 const REACTION_S: f32 = 0.7;
 /// Distance that they keep from them, metres.
 const NEAR_M: f32 = 2.0;
+/// Whoever drives on may be so far aside, metres; twice that who changes lanes.
+const LANE_M: f32 = 3.0;
 /// Places on their way that are looked at.
 const STRIDES: u32 = 8;
 /// Roads narrower or wider than this between the middles of the sidewalks are not crossed, metres.
@@ -95,6 +98,7 @@ pub(super) fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
         if cover::stays(vehicle) {
             return !passes(body);
         }
+        let lanes_m = if vehicle.manoeuvre == Manoeuvre::Keep { LANE_M } else { 2.0 * LANE_M };
         let speed = body.velocity_mps.truncate().length();
         let forward = (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X);
         let half_m = body.kind.size_m().x * 0.5;
@@ -104,7 +108,7 @@ pub(super) fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
             let way = from.lerp(to, k as f32 / STRIDES as f32) - place;
             let (ahead_m, aside_m) = (way.dot(forward), forward.perp_dot(way).abs());
             // Straight ahead, or anywhere around where its lane may bend to.
-            (aside_m < 3.0 && ahead_m > -half_m && ahead_m < stop_m) || way.length() < half_m + NEAR_M
+            (aside_m < lanes_m && ahead_m > -half_m && ahead_m < stop_m) || way.length() < half_m + NEAR_M
         })
     };
     !actors.state.vehicles.iter().zip(&actors.bodies).any(overruns)

@@ -22,6 +22,8 @@ use super::zebra;
 
 /// After this long at a line a vehicle goes before those that have the right of way.
 pub(super) const PATIENCE_TICKS: u16 = 240;
+/// After this long at an open line a vehicle without room behind the junction is left the next that there is.
+pub(super) const ROOM_TICKS: u16 = 30 * 60;
 /// Braking that a yellow light asks for at most, m/s².
 pub(super) const YELLOW_BRAKE_MPS2: f32 = 4.0;
 /// Braking within which a vehicle asks for its grant, m/s².
@@ -43,6 +45,8 @@ pub(super) struct Member {
     pub id: u16,
     /// Inside, or granted; otherwise asking.
     pub holds: bool,
+    /// Waits for room behind the junction, and would enter but for that.
+    pub wants_room: bool,
     /// [`swept_half_m`] of it.
     pub half_m: f32,
     pub wait_ticks: u16,
@@ -102,7 +106,7 @@ impl Members {
                 let theirs = self.lanes_of(other);
                 let swept = &ways.lanes[step.lane as usize].swept;
                 let long = other.half_m > LONG_HALF_M || asking.half_m > LONG_HALF_M;
-                let sweeps = long && theirs.iter().any(|t| swept.contains(&t.lane));
+                let sweeps = long && !other.wants_room && theirs.iter().any(|t| swept.contains(&t.lane));
                 sweeps && (other.holds || !goes_before(asking, other, 0))
                     || conflicts
                         .iter()
@@ -114,13 +118,14 @@ impl Members {
 
     /// The member that asks for vehicle `index`, if it asks.
     pub fn asking(&self, zone: u32, index: usize) -> Option<&Member> {
-        self.of(zone).iter().find(|m| m.vehicle as usize == index && !m.holds)
+        self.of(zone).iter().find(|m| m.vehicle as usize == index && !m.holds && !m.wants_room)
     }
 }
 
 /// Whether `other` on lane `there` keeps the one who asks out, where their lanes conflict.
 fn prevents(asking: &Member, other: &Member, conflict: &LaneConflict, there: &Step) -> bool {
-    if conflict.kind == ConflictKind::Diverge {
+    // Who has waited long for room is not taken it by others; for them the way across stays open.
+    if conflict.kind == ConflictKind::Diverge || (other.wants_room && conflict.kind != ConflictKind::Merge) {
         return false;
     }
     if other.holds {

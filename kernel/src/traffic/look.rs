@@ -16,7 +16,7 @@ use super::hazard::Hazard;
 use super::horn::Horn;
 use super::jaywalk;
 use super::journey::Journey;
-use super::junction::{EGO, Member, Members, swept_half_m};
+use super::junction::{EGO, Member, Members, ROOM_TICKS, swept_half_m};
 use super::lists::{Entry, Lists};
 use super::pass;
 use super::plan::{self, Plan};
@@ -246,10 +246,14 @@ impl Sight {
     fn add_before_junction(&self, actors: &Actors, i: usize, members: &mut Members) {
         let plan = &self.plans[i];
         let Some(line) = &plan.line else { return };
-        let flags = actors.state.vehicles[i].flags;
-        if flags & (Vehicle::GRANTED | Vehicle::ASKING) != 0 {
+        let vehicle = &actors.state.vehicles[i];
+        let in_turn = vehicle.flags & (Vehicle::GRANTED | Vehicle::ASKING) != 0;
+        let wants_room = !in_turn && vehicle.wait_ticks > ROOM_TICKS;
+        if in_turn || wants_room {
             let inside = &self.steps_of(plan)[line.inside.0..line.inside.1];
-            members.push(self.member(actors, i, line.zone, flags & Vehicle::GRANTED != 0), inside.iter().copied());
+            let holds = vehicle.flags & Vehicle::GRANTED != 0;
+            let member = Member { wants_room, ..self.member(actors, i, line.zone, holds) };
+            members.push(member, inside.iter().copied());
         }
     }
 
@@ -257,7 +261,7 @@ impl Sight {
         let vehicle = &actors.state.vehicles[i];
         let half_m = swept_half_m(actors.drivers[i].size_m);
         let wait_ticks = vehicle.waited_ticks(self.tick);
-        Member { zone, vehicle: i as u32, id: vehicle.id, holds, half_m, wait_ticks, lanes: (0, 0) }
+        Member { zone, vehicle: i as u32, id: vehicle.id, holds, wants_room: false, half_m, wait_ticks, lanes: (0, 0) }
     }
 
     /// The ego car counts as crossing where it is, and as asking for every way it may take: those that it indicates.
@@ -271,7 +275,8 @@ impl Sight {
         let Some(place) = place else { return };
         let lane = &map.lanes[place.lane as usize];
         let half_m = ego.size_m.x * 0.5;
-        let member = |zone, holds| Member { zone, vehicle: EGO, id: 0, holds, half_m, wait_ticks: 0, lanes: (0, 0) };
+        let (id, wants_room, wait_ticks, lanes) = (0, false, 0, (0, 0));
+        let member = |zone, holds| Member { zone, vehicle: EGO, id, holds, wants_room, half_m, wait_ticks, lanes };
         if let (Some(junction), Some(zone)) = (lane.junction, actors.ways.lanes[place.lane as usize].zone) {
             let near = |id: &u32| map.project(*id, ego.position);
             let lanes = map.junctions[junction as usize].lanes.iter().map(near);

@@ -94,7 +94,9 @@ impl Streets<'_> {
         let behind_m = if has_room { 0.0 } else { rank.min(2.0) * BEHIND_M };
         let direction = if walker.forward { 1.0 } else { -1.0 };
         let gap_m = (led.s_m - walker.s_m) * direction - behind_m;
-        let speed_mps = (led.speed_mps + gap_m / CLOSE_S).clamp(0.0, pace_mps * CATCH_UP);
+        // Nobody stops on the road for another.
+        let least_mps = if self.map.walk_edges[walker.edge as usize].crosswalk.is_some() { pace_mps } else { 0.0 };
+        let speed_mps = (led.speed_mps + gap_m / CLOSE_S).clamp(least_mps, pace_mps * CATCH_UP);
         let aside_m = if has_room { aside_m } else { led.offset_m };
         Together { speed_mps: Some(speed_mps), aside_m: Some(aside_m).filter(|_| gap_m < FAR_M), back: false }
     }

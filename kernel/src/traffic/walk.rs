@@ -45,6 +45,8 @@ const QUEUE_M: f32 = 4.0;
 const CROWD: usize = 8;
 /// Distance kept from vehicles, metres.
 const OFF_VEHICLES_M: f32 = 0.3;
+/// The same from those that move, of whoever is on the road already.
+const OFF_MOVING_M: f32 = 0.2;
 /// Whoever goes round one keeps off by so much more, and so far out of the way if need be, metres.
 const ROUND_M: f32 = 0.1;
 const DETOUR_M: f32 = 1.2;
@@ -309,7 +311,9 @@ impl Streets<'_> {
     /// The vehicle that stands right before a walker who goes along `direction`.
     fn blocked(&self, index: usize, direction: Vec2) -> Option<&Hazard> {
         let toe = self.bodies[index].position.truncate() + direction.normalize_or_zero() * 0.6;
-        self.blocks.iter().find(|block| to_nearest(block, toe).length() < OFF_VEHICLES_M + ROUND_M)
+        // Nobody stops early before what comes.
+        let off_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
+        self.blocks.iter().find(|block| to_nearest(block, toe).length() < off_m(block))
     }
 
     fn is_on_road(&self, walker: &Walker) -> bool {
