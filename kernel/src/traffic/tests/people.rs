@@ -64,7 +64,6 @@ fn people_are_where_there_is_a_reason_and_stay_there() {
         });
     }
     let (first, last) = (first.ratio(), last.ratio());
-    println!("{first} times as many at the start, {last} times as many after 20 min");
     assert!(first > 1.5 && last > 1.4, "{first} {last}");
 }
 
@@ -95,8 +94,7 @@ fn who_walks_together_stays_together() {
         for seed in 2101..2104 {
             let mut traffic = with_people(&network, pedestrians, seed);
             let [near, beside] = together(&mut traffic, 20, 5.0);
-            println!("{map} {seed}: within 5 m {near} of the time, side by side {beside}");
-            assert!(near > least, "{map} {seed}: {near}");
+            assert!(near > least, "{map} {seed}: {near}, side by side {beside}");
         }
     }
 }
@@ -146,7 +144,6 @@ fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car()
             before.clone_from(&t.actors);
         });
     }
-    println!("{all} jaywalks, {hidden} of them from behind something that stands");
     let expected = 4.0 * minutes as f32 * a_minute;
     assert!((all as f32 - expected).abs() < 3.0 * expected.sqrt(), "{all} where {expected} are asked for");
     assert!(hidden as f32 > 0.25 * all as f32, "{hidden} of {all}");
