@@ -101,7 +101,7 @@ impl View<'_> {
     /// on the lane that it wants to leave by is such a thing: both would wait for each other.
     fn standing_m(&self, index: usize, steps: &[Step]) -> f32 {
         let seeker = Seeker { speed_mps: 0.0, horizon_m: STANDING_M, ..self.seeker(index) };
-        let free = &self.hazards[..self.free];
+        let free = self.hazards.free();
         let standing = || free.iter().filter(|h| h.stands());
         let aim_m = side(self.map, steps, &seeker, standing(), seeker.offset_m);
         let others = self.changing.iter().filter(|h| h.position != seeker.position);

@@ -67,8 +67,10 @@ impl View<'_> {
         let (vehicle, seeker, plan) = (&self.vehicles[index], self.seeker(index), &self.plans[index]);
         let likes_m = self.likes_m(index);
         let steps = self.steps_of(plan);
-        let mut seen =
-            self.near(index, &seeker).chain(&self.hazards[..1]).filter_map(|h| sight(self.map, steps, &seeker, h));
+        let mut seen = self
+            .near(index, &seeker)
+            .chain(self.hazards.free().first())
+            .filter_map(|h| sight(self.map, steps, &seeker, h));
         let beside = seen.any(|seen| seen.gap_m < BESIDE_M && seen.obstructs(likes_m, seeker.half.y));
         let stops = |mps: f32, gap_m: f32| braking_needed(mps, gap_m - LEFT_M) < most_mps2;
         let behind = self.behind(index, vehicle.lane, vehicle.s_m);

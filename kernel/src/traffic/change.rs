@@ -181,17 +181,15 @@ impl View<'_> {
 
     /// All other vehicles that may be in the way of one.
     pub(super) fn near(&self, index: usize, seeker: &Seeker) -> impl Iterator<Item = &Hazard> {
-        let reach_m = seeker.horizon_m + 20.0;
-        let position = seeker.position;
-        let near = move |h: &Hazard| h.position.distance_squared(position) < reach_m * reach_m;
-        self.driven.iter().filter(move |(i, hazard)| *i as usize != index && near(hazard)).map(|(_, hazard)| hazard)
+        let other = move |h: &&Hazard| h.vehicle.is_some_and(|i| i as usize != index);
+        self.hazards.around(seeker.position, seeker.horizon_m + 20.0).filter(other)
     }
 
     /// Where across its lane a vehicle between lanes can drive that wants to be at `aim_m`: it does not move into
     /// anybody beside it.
     pub(super) fn beside_others(&self, index: usize, plan: &Plan, seeker: &Seeker, aim_m: f32) -> f32 {
         let (mut least_m, mut most_m) = (f32::MIN, f32::MAX);
-        for hazard in self.near(index, seeker).chain(&self.hazards[..self.free]) {
+        for hazard in self.near(index, seeker).chain(self.hazards.free()) {
             let Some(seen) = sight(self.map, self.steps_of(plan), seeker, hazard) else { continue };
             if seen.gap_m < BESIDE_M && seen.middle_m() < seeker.offset_m {
                 least_m = least_m.max(seen.edge_m(1.0) + seeker.half.y + ASIDE_M);
@@ -263,7 +261,7 @@ impl View<'_> {
     /// What of the ego car and loose actors is in the way of a vehicle, as (gap, speed).
     fn blocked(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Option<(f32, f32)> {
         let likes_m = self.likes_m(index);
-        let seen = self.hazards[..self.free].iter().filter_map(|h| sight(self.map, self.steps_of(plan), seeker, h));
+        let seen = self.hazards.free().iter().filter_map(|h| sight(self.map, self.steps_of(plan), seeker, h));
         let blocking = seen.filter(|seen| seen.blocks(likes_m, seeker.half.y));
         blocking.map(|seen| (seen.gap_m, seen.speed_mps)).min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -272,7 +270,7 @@ impl View<'_> {
     fn hazard_ahead(&self, index: usize, there: &Projection) -> Option<(f32, f32)> {
         let half_m = self.drivers[index].size_m.x * 0.5;
         let lane = &self.map.lanes[there.lane as usize];
-        let ahead = self.hazards[..self.free].iter().filter_map(|hazard| {
+        let ahead = self.hazards.free().iter().filter_map(|hazard| {
             let near = hazard.position.distance_squared(self.bodies[index].position) < REACH_M * REACH_M;
             let at = near.then(|| self.map.project(there.lane, hazard.position))?;
             let place = lane.straight_on(at.s_m);
@@ -331,7 +329,7 @@ impl View<'_> {
     fn people_are_ahead(&self, index: usize) -> bool {
         let (me, mps) = (&self.bodies[index], self.vehicles[index].speed_mps);
         let forward = (me.rotation * glam::Vec3::X).truncate();
-        self.hazards[self.free..].iter().any(|person| {
+        self.hazards.people().iter().any(|person| {
             let to = (person.position - me.position).truncate();
             let ahead_m = to.dot(forward);
             ahead_m > 0.0 && ahead_m < PEOPLE_M + PEOPLE_S * mps && forward.perp_dot(to).abs() < PEOPLE_ASIDE_M
@@ -347,7 +345,7 @@ impl View<'_> {
     ) -> bool {
         let (vehicle, driver, body) = (&self.vehicles[index], &self.drivers[index], &self.bodies[index]);
         let lane = &self.map.lanes[there.lane as usize];
-        self.hazards[..self.free].iter().all(|hazard| {
+        self.hazards.free().iter().all(|hazard| {
             let apart = hazard.position - body.position;
             if apart.length_squared() > REACH_M * REACH_M {
                 return true;
@@ -370,12 +368,11 @@ impl View<'_> {
     /// Whether no other one near may change lanes in this tick before a vehicle.
     pub(super) fn is_first(&self, index: usize) -> bool {
         let place = self.bodies[index].position;
-        let ready = |(i, hazard): &(u32, Hazard)| {
-            let other = &self.vehicles[*i as usize];
-            let ready = other.manoeuvre.signals() && other.signal_ticks.saturating_add(DECIDE_TICKS) >= SIGNAL_TICKS;
-            ready && hazard.position.distance_squared(place) < APART_M * APART_M
+        let ready = |i: u32| {
+            let other = &self.vehicles[i as usize];
+            other.manoeuvre.signals() && other.signal_ticks.saturating_add(DECIDE_TICKS) >= SIGNAL_TICKS
         };
-        !self.driven.iter().take_while(|(i, _)| (*i as usize) < index).any(ready)
+        !self.hazards.around(place, APART_M).filter_map(|h| h.vehicle).any(|i| (i as usize) < index && ready(i))
     }
 
     /// Who is ahead of a place on a lane and on the way that a vehicle would take from there.

@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::body::Body;
-use super::crowd::Crowd;
+use super::nearby::Nearby;
 
 /// People look this far for each other, metres.
 pub(super) const SIGHT_M: f32 = 2.5;
@@ -37,7 +37,7 @@ pub(super) struct Near {
 }
 
 /// Everybody in sight of `index`.
-pub(super) fn gather(crowd: &Crowd, bodies: &[Body], index: usize, near: &mut Vec<Near>) {
+pub(super) fn gather(crowd: &Nearby, bodies: &[Body], index: usize, near: &mut Vec<Near>) {
     near.clear();
     let here = bodies[index].position;
     for other in crowd.near(index, SIGHT_M) {

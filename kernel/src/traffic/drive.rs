@@ -8,7 +8,8 @@ use crate::time::{TICK_S, Tick, seconds};
 use super::asking::Asking;
 use super::body::Body;
 use super::crosswalk::{self, Claim};
-use super::hazard::{Hazard, Seeker, side, sight};
+use super::hazard::{Hazard, REACH_M, Seeker, side, sight};
+use super::hazards::Hazards;
 use super::horn::Horn;
 use super::journey::Journey;
 use super::junction::{Members, stopping_m, swept_half_m};
@@ -65,12 +66,8 @@ pub(super) struct View<'a> {
     pub plans: &'a [Plan],
     pub lists: &'a Lists,
     pub members: &'a Members,
-    /// The ego car and loose actors first, `free` of them, then people on the road.
-    pub hazards: &'a [Hazard],
-    pub free: usize,
-    /// Vehicles that drive, by index.
-    pub driven: &'a [(u32, Hazard)],
-    /// Those of them that are between lanes.
+    pub hazards: &'a Hazards,
+    /// Vehicles that are between lanes.
     pub changing: &'a [Hazard],
     pub claims: &'a [Claim],
     /// Those who signal to another lane.
@@ -178,7 +175,8 @@ impl View<'_> {
         let mut follow = |gap_m: f32, speed_mps: f32| accel = accel.min(follow_idm(driver, v, gap_m, speed_mps));
         self.heed_manoeuvres(index, plan, seeker, |m| side.after(seeker.offset_m, m), &mut follow);
         let mut room = f32::MAX;
-        for hazard in self.hazards {
+        let around = self.hazards.around(seeker.position, seeker.horizon_m + REACH_M);
+        for hazard in around.filter(|h| h.vehicle.is_none()) {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
             let ahead_m = if hazard.stands() { seen.gap_m.max(0.0) } else { 0.0 };
             let offset_m = side.after(seeker.offset_m, ahead_m);
@@ -252,7 +250,7 @@ impl View<'_> {
         if let Some(aim_m) = beside_m {
             return Side { aim_m, drift: pass_drift(vehicle.speed_mps) };
         }
-        let standing = self.hazards[..self.free].iter().filter(|h| h.stands());
+        let standing = self.hazards.free().iter().filter(|h| h.stands());
         let forward = (self.bodies[index].rotation * glam::Vec3::X).truncate();
         // Who comes the other way and reaches over the border is given room.
         let coming = self.changing.iter().filter(|h| h.forward.dot(forward) < -0.3);

@@ -9,7 +9,7 @@ use super::body::{Body, Obstacle};
 use super::step::Step;
 
 /// Nothing farther than this from the middle of the way matters, metres.
-const REACH_M: f32 = 6.5;
+pub(super) const REACH_M: f32 = 6.5;
 /// Sideways distance kept, metres, and from bicycles: more than the 1.5 m of most road traffic acts.
 const CLEARANCE_M: f32 = 0.35;
 pub(super) const BICYCLE_M: f32 = 1.55;
@@ -43,6 +43,8 @@ pub(super) struct Hazard {
     /// Half of its length and width, metres.
     pub half: Vec2,
     pub walker: bool,
+    /// Index of the vehicle that drives there.
+    pub vehicle: Option<u32>,
     /// Sideways distance that vehicles keep from it, metres.
     pub clearance_m: f32,
 }
@@ -56,6 +58,7 @@ impl Hazard {
             forward: direction(obstacle.heading_rad),
             half: obstacle.size_m.truncate() * 0.5,
             walker,
+            vehicle: None,
             clearance_m: CLEARANCE_M,
         }
     }
@@ -69,6 +72,7 @@ impl Hazard {
             forward,
             half: body.kind.size_m().truncate() * 0.5,
             walker: body.kind.is_on_foot(),
+            vehicle: None,
             clearance_m: if body.kind.is_pedalled() { BICYCLE_M } else { CLEARANCE_M },
         }
     }

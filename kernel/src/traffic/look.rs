@@ -10,14 +10,15 @@ use super::actors::Actors;
 use super::asking::{self, Asking};
 use super::body::Surroundings;
 use super::crosswalk::{Claim, Gaps};
-use super::crowd::Crowd;
 use super::drive::View;
 use super::hazard::Hazard;
+use super::hazards::Hazards;
 use super::horn::Horn;
 use super::jaywalk;
 use super::journey::Journey;
 use super::junction::{EGO, Member, Members, ROOM_TICKS, swept_half_m};
 use super::lists::{Entry, Lists};
+use super::nearby::Nearby;
 use super::pass;
 use super::plan::{self, Plan};
 use super::state::TrafficState;
@@ -31,6 +32,8 @@ use super::walker::{Walker, WalkerMode};
 const EGO_EXPECTED_S: f32 = 4.0;
 /// Slower than this it lets others go, m/s.
 const EGO_WAITS_MPS: f32 = 1.0;
+/// Who walks so far beside a way is on the road, metres.
+pub(super) const ASTRAY_M: f32 = 0.3;
 
 /// Buffers of a step.
 #[derive(Clone, Debug, Default)]
@@ -43,17 +46,12 @@ pub(super) struct Sight {
     /// Of those who decide, and of those whom others have to know about.
     plans: Vec<Plan>,
     members: Members,
-    /// The ego car, loose actors, vehicles that stand aside and open doors first, then people on the road.
-    hazards: Vec<Hazard>,
-    free: usize,
-    /// Vehicles, the ego car and loose actors.
-    blocks: Vec<Hazard>,
-    driven: Vec<(u32, Hazard)>,
+    hazards: Hazards,
     changing: Vec<Hazard>,
     claims: Vec<Claim>,
     asking: Vec<Asking>,
     horn: Option<Horn>,
-    crowd: Crowd,
+    crowd: Nearby,
     jaywalker: Option<usize>,
     tick: Tick,
 }
@@ -70,9 +68,10 @@ impl Sight {
         let vehicles = &actors.state.vehicles;
         self.lists.rebuild(map, vehicles, &actors.drivers, next, |v| !v.is_aside() && !around.holds(v.id));
         let people = &actors.bodies[actors.state.vehicles.len()..];
-        self.crowd.rebuild(people, |id| !around.holds(id as u16));
+        self.crowd.rebuild(people.len(), |i| (!around.holds(people[i].id as u16)).then_some(people[i].position));
         self.plan(actors);
         self.gather_hazards(actors, around);
+        self.gather_claims(actors, around);
         asking::gather(actors, around, &mut self.asking);
         self.horn = Horn::of(around);
         self.gather_members(actors, around);
@@ -95,8 +94,6 @@ impl Sight {
             lists: &self.lists,
             members: &self.members,
             hazards: &self.hazards,
-            free: self.free,
-            driven: &self.driven,
             changing: &self.changing,
             claims: &self.claims,
             asking: &self.asking,
@@ -117,7 +114,7 @@ impl Sight {
             bodies: &actors.bodies[actors.state.vehicles.len()..],
             crowd: &self.crowd,
             gaps: self.gaps(actors),
-            blocks: &self.blocks,
+            hazards: &self.hazards,
             tick: self.tick,
             jaywalker: self.jaywalker,
         }
@@ -131,7 +128,7 @@ impl Sight {
             lists: &self.lists,
             vehicles: &actors.state.vehicles,
             lights: &self.lights,
-            free: &self.hazards[..self.free],
+            free: self.hazards.free(),
             horn: self.horn,
         }
     }
@@ -159,36 +156,33 @@ impl Sight {
     }
 
     fn gather_hazards(&mut self, actors: &Actors, around: &Surroundings<'_>) {
-        let (vehicles, walkers) = (&actors.state.vehicles, &actors.state.walkers);
-        let first_walker = walkers.first().map_or(u32::MAX, |w| u32::from(w.id));
-        let is_walker = |id: u32| (first_walker..FIRST_PARKED_ID).contains(&id);
-        self.hazards.clear();
-        self.hazards.push(Hazard::of(&around.ego, false));
-        self.hazards.extend(around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id))));
-        let aside = vehicles.iter().zip(&actors.bodies).filter(|(v, _)| v.is_aside() && !around.holds(v.id));
-        self.hazards.extend(aside.map(|(_, body)| Hazard::of_body(body)));
-        self.hazards.extend(actors.door_hazards(around));
-        self.free = self.hazards.len();
-        self.blocks.clear();
-        self.blocks.extend(self.hazards.iter().filter(|h| !h.walker));
+        let vehicles = &actors.state.vehicles;
         let (driven, walked) = actors.bodies.split_at(vehicles.len());
-        let present =
-            vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !v.is_aside() && !around.holds(v.id));
-        self.driven.clear();
-        self.driven.extend(present.map(|(i, (_, body))| (i as u32, Hazard::of_body(body))));
-        self.blocks.extend(self.driven.iter().map(|(_, hazard)| *hazard));
+        let first_walker = walked.first().map_or(u32::MAX, |body| body.id);
+        let is_walker = |id: u32| (first_walker..FIRST_PARKED_ID).contains(&id);
+        let loose = around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id)));
+        let there = vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !around.holds(v.id));
+        let aside = there.clone().filter(|(_, (v, _))| v.is_aside()).map(|(_, (_, body))| Hazard::of_body(body));
+        let free = std::iter::once(Hazard::of(&around.ego, false)).chain(loose).chain(aside);
+        let drives = there.filter(|(_, (v, _))| !v.is_aside());
+        let drives = drives.map(|(i, (_, body))| Hazard { vehicle: Some(i as u32), ..Hazard::of_body(body) });
+        let edge = |walker: &Walker| &actors.map().walk_edges[walker.edge as usize];
+        let on_road = |w: &Walker| edge(w).crosswalk.is_some() || w.offset_m.abs() > edge(w).half_width_m + ASTRAY_M;
+        let people = actors.state.walkers.iter().zip(walked).filter(|(w, _)| !around.holds(w.id) && on_road(w));
+        let people = people.map(|(_, body)| Hazard::of_body(body));
+        self.hazards.rebuild(free.chain(actors.door_hazards(around)), people, drives);
         self.changing.clear();
-        let changing = self.driven.iter().filter(|(i, _)| vehicles[*i as usize].manoeuvre.is_between_lanes());
-        self.changing.extend(changing.map(|(_, hazard)| *hazard));
+        let changing = |h: &&Hazard| h.vehicle.is_some_and(|i| vehicles[i as usize].manoeuvre.is_between_lanes());
+        self.changing.extend(self.hazards.driven().iter().filter(changing));
+    }
+
+    fn gather_claims(&mut self, actors: &Actors, around: &Surroundings<'_>) {
+        let (walkers, walked) = (&actors.state.walkers, &actors.bodies[actors.state.vehicles.len()..]);
         self.claims.clear();
         for (i, (walker, body)) in walkers.iter().zip(walked).enumerate().filter(|(_, (w, _))| !around.holds(w.id)) {
             let crosswalk = actors.map().walk_edges[walker.edge as usize].crosswalk;
             let waits = walker.mode == WalkerMode::Wait;
             let claimed = if waits { self.wanted_unlit_crosswalk(actors, i, walker) } else { crosswalk };
-            let astray = walker.offset_m.abs() > actors.map().walk_edges[walker.edge as usize].half_width_m + 0.3;
-            if crosswalk.is_some() || astray {
-                self.hazards.push(Hazard::of_body(body));
-            }
             let (position, velocity) = (body.position.truncate(), body.velocity_mps.truncate());
             let claim = |crosswalk| Claim { crosswalk, position, velocity, waiting: waits };
             self.claims.extend(claimed.filter(|_| walker.mode != WalkerMode::Jaywalk).map(claim));

@@ -142,7 +142,7 @@ impl View<'_> {
         let steps = self.steps_of(plan);
         let mut found = self.bicycles_ahead(index, steps, seeker, side);
         let likes_m = self.likes_m(index);
-        for hazard in self.hazards[..self.free].iter().filter(|h| passing || h.stands()) {
+        for hazard in self.hazards.free().iter().filter(|h| passing || h.stands()) {
             let Some(seen) = sight(self.map, steps, seeker, hazard) else { continue };
             if seen.gap_m < REACH_M && seen.obstructs(likes_m, seeker.half.y) && (hazard.stands() || seen.gap_m < 0.0) {
                 found.push(Passed {
@@ -339,11 +339,12 @@ impl View<'_> {
             let beside = !near.contains(&aside_m) || (other.position.z - me.position.z).abs() > LEVEL_M + bend_m;
             same_way || beside || ahead_m < -5.0 || ahead_m > way_m + comes_m + SPARE_M
         };
-        let passes = |i: u32, other: &Hazard| {
+        let passes = |other: &Hazard| {
             let near = other.position.distance_squared(me.position) < OTHERS_M * OTHERS_M;
-            near && self.vehicles[i as usize].manoeuvre.passes()
+            near && other.vehicle.is_some_and(|i| self.vehicles[i as usize].manoeuvre.passes())
         };
-        let mut others = self.driven.iter().filter(|(i, _)| *i as usize != index);
-        self.hazards.iter().all(clear) && others.all(|(i, other)| clear(other) && !passes(*i, other))
+        let others = self.hazards.driven().iter().filter(|h| h.vehicle != Some(index as u32));
+        let mut all = self.hazards.free().iter().chain(self.hazards.people()).chain(others);
+        all.all(|other| clear(other) && !passes(other))
     }
 }

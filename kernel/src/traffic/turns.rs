@@ -3,8 +3,8 @@
 use crate::map_data::{MapData, WalkEdgeId};
 use crate::rng::{self, Stream};
 
-use super::crowd::Crowd;
 use super::groups::Groups;
+use super::nearby::Nearby;
 use super::walker::{Walker, WalkerMode};
 use super::ways::Ways;
 
@@ -20,7 +20,7 @@ pub(super) struct Turns<'a> {
     pub seed: u64,
     pub walkers: &'a [Walker],
     pub groups: &'a Groups,
-    pub crowd: &'a Crowd,
+    pub crowd: &'a Nearby,
 }
 
 impl Turns<'_> {

@@ -9,10 +9,11 @@ use crate::time::{TICK_S, Tick, seconds};
 use super::body::Body;
 use super::company::{Leeway, Near, gather, leeway};
 use super::crosswalk::Gaps;
-use super::crowd::Crowd;
 use super::groups::Groups;
-use super::hazard::Hazard;
+use super::hazards::Hazards;
 use super::jaywalk;
+use super::nearby::Nearby;
+use super::off_vehicles::past_front_m;
 use super::slack;
 use super::traits::WalkerTraits;
 use super::turns::{Turns, end_node};
@@ -29,12 +30,6 @@ const SIDESTEP_MPS: f32 = 0.35;
 const HELD_UP_MPS: f32 = 0.3;
 /// Whoever has stood before others for this long goes back, so that no crowd can jam.
 const GIVE_WAY_TICKS: u16 = seconds(6) as u16;
-/// Whoever waits steps back from vehicles that come by within this of their sides, metres.
-const SWEPT_M: f32 = 0.4;
-/// And the farther the longer a vehicle is: by so much for each metre beyond a car's half length.
-const TAIL: f32 = 0.15;
-/// From those that are there within this time, s.
-const SWEEP_S: f32 = 0.8;
 /// At this speed, m/s.
 const BACK_MPS: f32 = 1.2;
 /// Whoever waits looks out for that so often.
@@ -43,15 +38,8 @@ const LOOK_TICKS: Tick = 6;
 const QUEUE_M: f32 = 4.0;
 /// Where so many are in sight nobody joins those who cross the road, but goes another way.
 const CROWD: usize = 8;
-/// Distance kept from vehicles, metres.
-const OFF_VEHICLES_M: f32 = 0.3;
-/// The same from those that move, of whoever is on the road already.
-const OFF_MOVING_M: f32 = 0.2;
-/// Whoever goes round one keeps off by so much more, and so far out of the way if need be, metres.
-const ROUND_M: f32 = 0.1;
+/// Whoever goes round a vehicle goes so far out of the way if need be, metres.
 const DETOUR_M: f32 = 1.2;
-/// A step along one may lead nearer by so little, metres.
-const ALONG_M: f32 = 1e-4;
 /// Distance walked in one cycle of the gait (two steps), metres.
 const STRIDE_M: f32 = 1.45;
 /// Fastest turn of the body, 2^-16 turns a tick (about 270 degrees a second).
@@ -83,10 +71,9 @@ pub(super) struct Streets<'a> {
     pub places: &'a [Place],
     /// Their bodies.
     pub bodies: &'a [Body],
-    pub crowd: &'a Crowd,
+    pub crowd: &'a Nearby,
     pub gaps: Gaps<'a>,
-    /// Vehicles, the ego car and loose actors: what people do not walk into.
-    pub blocks: &'a [Hazard],
+    pub hazards: &'a Hazards,
     pub tick: Tick,
     /// Index of the walker that starts to jaywalk.
     pub jaywalker: Option<usize>,
@@ -139,7 +126,7 @@ impl Streets<'_> {
         };
         let (mut place, mut step) = step_to(&next);
         let on_road = self.is_on_road(was);
-        let free = self.free_step(near, before, step, on_road);
+        let free = self.free_step(near, self.bodies[index].position, step, on_road);
         if free != step {
             let change = free - step;
             next.s_m += change.dot(place.forward.truncate().normalize_or(Vec2::X));
@@ -147,7 +134,7 @@ impl Streets<'_> {
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
         }
-        let hindered = on_road && self.runs_into_vehicle(before, step);
+        let hindered = on_road && self.runs_into_vehicle(self.bodies[index].position, step);
         if hindered || !slack::is_free(near, step) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
@@ -308,60 +295,9 @@ impl Streets<'_> {
         }
     }
 
-    /// The vehicle that stands right before a walker who goes along `direction`.
-    fn blocked(&self, index: usize, direction: Vec2) -> Option<&Hazard> {
-        let toe = self.bodies[index].position.truncate() + direction.normalize_or_zero() * 0.6;
-        // Nobody stops early before what comes.
-        let off_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
-        self.blocks.iter().find(|block| to_nearest(block, toe).length() < off_m(block))
-    }
-
     fn is_on_road(&self, walker: &Walker) -> bool {
         let edge = &self.map.walk_edges[walker.edge as usize];
         edge.crosswalk.is_some() || walker.mode != WalkerMode::Walk || walker.offset_m.abs() > edge.half_width_m + 0.3
-    }
-
-    /// The part of a step that leaves others room, and on the road keeps off vehicles: it goes along what is in its way.
-    fn free_step(&self, near: &[Near], from: Vec2, step: Vec2, on_road: bool) -> Vec2 {
-        let mut part = step;
-        if on_road && self.runs_into_vehicle(from, step) {
-            for block in self.blocks {
-                let to = to_nearest(block, from);
-                let off_m = to.length();
-                let toward_m = if off_m > 0.0 { step.dot(to) / off_m } else { 0.0 };
-                if toward_m > 0.0 && off_m - toward_m < OFF_VEHICLES_M {
-                    part -= to / off_m * toward_m;
-                }
-            }
-        }
-        if slack::is_free(near, part) { part } else { slack::free_part(near, part) }
-    }
-
-    /// Whether a step leads nearer to a vehicle that is within reach.
-    fn runs_into_vehicle(&self, from: Vec2, step: Vec2) -> bool {
-        let nearer = |block: &Hazard| {
-            let then_m = to_nearest(block, from + step).length();
-            then_m < OFF_VEHICLES_M && then_m < to_nearest(block, from).length() - ALONG_M
-        };
-        step != Vec2::ZERO && self.blocks.iter().any(nearer)
-    }
-
-    /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where
-    /// none is. The tail of a long one swings out of its lane.
-    fn swept_from(&self, index: usize) -> Vec2 {
-        let here = self.bodies[index].position.truncate();
-        let sweeps = |block: &&Hazard| {
-            let offset = here - block.position.truncate();
-            let ahead_m = block.velocity.length() * SWEEP_S;
-            let aside_m = block.half.y + SWEPT_M + TAIL * (block.half.x - 2.5).max(0.0);
-            let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
-            ahead_m > 0.3 && x.abs() < block.half.x + ahead_m && y.abs() < aside_m
-        };
-        let swept = self.blocks.iter().find(sweeps);
-        swept.map_or(Vec2::ZERO, |block| {
-            let left = block.forward.perp();
-            left * (here - block.position.truncate()).dot(left).signum()
-        })
     }
 
     /// Turns the body towards a direction.
@@ -384,20 +320,6 @@ impl Streets<'_> {
 fn room_m(edge: &WalkEdge, walker: &Walker, direction: f32) -> [f32; 2] {
     let (most_m, at_m) = (edge.half_width_m + VERGE_M, walker.offset_m * direction);
     [-most_m - at_m, most_m - at_m]
-}
-
-/// From a place to the nearest of a vehicle; nothing from inside of it.
-fn to_nearest(block: &Hazard, place: Vec2) -> Vec2 {
-    let offset = block.position.truncate() - place;
-    let local = Vec2::new(offset.dot(block.forward), block.forward.perp_dot(offset));
-    let to = local - local.clamp(-block.half, block.half);
-    block.forward * to.x + block.forward.perp() * to.y
-}
-
-/// To the left of somebody who goes along `ahead` and stands before a vehicle: the side on which its front is, since whoever
-/// goes round behind it is not seen.
-fn past_front_m(block: &Hazard, ahead: Vec2) -> f32 {
-    ahead.perp_dot(block.forward).signum()
 }
 
 /// Moves sideways: to where somebody likes to walk, or past others.

@@ -80,7 +80,7 @@ impl View<'_> {
 
     fn behind_ego(&self, index: usize, plan: &Plan) -> bool {
         let seeker = self.seeker(index);
-        let seen = self.hazards.first().and_then(|ego| sight(self.map, self.steps_of(plan), &seeker, ego));
+        let seen = self.hazards.free().first().and_then(|ego| sight(self.map, self.steps_of(plan), &seeker, ego));
         seen.is_some_and(|seen| seen.gap_m < BEHIND_EGO_M && seen.blocks(seeker.offset_m, seeker.half.y))
     }
 }

@@ -1,0 +1,99 @@
+//! How people keep off vehicles: on the road they go round what stands there, at the kerb they step back from what sweeps
+//! over it.
+
+use glam::{Vec2, Vec3};
+
+use super::company::Near;
+use super::hazard::Hazard;
+use super::slack;
+use super::walk::Streets;
+
+/// Whoever waits steps back from vehicles that come by within this of their sides, metres.
+const SWEPT_M: f32 = 0.4;
+/// And the farther the longer a vehicle is: by so much for each metre beyond a car's half length.
+const TAIL: f32 = 0.15;
+/// From those that are there within this time, s.
+const SWEEP_S: f32 = 0.8;
+/// Nothing farther away than this sweeps over a place, metres.
+const SWEEPS_M: f32 = 20.0;
+/// Distance kept from vehicles, metres.
+const OFF_VEHICLES_M: f32 = 0.3;
+/// The same from those that move, of whoever is on the road already.
+const OFF_MOVING_M: f32 = 0.2;
+/// Whoever goes round one keeps off by so much more, metres.
+const ROUND_M: f32 = 0.1;
+/// What is this far ahead is right before somebody, metres.
+const TOE_M: f32 = 0.6;
+/// A step along one may lead nearer by so little, metres.
+const ALONG_M: f32 = 1e-4;
+
+impl Streets<'_> {
+    /// The vehicle that stands right before a walker who goes along `direction`.
+    pub(super) fn blocked(&self, index: usize, direction: Vec2) -> Option<&Hazard> {
+        let here = self.bodies[index].position;
+        let toe = here.truncate() + direction.normalize_or_zero() * TOE_M;
+        // Nobody stops early before what comes.
+        let off_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
+        let mut near = self.hazards.boxes_around(here, TOE_M + OFF_VEHICLES_M + ROUND_M);
+        near.find(|block| to_nearest(block, toe).length() < off_m(block))
+    }
+
+    /// The part of a step that leaves others room, and on the road keeps off vehicles: it goes along what is in its way.
+    pub(super) fn free_step(&self, near: &[Near], from: Vec3, step: Vec2, on_road: bool) -> Vec2 {
+        let mut part = step;
+        if on_road && self.runs_into_vehicle(from, step) {
+            for block in self.hazards.boxes_around(from, OFF_VEHICLES_M + step.length()) {
+                let to = to_nearest(block, from.truncate());
+                let off_m = to.length();
+                let toward_m = if off_m > 0.0 { step.dot(to) / off_m } else { 0.0 };
+                if toward_m > 0.0 && off_m - toward_m < OFF_VEHICLES_M {
+                    part -= to / off_m * toward_m;
+                }
+            }
+        }
+        if slack::is_free(near, part) { part } else { slack::free_part(near, part) }
+    }
+
+    /// Whether a step leads nearer to a vehicle that is within reach.
+    pub(super) fn runs_into_vehicle(&self, from: Vec3, step: Vec2) -> bool {
+        let here = from.truncate();
+        let nearer = |block: &Hazard| {
+            let then_m = to_nearest(block, here + step).length();
+            then_m < OFF_VEHICLES_M && then_m < to_nearest(block, here).length() - ALONG_M
+        };
+        step != Vec2::ZERO && self.hazards.boxes_around(from, OFF_VEHICLES_M + step.length()).any(nearer)
+    }
+
+    /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where
+    /// none is. The tail of a long one swings out of its lane.
+    pub(super) fn swept_from(&self, index: usize) -> Vec2 {
+        let place = self.bodies[index].position;
+        let here = place.truncate();
+        let sweeps = |block: &&Hazard| {
+            let offset = here - block.position.truncate();
+            let ahead_m = block.velocity.length() * SWEEP_S;
+            let aside_m = block.half.y + SWEPT_M + TAIL * (block.half.x - 2.5).max(0.0);
+            let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
+            ahead_m > 0.3 && x.abs() < block.half.x + ahead_m && y.abs() < aside_m
+        };
+        let swept = self.hazards.boxes_around(place, SWEEPS_M).find(sweeps);
+        swept.map_or(Vec2::ZERO, |block| {
+            let left = block.forward.perp();
+            left * (here - block.position.truncate()).dot(left).signum()
+        })
+    }
+}
+
+/// From a place to the nearest of a vehicle; nothing from inside of it.
+fn to_nearest(block: &Hazard, place: Vec2) -> Vec2 {
+    let offset = block.position.truncate() - place;
+    let local = Vec2::new(offset.dot(block.forward), block.forward.perp_dot(offset));
+    let to = local - local.clamp(-block.half, block.half);
+    block.forward * to.x + block.forward.perp() * to.y
+}
+
+/// To the left of somebody who goes along `ahead` and stands before a vehicle: the side on which its front is, since whoever
+/// goes round behind it is not seen.
+pub(super) fn past_front_m(block: &Hazard, ahead: Vec2) -> f32 {
+    ahead.perp_dot(block.forward).signum()
+}
