@@ -145,6 +145,7 @@ impl View<'_> {
         let behind = self.behind_leader_mps2(index, plan, next).min(halt_mps2);
         let accel =
             self.acceleration(index, plan, next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
+        let accel = accel.min(self.brink_mps2(index, next, accel));
         let was_braking = next.flags & Vehicle::BRAKING != 0;
         let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
         next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };
@@ -380,7 +381,7 @@ impl View<'_> {
     }
 
     /// Takes the lanes that follow, and clears what belonged to the junction left behind.
-    fn change_lane(&self, driver: &Driver, next: &mut Vehicle) {
+    pub(super) fn change_lane(&self, driver: &Driver, next: &mut Vehicle) {
         loop {
             let length_m = self.map.lanes[next.lane as usize].length_m;
             if next.s_m < length_m {

@@ -59,8 +59,8 @@ impl Hazards {
         self.nearby.around(place, reach_m).map(|i| &self.all[i]).filter(near)
     }
 
-    /// All but people of whom a part is within `reach_m` of a place.
-    pub fn boxes_around(&self, place: Vec3, reach_m: f32) -> impl Iterator<Item = &Hazard> {
-        self.around(place, reach_m + self.greatest_half_m).filter(|h| !h.walker)
+    /// All of whom a part is within `reach_m` of a place.
+    pub fn reaching(&self, place: Vec3, reach_m: f32) -> impl Iterator<Item = &Hazard> {
+        self.around(place, reach_m + self.greatest_half_m)
     }
 }

@@ -10,6 +10,7 @@ mod approach;
 mod asking;
 mod barge;
 mod body;
+mod brink;
 mod bus;
 mod change;
 mod company;

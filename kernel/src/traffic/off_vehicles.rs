@@ -28,13 +28,18 @@ const TOE_M: f32 = 0.6;
 const ALONG_M: f32 = 1e-4;
 
 impl Streets<'_> {
+    /// The ego car, loose actors, doors and vehicles of which a part is within `reach_m` of a place.
+    fn vehicles_near(&self, place: Vec3, reach_m: f32) -> impl Iterator<Item = &Hazard> {
+        self.hazards.reaching(place, reach_m).filter(|h| !h.walker)
+    }
+
     /// The vehicle that stands right before a walker who goes along `direction`.
     pub(super) fn blocked(&self, index: usize, direction: Vec2) -> Option<&Hazard> {
         let here = self.bodies[index].position;
         let toe = here.truncate() + direction.normalize_or_zero() * TOE_M;
         // Nobody stops early before what comes.
         let off_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
-        let mut near = self.hazards.boxes_around(here, TOE_M + OFF_VEHICLES_M + ROUND_M);
+        let mut near = self.vehicles_near(here, TOE_M + OFF_VEHICLES_M + ROUND_M);
         near.find(|block| to_nearest(block, toe).length() < off_m(block))
     }
 
@@ -42,7 +47,7 @@ impl Streets<'_> {
     pub(super) fn free_step(&self, near: &[Near], from: Vec3, step: Vec2, on_road: bool) -> Vec2 {
         let mut part = step;
         if on_road && self.runs_into_vehicle(from, step) {
-            for block in self.hazards.boxes_around(from, OFF_VEHICLES_M + step.length()) {
+            for block in self.vehicles_near(from, OFF_VEHICLES_M + step.length()) {
                 let to = to_nearest(block, from.truncate());
                 let off_m = to.length();
                 let toward_m = if off_m > 0.0 { step.dot(to) / off_m } else { 0.0 };
@@ -61,7 +66,7 @@ impl Streets<'_> {
             let then_m = to_nearest(block, here + step).length();
             then_m < OFF_VEHICLES_M && then_m < to_nearest(block, here).length() - ALONG_M
         };
-        step != Vec2::ZERO && self.hazards.boxes_around(from, OFF_VEHICLES_M + step.length()).any(nearer)
+        step != Vec2::ZERO && self.vehicles_near(from, OFF_VEHICLES_M + step.length()).any(nearer)
     }
 
     /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where
@@ -76,7 +81,7 @@ impl Streets<'_> {
             let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
             ahead_m > 0.3 && x.abs() < block.half.x + ahead_m && y.abs() < aside_m
         };
-        let swept = self.hazards.boxes_around(place, SWEEPS_M).find(sweeps);
+        let swept = self.vehicles_near(place, SWEEPS_M).find(sweeps);
         swept.map_or(Vec2::ZERO, |block| {
             let left = block.forward.perp();
             left * (here - block.position.truncate()).dot(left).signum()

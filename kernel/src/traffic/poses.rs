@@ -12,6 +12,7 @@ use super::journey::Journey;
 use super::traits::{Driver, WalkerTraits};
 use super::vehicle::Vehicle;
 use super::walker::{Walker, WalkerMode};
+use super::ways::Ways;
 
 /// Radians in 2^-16 turns.
 const TURN_RAD: f32 = core::f32::consts::TAU / 65536.0;
@@ -38,22 +39,24 @@ impl Actors {
         let mut bodies = std::mem::take(&mut self.bodies);
         bodies.clear();
         let vehicles = self.state.vehicles.iter().zip(&self.drivers);
-        bodies.extend(vehicles.map(|(vehicle, driver)| self.vehicle_body(vehicle, driver)));
+        bodies.extend(vehicles.map(|(vehicle, driver)| self.ways.vehicle_body(self.seed, vehicle, driver)));
         let walkers = self.state.walkers.iter().zip(&self.walker_traits).zip(&self.places);
         bodies.extend(walkers.map(|((walker, traits), place)| walker_body(walker, traits, place)));
         self.bodies = bodies;
     }
+}
 
+impl Ways {
     /// The middle of a vehicle and the direction of its way there. A long one has both axles on the way, so that in
     /// bends its middle is inside of it and its tail swings out little.
-    fn vehicle_place(&self, vehicle: &Vehicle, driver: &Driver) -> (Vec3, Vec3) {
+    fn vehicle_place(&self, seed: u64, vehicle: &Vehicle, driver: &Driver) -> (Vec3, Vec3) {
         let to_axle_m = AXLE * driver.size_m.x;
         if driver.size_m.x < LONG_M {
             let place = self.lane_place(vehicle.lane, vehicle.s_m);
             return (place.beside(vehicle.offset_m), place.forward);
         }
         let (rear_m, front_m) = (vehicle.s_m - to_axle_m, vehicle.s_m + to_axle_m);
-        let lanes = &self.map().lanes;
+        let lanes = &self.places.map.lanes;
         let rear = match lanes[vehicle.before as usize].length_m {
             length_m if rear_m < 0.0 && vehicle.before != vehicle.lane => {
                 self.lane_place(vehicle.before, (length_m + rear_m).max(0.0))
@@ -61,7 +64,7 @@ impl Actors {
             _ => self.lane_place(vehicle.lane, rear_m),
         };
         let over_m = front_m - lanes[vehicle.lane as usize].length_m;
-        let next = || Journey::of(&self.ways, self.seed, vehicle).next_lane(vehicle.lane);
+        let next = || Journey::of(self, seed, vehicle).next_lane(vehicle.lane);
         let front = match if over_m > 0.0 { next() } else { None } {
             Some(next) if self.lane_end(vehicle.lane).joins(&self.lane_place(next.lane, next.at_m)) => {
                 self.lane_place(next.lane, next.at_m + over_m)
@@ -73,15 +76,16 @@ impl Actors {
     }
 
     fn lane_end(&self, lane: LaneId) -> Place {
-        self.lane_place(lane, self.map().lanes[lane as usize].length_m)
+        self.lane_place(lane, self.places.map.lanes[lane as usize].length_m)
     }
 
     fn lane_place(&self, lane: LaneId, s_m: f32) -> Place {
-        self.ways.lanes[lane as usize].pose(&self.map().lanes[lane as usize], s_m)
+        self.lanes[lane as usize].pose(&self.places.map.lanes[lane as usize], s_m)
     }
 
-    pub(super) fn vehicle_body(&self, vehicle: &Vehicle, driver: &Driver) -> Body {
-        let (middle, ahead) = self.vehicle_place(vehicle, driver);
+    /// A vehicle at its place on the map; the seed is that of its journey.
+    pub(super) fn vehicle_body(&self, seed: u64, vehicle: &Vehicle, driver: &Driver) -> Body {
+        let (middle, ahead) = self.vehicle_place(seed, vehicle, driver);
         let (position, forward) = match vehicle.drift {
             0 => (middle, ahead),
             drift => {

@@ -6,6 +6,7 @@ mod encroachment;
 mod free_road;
 mod mistakes;
 mod people;
+mod standing;
 
 use std::sync::Arc;
 
