@@ -24,9 +24,9 @@ pub(super) struct Crowd {
 }
 
 impl Crowd {
-    /// Takes the people whose ids are `present`. The order follows from their places alone.
-    pub fn rebuild(&mut self, bodies: &[Body], present: impl Fn(u32) -> bool) {
-        let is_there = |i: u32| present(bodies[i as usize].id);
+    /// Takes the people whose indices are `present`. The order follows from their places alone.
+    pub fn rebuild(&mut self, bodies: &[Body], present: impl Fn(usize) -> bool) {
+        let is_there = |i: u32| present(i as usize);
         let there = (0..bodies.len() as u32).filter(|i| is_there(*i));
         let same = self.rank.len() == bodies.len() && self.order.iter().all(|(_, i)| is_there(*i));
         if same && self.order.len() == there.clone().count() {

@@ -6,6 +6,7 @@ use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::asking::Asking;
+use super::boarding::Call;
 use super::body::Body;
 use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, Seeker, side, sight};
@@ -76,6 +77,8 @@ pub(super) struct View<'a> {
     /// Those who signal to another lane.
     pub asking: &'a [Asking],
     pub horn: Option<Horn>,
+    /// Buses whose doors are open.
+    pub calls: &'a [Call],
     pub tick: Tick,
 }
 

@@ -8,6 +8,7 @@ use crate::time::{Tick, seconds};
 
 use super::actors::Actors;
 use super::asking::{self, Asking};
+use super::boarding::{self, Call};
 use super::body::Surroundings;
 use super::crosswalk::{Claim, Gaps};
 use super::crowd::Crowd;
@@ -54,6 +55,8 @@ pub(super) struct Sight {
     asking: Vec<Asking>,
     horn: Option<Horn>,
     crowd: Crowd,
+    /// Buses whose doors are open.
+    pub calls: Vec<Call>,
     jaywalker: Option<usize>,
     tick: Tick,
 }
@@ -70,7 +73,9 @@ impl Sight {
         let vehicles = &actors.state.vehicles;
         self.lists.rebuild(map, vehicles, &actors.drivers, next, |v| !v.is_aside() && !around.holds(v.id));
         let people = &actors.bodies[actors.state.vehicles.len()..];
-        self.crowd.rebuild(people, |id| !around.holds(id as u16));
+        let walkers = &actors.state.walkers;
+        self.crowd.rebuild(people, |i| !walkers[i].rides() && !around.holds(walkers[i].id));
+        boarding::gather(actors, around, &mut self.calls);
         self.plan(actors);
         self.gather_hazards(actors, around);
         asking::gather(actors, around, &mut self.asking);
@@ -101,6 +106,7 @@ impl Sight {
             claims: &self.claims,
             asking: &self.asking,
             horn: self.horn,
+            calls: &self.calls,
             tick: self.tick,
         }
     }
@@ -118,6 +124,7 @@ impl Sight {
             crowd: &self.crowd,
             gaps: self.gaps(actors),
             blocks: &self.blocks,
+            calls: &self.calls,
             tick: self.tick,
             jaywalker: self.jaywalker,
         }
@@ -181,7 +188,8 @@ impl Sight {
         let changing = self.driven.iter().filter(|(i, _)| vehicles[*i as usize].manoeuvre.is_between_lanes());
         self.changing.extend(changing.map(|(_, hazard)| *hazard));
         self.claims.clear();
-        for (i, (walker, body)) in walkers.iter().zip(walked).enumerate().filter(|(_, (w, _))| !around.holds(w.id)) {
+        let stands = |w: &Walker| !w.rides() && !around.holds(w.id);
+        for (i, (walker, body)) in walkers.iter().zip(walked).enumerate().filter(|(_, (w, _))| stands(w)) {
             let crosswalk = actors.map().walk_edges[walker.edge as usize].crosswalk;
             let waits = walker.mode == WalkerMode::Wait;
             let claimed = if waits { self.wanted_unlit_crosswalk(actors, i, walker) } else { crosswalk };

@@ -6,6 +6,7 @@ use crate::map_data::{MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
+use super::boarding::Call;
 use super::body::Body;
 use super::company::{Leeway, Near, gather, leeway};
 use super::crosswalk::Gaps;
@@ -24,7 +25,7 @@ const ACCEL_MPS2: f32 = 1.5;
 /// Sideways speed as a share of the speed ahead.
 const DRIFT: f32 = 0.35;
 /// Sideways speed of somebody who gets out of another's way, m/s.
-const SIDESTEP_MPS: f32 = 0.35;
+pub(super) const SIDESTEP_MPS: f32 = 0.35;
 /// Whoever is slower than this is held up by others, m/s.
 const HELD_UP_MPS: f32 = 0.3;
 /// Whoever has stood before others for this long goes back, so that no crowd can jam.
@@ -87,6 +88,8 @@ pub(super) struct Streets<'a> {
     pub gaps: Gaps<'a>,
     /// Vehicles, the ego car and loose actors: what people do not walk into.
     pub blocks: &'a [Hazard],
+    /// Buses whose doors are open.
+    pub calls: &'a [Call],
     pub tick: Tick,
     /// Index of the walker that starts to jaywalk.
     pub jaywalker: Option<usize>,
@@ -105,7 +108,12 @@ impl Streets<'_> {
             next.mode = WalkerMode::Jaywalk;
             next.forward = jaywalk::road_is_left(self.map, self.ways, &next);
         }
+        self.heed_buses(index, &mut next);
         match next.mode {
+            WalkerMode::Rides => {
+                next.wait_ticks = next.wait_ticks.saturating_add(1);
+                return (next, self.places[index]);
+            }
             WalkerMode::Wait if !self.looks(&next) => {
                 next.wait_ticks = next.wait_ticks.saturating_add(1);
                 if next.wait_ticks < TURNED_TICKS {
@@ -121,6 +129,10 @@ impl Streets<'_> {
             WalkerMode::Jaywalk => {
                 gather(self.crowd, self.bodies, index, near);
                 self.jaywalk(index, near, &mut next);
+            }
+            WalkerMode::Boards => {
+                gather(self.crowd, self.bodies, index, near);
+                self.go_aboard(index, near, &mut next);
             }
         }
         self.settle(index, near, next)
@@ -161,6 +173,7 @@ impl Streets<'_> {
         let toward = match next.mode {
             WalkerMode::Wait => self.waiting_direction(index, &next),
             _ if step.length_squared() > FACES_M * FACES_M => step,
+            WalkerMode::Boards => self.toward_bus(&next),
             _ => ahead * if next.forward { 1.0 } else { -1.0 },
         };
         self.face(toward, &mut next);
@@ -438,7 +451,7 @@ fn halt(next: &mut Walker) {
     }
 }
 
-fn approach_speed(next: &mut Walker, aim_mps: f32) {
+pub(super) fn approach_speed(next: &mut Walker, aim_mps: f32) {
     let step = ACCEL_MPS2 * TICK_S;
     next.speed_mps += (aim_mps - next.speed_mps).clamp(-2.0 * step, step);
 }

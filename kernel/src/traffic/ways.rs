@@ -49,6 +49,8 @@ pub struct Ways {
     pub(super) entries: Vec<LaneId>,
     /// Those on which bicycles do; all where there is none.
     pub(super) bicycle_entries: Vec<LaneId>,
+    /// For each bus stop the sidewalks onto which the doors of a bus there open.
+    pub(super) stop_ways: Vec<Vec<WalkEdgeId>>,
     /// Doors of parked cars that open into a lane.
     pub(super) door_spots: Vec<DoorSpot>,
     /// The side of slow traffic: -1 (right) where one drives on the right, 1 (left) where on the left.
@@ -69,9 +71,11 @@ impl Ways {
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
             bicycle_entries: Vec::new(),
+            stop_ways: Vec::new(),
             door_spots: door_spots(places),
             kerb,
         };
+        ways.stop_ways = ways.sidewalks_at_stops();
         let cycled = ways.entries.iter().copied().filter(|lane| ways.may_start(ActorKind::Bicycle, *lane));
         ways.bicycle_entries = cycled.collect();
         if ways.bicycle_entries.is_empty() {

@@ -137,6 +137,9 @@ impl Bodies {
             self.attend(&body, &mover, physics, near);
         }
         self.push_parked(parked, &mover, physics, near);
+        // Who got on a bus is nowhere any more.
+        let gone = self.near.iter().filter(|id| near.binary_search(id).is_err());
+        gone.for_each(|id| physics.release(*id));
         std::mem::swap(&mut self.near, near);
     }
 
