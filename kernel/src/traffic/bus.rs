@@ -25,9 +25,9 @@ const BEYOND_M: f32 = 1.0;
 const DWELL_DS: [u8; 2] = [100, 200];
 /// It signals this long before it drives off, tenths of a second.
 const SIGNAL_DS: u8 = 30;
-/// While somebody stands at the door its clock goes slower by so many times in the last 2 s before that: it waits for 6 s more
-/// at most.
-const LAST_CALL_DS: std::ops::RangeInclusive<u8> = SIGNAL_DS + 1..=SIGNAL_DS + 20;
+/// While somebody stands at the door its clock goes slower by so many times in the last 4 s before that: it waits for 12 s
+/// more at most.
+const LAST_CALL_DS: std::ops::RangeInclusive<u8> = SIGNAL_DS + 1..=SIGNAL_DS + 40;
 const SLOWED: Tick = 4;
 /// Ticks in a tenth of a second.
 const DS_TICKS: Tick = 6;

@@ -263,7 +263,8 @@ impl View<'_> {
         let drift = match vehicle.manoeuvre {
             manoeuvre if manoeuvre.moves() => drift(vehicle.speed_mps, seeker.half.x),
             manoeuvre if manoeuvre.passes() => pass_drift(vehicle.speed_mps),
-            _ if aim_m == likes_m && !vehicle.lapse.is_from_kerb() => DRIFT,
+            // The front of a bus that turned more would swing out of its lane.
+            _ if aim_m == likes_m && vehicle.lapse != Lapse::PullsOut => DRIFT,
             _ => PASS_DRIFT,
         };
         Side { aim_m, drift }

@@ -75,7 +75,7 @@ impl Sight {
         let people = &actors.bodies[actors.state.vehicles.len()..];
         let walkers = &actors.state.walkers;
         self.crowd.rebuild(people, |i| !walkers[i].rides() && !around.holds(walkers[i].id));
-        boarding::gather(actors, around, &mut self.calls);
+        boarding::gather_calls(actors, around, &mut self.calls);
         self.plan(actors);
         self.gather_hazards(actors, around);
         asking::gather(actors, around, &mut self.asking);

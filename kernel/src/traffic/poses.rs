@@ -120,7 +120,7 @@ pub(super) fn walker_body(walker: &Walker, traits: &WalkerTraits, place: &Place)
     let sign = if walker.forward { 1.0 } else { -1.0 };
     let ahead = match walker.mode {
         WalkerMode::Jaywalk => place.left().extend(0.0) * sign,
-        WalkerMode::Boards => rotation * Vec3::X,
+        WalkerMode::Boards | WalkerMode::Alights => rotation * Vec3::X,
         _ => place.forward * sign,
     };
     Body {

@@ -16,6 +16,7 @@ use super::boarding::Call;
 use super::body::{Obstacle, Surroundings};
 use super::groups::first_of_group;
 use super::hazard::Hazard;
+use super::jaywalk;
 use super::walker::{Walker, WalkerMode, turns};
 
 /// Through a door one gets on so often, and another gets off: 2.5 to 4 and 1.5 to 2.5 s each (Transit Capacity and Quality of
@@ -74,6 +75,7 @@ impl Actors {
         let edge = ways.min_by(|a, b| aside_m(a).total_cmp(&aside_m(b)));
         if let (Some(i), Some(edge)) = (first, edge)
             && self.is_open(door, call.bus, around)
+            && jaywalk::is_free(self.map(), door, self.ways.onto(edge, door))
         {
             self.set_down(i, edge, door, call.out);
         }
@@ -92,7 +94,7 @@ impl Actors {
         let walker = &mut self.state.walkers[index];
         walker.hops = walker.hops.wrapping_add(1);
         let forward = bits(self.seed, Stream::Walk, u64::from(walker.id), u64::from(walker.hops)) & 1 == 0;
-        let (mode, speed_mps, heading) = (WalkerMode::Walk, OFF_MPS, turns(ops::atan2(faces.y, faces.x)));
+        let (mode, speed_mps, heading) = (WalkerMode::Alights, OFF_MPS, turns(ops::atan2(faces.y, faces.x)));
         *walker = Walker { mode, forward, edge, s_m, offset_m, speed_mps, wait_ticks: 0, heading, ..*walker };
         self.places[index] = self.ways.walker_place(walker);
     }

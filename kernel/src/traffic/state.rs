@@ -1,7 +1,7 @@
 //! What is remembered of all traffic.
 
 use super::vehicle::Vehicle;
-use super::walker::{Walker, WalkerMode};
+use super::walker::Walker;
 use crate::actor::ActorKind;
 use crate::map_data::MapData;
 use crate::state;
@@ -44,8 +44,7 @@ impl TrafficState {
             }
         }
         let is_bus = |id: u16| self.vehicles.iter().any(|v| v.id == id && v.kind == ActorKind::Bus);
-        let at_bus = |w: &&Walker| matches!(w.mode, WalkerMode::Boards | WalkerMode::Rides);
-        if let Some(w) = self.walkers.iter().find(|w| (at_bus(w) || w.bus != 0) && !is_bus(w.bus)) {
+        if let Some(w) = self.walkers.iter().find(|w| (w.rides() || w.bus != 0) && !is_bus(w.bus)) {
             return Err(format!("walker {}: expected a bus, not {}", w.id, w.bus));
         }
         let on_map = |w: &&Walker| {

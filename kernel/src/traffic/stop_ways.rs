@@ -12,29 +12,46 @@ use super::ways::Ways;
 const REACH_M: f32 = 4.0;
 
 impl Ways {
-    /// For each stop the sidewalks onto which the doors of a bus there open.
-    pub(super) fn sidewalks_at_stops(&self) -> Vec<Vec<WalkEdgeId>> {
-        let edges = 0..self.places.map.walk_edges.len() as WalkEdgeId;
-        let of_stop = |stop: &BusStop| edges.clone().filter(|edge| self.opens_onto(stop, *edge)).collect();
-        self.places.map.bus_stops.iter().map(of_stop).collect()
+    /// Finds for each stop the sidewalks onto which the doors of a bus there open.
+    pub(super) fn add_stops(&mut self) {
+        let places = self.places.clone();
+        for stop in &places.map.bus_stops {
+            let edges = 0..places.map.walk_edges.len() as WalkEdgeId;
+            let onto: Vec<_> = edges.filter(|edge| self.opens_onto(stop, *edge)).collect();
+            for &edge in &onto {
+                let (s_m, _) = self.project(edge, self.doors(stop)[0].0);
+                self.edges[edge as usize].stops.push(s_m);
+            }
+            self.stop_ways.push(onto);
+        }
+    }
+
+    /// Where people get on and off a bus at a stop, and the direction out of the doors.
+    pub(super) fn doors(&self, stop: &BusStop) -> [(Vec2, Vec2); 2] {
+        DOORS_M.map(|m| {
+            let place = self.places.map.lanes[stop.lane as usize].straight_on(stop.s_m - m);
+            let out = place.left() * f32::from(self.kerb);
+            (place.position.truncate() + out * (place.half_width_m + OUT_M), out)
+        })
     }
 
     /// Whether one gets from the doors of a bus at a stop onto a sidewalk.
     fn opens_onto(&self, stop: &BusStop, edge: WalkEdgeId) -> bool {
         let map = &*self.places.map;
-        let (way, lane) = (&map.walk_edges[edge as usize], &map.lanes[stop.lane as usize]);
-        let doors = DOORS_M.map(|m| {
-            let place = lane.straight_on(stop.s_m - m);
-            let out = place.left() * f32::from(self.kerb);
-            (place.position.truncate() + out * (place.half_width_m + OUT_M), out)
-        });
+        let way = &map.walk_edges[edge as usize];
         way.crosswalk.is_none()
-            && doors.iter().any(|(door, out)| {
+            && self.doors(stop).iter().any(|(door, out)| {
                 let (s_m, offset_m) = self.project(edge, *door);
                 let there = self.edge_place(edge, s_m).position.truncate();
                 let near = offset_m.abs() < way.half_width_m + REACH_M && (0.0..=way.length_m).contains(&s_m);
                 near && (there - *door).dot(*out) > 0.0 && jaywalk::is_free(map, *door, there)
             })
+    }
+
+    /// The place in the middle of an edge right beside another.
+    pub(super) fn onto(&self, edge: WalkEdgeId, place: Vec2) -> Vec2 {
+        let (s_m, _) = self.project(edge, place);
+        self.edge_place(edge, s_m).position.truncate()
     }
 
     /// A place as metres along an edge and to the left of it.

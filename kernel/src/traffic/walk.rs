@@ -58,7 +58,7 @@ const STRIDE_M: f32 = 1.45;
 /// Fastest turn of the body, 2^-16 turns a tick (about 270 degrees a second).
 const TURN_PER_TICK: i16 = 820;
 /// After that long it has turned to where it will go.
-const TURNED_TICKS: u16 = 60;
+pub(super) const TURNED_TICKS: u16 = 60;
 /// Whoever moves less than this in a tick turns to where it wants to go, metres.
 const FACES_M: f32 = 0.003;
 /// How far to the right of the middle people keep, metres.
@@ -70,7 +70,7 @@ const SIDE_ROOM_M: f32 = 2.0;
 /// Whoever has waited this long at a kerb goes another way.
 const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
-const TURN_BACK_TICKS: u16 = seconds(8) as u16;
+pub(super) const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 
 /// What every walker sees of the previous tick.
 pub(super) struct Streets<'a> {
@@ -130,9 +130,17 @@ impl Streets<'_> {
                 gather(self.crowd, self.bodies, index, near);
                 self.jaywalk(index, near, &mut next);
             }
+            WalkerMode::Boards if next.bus == 0 => {
+                self.wait_for_bus(index, &mut next);
+                return (next, self.places[index]);
+            }
             WalkerMode::Boards => {
                 gather(self.crowd, self.bodies, index, near);
                 self.go_aboard(index, near, &mut next);
+            }
+            WalkerMode::Alights => {
+                gather(self.crowd, self.bodies, index, near);
+                self.go_onto_way(index, near, &mut next);
             }
         }
         self.settle(index, near, next)
@@ -378,7 +386,7 @@ impl Streets<'_> {
     }
 
     /// Turns the body towards a direction.
-    fn face(&self, toward: Vec2, next: &mut Walker) {
+    pub(super) fn face(&self, toward: Vec2, next: &mut Walker) {
         let aim = turns(ops::atan2(toward.y, toward.x));
         let turn = (aim.wrapping_sub(next.heading) as i16).clamp(-TURN_PER_TICK, TURN_PER_TICK);
         next.heading = next.heading.wrapping_add(turn as u16);

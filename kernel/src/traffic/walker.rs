@@ -12,10 +12,12 @@ state_enum! {
         Wait = 1,
         /// Crosses the road where there is no crosswalk: `s_m` stays, `offset_m` grows.
         Jaywalk = 2,
-        /// Goes to the door of a bus that stands at its stop, and waits there to get on.
+        /// Waits at a stop for a bus; goes to the door of one that stands there, and waits to get on.
         Boards = 3,
         /// Rides in a bus: stands nowhere, is seen by nobody, and is where it got on as far as its place goes.
         Rides = 4,
+        /// Goes straight from the road onto its way.
+        Alights = 5,
     }
 }
 

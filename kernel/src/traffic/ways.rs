@@ -33,6 +33,8 @@ pub(super) struct EdgeWay {
     pub facing: Vec<u32>,
     /// How much it draws people.
     pub draw: Draw,
+    /// Where buses halt beside it, at their front doors, metres along it.
+    pub stops: Vec<f32>,
 }
 
 /// What traffic looks up in a map.
@@ -75,7 +77,7 @@ impl Ways {
             door_spots: door_spots(places),
             kerb,
         };
-        ways.stop_ways = ways.sidewalks_at_stops();
+        ways.add_stops();
         let cycled = ways.entries.iter().copied().filter(|lane| ways.may_start(ActorKind::Bicycle, *lane));
         ways.bicycle_entries = cycled.collect();
         if ways.bicycle_entries.is_empty() {
@@ -181,7 +183,7 @@ fn edge_way(map: &MapData, index: usize, draw: Draw) -> EdgeWay {
         s_m.push(s_m[s_m.len() - 1] + pair[0].truncate().distance(pair[1].truncate()));
     }
     let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(map, index) } else { Vec::new() };
-    EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing, draw }
+    EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing, draw, stops: Vec::new() }
 }
 
 fn facing(map: &MapData, index: usize) -> Vec<u32> {

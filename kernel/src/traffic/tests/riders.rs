@@ -70,11 +70,14 @@ fn exchange(network: &Arc<RoadNetwork>, counts: (u16, u16), seed: u64, minutes: 
                     assert!(stands && (0.2..1.2).contains(&gap_m), "tick {tick}: {place} {is:?}");
                     assert!((3.0..5.2).contains(&place.x), "at the front door: {place}");
                 }
-                (WalkerMode::Rides, WalkerMode::Walk) => {
+                (WalkerMode::Rides, WalkerMode::Alights) => {
                     off += 1;
                     let place = local(bus.expect("a bus"), body(t, is.id).expect("it got off").position);
                     assert!(stands && (place.y * kerb - 1.75).abs() < 0.05, "tick {tick}: {place} {is:?}");
                     assert!((-1.1..-0.9).contains(&place.x), "at the door in the middle: {place}");
+                }
+                (WalkerMode::Boards, WalkerMode::Boards) if is.bus == 0 => {
+                    assert!(is.wait_ticks <= 150 * 60, "waits for ever {is:?}");
                 }
                 (WalkerMode::Boards, WalkerMode::Boards) => {
                     let since = *at_door.entry(is.id).or_insert(tick);
@@ -82,7 +85,7 @@ fn exchange(network: &Arc<RoadNetwork>, counts: (u16, u16), seed: u64, minutes: 
                     continue;
                 }
                 (WalkerMode::Rides, WalkerMode::Rides) => assert!(is.wait_ticks < 10 * 3600, "{is:?}"),
-                (_, WalkerMode::Rides) => panic!("tick {tick}: {was:?} {is:?}"),
+                (_, WalkerMode::Rides) | (WalkerMode::Rides, _) => panic!("tick {tick}: {was:?} {is:?}"),
                 _ => {}
             }
             at_door.remove(&is.id);
