@@ -31,7 +31,7 @@ const PATIENCE_TICKS: u16 = seconds(150) as u16;
 const MOST_NEAR: usize = 4;
 /// Somebody who comes by is at the place to wait within this, metres, and in company with who leads within that.
 const AT_PLACE_M: f32 = 0.05;
-const BESIDE_M: f32 = 1.6;
+const BESIDE_M: f32 = 2.5;
 /// Who is no farther from the door is at the stop, metres.
 const REACH_M: f32 = 12.0;
 /// Riders that a bus takes.
