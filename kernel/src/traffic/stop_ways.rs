@@ -39,8 +39,10 @@ impl Ways {
     fn opens_onto(&self, stop: &BusStop, edge: WalkEdgeId) -> bool {
         let map = &*self.places.map;
         let way = &map.walk_edges[edge as usize];
+        // Most are far away.
+        let near = |door: &Vec2| way.points[0].truncate().distance(*door) < way.length_m + way.half_width_m + REACH_M;
         way.crosswalk.is_none()
-            && self.doors(stop).iter().any(|(door, out)| {
+            && self.doors(stop).iter().filter(|(door, _)| near(door)).any(|(door, out)| {
                 let (s_m, offset_m) = self.project(edge, *door);
                 let there = self.edge_place(edge, s_m).position.truncate();
                 let near = offset_m.abs() < way.half_width_m + REACH_M && (0.0..=way.length_m).contains(&s_m);
