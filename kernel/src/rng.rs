@@ -35,6 +35,8 @@ pub enum Stream {
     Lapse = 14,
     /// Doors of parked cars.
     Door = 21,
+    /// Who rides in a bus, and how far.
+    Ride = 22,
 }
 
 fn mix(z: u64) -> u64 {

@@ -9,6 +9,7 @@ use super::groups::Groups;
 use super::rates::HazardRates;
 use super::state::TrafficState;
 use super::traits::{Driver, WalkerTraits, driver, walker_traits};
+use super::walker::Walker;
 use super::ways::Ways;
 use crate::map_data::{MapData, Place};
 use crate::weather::Conditions;
@@ -30,6 +31,8 @@ pub(super) struct Actors {
     pub places: Vec<Place>,
     /// At the places of the state.
     pub bodies: Vec<Body>,
+    /// The same without those who ride in buses; empty where nobody does.
+    seen: Vec<Body>,
     /// Which open about this time.
     pub doors: Doors,
     /// The weather that drivers and walkers heed.
@@ -50,6 +53,7 @@ impl Actors {
             places: state.walkers.iter().map(|w| ways.walker_place(w)).collect(),
             state,
             bodies: Vec::new(),
+            seen: Vec::new(),
             doors: Doors::default(),
             conditions: Conditions::default(),
         };
@@ -87,6 +91,21 @@ impl Actors {
         self.conditions = *conditions;
         self.know_drivers();
         self.know_walkers();
+    }
+
+    /// Leaves out who rides in a bus of what there is to see.
+    pub(super) fn know_seen(&mut self) {
+        self.seen.clear();
+        let (vehicles, walkers) = (self.state.vehicles.len(), &self.state.walkers);
+        if walkers.iter().any(Walker::rides) {
+            let there = |i: &usize| *i < vehicles || !walkers[*i - vehicles].rides();
+            self.seen.extend((0..self.bodies.len()).filter(there).map(|i| self.bodies[i]));
+        }
+    }
+
+    /// The bodies of all who stand in the world.
+    pub fn seen(&self) -> &[Body] {
+        if self.seen.is_empty() { &self.bodies } else { &self.seen }
     }
 
     /// The map they are on.

@@ -25,6 +25,10 @@ const BEYOND_M: f32 = 1.0;
 const DWELL_DS: [u8; 2] = [100, 200];
 /// It signals this long before it drives off, tenths of a second.
 const SIGNAL_DS: u8 = 30;
+/// While somebody stands at the door its clock goes slower by so many times in the last 4 s before that: it waits for 12 s
+/// more at most.
+const LAST_CALL_DS: std::ops::RangeInclusive<u8> = SIGNAL_DS + 1..=SIGNAL_DS + 40;
+const SLOWED: Tick = 4;
 /// Ticks in a tenth of a second.
 const DS_TICKS: Tick = 6;
 /// Nobody has to brake harder for a bus that drives off, m/s².
@@ -73,7 +77,10 @@ impl View<'_> {
     /// The next state of a bus that stands at a stop.
     pub(super) fn board(&self, index: usize, next: &mut Vehicle) {
         if next.is_due(self.tick, DS_TICKS) {
-            next.lapse_left = next.lapse_left.saturating_sub(1);
+            let holds = LAST_CALL_DS.contains(&next.lapse_left) && self.is_awaited(next);
+            if !holds || next.is_due(self.tick, SLOWED * DS_TICKS) {
+                next.lapse_left = next.lapse_left.saturating_sub(1);
+            }
             if next.lapse_left == 0 && self.can_pull_out(index, PULL_OUT_MPS2) {
                 next.lapse = Lapse::Departs;
             }
@@ -110,6 +117,11 @@ impl View<'_> {
 }
 
 impl Vehicle {
+    /// Time until the doors of a bus at its stop shut, tenths of a second; None where they are shut.
+    pub(super) fn doors_open_ds(&self) -> Option<u8> {
+        (self.lapse == Lapse::Boards && self.lapse_left > SIGNAL_DS).then(|| self.lapse_left - SIGNAL_DS)
+    }
+
     /// Stands at a bus stop and is about to leave it.
     pub(super) fn wants_out(&self) -> bool {
         self.lapse == Lapse::Boards && self.lapse_left <= SIGNAL_DS

@@ -6,6 +6,7 @@ use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::asking::Asking;
+use super::boarding::Call;
 use super::body::Body;
 use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, REACH_M, Seeker, side, sight};
@@ -73,6 +74,8 @@ pub(super) struct View<'a> {
     /// Those who signal to another lane.
     pub asking: &'a [Asking],
     pub horn: Option<Horn>,
+    /// Buses whose doors are open.
+    pub calls: &'a [Call],
     pub tick: Tick,
 }
 
@@ -259,7 +262,8 @@ impl View<'_> {
         let drift = match vehicle.manoeuvre {
             manoeuvre if manoeuvre.moves() => drift(vehicle.speed_mps, seeker.half.x),
             manoeuvre if manoeuvre.passes() => pass_drift(vehicle.speed_mps),
-            _ if aim_m == likes_m && !vehicle.lapse.is_from_kerb() => DRIFT,
+            // The front of a bus that turned more would swing out of its lane.
+            _ if aim_m == likes_m && vehicle.lapse != Lapse::PullsOut => DRIFT,
             _ => PASS_DRIFT,
         };
         Side { aim_m, drift }

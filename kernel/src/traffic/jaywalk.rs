@@ -145,7 +145,8 @@ pub(super) fn way_across(map: &MapData, ways: &Ways, walker: &Walker) -> Option<
     Some([place.beside(start.offset_m), place.beside(sign * goal.distance_m)].map(Vec3::truncate))
 }
 
-fn is_free(map: &MapData, from: Vec2, to: Vec2) -> bool {
+/// Whether no prop stands in a way.
+pub(super) fn is_free(map: &MapData, from: Vec2, to: Vec2) -> bool {
     !map.props.iter().any(|prop| touches(prop, from, to))
 }
 

@@ -37,9 +37,4 @@ impl Lapse {
     pub fn is_to_kerb(self) -> bool {
         matches!(self, Self::Parks | Self::Calls)
     }
-
-    /// Drives off from the kerb.
-    pub fn is_from_kerb(self) -> bool {
-        matches!(self, Self::PullsOut | Self::Departs)
-    }
 }

@@ -8,6 +8,7 @@ use crate::time::{Tick, seconds};
 
 use super::actors::Actors;
 use super::asking::{self, Asking};
+use super::boarding::{self, Call};
 use super::body::Surroundings;
 use super::crosswalk::{Claim, Gaps};
 use super::drive::View;
@@ -52,6 +53,8 @@ pub(super) struct Sight {
     asking: Vec<Asking>,
     horn: Option<Horn>,
     crowd: Nearby,
+    /// Buses whose doors are open.
+    pub calls: Vec<Call>,
     jaywalker: Option<usize>,
     tick: Tick,
 }
@@ -68,7 +71,10 @@ impl Sight {
         let vehicles = &actors.state.vehicles;
         self.lists.rebuild(map, vehicles, &actors.drivers, next, |v| !v.is_aside() && !around.holds(v.id));
         let people = &actors.bodies[actors.state.vehicles.len()..];
-        self.crowd.rebuild(people.len(), |i| (!around.holds(people[i].id as u16)).then_some(people[i].position));
+        let walkers = &actors.state.walkers;
+        let stands = |w: &Walker| !w.rides() && !around.holds(w.id);
+        self.crowd.rebuild(people.len(), |i| stands(&walkers[i]).then_some(people[i].position));
+        boarding::gather_calls(actors, around, &mut self.calls);
         self.plan(actors);
         self.gather_hazards(actors, around);
         self.gather_claims(actors, around);
@@ -98,6 +104,7 @@ impl Sight {
             claims: &self.claims,
             asking: &self.asking,
             horn: self.horn,
+            calls: &self.calls,
             tick: self.tick,
         }
     }
@@ -115,6 +122,7 @@ impl Sight {
             crowd: &self.crowd,
             gaps: self.gaps(actors),
             hazards: &self.hazards,
+            calls: &self.calls,
             tick: self.tick,
             jaywalker: self.jaywalker,
         }
@@ -168,7 +176,8 @@ impl Sight {
         let drives = drives.map(|(i, (_, body))| Hazard { vehicle: Some(i as u32), ..Hazard::of_body(body) });
         let edge = |walker: &Walker| &actors.map().walk_edges[walker.edge as usize];
         let on_road = |w: &Walker| edge(w).crosswalk.is_some() || w.offset_m.abs() > edge(w).half_width_m + ASTRAY_M;
-        let people = actors.state.walkers.iter().zip(walked).filter(|(w, _)| !around.holds(w.id) && on_road(w));
+        let people =
+            actors.state.walkers.iter().zip(walked).filter(|(w, _)| !w.rides() && !around.holds(w.id) && on_road(w));
         let people = people.map(|(_, body)| Hazard::of_body(body));
         self.hazards.rebuild(free.chain(actors.door_hazards(around)), people, drives);
         self.changing.clear();
@@ -179,7 +188,8 @@ impl Sight {
     fn gather_claims(&mut self, actors: &Actors, around: &Surroundings<'_>) {
         let (walkers, walked) = (&actors.state.walkers, &actors.bodies[actors.state.vehicles.len()..]);
         self.claims.clear();
-        for (i, (walker, body)) in walkers.iter().zip(walked).enumerate().filter(|(_, (w, _))| !around.holds(w.id)) {
+        let stands = |w: &Walker| !w.rides() && !around.holds(w.id);
+        for (i, (walker, body)) in walkers.iter().zip(walked).enumerate().filter(|(_, (w, _))| stands(w)) {
             let crosswalk = actors.map().walk_edges[walker.edge as usize].crosswalk;
             let waits = walker.mode == WalkerMode::Wait;
             let claimed = if waits { self.wanted_unlit_crosswalk(actors, i, walker) } else { crosswalk };

@@ -9,6 +9,7 @@ mod actors;
 mod approach;
 mod asking;
 mod barge;
+mod boarding;
 mod body;
 mod brink;
 mod bus;
@@ -47,12 +48,14 @@ mod population;
 mod poses;
 mod rates;
 mod reasons;
+mod riders;
 mod routes;
 mod sideways;
 mod slack;
 mod spawn;
 mod state;
 mod step;
+mod stop_ways;
 mod together;
 mod traits;
 mod turns;
@@ -137,10 +140,10 @@ impl Traffic {
         &self.actors.state
     }
 
-    /// Every actor by ascending id, at its place on the map; physics overrides the pose of those
+    /// Every actor but those who ride in buses, by ascending id, at its place on the map; physics overrides the pose of those
     /// it has made loose.
     pub fn bodies(&self) -> &[Body] {
-        &self.actors.bodies
+        self.actors.seen()
     }
 
     /// Who was asked for and found no room.
@@ -198,6 +201,7 @@ impl Traffic {
         sight.places = std::mem::replace(&mut actors.places, places);
         mistakes::tell(&sight.next.vehicles, &actors.state.vehicles, told);
         actors.return_to_map(surroundings, told);
+        actors.exchange(&sight.calls, surroundings);
         actors.place_bodies();
         actors.crash(surroundings, told);
     }

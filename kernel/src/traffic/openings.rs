@@ -85,7 +85,7 @@ impl Actors {
         let middle = spot.middle(leaf);
         let ego_front_m = if ego.velocity_mps.length() < SLOW_MPS { 0.0 } else { FRONT_M };
         let near = |body: &&super::Body| body.position.distance_squared(middle) < BESIDE_M * BESIDE_M;
-        let mut bodies = self.bodies.iter().filter(near);
+        let mut bodies = self.seen().iter().filter(near);
         !overlap(ego, ego_front_m, middle, leaf)
             && !bodies.any(|body| {
                 let forward = (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X);

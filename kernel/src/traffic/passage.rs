@@ -99,10 +99,11 @@ impl Actors {
     fn is_free(&self, index: usize, entry: &Vehicle, around: &Surroundings<'_>) -> bool {
         let me = self.ways.vehicle_body(self.seed, entry, &self.drivers[index]);
         let (vehicles, walkers) = (self.state.vehicles.iter(), self.state.walkers.iter().zip(&self.walker_traits));
+        let walkers = walkers.zip(&self.places).filter(|((w, _), _)| !w.rides());
         let others = vehicles.zip(&self.drivers).filter(|(v, _)| v.id != entry.id && !around.holds(v.id));
         let near = |body: &Body| body.position.distance_squared(me.position) < FAR_M * FAR_M;
         let mut others = others.map(|(v, d)| self.ways.vehicle_body(self.seed, v, d)).filter(near);
-        let mut people = walkers.zip(&self.places).map(|((w, t), place)| walker_body(w, t, place)).filter(near);
+        let mut people = walkers.map(|((w, t), place)| walker_body(w, t, place)).filter(near);
         let loose = |o: &super::body::Obstacle| o.position.distance(me.position) > EGO_CLEARANCE_M;
         around.loose.iter().all(loose) && others.all(|b| keeps_off(&me, &b)) && people.all(|b| keeps_off(&me, &b))
     }

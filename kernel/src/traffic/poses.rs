@@ -43,6 +43,7 @@ impl Actors {
         let walkers = self.state.walkers.iter().zip(&self.walker_traits).zip(&self.places);
         bodies.extend(walkers.map(|((walker, traits), place)| walker_body(walker, traits, place)));
         self.bodies = bodies;
+        self.know_seen();
     }
 }
 
@@ -119,16 +120,20 @@ fn lamps(vehicle: &Vehicle) -> u8 {
 pub(super) fn walker_body(walker: &Walker, traits: &WalkerTraits, place: &Place) -> Body {
     let half_rad = f32::from(walker.heading) * (TURN_RAD * 0.5);
     let (sin, cos) = (ops::sin(half_rad), ops::cos(half_rad));
-    let across = walker.mode == WalkerMode::Jaywalk;
-    let ahead = if across { place.left().extend(0.0) } else { place.forward };
+    let rotation = Quat::from_xyzw(0.0, 0.0, sin, cos);
     let sign = if walker.forward { 1.0 } else { -1.0 };
+    let ahead = match walker.mode {
+        WalkerMode::Jaywalk => place.left().extend(0.0) * sign,
+        WalkerMode::Boards | WalkerMode::Alights => rotation * Vec3::X,
+        _ => place.forward * sign,
+    };
     Body {
         id: u32::from(walker.id),
         kind: traits.kind,
         variant: traits.variant,
         position: place.beside(walker.offset_m),
-        rotation: Quat::from_xyzw(0.0, 0.0, sin, cos),
-        velocity_mps: ahead * (sign * walker.speed_mps),
+        rotation,
+        velocity_mps: ahead * walker.speed_mps,
         phase_rad: f32::from(walker.phase) * TURN_RAD,
         lamps: 0,
     }

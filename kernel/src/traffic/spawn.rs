@@ -311,6 +311,7 @@ impl Spawner<'_> {
             wait_ticks: 0,
             phase: (random >> 16) as u16,
             heading: turns(ops::atan2(ahead.y, ahead.x)),
+            bus: 0,
         });
         true
     }

@@ -2,6 +2,7 @@
 
 use super::vehicle::Vehicle;
 use super::walker::Walker;
+use crate::actor::ActorKind;
 use crate::map_data::MapData;
 use crate::state;
 
@@ -41,6 +42,10 @@ impl TrafficState {
             if lane.is_none() || !before || !kind || !moves || !drifts || v.flags & !Vehicle::ALL_FLAGS != 0 {
                 return Err(format!("vehicle {}: expected a vehicle on a lane of map {}", v.id, map.name));
             }
+        }
+        let is_bus = |id: u16| self.vehicles.iter().any(|v| v.id == id && v.kind == ActorKind::Bus);
+        if let Some(w) = self.walkers.iter().find(|w| (w.rides() || w.bus != 0) && !is_bus(w.bus)) {
+            return Err(format!("walker {}: expected a bus, not {}", w.id, w.bus));
         }
         let on_map = |w: &&Walker| {
             let edge = map.walk_edges.get(w.edge as usize);

@@ -6,6 +6,7 @@ use crate::map_data::{MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
+use super::boarding::Call;
 use super::body::Body;
 use super::company::{Leeway, Near, gather, leeway};
 use super::crosswalk::Gaps;
@@ -25,7 +26,7 @@ const ACCEL_MPS2: f32 = 1.5;
 /// Sideways speed as a share of the speed ahead.
 const DRIFT: f32 = 0.35;
 /// Sideways speed of somebody who gets out of another's way, m/s.
-const SIDESTEP_MPS: f32 = 0.35;
+pub(super) const SIDESTEP_MPS: f32 = 0.35;
 /// Whoever is slower than this is held up by others, m/s.
 const HELD_UP_MPS: f32 = 0.3;
 /// Whoever has stood before others for this long goes back, so that no crowd can jam.
@@ -45,7 +46,7 @@ const STRIDE_M: f32 = 1.45;
 /// Fastest turn of the body, 2^-16 turns a tick (about 270 degrees a second).
 const TURN_PER_TICK: i16 = 820;
 /// After that long it has turned to where it will go.
-const TURNED_TICKS: u16 = 60;
+pub(super) const TURNED_TICKS: u16 = 60;
 /// Whoever moves less than this in a tick turns to where it wants to go, metres.
 const FACES_M: f32 = 0.003;
 /// How far to the right of the middle people keep, metres.
@@ -57,7 +58,7 @@ const SIDE_ROOM_M: f32 = 2.0;
 /// Whoever has waited this long at a kerb goes another way.
 const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
-const TURN_BACK_TICKS: u16 = seconds(8) as u16;
+pub(super) const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 
 /// What every walker sees of the previous tick.
 pub(super) struct Streets<'a> {
@@ -74,6 +75,8 @@ pub(super) struct Streets<'a> {
     pub crowd: &'a Nearby,
     pub gaps: Gaps<'a>,
     pub hazards: &'a Hazards,
+    /// Buses whose doors are open.
+    pub calls: &'a [Call],
     pub tick: Tick,
     /// Index of the walker that starts to jaywalk.
     pub jaywalker: Option<usize>,
@@ -92,7 +95,12 @@ impl Streets<'_> {
             next.mode = WalkerMode::Jaywalk;
             next.forward = jaywalk::road_is_left(self.map, self.ways, &next);
         }
+        self.heed_buses(index, &mut next);
         match next.mode {
+            WalkerMode::Rides => {
+                next.wait_ticks = next.wait_ticks.saturating_add(1);
+                return (next, self.places[index]);
+            }
             WalkerMode::Wait if !self.looks(&next) => {
                 next.wait_ticks = next.wait_ticks.saturating_add(1);
                 if next.wait_ticks < TURNED_TICKS {
@@ -108,6 +116,18 @@ impl Streets<'_> {
             WalkerMode::Jaywalk => {
                 gather(self.crowd, self.bodies, index, near);
                 self.jaywalk(index, near, &mut next);
+            }
+            WalkerMode::Boards if next.bus == 0 => {
+                self.wait_for_bus(index, &mut next);
+                return (next, self.places[index]);
+            }
+            WalkerMode::Boards => {
+                gather(self.crowd, self.bodies, index, near);
+                self.go_aboard(index, near, &mut next);
+            }
+            WalkerMode::Alights => {
+                gather(self.crowd, self.bodies, index, near);
+                self.go_onto_way(index, near, &mut next);
             }
         }
         self.settle(index, near, next)
@@ -148,6 +168,7 @@ impl Streets<'_> {
         let toward = match next.mode {
             WalkerMode::Wait => self.waiting_direction(index, &next),
             _ if step.length_squared() > FACES_M * FACES_M => step,
+            WalkerMode::Boards => self.toward_bus(&next),
             _ => ahead * if next.forward { 1.0 } else { -1.0 },
         };
         self.face(toward, &mut next);
@@ -301,7 +322,7 @@ impl Streets<'_> {
     }
 
     /// Turns the body towards a direction.
-    fn face(&self, toward: Vec2, next: &mut Walker) {
+    pub(super) fn face(&self, toward: Vec2, next: &mut Walker) {
         let aim = turns(ops::atan2(toward.y, toward.x));
         let turn = (aim.wrapping_sub(next.heading) as i16).clamp(-TURN_PER_TICK, TURN_PER_TICK);
         next.heading = next.heading.wrapping_add(turn as u16);
@@ -360,7 +381,7 @@ fn halt(next: &mut Walker) {
     }
 }
 
-fn approach_speed(next: &mut Walker, aim_mps: f32) {
+pub(super) fn approach_speed(next: &mut Walker, aim_mps: f32) {
     let step = ACCEL_MPS2 * TICK_S;
     next.speed_mps += (aim_mps - next.speed_mps).clamp(-2.0 * step, step);
 }

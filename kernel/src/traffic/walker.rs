@@ -12,11 +12,17 @@ state_enum! {
         Wait = 1,
         /// Crosses the road where there is no crosswalk: `s_m` stays, `offset_m` grows.
         Jaywalk = 2,
+        /// Waits at a stop for a bus; goes to the door of one that stands there, and waits to get on.
+        Boards = 3,
+        /// Rides in a bus: stands nowhere, is seen by nobody, and is where it got on as far as its place goes.
+        Rides = 4,
+        /// Goes straight from the road onto its way.
+        Alights = 5,
     }
 }
 
 state! {
-    /// A person on foot. 28 bytes.
+    /// A person on foot. 30 bytes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Walker {
         /// Id of the actor.
@@ -35,12 +41,21 @@ state! {
         pub speed_mps: f32,
         /// Edges entered so far (wrapping): the counter of its random choices.
         pub hops: u16,
-        /// Ticks it has waited, saturating.
+        /// Ticks it has waited, or ridden, saturating.
         pub wait_ticks: u16,
         /// Phase of its gait, 2^-16 turns.
         pub phase: u16,
         /// Where it faces, 2^-16 turns counter-clockwise from east.
         pub heading: u16,
+        /// The bus to which it goes, in which it rides, or out of which it came while that still stands there; 0 for none.
+        pub bus: u16,
+    }
+}
+
+impl Walker {
+    /// Rides in a bus, and stands nowhere.
+    pub fn rides(&self) -> bool {
+        self.mode == WalkerMode::Rides
     }
 }
 

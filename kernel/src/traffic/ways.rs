@@ -33,6 +33,8 @@ pub(super) struct EdgeWay {
     pub facing: Vec<u32>,
     /// How much it draws people.
     pub draw: Draw,
+    /// Where buses halt beside it, at their front doors, metres along it.
+    pub stops: Vec<f32>,
 }
 
 /// What traffic looks up in a map.
@@ -49,6 +51,8 @@ pub struct Ways {
     pub(super) entries: Vec<LaneId>,
     /// Those on which bicycles do; all where there is none.
     pub(super) bicycle_entries: Vec<LaneId>,
+    /// For each bus stop the sidewalks onto which the doors of a bus there open.
+    pub(super) stop_ways: Vec<Vec<WalkEdgeId>>,
     /// Doors of parked cars that open into a lane.
     pub(super) door_spots: Vec<DoorSpot>,
     /// The side of slow traffic: -1 (right) where one drives on the right, 1 (left) where on the left.
@@ -69,9 +73,11 @@ impl Ways {
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
             bicycle_entries: Vec::new(),
+            stop_ways: Vec::new(),
             door_spots: door_spots(places),
             kerb,
         };
+        ways.add_stops();
         let cycled = ways.entries.iter().copied().filter(|lane| ways.may_start(ActorKind::Bicycle, *lane));
         ways.bicycle_entries = cycled.collect();
         if ways.bicycle_entries.is_empty() {
@@ -177,7 +183,7 @@ fn edge_way(map: &MapData, index: usize, draw: Draw) -> EdgeWay {
         s_m.push(s_m[s_m.len() - 1] + pair[0].truncate().distance(pair[1].truncate()));
     }
     let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(map, index) } else { Vec::new() };
-    EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing, draw }
+    EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing, draw, stops: Vec::new() }
 }
 
 fn facing(map: &MapData, index: usize) -> Vec<u32> {

@@ -137,6 +137,9 @@ impl Bodies {
             self.attend(&body, &mover, physics, near);
         }
         self.push_parked(parked, &mover, physics, near);
+        // Who got on a bus is nowhere any more.
+        let gone = self.near.iter().filter(|id| near.binary_search(id).is_err());
+        gone.for_each(|id| physics.release(*id));
         std::mem::swap(&mut self.near, near);
     }
 
@@ -301,5 +304,40 @@ impl Mover {
         }
         let (half_self, half) = (self.size_m.xy() * 0.5 + GAP_M, size_m.xy() * 0.5 + GAP_M);
         rectangles_overlap(half_self, gap.xy(), axis.xy(), half)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+
+    use super::*;
+    use crate::map::bundled;
+    use crate::scenario::Scenario;
+    use crate::world::World;
+
+    #[test]
+    fn who_gets_on_a_bus_is_in_the_physics_world_no_more() {
+        let network = bundled("city").expect("it is bundled");
+        let world = World::new(&Scenario::default_for("city", 1), &network).expect("the scenario fits");
+        let car = &world.parts.ego.car;
+        let mut physics = Physics::new(network.statics(), &car.motion);
+        let person = |id: u32| Body {
+            id,
+            kind: ActorKind::Pedestrian,
+            variant: 0,
+            position: car.middle() + Vec3::Y * (20.0 + id as f32),
+            rotation: Quat::IDENTITY,
+            velocity_mps: Vec3::ZERO,
+            phase_rad: 0.0,
+            lamps: 0,
+        };
+        let (mut bodies, mut near) = (Bodies::default(), Vec::new());
+        for there in [&[1, 2, 3][..], &[1, 3], &[1, 2, 3], &[2]] {
+            let people: Vec<_> = there.iter().map(|id| person(*id)).collect();
+            bodies.prepare(&people, &network.places().parked, car, &mut physics, &mut near);
+            assert_eq!(bodies.near, there);
+            assert!((1..4).all(|id| physics.actor(id).is_some() == there.contains(&id)), "{there:?}");
+        }
     }
 }

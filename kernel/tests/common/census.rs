@@ -1,6 +1,6 @@
 //! Drives traffic alone, and counts what must not happen in it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::Arc;
 
@@ -127,8 +127,8 @@ struct Watcher<'a> {
     /// For each vehicle, the seconds it has stood without a red light.
     stands_s: Vec<u32>,
     before: Vec<Vehicle>,
-    /// Where people were a second ago.
-    walked_from: Vec<Vec3>,
+    /// Where people who stood in the world were a second ago.
+    walked_from: BTreeMap<u32, Vec3>,
     overlapping: BTreeSet<(u32, u32)>,
 }
 
@@ -174,9 +174,11 @@ impl<'a> Watcher<'a> {
         }
         if tick.is_multiple_of(seconds(1)) {
             self.standing(traffic, tick);
-            let moved = self.walked_from.iter().zip(people(traffic)).map(|(from, to)| f64::from(from.distance(to)));
-            self.found.walker_km += moved.sum::<f64>() / 1000.0;
-            self.found.walker_h += self.walked_from.len() as f64 / 3600.0;
+            // Who rode in a bus did not walk.
+            let moved = people(traffic).filter_map(|(id, to)| Some(f64::from(self.walked_from.get(&id)?.distance(to))));
+            let moved: Vec<f64> = moved.collect();
+            self.found.walker_km += moved.iter().sum::<f64>() / 1000.0;
+            self.found.walker_h += moved.len() as f64 / 3600.0;
             self.walked_from = people(traffic).collect();
         }
         self.before.clone_from(vehicles);
@@ -192,7 +194,8 @@ impl<'a> Watcher<'a> {
             let at = place(v);
             eprintln!("  at {:.1} {:.1} {heading:.0} deg: {v:?}", at.x, at.y);
         }
-        let on_foot = traffic.bodies()[self.before.len()..].iter().zip(&traffic.state().walkers);
+        let standing = traffic.state().walkers.iter().filter(|walker| !walker.rides());
+        let on_foot = traffic.bodies()[self.before.len()..].iter().zip(standing);
         for (body, walker) in on_foot.filter(|(body, _)| body.position.distance(place(me)) < AROUND_M * 0.2) {
             eprintln!("  at {:.1} {:.1} on foot: {walker:?}", body.position.x, body.position.y);
         }
@@ -291,9 +294,9 @@ impl<'a> Watcher<'a> {
     }
 }
 
-/// Where the people on foot are.
-fn people(traffic: &Traffic) -> impl Iterator<Item = Vec3> {
-    traffic.bodies()[traffic.state().vehicles.len()..].iter().map(|body| body.position)
+/// Where the people on foot are, by their ids.
+fn people(traffic: &Traffic) -> impl Iterator<Item = (u32, Vec3)> {
+    traffic.bodies()[traffic.state().vehicles.len()..].iter().map(|body| (body.id, body.position))
 }
 
 /// The vehicle that stands closely before another.

@@ -10,8 +10,8 @@ use crate::scene::lamps;
 use crate::time::Tick;
 use crate::traffic::{Lapse, Traffic, TrafficCounts, Vehicle};
 
-/// A ring of so many lanes with two stops, driven on the right or on the left.
-fn ring(lanes: i32, right: bool) -> Arc<RoadNetwork> {
+/// A ring of so many lanes and sidewalks with two stops, driven on the right or on the left.
+pub(super) fn ring(lanes: i32, right: bool) -> Arc<RoadNetwork> {
     let side = if right { -1 } else { 1 };
     let lane = |id: i32| {
         format!(
@@ -19,9 +19,10 @@ fn ring(lanes: i32, right: bool) -> Arc<RoadNetwork> {
              <width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane>"
         )
     };
+    let walk = |id: i32| lane(id).replace("driving", "sidewalk").replace("3.5", "2.5");
     // The lanes for the other direction tell on which side one drives.
-    let all = |sign: i32| (1..=lanes).map(|n| lane(sign * n)).collect::<String>();
-    let left: String = (1..=lanes).rev().map(lane).collect();
+    let right_of_it = (1..=lanes).map(|n| lane(-n)).collect::<String>() + &walk(-lanes - 1);
+    let left = walk(lanes + 1) + &(1..=lanes).rev().map(lane).collect::<String>();
     let rule = if right { "RHT" } else { "LHT" };
     let stop = |s: u32| {
         let t = f64::from(side) * (3.5 * f64::from(lanes) + 1.0);
@@ -34,19 +35,22 @@ fn ring(lanes: i32, right: bool) -> Arc<RoadNetwork> {
          <link><predecessor elementType=\"road\" elementId=\"0\" contactPoint=\"end\"/>\
          <successor elementType=\"road\" elementId=\"0\" contactPoint=\"start\"/></link><planView>\
          <geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"{length_m}\"><arc curvature=\"{}\"/></geometry></planView>\
-         <lanes><laneSection s=\"0\"><left>{left}</left><center><lane id=\"0\" type=\"none\"/></center><right>{}</right>\
+         <lanes><laneSection s=\"0\"><left>{left}</left><center><lane id=\"0\" type=\"none\"/></center><right>{right_of_it}</right>\
          </laneSection></lanes><signals>{}{}</signals></road></OpenDRIVE>",
         std::f64::consts::TAU / length_m,
-        all(-1),
         stop(300),
         stop(700),
     );
     Arc::new(bake("ring", &text).expect("it bakes"))
 }
 
+/// Numbers of cars and people on foot, and of nobody else.
+pub(super) fn only(cars: u16, pedestrians: u16) -> TrafficCounts {
+    TrafficCounts { cars, motorcycles: 0, bicycles: 0, pedestrians, jaywalks_per_min: 0.0, ..counts(0) }
+}
+
 /// Traffic on which every second car with room for it is a bus.
-fn with_buses(network: &Arc<RoadNetwork>, cars: u16, seed: u64) -> Traffic {
-    let counts = TrafficCounts { cars, motorcycles: 0, bicycles: 0, pedestrians: 0, ..counts(0) };
+pub(super) fn with_buses(network: &Arc<RoadNetwork>, counts: TrafficCounts, seed: u64) -> Traffic {
     let mut state = Traffic::spawn(&counts, seed, network.ways(), nowhere().position).state().clone();
     let others = state.vehicles.clone();
     for vehicle in &mut state.vehicles {
@@ -106,7 +110,7 @@ fn signs_tell_where_buses_halt() {
 fn buses_halt_at_every_stop_on_their_lane() {
     for (lanes, right) in [(1, true), (2, true), (1, false)] {
         let network = ring(lanes, right);
-        let mut traffic = with_buses(&network, 16, 7);
+        let mut traffic = with_buses(&network, only(16, 0), 7);
         let minutes = 8;
         let halts = watch(&mut traffic, &network, minutes, if right { -1.0 } else { 1.0 });
         let all: Vec<_> = halts.values().flatten().copied().collect();
@@ -124,7 +128,7 @@ fn a_bus_calls_at_a_stop_once_a_round() {
     let network = ring(1, true);
     let mut called = 0;
     for seed in 1..=4 {
-        let counts = TrafficCounts { cars: 1, motorcycles: 0, bicycles: 0, pedestrians: 0, ..counts(0) };
+        let counts = only(1, 0);
         let mut state = Traffic::spawn(&counts, seed, network.ways(), nowhere().position).state().clone();
         state.vehicles[0].kind = ActorKind::Bus;
         let has_stops = network.bus_stops[0].lane == state.vehicles[0].lane;

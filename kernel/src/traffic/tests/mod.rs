@@ -6,6 +6,7 @@ mod encroachment;
 mod free_road;
 mod mistakes;
 mod people;
+mod riders;
 mod standing;
 
 use std::sync::Arc;
@@ -209,7 +210,7 @@ fn state_is_small_and_resumes() {
     let bytes = traffic.actors.state.to_bytes();
     // So that a keyframe with 150 of them stays below 6 kB.
     let TrafficState { vehicles, walkers } = traffic.state();
-    assert_eq!(bytes.len(), 40 * vehicles.len() + 28 * walkers.len() + 8);
+    assert_eq!(bytes.len(), 40 * vehicles.len() + 30 * walkers.len() + 8);
     let state = TrafficState::from_bytes(&bytes).expect("own bytes are read back");
     let mut resumed = Traffic::resume(&counts(60), 4, network.ways(), state).expect("own state fits the map");
     assert_eq!(traffic.actors.bodies, resumed.actors.bodies);
@@ -232,6 +233,8 @@ fn states_of_other_maps_are_refused() {
     assert!(refused(&|s| s.vehicles[3].s_m = -1.0));
     assert!(refused(&|s| s.vehicles.swap(0, 1)));
     assert!(refused(&|s| s.walkers[0].edge = 9999));
+    assert!(refused(&|s| s.walkers[0].mode = WalkerMode::Rides));
+    assert!(refused(&|s| s.walkers[0].bus = s.walkers[1].id));
 }
 
 #[test]

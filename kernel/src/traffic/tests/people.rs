@@ -6,9 +6,10 @@ use super::crossroads::{Signs, crossroads};
 use super::{MINUTE, car_at, counts, nowhere, run};
 use glam::Vec3;
 
+use crate::actor::ActorKind;
 use crate::map::{RoadNetwork, bundled};
 use crate::time::Tick;
-use crate::traffic::{Surroundings, Traffic, TrafficCounts, Walker, WalkerMode, cover, jaywalk};
+use crate::traffic::{Lapse, Surroundings, Traffic, TrafficCounts, TrafficState, Walker, WalkerMode, cover, jaywalk};
 use crate::weather::Conditions;
 
 /// So many people on foot and little traffic.
@@ -147,4 +148,35 @@ fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car()
     let expected = 4.0 * minutes as f32 * a_minute;
     assert!((all as f32 - expected).abs() < 3.0 * expected.sqrt(), "{all} where {expected} are asked for");
     assert!(hidden as f32 > 0.25 * all as f32, "{hidden} of {all}");
+}
+
+#[test]
+fn people_step_out_before_a_bus_that_stays_at_its_stop() {
+    let network = crossroads(Signs::Yield);
+    let ways = network.ways();
+    let spawned = with_people(&network, 1, 2101).state().clone();
+    let (mut bus, walker) = (spawned.vehicles[0], spawned.walkers[0]);
+    let is_beside =
+        |e: &crate::map::WalkEdge| e.beside.is_some_and(|lane| network.lanes[lane as usize].length_m > 80.0);
+    let edge = network.walk_edges.iter().position(|e| is_beside(e) && e.length_m > 80.0).expect("there is one");
+    let lane = network.walk_edges[edge].beside.expect("it has one");
+    let mut before = |ahead_m: f32, lapse_left: u8| {
+        (bus.kind, bus.lane, bus.before, bus.s_m, bus.offset_m) = (ActorKind::Bus, lane, lane, 40.0, -0.4);
+        (bus.lapse, bus.lapse_left, bus.speed_mps) = (Lapse::Boards, lapse_left, 0.0);
+        // On the sidewalk, so far before the front of the bus.
+        let place = network.lanes[lane as usize].straight_on(40.0 + 5.5 + ahead_m).position;
+        let away_m = |s_m: &f32| ways.edge_place(edge as u32, *s_m).position.distance(place);
+        let all = (0..2000).map(|k| 0.1 * k as f32);
+        let s_m = all.min_by(|a, b| away_m(a).total_cmp(&away_m(b))).expect("there are some");
+        let walker = Walker { edge: edge as u32, s_m, offset_m: 0.0, ..walker };
+        let state = TrafficState { vehicles: vec![bus], walkers: vec![walker] };
+        let actors = Traffic::with(&counts(1), 2101, ways, state).actors;
+        let way = jaywalk::way_across(actors.map(), &actors.ways, &walker).expect("one can cross");
+        (cover::hides(&actors, &walker, way), jaywalk::can_stop(&actors, way[0], way[1]))
+    };
+    // Hidden and free; too far; behind it, and through it; as long as it stays.
+    assert_eq!(before(1.5, 150), (true, true));
+    assert!(!before(8.0, 150).0);
+    assert!(!before(-3.0, 150).1);
+    assert_eq!(before(1.5, 20), (false, false));
 }
