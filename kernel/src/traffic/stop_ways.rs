@@ -10,6 +10,8 @@ use super::ways::Ways;
 
 /// From the edge of the lane to the border of the sidewalk, at most, metres.
 const REACH_M: f32 = 4.0;
+/// And at most so much higher or lower, metres.
+const LEVEL_M: f32 = 2.0;
 
 impl Ways {
     /// Finds for each stop the sidewalks onto which the doors of a bus there open.
@@ -44,9 +46,11 @@ impl Ways {
         way.crosswalk.is_none()
             && self.doors(stop).iter().filter(|(door, _)| near(door)).any(|(door, out)| {
                 let (s_m, offset_m) = self.project(edge, *door);
-                let there = self.edge_place(edge, s_m).position.truncate();
+                let place = self.edge_place(edge, s_m).position;
+                let there = place.truncate();
+                let level = (place.z - map.lanes[stop.lane as usize].straight_on(stop.s_m).position.z).abs() < LEVEL_M;
                 let near = offset_m.abs() < way.half_width_m + REACH_M && (0.0..=way.length_m).contains(&s_m);
-                near && (there - *door).dot(*out) > 0.0 && jaywalk::is_free(map, *door, there)
+                level && near && (there - *door).dot(*out) > 0.0 && jaywalk::is_free(map, *door, there)
             })
     }
 

@@ -105,7 +105,6 @@ fn people_get_on_and_off_buses_and_nobody_is_lost_or_hurt() {
         let network = ring(lanes, right);
         assert!(network.ways().stop_ways.iter().all(|ways| ways.len() == 1), "{:?}", network.ways().stop_ways);
         let [on, off] = exchange(&network, counts, 7, 20, if right { -1.0 } else { 1.0 });
-        println!("{lanes} lanes, {counts:?}: {on} got on, {off} got off");
         assert!(on > 15 && off > 10 && on >= off, "{lanes} lanes: {on} got on, {off} got off");
     }
 }
