@@ -101,9 +101,14 @@ impl Side {
     }
 }
 
+/// The way on which a vehicle can turn by 1/100, metres.
+pub(super) fn turns_in_m(driver: &Driver) -> f32 {
+    STEERING * driver.size_m.x
+}
+
 /// By how much a vehicle on its way from `s_m` on may turn in a tick, 1/100.
 fn steered(driver: &Driver, s_m: f32, moved_m: f32) -> i8 {
-    let each_m = STEERING * driver.size_m.x;
+    let each_m = turns_in_m(driver);
     i8::from((s_m / each_m) as i32 != ((s_m + moved_m) / each_m) as i32)
 }
 
@@ -148,12 +153,12 @@ impl View<'_> {
         let behind = self.behind_leader_mps2(index, plan, next).min(halt_mps2);
         let accel =
             self.acceleration(index, plan, next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
-        let accel = accel.min(self.brink_mps2(index, next, accel));
+        next.drift_aim = side.drift_aim(next);
+        let accel = self.last_look(index, next, accel);
         let was_braking = next.flags & Vehicle::BRAKING != 0;
         let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
         next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };
         next.accel_cmps2 = ops::round(accel * 100.0) as i16;
-        next.drift_aim = side.drift_aim(next);
     }
 
     pub(super) fn steps_of(&self, plan: &Plan) -> &[Step] {

@@ -82,6 +82,11 @@ impl Hazard {
         !self.walker && self.velocity.length_squared() < STANDS_MPS * STANDS_MPS
     }
 
+    /// The same where it will be after so many seconds.
+    pub fn after(&self, time_s: f32) -> Self {
+        Self { position: self.position + (self.velocity * time_s).extend(0.0), ..*self }
+    }
+
     /// Half of its extent along a horizontal unit vector, metres.
     fn half_along(&self, axis: Vec2) -> f32 {
         self.half.x * self.forward.dot(axis).abs() + self.half.y * self.forward.perp_dot(axis).abs()

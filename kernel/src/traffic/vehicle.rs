@@ -128,7 +128,7 @@ mod tests {
     }
 
     impl Vehicle {
-        fn standing() -> Self {
+        pub(in crate::traffic) fn standing() -> Self {
             Self {
                 id: 0,
                 kind: ActorKind::Car,

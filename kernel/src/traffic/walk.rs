@@ -53,6 +53,8 @@ const FACES_M: f32 = 0.003;
 const RIGHT_M: f32 = 0.3;
 /// Past others one goes so far beyond the border of the way, metres: the outermost half metre of the pavement is not part of it.
 const VERGE_M: f32 = 0.25;
+/// Whoever stands on a crosswalk no farther than this from its end looks again before going on, metres.
+const KERB_M: f32 = 0.8;
 /// Room to both sides of somebody who crosses the road, metres.
 const SIDE_ROOM_M: f32 = 2.0;
 /// Whoever has waited this long at a kerb goes another way.
@@ -194,7 +196,10 @@ impl Streets<'_> {
         let mut leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
         let held_up = leeway.most_mps < HELD_UP_MPS;
         let blocks = edge.crosswalk.and_then(|_| self.blocked(index, ahead));
-        if let Some(block) = blocks {
+        let begins = edge.crosswalk.filter(|_| next.speed_mps < HELD_UP_MPS && gone_m(edge, next) < KERB_M);
+        if begins.is_some_and(|crosswalk| !self.may_cross(index, crosswalk, next)) {
+            halt(next);
+        } else if let Some(block) = blocks {
             halt(next);
             leeway.aside_m = Some(past_front_m(block, ahead));
         } else if held_up && self.joins_those_who_wait(index, near, edge, next) {
@@ -363,6 +368,11 @@ fn give_way(held_up: bool, next: &mut Walker) {
         next.wait_ticks = 0;
         next.forward = !next.forward;
     }
+}
+
+/// How far somebody has gone on an edge, metres.
+fn gone_m(edge: &WalkEdge, walker: &Walker) -> f32 {
+    if walker.forward { walker.s_m } else { edge.length_m - walker.s_m }
 }
 
 fn begin_waiting(next: &mut Walker) {

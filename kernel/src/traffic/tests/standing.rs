@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::map_data::LaneKind;
+use crate::actor::ActorKind;
+use crate::map_data::{LaneKind, Turn};
 
 /// A car that stands beside the middle of a lane of the city, turned against it.
 fn badly_parked(network: &RoadNetwork, share: f32, aside_m: f32, turned_rad: f32) -> Obstacle {
@@ -18,7 +19,7 @@ fn badly_parked(network: &RoadNetwork, share: f32, aside_m: f32, turned_rad: f32
 fn body_of(car: &Obstacle) -> Body {
     Body {
         id: 0,
-        kind: crate::actor::ActorKind::Car,
+        kind: ActorKind::Car,
         variant: 0,
         position: car.position,
         rotation: crate::geometry::rotation(car.heading_rad),
@@ -49,4 +50,60 @@ proptest! {
             prop_assert!(hit.is_none(), "tick {tick}: {hit:?} in {ego:?}");
         }
     }
+}
+
+/// A bus right before its way turns, with a post beside its tail, which will swing out to there.
+#[test]
+fn the_tail_of_a_bus_that_turns_stays_off_what_is_beside_it() {
+    let network = bundled("city").expect("it is bundled");
+    let lanes = &network.lanes;
+    let (mut stood, mut went) = (0, 0);
+    for (turn, outer) in [(Turn::Left, -1.0), (Turn::Right, 1.0)] {
+        let turning = (0..lanes.len() as u32).filter(|id| lanes[*id as usize].turn == turn);
+        for lane in turning.take(8) {
+            let Some(&before) = lanes[lane as usize].predecessors.first() else { continue };
+            for gap_m in [0.05, 1.0] {
+                let (touched, moved_m) = turn_beside_a_post(&network, lane, before, outer, gap_m);
+                assert!(!touched, "lane {lane}, {gap_m} m beside it");
+                stood += u32::from(moved_m < 4.0);
+                went += u32::from(moved_m >= 4.0);
+            }
+        }
+    }
+    assert!(stood > 0 && went > 0, "{stood} stood, {went} went");
+}
+
+/// Whether a bus touches the post within ten seconds, and how far it comes.
+fn turn_beside_a_post(network: &Arc<RoadNetwork>, lane: u32, before: u32, outer: f32, gap_m: f32) -> (bool, f32) {
+    let none = TrafficCounts {
+        cars: 0,
+        motorcycles: 0,
+        bicycles: 0,
+        pedestrians: 0,
+        jaywalks_per_min: 0.0,
+        drivers: Population::USUAL,
+    };
+    let mut traffic = Traffic::spawn(&none, 7, network.ways(), Vec3::new(1e4, 0.0, 0.0));
+    let flags = Vehicle::CROSSING;
+    let bus = Vehicle { id: 1, kind: ActorKind::Bus, flags, lane, before, s_m: 1.0, ..Vehicle::standing() };
+    traffic.actors.state.vehicles = vec![bus];
+    traffic.actors.know_drivers();
+    traffic.actors.place_bodies();
+    let body = traffic.bodies()[0];
+    let half = body.kind.size_m() * 0.5;
+    let size_m = Vec3::new(0.3, 0.3, 1.0);
+    let place = body.position + body.rotation * Vec3::new(0.4 - half.x, outer * (half.y + gap_m + 0.15), 0.0);
+    let ahead = body.rotation * Vec3::X;
+    let heading_rad = crate::ops::atan2(ahead.y, ahead.x);
+    let post = Obstacle { id: 0, position: place, heading_rad, velocity_mps: Vec3::ZERO, size_m };
+    let from = body.position;
+    for tick in 1..=600 {
+        traffic.step(&Surroundings { tick, ego: post, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+        let body = &traffic.bodies()[0];
+        let local = body.rotation.inverse() * (place - body.position);
+        if local.x.abs() < half.x + 0.1 && local.y.abs() < half.y + 0.1 {
+            return (true, 0.0);
+        }
+    }
+    (false, traffic.bodies()[0].position.distance(from))
 }

@@ -6,6 +6,7 @@ mod drive;
 mod moments;
 mod palette;
 mod shots;
+mod studio;
 
 use std::path::Path;
 
@@ -30,7 +31,7 @@ fn main() -> anyhow::Result<()> {
 /// Drives one scenario and writes its strip.
 fn strip(shot: &shots::Shot, scenarios: &Path, out: &Path) -> anyhow::Result<()> {
     let mut file = ScenarioFile::read(&scenarios.join(shot.name).with_extension("toml"))?;
-    let mut studio = shots::Studio::new(&file.map.network)?;
+    let mut studio = studio::Studio::new(&file.map.network)?;
     for _ in 0..SEEDS {
         let film = drive::film(&file.scenario, &file.map.network)?;
         let moments = moments::of(shot, &film);

@@ -1,10 +1,9 @@
 //! Which moments of a drive may show a hazard: its events, or what those do who follow somebody.
 
-use kernel::events::EventKind;
 use kernel::scene::{ActorScene, lamps};
 
 use super::drive::{Film, SCENE_HZ};
-use super::shots::Shot;
+use super::shots::{Shot, Trace};
 
 /// Who follows keeps this much aside at most, metres.
 const LANE_M: f32 = 1.0;
@@ -12,17 +11,6 @@ const LANE_M: f32 = 1.0;
 const FOLLOWS_S: f32 = 4.0;
 /// Who drives slower than this does not count as close or late, m/s.
 const DRIVES_MPS: f32 = 7.0;
-
-/// How a hazard is found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Trace {
-    /// An event tells it.
-    Event(EventKind),
-    /// Somebody follows another within 0.7 s.
-    Close,
-    /// Somebody brakes a second or more after the one ahead.
-    Late,
-}
 
 /// A moment that may show a hazard.
 #[derive(Clone, Copy, Debug, PartialEq)]
