@@ -52,9 +52,9 @@ const LONG_SWING_OUT_M: f32 = 20.0;
 const SWING_OUT_MPS2: f32 = 2.5;
 /// What stands nearer than this to a junction waits there, metres.
 const QUEUE_M: f32 = 40.0;
-/// Bicycles slower than this queue, m/s. Beside them one falls back by so much, m/s, taken up in so long, s.
+/// Bicycles slower than this queue, m/s. Who passes without room before them falls back by so much, m/s, taken up in so long, s.
 const QUEUE_MPS: f32 = 1.5;
-const FALL_BACK_MPS: f32 = 0.6;
+const FALL_BACK_MPS: f32 = 2.0;
 const FALL_BACK_S: f32 = 1.0;
 /// From this gap on one is behind whom one passes, metres.
 const BEHIND_M: f32 = 0.3;
@@ -230,7 +230,7 @@ impl View<'_> {
         let known = self.steps_of(plan).last().map_or(0.0, |s| s.start_m + self.map.lanes[s.lane as usize].length_m);
         !ends
             && known >= way_m
-            && self.has_room_after(index, plan, passed, past_m)
+            && self.has_room_after(index, plan, passed, past_m, ROOM_M)
             && self.nobody_comes(index, way_m, time_s, side)
             && self.is_first(index)
             && self.is_open(plan, way_m, side)
@@ -252,22 +252,40 @@ impl View<'_> {
 
     /// Where one who passes drives beside the others, metres to the left of the middle. None where it is still behind them
     /// and gets back into its lane, since somebody comes, or they queue.
-    pub(super) fn beside_m(&self, index: usize, seeker: &Seeker, passed: &Passed, side: i8) -> Option<f32> {
+    pub(super) fn beside_m(
+        &self,
+        index: usize,
+        plan: &Plan,
+        seeker: &Seeker,
+        passed: &Passed,
+        side: i8,
+    ) -> Option<f32> {
         if passed.gap_m < BEHIND_M {
             return Some(passed.aim_m);
         }
         let (past_s, past_m) = self.past(index, seeker, passed, self.wish_mps(index));
         let way_is_free = || self.nobody_comes(index, past_m, past_s, side);
-        (!passed.queues() && way_is_free()).then_some(passed.aim_m)
+        (!self.has_to_wait(index, plan, seeker, passed) && way_is_free()).then_some(passed.aim_m)
     }
 
-    /// The greatest acceleration of one who passes, m/s²: beside those who queue it falls back.
+    /// Whether those whom a vehicle passes ride in a queue, or the one before them has slowed down, so that there would be no
+    /// room before them.
+    fn has_to_wait(&self, index: usize, plan: &Plan, seeker: &Seeker, passed: &Passed) -> bool {
+        let (_, past_m) = self.past(index, seeker, passed, self.wish_mps(index));
+        passed.ride && (passed.queues() || !self.has_room_after(index, plan, passed, past_m, 0.0))
+    }
+
+    /// The greatest acceleration of one who passes, m/s²: beside those before whom there is no room it falls back.
     pub(super) fn falls_back_mps2(&self, index: usize, plan: &Plan, seeker: &Seeker) -> f32 {
         let vehicle = &self.vehicles[index];
         let passes = vehicle.manoeuvre.passes() && vehicle.flags & Vehicle::GRANTED == 0;
         let passed = if passes { self.passed(index, plan, seeker, vehicle.manoeuvre.side()) } else { None };
         // Who stands goes on only when the others do, or when this one has gone.
-        let queue = passed.filter(|passed| passed.queues() && passed.gap_m < BEHIND_M && passed.speed_mps > 0.0);
+        let waits = |passed: &Passed| {
+            let beside = passed.gap_m < BEHIND_M && passed.speed_mps > 0.0;
+            beside && self.has_to_wait(index, plan, seeker, passed)
+        };
+        let queue = passed.filter(waits);
         queue.map_or(f32::MAX, |queue| {
             let mps = (queue.speed_mps - FALL_BACK_MPS).max(0.0);
             ((mps - vehicle.speed_mps) / FALL_BACK_S).max(-SWING_OUT_MPS2)
@@ -305,11 +323,11 @@ impl View<'_> {
         beside.iter().any(comes)
     }
 
-    /// Whether there is room in the lane again before whom one has passed, `past_m` ahead: also if whoever is there now
-    /// comes to a stand, as one would block both lanes beside a queue.
-    fn has_room_after(&self, index: usize, plan: &Plan, passed: &Passed, past_m: f32) -> bool {
+    /// Whether there is room in the lane again before whom one has passed, `past_m` ahead, and `spare_m` more: also if
+    /// whoever is there now comes to a stand, as one would block both lanes beside a queue.
+    fn has_room_after(&self, index: usize, plan: &Plan, passed: &Passed, past_m: f32, spare_m: f32) -> bool {
         let size_m = self.drivers[index].size_m.x;
-        let stays_m = passed.beyond_m + AFTER_M + size_m + ROOM_M;
+        let stays_m = passed.beyond_m + AFTER_M + size_m + spare_m;
         let in_the_way = |step: &Step, e: &Entry| {
             let tail_m = step.start_m + e.s_m - e.half_m;
             let stands_m = tail_m + stopping_m(e.speed_mps);
