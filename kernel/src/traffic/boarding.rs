@@ -1,13 +1,11 @@
 //! Getting on: some of those who come by a bus stop wait there for a while, and go to the front door of a bus that halts.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
-use crate::map_data::MapData;
 use crate::rng::{Stream, unit};
 use crate::time::{TICK_S, seconds};
 
-use super::actors::Actors;
-use super::body::{Body, Surroundings};
+use super::calls::{Call, OUT_M};
 use super::company::{Near, gather, leeway};
 use super::drive::View;
 use super::jaywalk;
@@ -16,10 +14,6 @@ use super::vehicle::Vehicle;
 use super::walk::{SIDESTEP_MPS, Streets, TURN_BACK_TICKS, TURNED_TICKS, approach_speed};
 use super::walker::{Walker, WalkerMode};
 
-/// From the front of a bus to the doors at which people get on and off, metres.
-pub(super) const DOORS_M: [f32; 2] = [1.3, 6.5];
-/// From its side to who stands before a door, metres.
-pub(super) const OUT_M: f32 = 0.5;
 /// Share of those who come by a stop, alone or in a group, who want to go with a bus (assumption), and what draws where they
 /// wait for it, as a key of random numbers.
 const SHARE: f32 = 0.4;
@@ -36,8 +30,6 @@ const BESIDE_M: f32 = 2.5;
 const REACH_M: f32 = 12.0;
 /// Riders that a bus takes.
 const SEATS: usize = 40;
-/// Who is so near to the door is waited for, metres.
-const AWAITED_M: f32 = 2.5;
 /// The last steps to the door take this long, s, and nobody goes round others so near to it, metres.
 const CLOSE_S: f32 = 0.5;
 const QUEUE_M: f32 = 2.0;
@@ -45,58 +37,6 @@ const QUEUE_M: f32 = 2.0;
 const SIDE_ROOM_M: f32 = 1.5;
 /// Who is so nearly abreast of a door goes straight to it, metres.
 const ABREAST_M: f32 = 0.5;
-/// A bus stands at a stop that is within so much of its front, metres.
-const AT_STOP_M: f32 = 2.0;
-
-/// A bus whose doors are open.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Call {
-    /// Id of the bus.
-    pub bus: u16,
-    /// Index of the stop.
-    pub stop: usize,
-    /// Where people stand who get on, and off.
-    pub doors: [Vec2; 2],
-    /// Out of the doors.
-    pub out: Vec2,
-    /// Until they shut, s.
-    left_s: f32,
-    /// People who go to it, and who ride in it.
-    goers: usize,
-    riders: usize,
-    /// Somebody stands at the door.
-    awaited: bool,
-}
-
-/// All of them.
-pub(super) fn gather_calls(actors: &Actors, around: &Surroundings<'_>, calls: &mut Vec<Call>) {
-    calls.clear();
-    let buses = actors.state.vehicles.iter().zip(&actors.bodies).filter(|(v, _)| !around.holds(v.id));
-    calls.extend(buses.filter_map(|(vehicle, body)| call(actors, vehicle, body)));
-}
-
-fn call(actors: &Actors, vehicle: &Vehicle, body: &Body) -> Option<Call> {
-    let left_ds = vehicle.doors_open_ds()?;
-    let stop = stop_of(actors.map(), vehicle)?;
-    let (middle, forward) = (body.position.truncate(), (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X));
-    let (half, out) = (body.kind.size_m() * 0.5, forward.perp() * f32::from(actors.ways.kerb));
-    let doors = DOORS_M.map(|m| middle + forward * (half.x - m) + out * (half.y + OUT_M));
-    let people = actors.state.walkers.iter().zip(&actors.bodies[actors.state.vehicles.len()..]);
-    let (mut goers, mut riders, mut awaited) = (0, 0, false);
-    for (walker, body) in people.filter(|(w, _)| w.bus == vehicle.id) {
-        let goes = walker.mode == WalkerMode::Boards;
-        goers += usize::from(goes);
-        riders += usize::from(walker.rides());
-        awaited |= goes && body.position.truncate().distance(doors[0]) < AWAITED_M;
-    }
-    Some(Call { bus: vehicle.id, stop, doors, out, left_s: f32::from(left_ds) * 0.1, goers, riders, awaited })
-}
-
-/// The stop at which a bus stands.
-fn stop_of(map: &MapData, vehicle: &Vehicle) -> Option<usize> {
-    let front_m = vehicle.s_m + vehicle.kind.size_m().x * 0.5;
-    map.bus_stops.iter().position(|stop| stop.lane == vehicle.lane && (stop.s_m - front_m).abs() < AT_STOP_M)
-}
 
 impl View<'_> {
     /// Whether somebody stands at the door of a bus at its stop.

@@ -6,8 +6,8 @@ use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
 use super::asking::Asking;
-use super::boarding::Call;
 use super::body::Body;
+use super::calls::Call;
 use super::crosswalk::{self, Claim};
 use super::hazard::{Hazard, REACH_M, Seeker, side, sight};
 use super::hazards::Hazards;

@@ -8,8 +8,8 @@ use crate::time::{Tick, seconds};
 
 use super::actors::Actors;
 use super::asking::{self, Asking};
-use super::boarding::{self, Call};
 use super::body::Surroundings;
+use super::calls::{self, Call};
 use super::crosswalk::{Claim, Gaps};
 use super::drive::View;
 use super::hazard::Hazard;
@@ -34,7 +34,7 @@ const EGO_EXPECTED_S: f32 = 4.0;
 /// Slower than this it lets others go, m/s.
 const EGO_WAITS_MPS: f32 = 1.0;
 /// Who walks so far beside a way is on the road, metres.
-pub(super) const ASTRAY_M: f32 = 0.3;
+const ASTRAY_M: f32 = 0.3;
 
 /// Buffers of a step.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +74,7 @@ impl Sight {
         let walkers = &actors.state.walkers;
         let stands = |w: &Walker| !w.rides() && !around.holds(w.id);
         self.crowd.rebuild(people.len(), |i| stands(&walkers[i]).then_some(people[i].position));
-        boarding::gather_calls(actors, around, &mut self.calls);
+        calls::gather(actors, around, &mut self.calls);
         self.plan(actors);
         self.gather_hazards(actors, around);
         self.gather_claims(actors, around);

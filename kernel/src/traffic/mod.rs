@@ -13,6 +13,7 @@ mod boarding;
 mod body;
 mod brink;
 mod bus;
+mod calls;
 mod change;
 mod company;
 mod counts;

@@ -12,8 +12,8 @@ use crate::time::{Tick, seconds};
 
 use super::SIGHT_M;
 use super::actors::Actors;
-use super::boarding::Call;
 use super::body::{Obstacle, Surroundings};
+use super::calls::Call;
 use super::groups::first_of_group;
 use super::hazard::Hazard;
 use super::jaywalk;

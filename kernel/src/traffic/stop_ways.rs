@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use crate::map_data::{BusStop, WalkEdgeId};
 
-use super::boarding::{DOORS_M, OUT_M};
+use super::calls::{DOORS_M, OUT_M};
 use super::jaywalk;
 use super::ways::Ways;
 

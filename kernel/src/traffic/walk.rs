@@ -6,8 +6,8 @@ use crate::map_data::{MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
 use crate::time::{TICK_S, Tick, seconds};
 
-use super::boarding::Call;
 use super::body::Body;
+use super::calls::Call;
 use super::company::{Leeway, Near, gather, leeway};
 use super::crosswalk::Gaps;
 use super::groups::Groups;
