@@ -37,7 +37,7 @@ impl TrafficState {
             let lane = map.lanes.get(v.lane as usize).filter(|lane| (0.0..=lane.length_m).contains(&v.s_m));
             let before = map.lanes.len() > v.before as usize;
             let kind = !v.kind.is_on_foot();
-            let drifts = v.drift.unsigned_abs() <= MOST_DRIFT;
+            let drifts = [v.drift, v.drift_aim].iter().all(|drift| drift.unsigned_abs() <= MOST_DRIFT);
             let moves = (0.0..=FASTEST_MPS).contains(&v.speed_mps) && v.offset_m.abs() <= ASIDE_M;
             if lane.is_none() || !before || !kind || !moves || !drifts || v.flags & !Vehicle::ALL_FLAGS != 0 {
                 return Err(format!("vehicle {}: expected a vehicle on a lane of map {}", v.id, map.name));
