@@ -307,7 +307,7 @@ impl Streets<'_> {
         let pace_mps = jaywalk::pace(self.seed, next, &self.walker_traits[index]);
         let mut leeway = leeway(near, place.left() * sign, pace_mps, [-SIDE_ROOM_M, SIDE_ROOM_M]);
         let on_way = next.offset_m * sign < place.half_width_m;
-        if on_way && leeway.most_mps < HELD_UP_MPS {
+        if on_way && next.speed_mps.max(leeway.most_mps) < HELD_UP_MPS {
             // Who could go then may not be able to any more.
             next.mode = WalkerMode::Walk;
             return;
