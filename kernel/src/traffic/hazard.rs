@@ -169,6 +169,12 @@ impl Sighted {
     }
 }
 
+/// To the left of somebody who goes along `ahead` and stands before a vehicle: the side on which its front is, since whoever
+/// goes round behind it is not seen.
+pub(super) fn past_front_m(block: &Hazard, ahead: Vec2) -> f32 {
+    ahead.perp_dot(block.forward).signum()
+}
+
 /// Where across its way a vehicle drives that keeps to `offset_m` otherwise: it passes what is in it, where its lane has
 /// the room.
 pub(super) fn side<'a>(

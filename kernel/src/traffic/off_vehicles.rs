@@ -96,9 +96,3 @@ fn to_nearest(block: &Hazard, place: Vec2) -> Vec2 {
     let to = local - local.clamp(-block.half, block.half);
     block.forward * to.x + block.forward.perp() * to.y
 }
-
-/// To the left of somebody who goes along `ahead` and stands before a vehicle: the side on which its front is, since whoever
-/// goes round behind it is not seen.
-pub(super) fn past_front_m(block: &Hazard, ahead: Vec2) -> f32 {
-    ahead.perp_dot(block.forward).signum()
-}
