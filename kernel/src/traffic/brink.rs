@@ -1,5 +1,6 @@
-//! The last look: whoever would touch somebody on the way to a stand brakes as hard as can be. All else that keeps vehicles
-//! apart looks along lanes; this looks at boxes, tails that swing out among them.
+//! The last look: who is slow and would touch another vehicle, or somebody on the road, where it comes to a stand steers straight
+//! on or brakes as hard as can be. All else that keeps vehicles apart looks along lanes; this looks at boxes, tails that swing
+//! out among them.
 
 use glam::{Vec2, Vec3};
 
@@ -11,7 +12,7 @@ use super::drive::{View, turns_in_m};
 use super::hazard::Hazard;
 use super::vehicle::{DECIDE_TICKS, Vehicle};
 
-/// Who is faster looks farther ahead than this does, m/s.
+/// Who is faster takes no last look, m/s.
 const SLOW_MPS: f32 = 7.0;
 /// Room to others, metres: who has more keeps that.
 const ROOM_M: [f32; 3] = [0.12, 0.04, 0.0];

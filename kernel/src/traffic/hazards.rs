@@ -59,7 +59,7 @@ impl Hazards {
         self.nearby.around(place, reach_m).map(|i| &self.all[i]).filter(near)
     }
 
-    /// All of whom a part is within `reach_m` of a place.
+    /// All of whom a part is within `reach_m` of a place, and some farther away.
     pub fn reaching(&self, place: Vec3, reach_m: f32) -> impl Iterator<Item = &Hazard> {
         self.around(place, reach_m + self.greatest_half_m)
     }

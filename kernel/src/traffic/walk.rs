@@ -31,7 +31,7 @@ pub(super) const SIDESTEP_MPS: f32 = 0.35;
 const HELD_UP_MPS: f32 = 0.3;
 /// Whoever has stood before others for this long goes back, so that no crowd can jam.
 const GIVE_WAY_TICKS: u16 = seconds(6) as u16;
-/// At this speed, m/s.
+/// Whoever waits steps back from what sweeps over the kerb at this speed, m/s.
 const BACK_MPS: f32 = 1.2;
 /// Whoever waits looks out for that so often.
 const LOOK_TICKS: Tick = 6;
