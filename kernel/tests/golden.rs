@@ -33,7 +33,7 @@ struct Drive {
 /// rain begins.
 const DRIVES: [Drive; 3] = [
     Drive { name: "city", map: "city", seed: 101, scenario: "" },
-    Drive { name: "rural", map: "rural", seed: 2, scenario: "" },
+    Drive { name: "rural", map: "rural", seed: 6, scenario: "" },
     Drive {
         name: "mistakes",
         map: "city",

@@ -15,14 +15,6 @@ use kernel::{Controls, RoadNetwork};
 use svg::{Area, Axis, Chart, agrees_with_plot, picture};
 
 const LANE_M: f64 = 3.5;
-const NOBODY: TrafficCounts = TrafficCounts {
-    cars: 0,
-    motorcycles: 0,
-    bicycles: 0,
-    pedestrians: 0,
-    jaywalks_per_min: 0.0,
-    drivers: Population::USUAL,
-};
 const FAR: Vec3 = Vec3::new(1e5, 0.0, 0.0);
 
 /// A road with so many lanes to the left (the other direction) and right, and its geometry.
@@ -113,7 +105,7 @@ fn passes_of_bicycles(network: &Arc<RoadNetwork>, counts: TrafficCounts, seed: u
 
 #[test]
 fn bicycles_are_passed_with_room_beside_the_oncoming_lane() {
-    let counts = TrafficCounts { cars: 8, motorcycles: 1, bicycles: 2, ..NOBODY };
+    let counts = TrafficCounts { cars: 8, motorcycles: 1, bicycles: 2, ..TrafficCounts::NONE };
     let (mut passes, mut least_m) = (0, f32::MAX);
     for seed in 1..=4 {
         let (count, near_m) = passes_of_bicycles(&straight(1, 1, 1500.0), counts, seed, 10);
@@ -126,7 +118,7 @@ fn bicycles_are_passed_with_room_beside_the_oncoming_lane() {
 
 #[test]
 fn bicycles_are_passed_on_the_lane_beside() {
-    let counts = TrafficCounts { cars: 10, motorcycles: 1, bicycles: 2, ..NOBODY };
+    let counts = TrafficCounts { cars: 10, motorcycles: 1, bicycles: 2, ..TrafficCounts::NONE };
     let (passes, least_m) = passes_of_bicycles(&straight(0, 2, 1500.0), counts, 1, 10);
     println!("{passes} passes, at least {least_m} m");
     assert!(passes >= 20 && least_m >= 1.5, "{passes} passes at {least_m} m");
@@ -136,7 +128,7 @@ fn bicycles_are_passed_on_the_lane_beside() {
 /// seconds, metres.
 fn falls_back_m(seed: u64, indicates: bool) -> f32 {
     let network = straight(0, 2, 1500.0);
-    let mut traffic = Traffic::spawn(&TrafficCounts { cars: 1, ..NOBODY }, seed, network.ways(), FAR);
+    let mut traffic = Traffic::spawn(&TrafficCounts { cars: 1, ..TrafficCounts::NONE }, seed, network.ways(), FAR);
     let place = |traffic: &Traffic| traffic.bodies()[0].position;
     let mut tick = 0;
     let mut step = |traffic: &mut Traffic, ego, ego_flags| {
@@ -172,7 +164,7 @@ fn about_every_second_opens_a_gap_for_the_ego_car_that_indicates() {
 
 /// For each vehicle the seconds from when it came near a car that stands in its lane until it was past, s.
 fn waits_behind(network: &Arc<RoadNetwork>, stands: Vec3, cars: u16, seed: u64) -> Vec<u64> {
-    let counts = TrafficCounts { cars, ..NOBODY };
+    let counts = TrafficCounts { cars, ..TrafficCounts::NONE };
     let mut traffic = Traffic::spawn(&counts, seed, network.ways(), stands);
     let mut since = vec![None; usize::from(cars)];
     let mut waits = Vec::new();
@@ -213,7 +205,7 @@ fn a_car_that_stands_is_passed_within_a_minute_where_the_other_lane_is_free() {
 fn flow(cars: u16, seed: u64) -> (f64, f64, f64) {
     const LENGTH_M: f64 = 2000.0;
     let network = ring(2, LENGTH_M);
-    let mut traffic = Traffic::spawn(&TrafficCounts { cars, ..NOBODY }, seed, network.ways(), FAR);
+    let mut traffic = Traffic::spawn(&TrafficCounts { cars, ..TrafficCounts::NONE }, seed, network.ways(), FAR);
     assert_eq!(traffic.missing().total(), 0, "{cars} have room");
     let mut driven_m = 0.0;
     let (settle, ticks) = (seconds(180), seconds(600));
@@ -265,7 +257,7 @@ fn narrowing_ring() -> Arc<RoadNetwork> {
 #[test]
 fn two_lanes_with_1200_vehicles_an_hour_merge_into_one() {
     let network = narrowing_ring();
-    let counts = TrafficCounts { cars: 80, ..NOBODY };
+    let counts = TrafficCounts { cars: 80, ..TrafficCounts::NONE };
     for seed in 9001..9004 {
         let mut traffic = Traffic::spawn(&counts, seed, network.ways(), FAR);
         let (mut passed, mut slowest_s) = (0, 0);

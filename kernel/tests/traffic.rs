@@ -17,7 +17,7 @@ use glam::Vec3;
 use kernel::RoadNetwork;
 use kernel::map::{bake, bundled};
 use kernel::scenario::Scenario;
-use kernel::traffic::{HazardLevel, HazardRates, Population, Traffic, TrafficCounts};
+use kernel::traffic::{HazardLevel, HazardRates, Traffic, TrafficCounts};
 
 /// Seeds of the short set; those that anything was tuned on begin at 1000.
 const SEED: u64 = 1;
@@ -117,28 +117,14 @@ fn lane_drop() -> Arc<RoadNetwork> {
 
 #[test]
 fn a_lane_that_ends_merges_into_the_one_beside_it() {
-    let counts = TrafficCounts {
-        cars: 16,
-        motorcycles: 1,
-        bicycles: 1,
-        pedestrians: 0,
-        jaywalks_per_min: 0.0,
-        drivers: Population::USUAL,
-    };
+    let counts = TrafficCounts { cars: 16, motorcycles: 1, bicycles: 1, ..TrafficCounts::NONE };
     let hazards = HazardRates::NONE;
     is_sound("lane_drop", &Drive { network: lane_drop(), counts, hazards, seed: SEED, minutes: 10 });
 }
 
 #[test]
 fn who_has_no_room_is_told() {
-    let counts = TrafficCounts {
-        cars: 400,
-        motorcycles: 0,
-        bicycles: 0,
-        pedestrians: 7,
-        jaywalks_per_min: 0.0,
-        drivers: Population::USUAL,
-    };
+    let counts = TrafficCounts { cars: 400, pedestrians: 7, ..TrafficCounts::NONE };
     let traffic = Traffic::spawn(&counts, SEED, lane_drop().ways(), Vec3::new(1e5, 0.0, 0.0));
     let (there, missing) = (traffic.bodies().len(), traffic.missing());
     assert!(there > 80, "960 m of lanes hold {there} vehicles");
@@ -180,14 +166,7 @@ fn traffic_lives_for_long_where_that_is_asked_for() {
         let drive = |seed| {
             let mut counts = default_counts(&name, seed);
             if name == "Town06" {
-                counts = TrafficCounts {
-                    cars: 60,
-                    motorcycles: 0,
-                    bicycles: 0,
-                    pedestrians: 0,
-                    jaywalks_per_min: 0.0,
-                    drivers: Population::USUAL,
-                };
+                counts = TrafficCounts { cars: 60, ..TrafficCounts::NONE };
             }
             Drive { network: network.clone(), counts, hazards: HazardRates::NONE, seed, minutes }
         };

@@ -57,11 +57,15 @@ impl Grid {
         }
     }
 
-    fn cells(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> + use<> {
+    /// First and last column, and first and last row, of the cells that a box touches.
+    fn span(&self, low: Vec2, high: Vec2) -> [(usize, usize); 2] {
         let at = |v: f32, n: usize| ((v / self.cell_m).max(0.0) as usize).min(n.saturating_sub(1));
         let (a, b) = (low - self.origin, high - self.origin);
-        let (x0, x1) = (at(a.x, self.columns), at(b.x, self.columns));
-        let (y0, y1) = (at(a.y, self.rows), at(b.y, self.rows));
+        [(at(a.x, self.columns), at(b.x, self.columns)), (at(a.y, self.rows), at(b.y, self.rows))]
+    }
+
+    fn cells(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> + use<> {
+        let [(x0, x1), (y0, y1)] = self.span(low, high);
         let columns = self.columns;
         (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| y * columns + x))
     }
@@ -74,8 +78,13 @@ impl Grid {
 
     /// Items whose boxes may touch the square of half side `radius_m` around `p`; some come twice.
     pub fn around(&self, p: Vec2, radius_m: f32) -> impl Iterator<Item = u32> + '_ {
-        let empty = self.starts.is_empty();
-        let cells = (!empty).then(|| self.cells(p - radius_m, p + radius_m)).into_iter().flatten();
-        cells.flat_map(|c| &self.items[self.starts[c] as usize..self.starts[c + 1] as usize]).copied()
+        let [(x0, x1), (y0, y1)] = self.span(p - radius_m, p + radius_m);
+        let rows = if self.starts.is_empty() { 0..0 } else { y0..y1 + 1 };
+        // The cells of a row lie behind each other.
+        let items = move |y: usize| {
+            let row = &self.starts[y * self.columns..];
+            &self.items[row[x0] as usize..row[x1 + 1] as usize]
+        };
+        rows.flat_map(items).copied()
     }
 }

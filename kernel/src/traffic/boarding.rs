@@ -5,7 +5,7 @@ use glam::Vec2;
 use crate::rng::{Stream, unit};
 use crate::time::{TICK_S, seconds};
 
-use super::calls::{Call, OUT_M};
+use super::calls::{Call, OUT_M, SEATS};
 use super::company::{Near, gather, leeway};
 use super::drive::View;
 use super::jaywalk;
@@ -28,8 +28,6 @@ const AT_PLACE_M: f32 = 0.05;
 const BESIDE_M: f32 = 2.5;
 /// Who is no farther from the door is at the stop, metres.
 const REACH_M: f32 = 12.0;
-/// Riders that a bus takes.
-const SEATS: usize = 40;
 /// The last steps to the door take this long, s, and nobody goes round others so near to it, metres.
 const CLOSE_S: f32 = 0.5;
 const QUEUE_M: f32 = 2.0;

@@ -2,12 +2,8 @@
 //! on or brakes as hard as can be. All else that keeps vehicles apart looks along lanes; this looks at boxes, tails that swing
 //! out among them.
 
-use glam::{Vec2, Vec3};
-
-use crate::geometry::rectangles_overlap;
 use crate::time::TICK_S;
 
-use super::body::Body;
 use super::drive::{View, turns_in_m};
 use super::hazard::Hazard;
 use super::vehicle::{DECIDE_TICKS, Vehicle};
@@ -18,8 +14,16 @@ const SLOW_MPS: f32 = 7.0;
 const ROOM_M: [f32; 3] = [0.12, 0.04, 0.0];
 /// Who starts looks so far ahead, metres.
 const START_M: f32 = 0.12;
-/// Others at heights farther apart than this are on another road, metres.
-const LEVEL_M: f32 = 2.0;
+/// The way ahead is looked at in strides of at most this, metres.
+const STRIDE_M: f32 = 1.5;
+
+/// The way on which a vehicle comes to a stand, and who is beside it.
+struct Brink<'a> {
+    now: Hazard,
+    ahead_m: f32,
+    stop_s: f32,
+    others: Vec<&'a Hazard>,
+}
 
 impl View<'_> {
     /// What is left of the acceleration that a driver wants, m/s²: who would touch somebody steers straight on, if that is
@@ -29,53 +33,59 @@ impl View<'_> {
         if mps > SLOW_MPS || (mps == 0.0 && accel_mps2 <= 0.0) {
             return accel_mps2;
         }
-        let stop_s = mps / driver.hardest_mps2 + f32::from(DECIDE_TICKS) * TICK_S;
-        let ahead_m = START_M + mps * 0.5 * (stop_s + f32::from(DECIDE_TICKS) * TICK_S);
-        let now = &self.bodies[index];
-        let half_m = 0.5 * driver.size_m.truncate().length();
-        let around = self.hazards.reaching(now.position, half_m + ahead_m + ROOM_M[0]);
-        let level = |h: &&Hazard| (h.position.z - now.position.z).abs() < LEVEL_M;
-        let mut others = around.filter(|h| h.vehicle != Some(index as u32)).filter(level).peekable();
-        if others.peek().is_none() {
+        let brink = self.brink(index, next);
+        if brink.others.is_empty() {
             return accel_mps2;
         }
-        let others: Vec<_> = others.flat_map(|h| [*h, h.after(stop_s)]).collect();
-        let touches = |drift: [i8; 2], room_m: &[f32]| {
-            let then = self.rolled(index, next, ahead_m, drift);
-            others.iter().any(|other| room_m.iter().any(|m| is_within(&then, other, *m) && !is_within(now, other, *m)))
-        };
-        let straight = straightened(next.drift, (ahead_m / turns_in_m(driver)) as i8);
-        if !touches([next.drift; 2], &ROOM_M) {
+        let turns = next.drift != 0 || next.drift_aim != 0;
+        let free = |aim: i8, room_m: &[f32]| !self.touches(index, next, &brink, aim, room_m);
+        if free(next.drift_aim, &ROOM_M) {
             accel_mps2
-        } else if next.drift != 0 && !touches([next.drift, straight], &ROOM_M[1..]) {
+        } else if turns && free(0, &ROOM_M[1..]) {
             next.drift_aim = 0;
             accel_mps2
         } else {
+            next.drift_aim = if free(0, &ROOM_M[2..]) { 0 } else { next.drift_aim };
             -driver.hardest_mps2
         }
     }
 
-    /// A vehicle so far ahead on its way, that drifts by the first now and by the second there.
-    fn rolled(&self, index: usize, vehicle: &Vehicle, ahead_m: f32, drift: [i8; 2]) -> Body {
+    fn brink(&self, index: usize, next: &Vehicle) -> Brink<'_> {
+        let look_s = f32::from(DECIDE_TICKS) * TICK_S;
+        let stop_s = next.speed_mps / self.drivers[index].hardest_mps2 + look_s;
+        let ahead_m = START_M + next.speed_mps * 0.5 * (stop_s + look_s);
+        let now = Hazard::of_body(&self.bodies[index]);
+        let around = self.hazards.reaching(now.position, now.half.length() + ahead_m + ROOM_M[0]);
+        let other = |h: &&Hazard| h.vehicle != Some(index as u32) && h.is_level_with(now.position.z);
+        Brink { now, ahead_m, stop_s, others: around.filter(other).collect() }
+    }
+
+    /// Whether a vehicle that steers to a drift comes nearer to anybody than one of `room_m`, who is not so near yet.
+    fn touches(&self, index: usize, next: &Vehicle, brink: &Brink<'_>, aim: i8, room_m: &[f32]) -> bool {
+        let strides = (brink.ahead_m / STRIDE_M) as u32 + 1;
+        (1..=strides).any(|stride| {
+            let share = stride as f32 / strides as f32;
+            let then = self.rolled(index, next, share * brink.ahead_m, aim);
+            let meets = |other: &Hazard, m: f32| {
+                if brink.now.is_within(other, m) {
+                    let away = |at: &Hazard| at.position.distance_squared(other.position);
+                    return m == 0.0 && away(&then) < away(&brink.now);
+                }
+                then.is_within(other, m) || then.is_within(&other.after(share * brink.stop_s), m)
+            };
+            brink.others.iter().any(|other| room_m.iter().any(|m| meets(other, *m)))
+        })
+    }
+
+    /// A vehicle so far ahead on its way, that steers to a drift.
+    fn rolled(&self, index: usize, vehicle: &Vehicle, ahead_m: f32, aim: i8) -> Hazard {
         let driver = &self.drivers[index];
         let mut then = *vehicle;
         then.s_m += ahead_m;
         self.change_lane(driver, &mut then);
-        then.drift = drift[1];
-        then.offset_m += 0.5 * (f32::from(drift[0]) + f32::from(drift[1])) * 0.01 * ahead_m;
-        self.ways.vehicle_body(self.seed, &then, driver)
+        let steered = (ahead_m / turns_in_m(driver)) as i8;
+        then.drift += (aim - vehicle.drift).clamp(-steered, steered);
+        then.offset_m += 0.5 * (f32::from(vehicle.drift) + f32::from(then.drift)) * 0.01 * ahead_m;
+        Hazard::of_body(&self.ways.vehicle_body(self.seed, &then, driver))
     }
-}
-
-/// What is left of a drift after one has steered straight on by so much.
-fn straightened(drift: i8, steered: i8) -> i8 {
-    drift - drift.clamp(-steered, steered)
-}
-
-/// Whether another is nearer to a vehicle than `room_m`.
-fn is_within(body: &Body, other: &Hazard, room_m: f32) -> bool {
-    let forward = (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X);
-    let turned = |v: Vec2| Vec2::new(v.dot(forward), forward.perp_dot(v));
-    let way = (other.position - body.position).truncate();
-    rectangles_overlap(body.kind.size_m().truncate() * 0.5 + room_m, turned(way), turned(other.forward), other.half)
 }

@@ -13,6 +13,8 @@ use super::walker::WalkerMode;
 pub(super) const DOORS_M: [f32; 2] = [1.3, 6.5];
 /// From its side to who stands before a door, metres.
 pub(super) const OUT_M: f32 = 0.5;
+/// Riders that a bus takes.
+pub(super) const SEATS: usize = 40;
 /// Who is so near to the door is waited for, metres.
 const AWAITED_M: f32 = 2.5;
 /// A bus stands at a stop that is within so much of its front, metres.

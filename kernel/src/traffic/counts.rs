@@ -40,6 +40,16 @@ pub struct Missing {
 }
 
 impl TrafficCounts {
+    /// Nobody.
+    pub const NONE: Self = Self {
+        cars: 0,
+        motorcycles: 0,
+        bicycles: 0,
+        pedestrians: 0,
+        jaywalks_per_min: 0.0,
+        drivers: Population::USUAL,
+    };
+
     /// Who is missing among those who are there.
     pub(super) fn missing(&self, present: impl Iterator<Item = ActorKind> + Clone) -> Missing {
         let of = |asked: u16, is: fn(ActorKind) -> bool| {

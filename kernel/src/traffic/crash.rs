@@ -1,12 +1,10 @@
 //! Vehicles that run into each other because of a mistake.
 
-use glam::{Vec2, Vec3};
-
 use crate::events::EventKind;
-use crate::geometry::rectangles_overlap;
 
 use super::actors::Actors;
 use super::body::{Body, Surroundings};
+use super::hazard::Hazard;
 use super::lapse::Lapse;
 use super::passage::Told;
 use super::vehicle::Vehicle;
@@ -14,8 +12,6 @@ use super::watchdog::STUCK_S;
 
 /// Nobody farther away is touched, metres.
 const NEAR_M: f32 = 12.0;
-/// Nor anybody at another level, metres.
-const LEVEL_M: f32 = 2.0;
 /// Touching by less than this is none, metres.
 const SKIN_M: f32 = 0.025;
 
@@ -24,7 +20,7 @@ impl Actors {
     /// them off the road after a minute.
     pub(super) fn crash(&mut self, around: &Surroundings<'_>, told: &mut Vec<Told>) {
         let vehicles = &self.state.vehicles;
-        let endangers = |v: &Vehicle| v.lapse != Lapse::None && v.lapse != Lapse::Crashed && !around.holds(v.id);
+        let endangers = |v: &Vehicle| v.lapse.endangers() && !around.holds(v.id);
         let mut crashed = Vec::new();
         for (i, _) in vehicles.iter().enumerate().filter(|(_, v)| endangers(v)) {
             let meets = |k: usize| k != i && !around.holds(vehicles[k].id) && touches(&self.bodies[i], &self.bodies[k]);
@@ -43,12 +39,6 @@ impl Actors {
 }
 
 fn touches(a: &Body, b: &Body) -> bool {
-    let to = b.position - a.position;
-    if to.length_squared() > NEAR_M * NEAR_M || to.z.abs() > LEVEL_M {
-        return false;
-    }
-    let [forward, axis] = [a, b].map(|body| (body.rotation * Vec3::X).truncate());
-    let turned = |v: Vec2| Vec2::new(v.dot(forward), forward.perp_dot(v));
-    let half = |body: &Body| body.kind.size_m().truncate() * 0.5 - SKIN_M;
-    rectangles_overlap(half(a), turned(to.truncate()), turned(axis), half(b))
+    let near = a.position.distance_squared(b.position) < NEAR_M * NEAR_M;
+    near && Hazard::of_body(a).is_within(&Hazard::of_body(b), -2.0 * SKIN_M)
 }

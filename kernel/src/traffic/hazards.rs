@@ -59,8 +59,12 @@ impl Hazards {
         self.nearby.around(place, reach_m).map(|i| &self.all[i]).filter(near)
     }
 
-    /// All of whom a part is within `reach_m` of a place, and some farther away.
+    /// All of whom a part may be within `reach_m` of a place.
     pub fn reaching(&self, place: Vec3, reach_m: f32) -> impl Iterator<Item = &Hazard> {
-        self.around(place, reach_m + self.greatest_half_m)
+        let near = move |h: &&Hazard| {
+            let most_m = reach_m + h.half.length();
+            h.position.distance_squared(place) < most_m * most_m
+        };
+        self.around(place, reach_m + self.greatest_half_m).filter(near)
     }
 }

@@ -33,6 +33,11 @@ state_enum! {
 }
 
 impl Lapse {
+    /// Is a mistake, or comes of one: buses at their stops make none.
+    pub fn endangers(self) -> bool {
+        !matches!(self, Self::None | Self::Crashed | Self::Calls | Self::Boards | Self::Departs)
+    }
+
     /// Draws up at the kerb.
     pub fn is_to_kerb(self) -> bool {
         matches!(self, Self::Parks | Self::Calls)

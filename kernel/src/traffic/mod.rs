@@ -11,6 +11,7 @@ mod asking;
 mod barge;
 mod boarding;
 mod body;
+mod boxes;
 mod brink;
 mod bus;
 mod calls;

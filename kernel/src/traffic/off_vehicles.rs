@@ -30,7 +30,7 @@ const ALONG_M: f32 = 1e-4;
 impl Streets<'_> {
     /// The ego car, loose actors, doors and vehicles of which a part is within `reach_m` of a place.
     fn vehicles_near(&self, place: Vec3, reach_m: f32) -> impl Iterator<Item = &Hazard> {
-        self.hazards.reaching(place, reach_m).filter(|h| !h.walker)
+        self.hazards.reaching(place, reach_m).filter(move |h| !h.walker && h.is_level_with(place.z))
     }
 
     /// The vehicle that stands right before a walker who goes along `direction`.
@@ -39,8 +39,8 @@ impl Streets<'_> {
         let toe = here.truncate() + direction.normalize_or_zero() * TOE_M;
         // Nobody stops early before what comes.
         let off_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
-        let mut near = self.vehicles_near(here, TOE_M + OFF_VEHICLES_M + ROUND_M);
-        near.find(|block| to_nearest(block, toe).length() < off_m(block))
+        let near = self.vehicles_near(here, TOE_M + OFF_VEHICLES_M + ROUND_M);
+        nearest(toe, near.filter(|block| block.nearest_from(toe).length() < off_m(block)))
     }
 
     /// The part of a step that leaves others room, and on the road keeps off vehicles: it goes along what is in its way.
@@ -48,9 +48,9 @@ impl Streets<'_> {
         let mut part = step;
         if on_road && self.runs_into_vehicle(from, step) {
             for block in self.vehicles_near(from, OFF_VEHICLES_M + step.length()) {
-                let to = to_nearest(block, from.truncate());
+                let to = block.nearest_from(from.truncate());
                 let off_m = to.length();
-                let toward_m = if off_m > 0.0 { step.dot(to) / off_m } else { 0.0 };
+                let toward_m = if off_m > 0.0 { part.dot(to) / off_m } else { 0.0 };
                 if toward_m > 0.0 && off_m - toward_m < OFF_VEHICLES_M {
                     part -= to / off_m * toward_m;
                 }
@@ -63,8 +63,8 @@ impl Streets<'_> {
     pub(super) fn runs_into_vehicle(&self, from: Vec3, step: Vec2) -> bool {
         let here = from.truncate();
         let nearer = |block: &Hazard| {
-            let then_m = to_nearest(block, here + step).length();
-            then_m < OFF_VEHICLES_M && then_m < to_nearest(block, here).length() - ALONG_M
+            let then_m = block.nearest_from(here + step).length();
+            then_m < OFF_VEHICLES_M && then_m < block.nearest_from(here).length() - ALONG_M
         };
         step != Vec2::ZERO && self.vehicles_near(from, OFF_VEHICLES_M + step.length()).any(nearer)
     }
@@ -78,10 +78,10 @@ impl Streets<'_> {
             let offset = here - block.position.truncate();
             let ahead_m = block.velocity.length() * SWEEP_S;
             let aside_m = block.half.y + SWEPT_M + TAIL * (block.half.x - 2.5).max(0.0);
-            let (x, y) = (offset.dot(block.forward), block.forward.perp_dot(offset));
-            ahead_m > 0.3 && x.abs() < block.half.x + ahead_m && y.abs() < aside_m
+            let at = block.turned(offset).abs();
+            ahead_m > 0.3 && at.x < block.half.x + ahead_m && at.y < aside_m
         };
-        let swept = self.vehicles_near(place, SWEEPS_M).find(sweeps);
+        let swept = nearest(here, self.vehicles_near(place, SWEEPS_M).filter(sweeps));
         swept.map_or(Vec2::ZERO, |block| {
             let left = block.forward.perp();
             left * (here - block.position.truncate()).dot(left).signum()
@@ -89,10 +89,8 @@ impl Streets<'_> {
     }
 }
 
-/// From a place to the nearest of a vehicle; nothing from inside of it.
-fn to_nearest(block: &Hazard, place: Vec2) -> Vec2 {
-    let offset = block.position.truncate() - place;
-    let local = Vec2::new(offset.dot(block.forward), block.forward.perp_dot(offset));
-    let to = local - local.clamp(-block.half, block.half);
-    block.forward * to.x + block.forward.perp() * to.y
+/// The one nearest to a place.
+fn nearest<'a>(place: Vec2, blocks: impl Iterator<Item = &'a Hazard>) -> Option<&'a Hazard> {
+    let away = |block: &Hazard| block.nearest_from(place).length_squared();
+    blocks.min_by(|a, b| away(a).total_cmp(&away(b)))
 }

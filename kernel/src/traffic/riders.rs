@@ -13,7 +13,7 @@ use crate::time::{Tick, seconds};
 use super::SIGHT_M;
 use super::actors::Actors;
 use super::body::{Obstacle, Surroundings};
-use super::calls::Call;
+use super::calls::{Call, SEATS};
 use super::groups::first_of_group;
 use super::hazard::Hazard;
 use super::jaywalk;
@@ -52,8 +52,11 @@ impl Actors {
         self.set_down_lost(around);
     }
 
-    /// Who stands nearest to the door gets on.
+    /// Who stands nearest to the door gets on, if there is a seat.
     fn get_on(&mut self, call: &Call, around: &Surroundings<'_>) {
+        if call.riders >= SEATS {
+            return;
+        }
         let waits = |w: &Walker| w.mode == WalkerMode::Boards && w.bus == call.bus && !around.holds(w.id);
         let people = self.state.walkers.iter().zip(&self.places).enumerate().filter(|(_, (w, _))| waits(w));
         let near = people.map(|(i, (w, place))| (place.beside(w.offset_m).truncate().distance(call.doors[0]), w.id, i));
@@ -140,8 +143,7 @@ impl Actors {
 
 /// Whether a box leaves a place free, now and soon.
 fn keeps_off(hazard: &Hazard, place: Vec2) -> bool {
-    let to = place - hazard.position.truncate();
-    let local = Vec2::new(to.dot(hazard.forward), hazard.forward.perp_dot(to));
+    let local = hazard.turned(place - hazard.position.truncate());
     let comes_m = hazard.velocity.dot(hazard.forward).max(0.0) * FREE_S;
     let nearest = local.clamp(-hazard.half, hazard.half + Vec2::new(comes_m, 0.0));
     local.distance_squared(nearest) > FREE_M * FREE_M

@@ -110,7 +110,10 @@ impl Streets<'_> {
                 }
                 return (next, self.places[index]);
             }
-            WalkerMode::Wait => self.wait(index, &mut next),
+            WalkerMode::Wait => {
+                gather(self.crowd, self.bodies, index, near);
+                self.wait(index, &mut next);
+            }
             WalkerMode::Walk => {
                 gather(self.crowd, self.bodies, index, near);
                 self.stroll(index, near, &mut next);
@@ -121,7 +124,11 @@ impl Streets<'_> {
             }
             WalkerMode::Boards if next.bus == 0 => {
                 self.wait_for_bus(index, &mut next);
-                return (next, self.places[index]);
+                if !self.looks(&next) {
+                    return (next, self.places[index]);
+                }
+                gather(self.crowd, self.bodies, index, near);
+                self.step_back(index, &mut next);
             }
             WalkerMode::Boards => {
                 gather(self.crowd, self.bodies, index, near);
@@ -136,11 +143,8 @@ impl Streets<'_> {
     }
 
     /// Goes as far towards what was decided as others leave room for.
-    fn settle(&self, index: usize, near: &mut Vec<Near>, mut next: Walker) -> (Walker, Place) {
+    fn settle(&self, index: usize, near: &[Near], mut next: Walker) -> (Walker, Place) {
         let was = &self.walkers[index];
-        if was.mode == WalkerMode::Wait {
-            gather(self.crowd, self.bodies, index, near);
-        }
         let before = self.bodies[index].position.truncate();
         let step_to = |next: &Walker| {
             let place = self.ways.walker_place(next);
@@ -168,6 +172,7 @@ impl Streets<'_> {
         next.phase = next.phase.wrapping_add((step.length() / STRIDE_M * 65536.0) as u16);
         let ahead = if next.mode == WalkerMode::Jaywalk { place.left() } else { place.forward.truncate() };
         let toward = match next.mode {
+            WalkerMode::Boards if next.bus == 0 => return (next, place),
             WalkerMode::Wait => self.waiting_direction(index, &next),
             _ if step.length_squared() > FACES_M * FACES_M => step,
             WalkerMode::Boards => self.toward_bus(&next),
@@ -261,11 +266,16 @@ impl Streets<'_> {
         self.gaps.may_cross(crosswalk, walker, body.position.truncate(), time_s)
     }
 
-    fn wait(&self, index: usize, next: &mut Walker) {
+    /// Steps back from what sweeps over where somebody stands.
+    fn step_back(&self, index: usize, next: &mut Walker) {
         let away = self.swept_from(index) * (BACK_MPS * TICK_S * LOOK_TICKS as f32);
         let place = self.places[index];
         next.s_m += away.dot(place.forward.truncate());
         next.offset_m += away.dot(place.left());
+    }
+
+    fn wait(&self, index: usize, next: &mut Walker) {
+        self.step_back(index, next);
         next.wait_ticks = next.wait_ticks.saturating_add(1);
         if next.wait_ticks > GIVE_UP_TICKS {
             next.hops = next.hops.wrapping_add(1);

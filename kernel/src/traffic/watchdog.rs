@@ -5,7 +5,7 @@
 //! begins anew.
 
 use super::drive::View;
-use super::hazard::sight;
+use super::hazard::{Hazard, sight};
 use super::junction::{Signal, signal};
 use super::plan::Plan;
 
@@ -23,6 +23,8 @@ const STANDS_MPS: f32 = 0.1;
 const BEHIND_M: f32 = 6.0;
 /// And behind the ego car, from which it keeps off to pass it, metres.
 const BEHIND_EGO_M: f32 = 26.0;
+/// Or so near beside it that it could not move on without touching it, metres.
+const BESIDE_EGO_M: f32 = 0.3;
 /// It waits at a light no farther from its line than this, metres.
 const AT_LIGHT_M: f32 = 12.0;
 /// Longest queue that is followed, vehicles.
@@ -68,7 +70,7 @@ impl View<'_> {
 
     fn has_reason(&self, index: usize) -> bool {
         let plan = &self.plans[index];
-        self.waits_at_light(index, plan) || self.behind_ego(index, plan)
+        self.waits_at_light(index, plan) || self.behind_ego(index, plan) || self.beside_ego(index)
     }
 
     fn waits_at_light(&self, index: usize, plan: &Plan) -> bool {
@@ -82,5 +84,10 @@ impl View<'_> {
         let seeker = self.seeker(index);
         let seen = self.hazards.free().first().and_then(|ego| sight(self.map, self.steps_of(plan), &seeker, ego));
         seen.is_some_and(|seen| seen.gap_m < BEHIND_EGO_M && seen.blocks(seeker.offset_m, seeker.half.y))
+    }
+
+    fn beside_ego(&self, index: usize) -> bool {
+        let me = Hazard::of_body(&self.bodies[index]);
+        self.hazards.free().first().is_some_and(|ego| me.is_within(ego, BESIDE_EGO_M))
     }
 }
