@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use kernel::map::bake;
 use kernel::time::{Tick, seconds};
-use kernel::traffic::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts};
+use kernel::traffic::{Body, Obstacle, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::Conditions;
 use kernel::{Controls, RoadNetwork};
 use svg::{Area, Axis, Chart, agrees_with_plot, picture};

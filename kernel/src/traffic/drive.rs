@@ -254,7 +254,8 @@ impl View<'_> {
         let passing = vehicle.manoeuvre.passes().then(|| vehicle.manoeuvre.side());
         let beside_m = passing.and_then(|side| {
             let passed = self.passed(index, plan, seeker, side)?;
-            self.beside_m(index, plan, seeker, &passed, side)
+            let aim_m = self.beside_m(index, plan, seeker, &passed, side)?;
+            Some(self.within_border(index, plan, seeker, aim_m, side))
         });
         if let Some(aim_m) = beside_m {
             return Side { aim_m, drift: pass_drift(vehicle.speed_mps) };

@@ -80,13 +80,15 @@ pub(super) fn starter(actors: &Actors, around: &Surroundings<'_>) -> Option<usiz
     candidates.sort_by_cached_key(rank);
     candidates.into_iter().take(TRIES).find(|i| {
         let way = way_across(map, ways, &walkers[*i]);
-        way.is_some_and(|[from, to]| is_free(map, from, to) && can_stop(actors, from, to))
+        way.is_some_and(|[from, to]| {
+            is_free(map, from, to) && can_stop(&actors.state.vehicles, &actors.bodies, from, to)
+        })
     })
 }
 
 /// Whether every vehicle in traffic can still stop before a way across the road. Of the ego car a
 /// jaywalker does not think.
-pub(super) fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
+pub(super) fn can_stop(vehicles: &[Vehicle], bodies: &[Body], from: Vec2, to: Vec2) -> bool {
     let passes = |body: &Body| {
         let (middle, axis) = (body.position.truncate(), (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X));
         let local = |p: Vec2| Vec2::new((p - middle).dot(axis), axis.perp_dot(p - middle));
@@ -111,7 +113,7 @@ pub(super) fn can_stop(actors: &Actors, from: Vec2, to: Vec2) -> bool {
             (aside_m < lanes_m && ahead_m > -half_m && ahead_m < stop_m) || way.length() < half_m + NEAR_M
         })
     };
-    !actors.state.vehicles.iter().zip(&actors.bodies).any(overruns)
+    !vehicles.iter().zip(bodies).any(overruns)
 }
 
 fn beside_road(map: &MapData, walker: &Walker) -> bool {

@@ -119,6 +119,7 @@ impl Sight {
             groups: &actors.groups,
             places: &actors.places,
             bodies: &actors.bodies[actors.state.vehicles.len()..],
+            driven: &actors.bodies[..actors.state.vehicles.len()],
             crowd: &self.crowd,
             gaps: self.gaps(actors),
             hazards: &self.hazards,

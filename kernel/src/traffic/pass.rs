@@ -268,6 +268,18 @@ impl View<'_> {
         (!self.has_to_wait(index, plan, seeker, passed) && way_is_free()).then_some(passed.aim_m)
     }
 
+    /// Where one drives that would pass at `aim_m`: no farther over the border of its lane, where none for the other direction
+    /// lies beside it, than it is.
+    pub(super) fn within_border(&self, index: usize, plan: &Plan, seeker: &Seeker, aim_m: f32, side: i8) -> f32 {
+        let step = &self.steps_of(plan)[0];
+        if self.has_oncoming_lane(step, 0.0, side) {
+            return aim_m;
+        }
+        let (vehicle, side) = (&self.vehicles[index], f32::from(side));
+        let border_m = self.map.lanes[vehicle.lane as usize].at(vehicle.s_m).half_width_m - seeker.half.y;
+        side * (side * aim_m).min(border_m.max(side * vehicle.offset_m).max(0.0))
+    }
+
     /// Whether those whom a vehicle passes ride in a queue, or the one before them has slowed down, so that there would be no
     /// room before them.
     fn has_to_wait(&self, index: usize, plan: &Plan, seeker: &Seeker, passed: &Passed) -> bool {

@@ -72,8 +72,9 @@ pub(super) struct Streets<'a> {
     pub groups: &'a Groups,
     /// Where they stand on their ways.
     pub places: &'a [Place],
-    /// Their bodies.
+    /// Their bodies, and those of vehicles.
     pub bodies: &'a [Body],
+    pub driven: &'a [Body],
     pub crowd: &'a Nearby,
     pub gaps: Gaps<'a>,
     pub hazards: &'a Hazards,
@@ -317,8 +318,10 @@ impl Streets<'_> {
         let pace_mps = jaywalk::pace(self.seed, next, &self.walker_traits[index]);
         let mut leeway = leeway(near, place.left() * sign, pace_mps, [-SIDE_ROOM_M, SIDE_ROOM_M]);
         let on_way = next.offset_m * sign < place.half_width_m;
-        if on_way && next.speed_mps.max(leeway.most_mps) < HELD_UP_MPS {
-            // Who could go then may not be able to any more.
+        let here = place.beside(next.offset_m).truncate();
+        let there = place.beside(sign * goal.distance_m).truncate();
+        if on_way && !jaywalk::can_stop(self.gaps.vehicles, self.driven, here, there) {
+            // Who could go when it began may not be able to any more.
             next.mode = WalkerMode::Walk;
             return;
         }

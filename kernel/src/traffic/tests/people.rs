@@ -140,7 +140,11 @@ fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car()
                 let way = jaywalk::way_across(before.map(), &before.ways, walker).expect("it goes");
                 all += 1;
                 hidden += u32::from(cover::hides(&before, walker, way));
-                assert!(jaywalk::can_stop(&before, way[0], way[1]), "walker {} at tick {tick}", walker.id);
+                assert!(
+                    jaywalk::can_stop(&before.state.vehicles, &before.bodies, way[0], way[1]),
+                    "walker {} at tick {tick}",
+                    walker.id
+                );
             }
             before.clone_from(&t.actors);
         });
@@ -172,7 +176,7 @@ fn people_step_out_before_a_bus_that_stays_at_its_stop() {
         let state = TrafficState { vehicles: vec![bus], walkers: vec![walker] };
         let actors = Traffic::with(&counts(1), 2101, ways, state).actors;
         let way = jaywalk::way_across(actors.map(), &actors.ways, &walker).expect("one can cross");
-        (cover::hides(&actors, &walker, way), jaywalk::can_stop(&actors, way[0], way[1]))
+        (cover::hides(&actors, &walker, way), jaywalk::can_stop(&actors.state.vehicles, &actors.bodies, way[0], way[1]))
     };
     // Hidden and free; too far; behind it, and through it; as long as it stays.
     assert_eq!(before(1.5, 150), (true, true));
