@@ -18,15 +18,13 @@ use crate::{indicate, single_track};
 use arc::Arc;
 use memory::{Moved, Patience, Room, Tracks, Trail};
 use sight::{Contact, Sight};
-use speed::{COMFORT_MPS2, Scene, Wish};
+use speed::{COMFORT_MPS2, SPEED_TIME_S, Scene, Wish};
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
 /// Acceleration at full throttle and deceleration at full brake, m/s^2.
 const FULL_THROTTLE_MPS2: f32 = 4.0;
 const FULL_BRAKE_MPS2: f32 = 8.4;
-/// Time in which a wrong speed is made right, seconds.
-const SPEED_TIME_S: f32 = 0.7;
 
 /// Drives by the mask and the HUD alone.
 #[derive(Clone, Debug, Default)]

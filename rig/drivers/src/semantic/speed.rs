@@ -6,7 +6,6 @@ use kernel::map::Turn;
 use kernel::ops;
 use kernel::signals::LightPhase;
 
-use super::SPEED_TIME_S;
 use super::arc::Arc;
 use super::memory::{Track, Tracks};
 use super::sight::{Contact, Sight};
@@ -15,6 +14,8 @@ use super::sight::{Contact, Sight};
 const HALF_WIDTH_M: f32 = 0.5 * ego::SIZE_M.y;
 /// Deceleration that is planned with, m/s^2.
 pub const COMFORT_MPS2: f32 = 2.0;
+/// Time in which a wrong speed is made right, seconds.
+pub const SPEED_TIME_S: f32 = 0.7;
 /// Deceleration that a yellow light is worth, m/s^2.
 const YELLOW_MPS2: f32 = 3.5;
 /// Lateral acceleration in bends, m/s^2.
