@@ -13,6 +13,8 @@ use serde::Serialize;
 /// A mistake brings hazards about for so long after it began: a light that is run is passed within this time, and what
 /// was braked for or cut in before is met.
 const LASTS_TICKS: Tick = seconds(5);
+/// A door stands open for up to 8 s, and takes a second each to open and to close.
+const DOOR_LASTS_TICKS: Tick = seconds(10);
 /// Harder braking than this answers a mistake right ahead, m/s^2.
 const ANSWER_MPS2: f32 = 2.5;
 /// Who is ahead is at most so far away and so far aside, metres from middle to middle.
@@ -58,8 +60,14 @@ impl Mistakes {
     }
 
     fn of(&self, now: Tick, id: u32) -> Option<Mistake> {
-        let (tick, event) = self.last.get(&id).filter(|(tick, _)| now <= tick + LASTS_TICKS)?;
-        Some(Mistake { tick: *tick, kind: format!("{:?}", event.kind), actor: id, words: words::event(event) })
+        let (tick, event) = self.last.get(&id)?;
+        let lasts_ticks = if event.kind == EventKind::HazardDoor { DOOR_LASTS_TICKS } else { LASTS_TICKS };
+        (now <= tick + lasts_ticks).then(|| Mistake {
+            tick: *tick,
+            kind: format!("{:?}", event.kind),
+            actor: id,
+            words: words::event(event),
+        })
     }
 }
 

@@ -46,8 +46,8 @@ pub struct Episode {
     /// What was to be seen at the onset.
     pub what: String,
     /// The mistake that brought it about (the precipitating event of Hankey et al. 2016): of the one who would be touched
-    /// at the onset, or of the one right ahead of him for whom he brakes hard, begun within the 5 s before. `None` where
-    /// it was the ego car's own doing or that of traffic without a mistake.
+    /// at the onset, or of the one right ahead of him for whom he brakes hard, begun within the 5 s before (a door: 10 s).
+    /// `None` where it was the ego car's own doing or that of traffic without a mistake.
     pub mistake: Option<Mistake>,
 }
 
