@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 use kernel::geometry::direction;
-use kernel::map::{LaneKind, RoadNetwork};
+use kernel::map::RoadNetwork;
 use kernel::scene::{ActorScene, EgoScene};
 use kernel::{World, ego, ops};
 
@@ -67,7 +67,8 @@ pub fn actor_after(network: &RoadNetwork, actor: &ActorScene, driven_m: f32) -> 
         return straight();
     }
     let heading = ops::atan2(now.forward.y, now.forward.x);
-    match network.nearest_lane(actor.position, LaneKind::Driving, Some(heading), ON_LANE_M) {
+    // Who passes another beside the oncoming lane's middle, or turns across other lanes, does not turn back along them.
+    match network.nearest_leading(actor.position, heading, ON_LANE_M) {
         Some(place) => along_lane(network, place.lane, place.s_m + driven_m, place.lateral_m, now),
         None => straight(),
     }
@@ -90,7 +91,36 @@ fn along_lane(network: &RoadNetwork, lane: u32, s_m: f32, lateral_m: f32, now: F
 
 #[cfg(test)]
 mod tests {
+    use glam::Quat;
+    use kernel::map;
+    use kernel::scene::ActorKind;
+
     use super::*;
+
+    /// In the middle of any lane, in its direction or against it as one who passes another: nobody is expected behind.
+    #[test]
+    fn nobody_is_expected_to_turn_back() {
+        for name in ["city", "rural"] {
+            let network = map::bundled(name).expect("it is bundled");
+            for lane in 0..network.lanes.len() as u32 {
+                let point = network.lane_point(lane, 0.5 * network.lanes[lane as usize].length_m);
+                for heading in [point.heading_rad, point.heading_rad + core::f32::consts::PI] {
+                    let actor = ActorScene {
+                        id: 1,
+                        kind: ActorKind::Car,
+                        variant: 0,
+                        position: point.position,
+                        rotation: Quat::from_rotation_z(heading),
+                        speed_mps: 8.0,
+                        phase_rad: 0.0,
+                        lamps: 0,
+                    };
+                    let moved = actor_after(&network, &actor, 6.0).centre - point.position.truncate();
+                    assert!(moved.dot(direction(heading)) > 0.0, "{name}, lane {lane}: {moved}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn who_brakes_comes_to_a_stand() {

@@ -41,6 +41,8 @@ pub struct Hazard {
     pub comment: String,
     /// Steering helps, not braking alone.
     pub steer: bool,
+    /// Who is predicted to be touched, if somebody is.
+    pub whom: Option<Touched>,
 }
 
 /// The most pressing hazard, by the present look and the ones before.
@@ -60,10 +62,11 @@ fn encroachment(world: &World, scene: &SceneSnapshot, way: &EgoWay, looks: &Look
     let others = Others::near(world, scene, looks)?;
     steps().find_map(|t_s| {
         let touched = others.touched(&way.at(t_s)?, t_s).next()?;
-        Some(match touched {
-            Touched::Actor(id, kind) => of_actor(id, kind, t_s),
-            Touched::Parked(_) => hazard(Label::Vehicle, format!("parked car, {t_s:.1} s before contact")),
-        })
+        let (label, name) = match touched {
+            Touched::Actor(id, kind) => (label_of(kind), format!("{} {id}", words::road_user(kind))),
+            Touched::Parked(_) => (Label::Vehicle, "parked car".into()),
+        };
+        Some(Hazard { whom: Some(touched), ..hazard(label, format!("{name}, {t_s:.1} s before contact")) })
     })
 }
 
@@ -134,11 +137,7 @@ impl<'a> Others<'a> {
 }
 
 fn hazard(label: Label, comment: String) -> Hazard {
-    Hazard { label, comment, steer: false }
-}
-
-fn of_actor(id: u32, kind: ActorKind, t_s: f32) -> Hazard {
-    hazard(label_of(kind), format!("{} {id}, {t_s:.1} s before contact", words::road_user(kind)))
+    Hazard { label, comment, steer: false, whom: None }
 }
 
 /// What it is called to overlook an actor.

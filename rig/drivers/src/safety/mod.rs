@@ -68,7 +68,7 @@ impl SafetyBot {
         }
         if self.is_bored(world) && self.reason.is_none() {
             let comment = "nothing moves".into();
-            self.reason = Some(Hazard { label: replay::Label::Boredom, comment, steer: false });
+            self.reason = Some(Hazard { label: replay::Label::Boredom, comment, steer: false, whom: None });
         }
     }
 

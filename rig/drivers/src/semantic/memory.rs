@@ -21,6 +21,13 @@ const BELIEVED_AFTER: u32 = 4;
 /// How long others are let pass after they were last seen to come, seconds.
 const PATIENCE_S: f32 = 1.2;
 
+/// Share of a look at which what stands in the way seems farther than before: the nose of a car that brakes dips, and
+/// all seems farther then.
+const FARTHER_SHARE: f32 = 0.15;
+/// Looks without what stands in the way that are needed to forget it: so many for each look that showed it, and at most.
+const BELIEF_PER_LOOK: u32 = 2;
+const MOST_BELIEF: u32 = 8;
+
 /// How the car moved in a tick: metres forward, radians to the left.
 #[derive(Clone, Copy, Debug)]
 pub struct Moved {
@@ -157,6 +164,40 @@ impl Patience {
     }
 }
 
+/// The room before what stands in the way, carried along between looks.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Room {
+    ahead_m: Option<f32>,
+    /// So many looks that do not show it are needed to forget it.
+    belief: u32,
+}
+
+impl Room {
+    /// Carries the room along while the car moves.
+    pub fn carry(&mut self, moved: Moved) {
+        self.ahead_m = self.ahead_m.map(|ahead_m| ahead_m - moved.forward_m);
+    }
+
+    /// Takes in what a new mask shows: less room is believed at once, more of it little by little; what was seen again
+    /// and again is not forgotten at once.
+    pub fn look(&mut self, seen_m: Option<f32>) {
+        let Some(seen_m) = seen_m else {
+            self.belief = self.belief.saturating_sub(1);
+            self.ahead_m = self.ahead_m.filter(|_| self.belief > 0);
+            return;
+        };
+        let known_m = self.ahead_m.unwrap_or(seen_m);
+        let share = if seen_m < known_m { 1.0 } else { FARTHER_SHARE };
+        self.ahead_m = Some(known_m + share * (seen_m - known_m));
+        self.belief = (self.belief + BELIEF_PER_LOOK).min(MOST_BELIEF);
+    }
+
+    /// Metres to where the car must stand; `None` where nothing is in the way.
+    pub fn ahead_m(&self) -> Option<f32> {
+        self.ahead_m
+    }
+}
+
 /// One place for each vehicle: its nearest distance, the middle of its width.
 fn blobs(contacts: &[Contact]) -> Vec<Point> {
     let mut blobs: Vec<(Point, Contact, f32)> = Vec::new();
@@ -199,6 +240,32 @@ mod tests {
         assert_eq!(patience.keep(Some(5.0), forward), Some(5.0));
         let kept: Vec<f32> = (0..200).map_while(|_| patience.keep(None, forward)).collect();
         assert!((kept[9] - 4.0).abs() < 1e-4 && (kept.len() as f32 * TICK_S - PATIENCE_S).abs() < 0.05, "{kept:?}");
+    }
+
+    #[test]
+    fn what_stands_in_the_way_does_not_jump_away() {
+        let mut room = Room::default();
+        let forward = Moved { forward_m: 0.1, turned_rad: 0.0 };
+        let drive = |room: &mut Room, seen_m: Option<f32>| {
+            room.look(seen_m);
+            (0..6).for_each(|_| room.carry(forward));
+            room.ahead_m()
+        };
+        // Seen once and never again: gone with the second look without it.
+        assert!(drive(&mut room, Some(30.0)).is_some() && drive(&mut room, None).is_some());
+        assert_eq!(drive(&mut room, None), None);
+        // Seen for long, then farther, then not at all for less than the belief.
+        (0..10).for_each(|_| assert!(drive(&mut room, Some(30.0)).is_some()));
+        let known_m = room.ahead_m().expect("it is believed");
+        let farther_m = drive(&mut room, Some(known_m + 15.0)).expect("it is seen");
+        assert!(farther_m < known_m + 3.0, "{known_m}, then {farther_m}");
+        (1..MOST_BELIEF).for_each(|_| assert!(drive(&mut room, None).is_some()));
+        assert_eq!(drive(&mut room, None), None);
+        // Nearer is believed at once.
+        for seen_m in [30.0, 8.0] {
+            let known_m = drive(&mut room, Some(seen_m)).expect("it is seen");
+            assert!((known_m - (seen_m - 0.6)).abs() < 1e-3, "{known_m} of {seen_m}");
+        }
     }
 
     #[test]

@@ -13,19 +13,18 @@ use kernel::map::Turn;
 use kernel::time::TICK_S;
 
 use super::{Driver, SemanticView};
+use crate::vision::LATENCY_TICKS;
 use crate::{indicate, single_track};
 use arc::Arc;
-use memory::{Moved, Patience, Tracks, Trail};
+use memory::{Moved, Patience, Room, Tracks, Trail};
 use sight::{Contact, Sight};
-use speed::{COMFORT_MPS2, Scene, Wish};
+use speed::{COMFORT_MPS2, SPEED_TIME_S, Scene, Wish};
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
 /// Acceleration at full throttle and deceleration at full brake, m/s^2.
 const FULL_THROTTLE_MPS2: f32 = 4.0;
 const FULL_BRAKE_MPS2: f32 = 8.4;
-/// Time in which a wrong speed is made right, seconds.
-const SPEED_TIME_S: f32 = 0.7;
 
 /// Drives by the mask and the HUD alone.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +34,7 @@ pub struct SemanticBot {
     trail: Trail,
     tracks: Tracks,
     patience: Patience,
+    room: Room,
     has_lights: bool,
     /// The mask that was looked at last, and where others stood in it.
     ids: Vec<u8>,
@@ -58,20 +58,24 @@ impl SemanticBot {
         let moved = Moved::along(Arc { curvature: single_track::curvature(self.steer) }, view.hud.speed_mps);
         self.trail.extend(moved, path::arrow_point(&view.hud.arrow));
         self.tracks.carry(moved);
+        self.room.carry(moved);
+        let arc = path::choose(sight, &view.hud, &self.trail);
         if self.ids != view.mask.ids {
             self.ids.clear();
             self.ids.extend_from_slice(view.mask.ids);
             self.contacts = sight.contacts();
             self.tracks.look(&self.contacts);
+            // The picture of a new mask is that old.
+            let driven_m = view.hud.speed_mps * LATENCY_TICKS as f32 * TICK_S;
+            self.room.look(speed::obstacle_m(&self.contacts, arc).map(|seen_m| seen_m - driven_m));
         }
-        let arc = path::choose(sight, &view.hud, &self.trail);
         // A light leaves the HUD once its line is passed, but the junction still has it.
         self.has_lights = view.hud.light.is_some() || (self.has_lights && view.hud.arrow.distance_m < 10);
         // Lights keep crossing traffic away, but not the oncoming one that a left turn crosses.
         let gives_way = !self.has_lights || view.hud.arrow.turn == Turn::Left;
         let give_way_m = if gives_way { speed::give_way_m(arc, &view.hud, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
-        let scene = Scene { contacts: &self.contacts, give_way_m, has_lights: self.has_lights };
+        let scene = Scene { obstacle_m: self.room.ahead_m(), give_way_m, has_lights: self.has_lights };
         (arc, speed::wish(sight, arc, &view.hud, scene))
     }
 }
@@ -83,11 +87,13 @@ fn follow(steer: f32, wanted: f32) -> f32 {
 
 /// Throttle and brake for a wish.
 fn pedals(speed_mps: f32, wish: &Wish) -> (f32, f32) {
-    let by_speed = ((wish.speed_mps - speed_mps) / SPEED_TIME_S).clamp(-4.0, 2.5);
-    let by_stop = wish.stop_in_m.map_or(by_speed, |d| -speed_mps * speed_mps / (2.0 * d.max(0.3)));
-    // Beyond the comfortable deceleration the distance that is left decides.
-    let acceleration = if by_stop < -COMFORT_MPS2 { by_speed.min(by_stop) } else { by_speed };
-    if wish.speed_mps < 0.3 && speed_mps < 0.5 {
+    let towards = |wanted_mps: f32| (wanted_mps - speed_mps) / SPEED_TIME_S;
+    let safe_mps = wish.stop_in_m.map_or(f32::INFINITY, speed::safe_mps);
+    let needed_mps2 = wish.stop_in_m.map_or(0.0, |d| speed_mps * speed_mps / (2.0 * d.max(0.3)));
+    // Comfortable as long as that is enough, then as hard as the distance that is left asks for.
+    let by_stop = towards(safe_mps).max(-needed_mps2.max(COMFORT_MPS2));
+    let acceleration = towards(wish.speed_mps).clamp(-4.0, 2.5).min(by_stop);
+    if wish.speed_mps.min(safe_mps) < 0.3 && speed_mps < 0.5 {
         return (0.0, 0.5);
     }
     if acceleration >= 0.0 { (acceleration / FULL_THROTTLE_MPS2, 0.0) } else { (0.0, -acceleration / FULL_BRAKE_MPS2) }

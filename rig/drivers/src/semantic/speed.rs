@@ -14,6 +14,8 @@ use super::sight::{Contact, Sight};
 const HALF_WIDTH_M: f32 = 0.5 * ego::SIZE_M.y;
 /// Deceleration that is planned with, m/s^2.
 pub const COMFORT_MPS2: f32 = 2.0;
+/// Time in which a wrong speed is made right, seconds.
+pub const SPEED_TIME_S: f32 = 0.7;
 /// Deceleration that a yellow light is worth, m/s^2.
 const YELLOW_MPS2: f32 = 3.5;
 /// Lateral acceleration in bends, m/s^2.
@@ -39,6 +41,8 @@ const LEFT_BEND: f32 = 0.09;
 const RIGHT_BEND: f32 = 0.14;
 /// How far the road is looked at, metres.
 const REACH_M: f32 = 45.0;
+/// How far ahead along the arc somebody counts as in the way, metres: what 2 m/s^2 need from 50 km/h.
+const IN_THE_WAY_M: f32 = 50.0;
 /// Side clearance to vehicles, to people beside the road, and to people on it, metres.
 const BESIDE_VEHICLE_M: f32 = 0.5;
 const BESIDE_WALKER_M: f32 = 0.6;
@@ -49,10 +53,17 @@ fn braking_from(end_mps: f32, distance_m: f32) -> f32 {
     (end_mps * end_mps + 2.0 * COMFORT_MPS2 * distance_m.max(0.0)).sqrt()
 }
 
+/// The speed from which the car comes to a stand within `distance_m` by comfortable braking that sets in after the time
+/// in which a wrong speed is made right (the safe speed of Gipps 1981 behind one who stands).
+pub fn safe_mps(distance_m: f32) -> f32 {
+    let lag_mps = COMFORT_MPS2 * SPEED_TIME_S;
+    braking_from(lag_mps, distance_m) - lag_mps
+}
+
 /// What the driver wants of the pedals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wish {
-    /// Speed that is right now, m/s.
+    /// Speed that would be right now with nowhere to stand, m/s.
     pub speed_mps: f32,
     /// Distance to a point where the car has to stand, metres from its front.
     pub stop_in_m: Option<f32>,
@@ -60,9 +71,9 @@ pub struct Wish {
 
 /// Others on the road, and where to wait for them.
 #[derive(Clone, Copy, Debug)]
-pub struct Scene<'a> {
-    /// Where people and vehicles stand in the mask.
-    pub contacts: &'a [Contact],
+pub struct Scene {
+    /// Metres from the front of the car to where it must stand because of people and vehicles.
+    pub obstacle_m: Option<f32>,
     /// Metres from the front of the car to where it lets others pass.
     pub give_way_m: Option<f32>,
     /// The HUD shows a light, or showed the one of this junction.
@@ -70,21 +81,20 @@ pub struct Scene<'a> {
 }
 
 /// The speed for an arc.
-pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud, scene: Scene<'_>) -> Wish {
-    let stops = [obstacle_m(scene.contacts, arc), stop_line_m(hud), scene.give_way_m];
+pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud, scene: Scene) -> Wish {
+    let stops = [scene.obstacle_m, stop_line_m(hud), scene.give_way_m];
     let stop_in_m = stops.into_iter().flatten().reduce(f32::min);
     let bend_mps = (LATERAL_MPS2 / arc.curvature.abs().max(1e-3)).sqrt();
     let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M);
     let speed_mps = hud.limit_mps.min(bend_mps).min(road_mps).min(junction_mps(hud, scene.has_lights));
-    let speed_mps = stop_in_m.map_or(speed_mps, |d| speed_mps.min(braking_from(0.0, d)));
     Wish { speed_mps, stop_in_m }
 }
 
 /// Metres from the front of the car to where it must stand because of people and vehicles.
-fn obstacle_m(contacts: &[Contact], arc: Arc) -> Option<f32> {
+pub fn obstacle_m(contacts: &[Contact], arc: Arc) -> Option<f32> {
     let distances = contacts.iter().filter_map(|contact| {
         let (s_m, left_m) = arc.project(contact.x_m, contact.y_m);
-        let in_the_way = s_m < REACH_M && left_m.abs() < HALF_WIDTH_M + clearance_m(contact);
+        let in_the_way = s_m < IN_THE_WAY_M && left_m.abs() < HALF_WIDTH_M + clearance_m(contact);
         in_the_way.then_some(s_m - FRONT_M - STANDOFF_M)
     });
     distances.reduce(f32::min)

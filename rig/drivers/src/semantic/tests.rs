@@ -151,6 +151,55 @@ fn it_brakes_for_a_person_but_not_for_specks() {
     assert_eq!(with_person(190..195, 62..79).brake, 0, "on the far side");
 }
 
+/// The rear of a car that stands on a straight road, 1.8 m wide and 1.5 m high, in the picture of a camera that looks down
+/// by an angle.
+fn queue_ahead(gap_m: f32, down_rad: f32) -> Vec<u8> {
+    let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
+    let focal = 0.5 * WIDTH as f32 / ops::tan(0.5 * camera.fov_x_rad);
+    let ahead_m = ego::FRONT_M + gap_m - camera.position.x;
+    let row = |height_m: f32| 0.5 * HEIGHT as f32 + focal * ((camera.position.z - height_m) / ahead_m - down_rad);
+    let side = focal * 0.9 / ahead_m;
+    for row in row(1.5).round() as usize..(row(0.0).round() as usize).min(HEIGHT) {
+        let columns = (0.5 * WIDTH as f32 - side).max(0.0) as usize..(0.5 * WIDTH as f32 + side) as usize;
+        ids[row * WIDTH + columns.start..row * WIDTH + columns.end.min(WIDTH)].fill(SemanticTag::Vehicles as u8);
+    }
+    ids
+}
+
+/// The nose of the car dips by about 1.3 degrees when it brakes with 3 m/s^2, and all seems farther then.
+#[test]
+fn it_draws_up_to_a_queue_without_being_about_to_hit_it() {
+    for start_mps in [6.0, 10.0, 50.0 / 3.6] {
+        let (mut bot, mut ids) = (SemanticBot::default(), Vec::new());
+        let (mut gap_m, mut speed_mps, mut mps2, mut hardest) = (90.0_f32, start_mps, 0.0_f32, 0.0_f32);
+        let mut shown = std::collections::VecDeque::new();
+        for tick in 0..1800 {
+            // What is on the screen is 6 to 11 ticks old.
+            if tick % 6 == 0 {
+                shown.push_back(queue_ahead(gap_m, -0.0075 * mps2));
+                ids = if shown.len() > 1 { shown.pop_front().expect("two") } else { shown[0].clone() };
+            }
+            let mask = MaskView { width: WIDTH, height: HEIGHT, ids: &ids };
+            let controls = bot.controls(&SemanticView { mask, hud: hud(speed_mps, straight_on()) });
+            let asked = FULL_THROTTLE_MPS2 * f32::from(controls.throttle) / f32::from(u16::MAX)
+                - FULL_BRAKE_MPS2 * f32::from(controls.brake) / f32::from(u16::MAX);
+            // Pedals and suspension take a moment.
+            mps2 += (asked - mps2) * TICK_S / 0.2;
+            speed_mps = (speed_mps + mps2 * TICK_S).max(0.0);
+            gap_m -= speed_mps * TICK_S;
+            hardest = hardest.min(mps2);
+            let (t_s, braking) = (2.0_f32, mps2.min(-1e-3));
+            let t_s = t_s.min(-speed_mps / braking);
+            let driven_m = speed_mps * t_s + 0.5 * braking * t_s * t_s;
+            assert!(speed_mps < 0.5 || driven_m < gap_m, "{start_mps}: {speed_mps} m/s, {mps2}, {gap_m} m before it");
+        }
+        assert!(speed_mps < 0.1 && (1.0..6.0).contains(&gap_m), "{start_mps}: {speed_mps} m/s, {gap_m} m before it");
+        // Rows of the picture are metres apart at first sight, so it brakes harder than is comfortable, but not fully.
+        assert!(hardest > -0.6 * FULL_BRAKE_MPS2, "{start_mps}: {hardest} m/s^2");
+    }
+}
+
 #[test]
 fn a_figure_is_as_far_as_its_lowest_foot() {
     let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });

@@ -8,6 +8,7 @@
 
 mod following;
 mod log;
+mod mistakes;
 mod reactions;
 mod screen;
 mod steering;
@@ -28,6 +29,7 @@ pub use crate::stats::Spread;
 use base::words;
 
 pub use following::Following;
+pub use mistakes::Mistake;
 pub use reactions::Response;
 pub use screen::ScreenAge;
 pub use tally::Tally;
@@ -42,6 +44,8 @@ const ANSWER_TICKS: Tick = 3 * TICK_HZ as Tick;
 pub struct Measures {
     /// Hazards up to the intervention or the end, and what came of them.
     pub hazards: Vec<HazardTimes>,
+    /// Kilometres over which they were counted: of a case only what it holds of its recording.
+    pub km: f64,
     /// Every press of "I see it".
     pub seen: Vec<Press>,
     /// Age of the mask on the screen while the car moves; `None` where there was none.
@@ -92,7 +96,7 @@ impl Measures {
     }
 
     /// Those of a log whose truth is known.
-    pub fn with_truth(log: &Log, Truth { episodes, moving, following }: Truth) -> Self {
+    pub fn with_truth(log: &Log, Truth { episodes, km, moving, following }: Truth) -> Self {
         let rate = |seat| steering::reversals_per_min(log, seat);
         let mut onsets = episodes.iter().skip(1).map(|e| e.onset).collect::<Vec<_>>().into_iter();
         let times = |episode: Episode| {
@@ -102,6 +106,7 @@ impl Measures {
         };
         Self {
             hazards: episodes.into_iter().map(times).collect(),
+            km,
             seen: presses(log),
             mask_age: screen::age(log, &moving),
             steering_reversals_per_min: Seats { semantic: rate(Seat::Semantic), safety: rate(Seat::Safety) },

@@ -23,8 +23,16 @@ pub struct Tally {
     pub boredom: u32,
     /// `boredom` of `labelled`; `None` without labels.
     pub boredom_share: Option<f64>,
+    /// Kilometres over which hazards were counted.
+    pub km: f64,
     /// Hazards.
     pub hazards: u32,
+    /// Hazards a kilometre; `None` without kilometres.
+    pub hazards_per_km: Option<f64>,
+    /// Of the hazards, those that a mistake of another brought about.
+    pub hazards_by_mistakes: u32,
+    /// These a kilometre.
+    pub hazards_by_mistakes_per_km: Option<f64>,
     /// From a hazard to the semantic driver's first reaction.
     pub semantic_reaction_ms: Option<Spread>,
     /// From a hazard to the semantic driver's "I see it".
@@ -58,6 +66,7 @@ impl Tally {
                 continue;
             }
             tally.add_run(recording);
+            tally.km += measures.map_or(0.0, |m| m.km);
             hazards.extend(measures.into_iter().flat_map(|m| &m.hazards));
         }
         tally.boredom_share = (tally.labelled > 0).then(|| f64::from(tally.boredom) / f64::from(tally.labelled));
@@ -79,11 +88,15 @@ impl Tally {
         }
     }
 
-    fn add_hazards(&mut self, hazards: &[&HazardTimes]) {
+    pub(super) fn add_hazards(&mut self, hazards: &[&HazardTimes]) {
         let spread = |time: &dyn Fn(&HazardTimes) -> Option<u64>| {
             Spread::of(hazards.iter().filter_map(|hazard| time(hazard)).map(|ms| ms as f64).collect())
         };
+        let per_km = |n: u32| (self.km > 0.0).then(|| f64::from(n) / self.km);
         self.hazards = hazards.len() as u32;
+        self.hazards_by_mistakes = hazards.iter().filter(|h| h.episode.mistake.is_some()).count() as u32;
+        self.hazards_per_km = per_km(self.hazards);
+        self.hazards_by_mistakes_per_km = per_km(self.hazards_by_mistakes);
         self.semantic_reaction_ms = spread(&|h| h.semantic.reaction_ms);
         self.semantic_seen_ms = spread(&|h| h.semantic.seen_ms);
         self.safety_reaction_ms = spread(&|h| h.safety.reaction_ms);

@@ -39,11 +39,12 @@ fn log() -> Log {
 }
 
 fn episode(onset: Tick, end: Tick) -> Episode {
-    Episode { onset, end, label: "walker", what: "pedestrian 3".into() }
+    Episode { onset, end, label: "walker", what: "pedestrian 3".into(), mistake: None }
 }
 
 fn truth(episodes: Vec<Episode>) -> Truth {
-    Truth { episodes, moving: vec![true; TICKS as usize], following: vec![Following::default(); TICKS as usize] }
+    let following = vec![Following::default(); TICKS as usize];
+    Truth { episodes, km: 0.1, moving: vec![true; TICKS as usize], following }
 }
 
 /// Changes one seat's controls from a tick on.
@@ -227,6 +228,31 @@ fn the_picture_of_the_first_tick_waits_for_the_start_and_has_no_latency() {
     let ms = age.ms.expect("a live drive");
     assert!(ms.max < 250.0, "{ms:?}");
     assert_eq!(age.frame_to_screen_ms.expect("a live drive").n, log.masks.len() - 1);
+}
+
+#[test]
+fn the_tally_tells_hazards_by_mistakes_from_others_over_the_kilometres() {
+    let mistake = Mistake {
+        tick: 190,
+        kind: "HazardBraking".into(),
+        actor: 7,
+        words: "vehicle 7 brakes hard for no reason".into(),
+    };
+    let by_mistake = Episode { label: "vehicle", what: "car 7".into(), mistake: Some(mistake), ..episode(200, 260) };
+    let measures = Measures::with_truth(&log(), truth(vec![episode(100, 120), by_mistake, episode(300, 320)]));
+    let said = lines(&measures)[1].1.clone();
+    assert_eq!(said, "tick 200 (3.33 s), car 7; vehicle 7 brakes hard for no reason: no reaction");
+
+    let hazards: Vec<_> = measures.hazards.iter().collect();
+    let mut tally = Tally { km: 0.1, ..Tally::default() };
+    tally.add_hazards(&hazards);
+    assert_eq!((tally.hazards, tally.hazards_by_mistakes), (3, 1));
+    assert_eq!((tally.hazards_per_km, tally.hazards_by_mistakes_per_km), (Some(30.0), Some(10.0)));
+    let said = "3, 1 of them by mistakes of others, in 0.10 km: 30.00 a km, 10.00 by mistakes of others";
+    assert!(tally.lines().contains(&("hazards", said.into())), "{:?}", tally.lines());
+    tally.km = 0.0;
+    tally.add_hazards(&[]);
+    assert_eq!((tally.hazards_per_km, tally.hazards_by_mistakes_per_km), (None, None));
 }
 
 #[test]

@@ -62,7 +62,8 @@ impl HazardTimes {
         if parts.is_empty() {
             parts.push("no reaction".into());
         }
-        format!("{}, {}: {}", at(self.episode.onset), self.episode.what, parts.join(", "))
+        let mistake = self.episode.mistake.as_ref().map_or(String::new(), |mistake| format!("; {}", mistake.words));
+        format!("{}, {}{mistake}: {}", at(self.episode.onset), self.episode.what, parts.join(", "))
     }
 }
 
@@ -114,7 +115,14 @@ impl Tally {
             let Spread { n, median, max, .. } = spread.as_ref()?;
             Some(("hazard to", format!("{name}: median {median:.0} ms, max {max:.0} ms ({n} of {hazards} hazards)")))
         });
-        let head = [("runs", format!("{runs}{practice}")), ("takeovers", format!("{interventions}{bored}"))];
+        let (km, by_mistakes) = (self.km, self.hazards_by_mistakes);
+        let rates = self.hazards_per_km.zip(self.hazards_by_mistakes_per_km);
+        let rates = rates.map_or(String::new(), |(all, by)| format!(": {all:.2} a km, {by:.2} by mistakes of others"));
+        let head = [
+            ("runs", format!("{runs}{practice}")),
+            ("takeovers", format!("{interventions}{bored}")),
+            ("hazards", format!("{hazards}, {by_mistakes} of them by mistakes of others, in {km:.2} km{rates}")),
+        ];
         head.into_iter().chain(times).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use drivers::safety::{FORGET_TICKS, Hazard, LOOK_TICKS, Looks, predicted_encroachment};
+use drivers::safety::{FORGET_TICKS, Hazard, LOOK_TICKS, Looks, Touched, predicted_encroachment};
 use kernel::RoadNetwork;
 use kernel::time::Tick;
 use replay::{Error, Log, Replayer};
@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::following::Following;
 use super::log::end_of_driving;
+use super::mistakes::{Mistake, Mistakes};
 
 /// An encroachment that is predicted for a shorter time is nobody's to react to.
 const LASTING_TICKS: Tick = 6;
@@ -24,6 +25,8 @@ const STANDSTILL_MPS: f32 = 0.5;
 pub struct Truth {
     /// The hazards, by ascending tick.
     pub episodes: Vec<Episode>,
+    /// Kilometres driven meanwhile.
+    pub km: f64,
     /// Whether the car moved, for each tick after the log's first.
     pub moving: Vec<bool>,
     /// What following the route asks of the steering wheel, for each tick after the log's first: the driver has seen
@@ -42,6 +45,10 @@ pub struct Episode {
     pub label: &'static str,
     /// What was to be seen at the onset.
     pub what: String,
+    /// The mistake that brought it about (the precipitating event of Hankey et al. 2016): of the one who would be touched
+    /// at the onset, or of the one right ahead of him for whom he brakes hard, begun within the 5 s before (a door: 10 s).
+    /// `None` where it was the ego car's own doing or that of traffic without a mistake.
+    pub mistake: Option<Mistake>,
 }
 
 /// The truth about a log, by simulating it again.
@@ -50,7 +57,8 @@ pub fn find(log: &Log, network: &Arc<RoadNetwork>) -> Result<Truth, Error> {
     // Speeds are compared over the time between two looks: each tick has the looks that end at it.
     let mut looks: [Looks; LOOK_TICKS as usize] = Default::default();
     let (mut episodes, mut moving) = (Episodes::starting_at(log.first_tick()), Vec::new());
-    let mut following = Vec::new();
+    let (mut following, mut mistakes) = (Vec::new(), Mistakes::default());
+    let from_mm = replayer.world().odometer_mm();
     while replayer.world().tick() < end_of_driving(log) {
         following.push(Following::of(replayer.world(), &replayer.world().scene().ego));
         replayer.step()?;
@@ -58,10 +66,13 @@ pub fn find(log: &Log, network: &Arc<RoadNetwork>) -> Result<Truth, Error> {
         let (tick, scene) = (world.tick(), world.scene());
         let looks = &mut looks[(tick % LOOK_TICKS) as usize];
         looks.look(&scene);
-        episodes.see(tick, predicted_encroachment(world, &scene, looks));
+        mistakes.hear(tick, world.last_events());
+        let hazard = predicted_encroachment(world, &scene, looks);
+        episodes.see(tick, hazard, |whom| mistakes.behind(whom, &scene, looks));
         moving.push(scene.ego.speed_mps.abs() > STANDSTILL_MPS);
     }
-    Ok(Truth { episodes: episodes.finish(), moving, following })
+    let km = (replayer.world().odometer_mm() - from_mm) as f64 / 1e6;
+    Ok(Truth { episodes: episodes.finish(), km, moving, following })
 }
 
 /// Joins ticks to episodes.
@@ -75,14 +86,15 @@ impl Episodes {
         Self { first, found: Vec::new() }
     }
 
-    /// What is predicted at a tick; ticks come in order.
-    fn see(&mut self, tick: Tick, hazard: Option<Hazard>) {
+    /// What is predicted at a tick, and the mistake behind touching somebody; ticks come in order.
+    fn see(&mut self, tick: Tick, hazard: Option<Hazard>, mistake: impl Fn(Touched) -> Option<Mistake>) {
         let Some(hazard) = hazard else { return };
         match self.found.last_mut().filter(|e| tick < e.end + FORGET_TICKS) {
             Some(episode) => episode.end = tick,
             None => {
                 let (label, what) = (hazard.label.name(), hazard.comment);
-                self.found.push(Episode { onset: tick, end: tick, label, what });
+                let mistake = hazard.whom.and_then(mistake);
+                self.found.push(Episode { onset: tick, end: tick, label, what, mistake });
             }
         }
     }
@@ -101,14 +113,14 @@ mod tests {
     use super::*;
 
     fn hazard() -> Hazard {
-        Hazard { label: Label::Walker, comment: "pedestrian 3".into(), steer: false }
+        Hazard { label: Label::Walker, comment: "pedestrian 3".into(), steer: false, whom: None }
     }
 
     /// Onsets and ends, told tick by tick.
     fn joined(first: Tick, predicted: &[bool]) -> Vec<(Tick, Tick)> {
         let mut episodes = Episodes::starting_at(first);
         for (tick, is_predicted) in (first + 1..).zip(predicted) {
-            episodes.see(tick, is_predicted.then(hazard));
+            episodes.see(tick, is_predicted.then(hazard), |_| None);
         }
         episodes.finish().iter().map(|e| (e.onset, e.end)).collect()
     }
