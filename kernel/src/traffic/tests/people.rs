@@ -7,9 +7,11 @@ use super::{MINUTE, car_at, counts, nowhere, run};
 use glam::Vec3;
 
 use crate::actor::ActorKind;
-use crate::map::{RoadNetwork, bundled};
+use crate::map::{RoadNetwork, WalkEdge, bundled};
 use crate::time::Tick;
-use crate::traffic::{Lapse, Surroundings, Traffic, TrafficCounts, TrafficState, Walker, WalkerMode, cover, jaywalk};
+use crate::traffic::{
+    Lapse, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, Walker, WalkerMode, cover, jaywalk,
+};
 use crate::weather::Conditions;
 
 /// So many people on foot and little traffic.
@@ -154,25 +156,67 @@ fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car()
     assert!(hidden as f32 > 0.25 * all as f32, "{hidden} of {all}");
 }
 
+/// A long sidewalk of the crossroads, and the lane beside it.
+fn long_pavement(network: &RoadNetwork) -> (u32, u32) {
+    let lane_of = |e: &WalkEdge| e.beside.filter(|lane| network.lanes[*lane as usize].length_m > 80.0);
+    let is_long = |e: &WalkEdge| e.length_m > 80.0 && lane_of(e).is_some();
+    let edge = network.walk_edges.iter().position(is_long).expect("there is one");
+    (edge as u32, network.walk_edges[edge].beside.expect("it has one"))
+}
+
+/// Where a way is nearest to a place, metres along it.
+fn nearest_m(network: &Arc<RoadNetwork>, edge: u32, place: Vec3) -> f32 {
+    let ways = network.ways();
+    let away_m = |s_m: &f32| ways.edge_place(edge, *s_m).position.distance(place);
+    let all = (0..2000).map(|k| 0.1 * k as f32);
+    all.min_by(|a, b| away_m(a).total_cmp(&away_m(b))).expect("there are some")
+}
+
+#[test]
+fn who_sets_out_to_jaywalk_looks_again_while_on_the_pavement() {
+    let network = crossroads(Signs::Yield);
+    let spawned = with_people(&network, 1, 2101).state().clone();
+    let (edge, lane) = long_pavement(&network);
+    // The mode after a tick of somebody who jaywalks so far across, before a car at 12 m/s that is so far away.
+    let mode = |offset_m: f32, away_m: f32| {
+        let car = Vehicle {
+            id: 9,
+            lane,
+            before: lane,
+            s_m: 70.0 - away_m,
+            offset_m: 0.0,
+            speed_mps: 12.0,
+            ..spawned.vehicles[0]
+        };
+        let s_m = nearest_m(&network, edge, network.lanes[lane as usize].straight_on(70.0).position);
+        let walker = Walker { edge, s_m, mode: WalkerMode::Jaywalk, ..spawned.walkers[0] };
+        let forward = jaywalk::road_is_left(&network, network.ways(), &walker);
+        let sign = if forward { 1.0 } else { -1.0 };
+        let walker = Walker { forward, offset_m: sign * offset_m, ..walker };
+        let state = TrafficState { vehicles: vec![car], walkers: vec![walker] };
+        let mut traffic = Traffic::with(&counts(1), 2101, network.ways(), state);
+        run(&mut traffic, 1..2, |_, _| {});
+        traffic.state().walkers[0].mode
+    };
+    assert_eq!(mode(0.0, 15.0), WalkerMode::Walk, "the car cannot stop any more");
+    assert_eq!(mode(0.0, 60.0), WalkerMode::Jaywalk, "it can");
+    assert_eq!(mode(2.5, 15.0), WalkerMode::Jaywalk, "who is on the road goes on");
+}
+
 #[test]
 fn people_step_out_before_a_bus_that_stays_at_its_stop() {
     let network = crossroads(Signs::Yield);
     let ways = network.ways();
     let spawned = with_people(&network, 1, 2101).state().clone();
     let (mut bus, walker) = (spawned.vehicles[0], spawned.walkers[0]);
-    let is_beside =
-        |e: &crate::map::WalkEdge| e.beside.is_some_and(|lane| network.lanes[lane as usize].length_m > 80.0);
-    let edge = network.walk_edges.iter().position(|e| is_beside(e) && e.length_m > 80.0).expect("there is one");
-    let lane = network.walk_edges[edge].beside.expect("it has one");
+    let (edge, lane) = long_pavement(&network);
     let mut before = |ahead_m: f32, lapse_left: u8| {
         (bus.kind, bus.lane, bus.before, bus.s_m, bus.offset_m) = (ActorKind::Bus, lane, lane, 40.0, -0.4);
         (bus.lapse, bus.lapse_left, bus.speed_mps) = (Lapse::Boards, lapse_left, 0.0);
         // On the sidewalk, so far before the front of the bus.
         let place = network.lanes[lane as usize].straight_on(40.0 + 5.5 + ahead_m).position;
-        let away_m = |s_m: &f32| ways.edge_place(edge as u32, *s_m).position.distance(place);
-        let all = (0..2000).map(|k| 0.1 * k as f32);
-        let s_m = all.min_by(|a, b| away_m(a).total_cmp(&away_m(b))).expect("there are some");
-        let walker = Walker { edge: edge as u32, s_m, offset_m: 0.0, ..walker };
+        let s_m = nearest_m(&network, edge, place);
+        let walker = Walker { edge, s_m, offset_m: 0.0, ..walker };
         let state = TrafficState { vehicles: vec![bus], walkers: vec![walker] };
         let actors = Traffic::with(&counts(1), 2101, ways, state).actors;
         let way = jaywalk::way_across(actors.map(), &actors.ways, &walker).expect("one can cross");

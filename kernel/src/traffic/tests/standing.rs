@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::actor::ActorKind;
 use crate::map_data::{LaneKind, Turn};
+use crate::traffic::manoeuvre::Manoeuvre;
 
 /// Who is so near to it has met it, metres between the middles.
 const NEAR_M: f32 = 8.0;
@@ -65,6 +66,28 @@ fn nobody_drives_into_a_car_that_stands_anywhere() {
     });
     run.unwrap_or_else(|failure| panic!("{failure}"));
     assert!(came_near.get() >= 4, "vehicles came near {} of 12", came_near.get());
+}
+
+/// Whoever is beside something on the right of it, where the pavement is, does not mount that to have more room.
+#[test]
+fn who_passes_beside_the_pavement_stays_on_the_road() {
+    let network = crossroads(Signs::Yield);
+    for k in 0..=5 {
+        let left_m = 1.4 + 0.1 * k as f32;
+        let mut traffic = lone_car(&network);
+        let car = &mut traffic.actors.state.vehicles[0];
+        (car.manoeuvre, car.s_m, car.offset_m, car.speed_mps) = (Manoeuvre::PassRight, 80.0, -0.65, 2.0);
+        let stands = car_at(network.lanes[0].points[42].position - Vec3::Y * left_m, 0.0);
+        for tick in 1..600 {
+            let conditions = Conditions::default();
+            traffic.step(&Surroundings { tick, ego: stands, ego_flags: 0, loose: &[], conditions });
+            let car = &traffic.state().vehicles[0];
+            let border_m = network.lanes[car.lane as usize].at(car.s_m).half_width_m;
+            let over_m = car.kind.size_m().y * 0.5 - car.offset_m - border_m;
+            assert!(over_m < 0.1, "{left_m} m beside it, tick {tick}: {over_m} m over the border, {car:?}");
+        }
+        assert!(traffic.state().vehicles[0].s_m > 90.0, "{left_m} m: {:?}", traffic.state().vehicles[0]);
+    }
 }
 
 /// Width of the post, metres.

@@ -130,6 +130,14 @@ mod tests {
     }
 
     #[test]
+    fn a_door_is_a_hazard_for_as_long_as_it_stands_open() {
+        let mut mistakes = Mistakes::default();
+        mistakes.hear(900, &[Event { kind: EventKind::HazardDoor, actor: 5, speed_mps: 0.0 }]);
+        assert_eq!(blamed(&mistakes, 900 + seconds(8), 0.0, &[]), Some(5));
+        assert_eq!(blamed(&mistakes, 901 + DOOR_LASTS_TICKS, 0.0, &[]), None);
+    }
+
+    #[test]
     fn who_brakes_hard_right_behind_a_mistake_is_its_victim() {
         let mut mistakes = Mistakes::default();
         mistakes.hear(100, &[BRAKES]);
