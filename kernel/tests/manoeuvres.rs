@@ -7,9 +7,10 @@ mod svg;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
+use kernel::events::EventKind;
 use kernel::map::bake;
 use kernel::time::{Tick, seconds};
-use kernel::traffic::{Body, Obstacle, Surroundings, Traffic, TrafficCounts};
+use kernel::traffic::{Body, Manoeuvre, Obstacle, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::Conditions;
 use kernel::{Controls, RoadNetwork};
 use svg::{Area, Axis, Chart, agrees_with_plot, picture};
@@ -289,6 +290,88 @@ fn two_lanes_with_1200_vehicles_an_hour_merge_into_one() {
         assert!(per_hour >= 1200.0, "seed {seed}: {per_hour} vehicles/h");
         assert!(slowest_s <= 20, "seed {seed}: somebody stood {slowest_s} s");
     }
+}
+
+/// A ring of 1 km with a lane each way and one between them that belongs to either direction by turns: both lose it at one
+/// place, over 50 m, and get it back at another.
+fn two_plus_one_ring() -> Arc<RoadNetwork> {
+    let lane = |id: i32, [before, after]: [Option<i32>; 2], a: f64, b: f64| {
+        let link = |tag: &str, to: Option<i32>| to.map_or(String::new(), |to| format!("<{tag} id=\"{to}\"/>"));
+        let links = link("predecessor", before) + &link("successor", after);
+        let width = format!("<width sOffset=\"0\" a=\"{a}\" b=\"{b}\" c=\"0\" d=\"0\"/>");
+        format!("<lane id=\"{id}\" type=\"driving\"><link>{links}</link>{width}</lane>")
+    };
+    let (whole, slope) = (LANE_M, LANE_M / 50.0);
+    let section = |s: f64, left: String, right: String| {
+        let center = "<center><lane id=\"0\" type=\"none\"/></center>";
+        format!("<laneSection s=\"{s}\"><left>{left}</left>{center}<right>{right}</right></laneSection>")
+    };
+    let both = |side: i32, inner: [Option<i32>; 2], outer: [Option<i32>; 2], a: f64, b: f64| {
+        let lanes = [lane(side, inner, a, b), lane(2 * side, outer, whole, 0.0)];
+        if side > 0 { lanes[1].clone() + &lanes[0] } else { lanes.concat() }
+    };
+    let sections = [
+        section(
+            0.0,
+            lane(1, [Some(2), Some(2)], whole, 0.0),
+            both(-1, [Some(-1), Some(-1)], [Some(-2), Some(-2)], whole, 0.0),
+        ),
+        section(
+            450.0,
+            both(1, [None, Some(1)], [Some(1), Some(2)], 0.0, slope),
+            both(-1, [Some(-1), None], [Some(-2), Some(-1)], whole, -slope),
+        ),
+        section(
+            500.0,
+            both(1, [Some(1), Some(1)], [Some(2), Some(2)], whole, 0.0),
+            lane(-1, [Some(-2), Some(-2)], whole, 0.0),
+        ),
+        section(
+            950.0,
+            both(1, [Some(1), None], [Some(2), Some(1)], whole, -slope),
+            both(-1, [None, Some(-1)], [Some(-1), Some(-2)], 0.0, slope),
+        ),
+    ];
+    let offsets = [(0.0, whole, 0.0), (450.0, whole, -slope), (500.0, 0.0, 0.0), (950.0, 0.0, slope)];
+    let offsets: String = offsets
+        .iter()
+        .map(|(s, a, b)| format!("<laneOffset s=\"{s}\" a=\"{a}\" b=\"{b}\" c=\"0\" d=\"0\"/>"))
+        .collect();
+    let text = format!(
+        "<?xml version=\"1.0\"?><OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>\
+         <road id=\"0\" length=\"1000\" junction=\"-1\"><link>\
+         <predecessor elementType=\"road\" elementId=\"0\" contactPoint=\"end\"/>\
+         <successor elementType=\"road\" elementId=\"0\" contactPoint=\"start\"/></link><planView>\
+         <geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"1000\"><arc curvature=\"{}\"/></geometry></planView>\
+         <lanes>{offsets}{}</lanes></road></OpenDRIVE>",
+        std::f64::consts::TAU / 1000.0,
+        sections.concat()
+    );
+    Arc::new(bake("two_plus_one_ring", &text).expect("it bakes"))
+}
+
+#[test]
+fn who_leaves_a_lane_that_ends_stays_off_the_oncoming_one() {
+    let network = two_plus_one_ring();
+    let counts = TrafficCounts { cars: 40, ..TrafficCounts::NONE };
+    let mut farthest_m = f32::MIN;
+    for seed in 9001..9007 {
+        let mut traffic = Traffic::spawn(&counts, seed, network.ways(), FAR);
+        drive(&mut traffic, car_at(FAR), seconds(600), |traffic, tick| {
+            let dissolved = traffic.told().iter().filter(|(kind, _)| *kind == EventKind::Dissolved).count();
+            assert_eq!(dissolved, 0, "seed {seed}, tick {tick}");
+            for vehicle in &traffic.state().vehicles {
+                let lane = &network.lanes[vehicle.lane as usize];
+                let ends = lane.successors.is_empty() && lane.left.is_none() && lane.right.is_some();
+                if ends && vehicle.manoeuvre == Manoeuvre::Keep {
+                    let over_m = vehicle.offset_m + 0.5 * vehicle.kind.size_m().y - lane.at(vehicle.s_m).half_width_m;
+                    farthest_m = farthest_m.max(over_m);
+                }
+            }
+        });
+    }
+    println!("at most {farthest_m:.2} m over the border to the oncoming lane");
+    assert!((-1.0..0.3).contains(&farthest_m), "{farthest_m} m over the border");
 }
 
 /// Flow over density as a picture.

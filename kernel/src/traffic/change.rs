@@ -215,6 +215,10 @@ impl View<'_> {
         if plan.line.is_some_and(|line| line.hold_m < needed_m) || plan.dead_end_m.is_some_and(|m| m < needed_m) {
             return None;
         }
+        // Too near to its end, a lane is left by leaning over, as the others there do: nobody is still beside it then.
+        if from.ends_m.is_some_and(|m| m - vehicle.s_m < needed_m) {
+            return None;
+        }
         let there = self.map.project(lane, self.bodies[index].position);
         let target = &self.map.lanes[lane as usize];
         let [here_m, then_m] = [there.s_m, there.s_m + needed_m].map(|s_m| target.at(s_m).half_width_m);

@@ -1,4 +1,4 @@
-//! Vehicles that run into each other because of a mistake.
+//! Vehicles that run into each other: because of a mistake, or for all their braking.
 
 use crate::events::EventKind;
 
@@ -14,13 +14,16 @@ use super::watchdog::STUCK_S;
 const NEAR_M: f32 = 12.0;
 /// Touching by less than this is none, metres.
 const SKIN_M: f32 = 0.025;
+/// Who runs into somebody without a mistake of his own brakes harder than this, m/s²: he has noticed too late.
+const TOO_LATE_CMPS2: i16 = -300;
 
 impl Actors {
-    /// Whoever makes a mistake and touches another vehicle stands from then on, and so does that. The watchdog takes
-    /// them off the road after a minute.
+    /// Whoever makes a mistake, or brakes too late, and touches another vehicle stands from then on, and so does that. The
+    /// watchdog takes them off the road after a minute.
     pub(super) fn crash(&mut self, around: &Surroundings<'_>, told: &mut Vec<Told>) {
         let vehicles = &self.state.vehicles;
-        let endangers = |v: &Vehicle| v.lapse.endangers() && !around.holds(v.id);
+        let late = |v: &Vehicle| v.speed_mps > 0.0 && v.accel_cmps2 < TOO_LATE_CMPS2;
+        let endangers = |v: &Vehicle| (v.lapse.endangers() || late(v)) && !around.holds(v.id);
         let mut crashed = Vec::new();
         for (i, _) in vehicles.iter().enumerate().filter(|(_, v)| endangers(v)) {
             let meets = |k: usize| k != i && !around.holds(vehicles[k].id) && touches(&self.bodies[i], &self.bodies[k]);
@@ -40,5 +43,6 @@ impl Actors {
 
 fn touches(a: &Body, b: &Body) -> bool {
     let near = a.position.distance_squared(b.position) < NEAR_M * NEAR_M;
-    near && Hazard::of_body(a).is_within(&Hazard::of_body(b), -2.0 * SKIN_M)
+    near && Hazard::of_body(a).is_level_with(b.position.z)
+        && Hazard::of_body(a).is_within(&Hazard::of_body(b), -2.0 * SKIN_M)
 }

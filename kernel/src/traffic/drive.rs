@@ -221,19 +221,17 @@ impl View<'_> {
     pub(super) fn likes_m(&self, index: usize) -> f32 {
         let (vehicle, driver) = (&self.vehicles[index], &self.drivers[index]);
         let lane = &self.map.lanes[vehicle.lane as usize];
-        if driver.from_kerb_m.is_some() {
-            return driver.keeps_to_m(lane.points[lane.segment(vehicle.s_m).0].half_width_m, self.ways.kerb);
-        }
+        let keeps_m = driver.keeps_to_m(lane.points[lane.segment(vehicle.s_m).0].half_width_m, self.ways.kerb);
         if self.ways.lanes[vehicle.lane as usize].ends_m.is_none() {
-            return 0.0;
+            return keeps_m;
         }
         let half_m = driver.size_m.x * 0.5;
         let [tail, front] = [-half_m, half_m].map(|m| lane.at(vehicle.s_m + m).half_width_m);
         let over_m = (driver.size_m.y * 0.5 + EDGE_M - tail.min(front)).max(0.0);
         match (lane.left, lane.right) {
-            (None, Some(_)) => -over_m,
-            (Some(_), None) => over_m,
-            _ => 0.0,
+            (None, Some(_)) => keeps_m.min(-over_m),
+            (Some(_), None) => keeps_m.max(over_m),
+            _ => keeps_m,
         }
     }
 

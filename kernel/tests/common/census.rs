@@ -256,12 +256,30 @@ impl<'a> Watcher<'a> {
             if red {
                 return true;
             }
-            match leader(bodies, at) {
+            match self.queues_behind(vehicles, at).or_else(|| leader(bodies, at)) {
                 Some(next) if vehicles[next].speed_mps < 0.1 => at = next,
                 _ => return false,
             }
         }
         false
+    }
+
+    /// The vehicle that stands closely before another along its lane, also in bends.
+    fn queues_behind(&self, vehicles: &[Vehicle], index: usize) -> Option<usize> {
+        let me = &vehicles[index];
+        let length_m = self.drive.network.lanes[me.lane as usize].length_m;
+        let gap_m = |other: &Vehicle| {
+            let between_m = match (other.lane == me.lane, other.before == me.lane) {
+                (true, _) => other.s_m - me.s_m,
+                (_, true) => length_m - me.s_m + other.s_m,
+                _ => return None,
+            };
+            let gap_m = between_m - (me.kind.size_m().x + other.kind.size_m().x) * 0.5;
+            (between_m > 0.0 && gap_m < BEHIND_M).then_some(gap_m)
+        };
+        let near = vehicles.iter().enumerate().filter(|(i, _)| *i != index);
+        let near = near.filter_map(|(i, v)| Some((i, gap_m(v)?)));
+        near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
     }
 
     fn overlaps(&mut self, traffic: &Traffic) {
@@ -299,7 +317,7 @@ fn people(traffic: &Traffic) -> impl Iterator<Item = (u32, Vec3)> {
     traffic.bodies()[traffic.state().vehicles.len()..].iter().map(|body| (body.id, body.position))
 }
 
-/// The vehicle that stands closely before another.
+/// The vehicle that stands closely before another as the eye sees it, whatever lanes they are on.
 fn leader(bodies: &[Body], index: usize) -> Option<usize> {
     let me = &bodies[index];
     let forward = (me.rotation * Vec3::X).truncate();

@@ -366,3 +366,25 @@ fn two_that_touch_because_of_a_mistake_stand_and_are_taken_off_the_road() {
     assert_eq!(collided, [(1, u32::from(first.id)), (1, u32::from(second.id))]);
     assert!(gone_s.iter().all(|s| (55..80).contains(s)), "{gone_s:?}");
 }
+
+#[test]
+fn who_brakes_too_late_has_a_collision_too() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = start(&network, 20, 4, HazardRates::NONE);
+    let vehicles = &mut traffic.actors.state.vehicles;
+    let (first, second) = (vehicles[0], vehicles[1]);
+    vehicles[0] = Vehicle { lane: 0, before: 0, s_m: 80.0, speed_mps: 0.0, ..first };
+    vehicles[1] = Vehicle { lane: 0, before: 0, s_m: 74.5, speed_mps: 9.0, accel_cmps2: -800, ..second };
+    traffic.actors.place_bodies();
+    let mut collided = BTreeSet::new();
+    watch(
+        &mut traffic,
+        1,
+        |_| {},
+        |t, _| {
+            let told = t.told().iter().filter(|(kind, _)| *kind == EventKind::HazardCollision);
+            collided.extend(told.map(|(_, id)| *id));
+        },
+    );
+    assert_eq!(collided, BTreeSet::from([first.id, second.id].map(u32::from)));
+}
