@@ -1,9 +1,10 @@
 //! Which moments of a drive may show a hazard: its events, or what those do who follow somebody.
 
+use kernel::events::EventKind;
 use kernel::scene::{ActorScene, lamps};
 
 use super::drive::{Film, SCENE_HZ};
-use super::shots::{Shot, Trace};
+use super::shots::{PICTURES, Shot, Trace};
 
 /// Who follows keeps this much aside at most, metres.
 const LANE_M: f32 = 1.0;
@@ -11,6 +12,8 @@ const LANE_M: f32 = 1.0;
 const FOLLOWS_S: f32 = 4.0;
 /// Who drives slower than this does not count as close or late, m/s.
 const DRIVES_MPS: f32 = 7.0;
+/// Who rolls over a stop line is at least so fast soon after it, m/s.
+const ROLLS_MPS: f32 = 3.0;
 
 /// A moment that may show a hazard.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +31,8 @@ pub fn of(shot: &Shot, film: &Film) -> Vec<Moment> {
     match shot.trace {
         Trace::Event(kind) => {
             let events = film.events.iter().filter(|(_, event)| event.kind == kind);
-            events.map(|&(at, event)| Moment { at, who: event.actor, ahead: None }).collect()
+            let moments = events.map(|&(at, event)| Moment { at, who: event.actor, ahead: None });
+            moments.filter(|moment| kind != EventKind::HazardRollingStop || rolls_on(shot, film, moment)).collect()
         }
         Trace::Close => followers(film, |film, at, who, ahead| {
             let steps = (FOLLOWS_S * SCENE_HZ) as usize;
@@ -41,6 +45,12 @@ pub fn of(shot: &Shot, film: &Film) -> Vec<Moment> {
             at > 0 && !brakes(at - 1, ahead) && late && (1..15).any(|more| brakes(at + SCENE_HZ as usize + more, who))
         }),
     }
+}
+
+/// Whether somebody still drives in the last picture: who gives way to others at once does not show that he did not halt.
+fn rolls_on(shot: &Shot, film: &Film, moment: &Moment) -> bool {
+    let last = moment.at + (shot.times_s[PICTURES - 1] * SCENE_HZ) as usize;
+    last < film.scenes.len() && film.actor(last, moment.who).is_some_and(|actor| actor.speed_mps > ROLLS_MPS)
 }
 
 /// Moments at which somebody follows another as `shows` says, half a second apart at least.
