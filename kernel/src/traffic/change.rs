@@ -215,7 +215,7 @@ impl View<'_> {
         if plan.line.is_some_and(|line| line.hold_m < needed_m) || plan.dead_end_m.is_some_and(|m| m < needed_m) {
             return None;
         }
-        // Too near to its end, a lane is left by leaning over, as the others there do: nobody is still beside it then.
+        // Too near to its end to be off it in time, a lane is left by leaning over the border.
         if from.ends_m.is_some_and(|m| m - vehicle.s_m < needed_m) {
             return None;
         }

@@ -14,7 +14,7 @@ use super::watchdog::STUCK_S;
 const NEAR_M: f32 = 12.0;
 /// Touching by less than this is none, metres.
 const SKIN_M: f32 = 0.025;
-/// Who runs into somebody without a mistake of his own brakes harder than this, m/s²: he has noticed too late.
+/// Who runs into somebody without a mistake of his own brakes harder than this, cm/s²: he has noticed too late.
 const TOO_LATE_CMPS2: i16 = -300;
 
 impl Actors {
@@ -43,6 +43,6 @@ impl Actors {
 
 fn touches(a: &Body, b: &Body) -> bool {
     let near = a.position.distance_squared(b.position) < NEAR_M * NEAR_M;
-    near && Hazard::of_body(a).is_level_with(b.position.z)
-        && Hazard::of_body(a).is_within(&Hazard::of_body(b), -2.0 * SKIN_M)
+    let box_of = Hazard::of_body(a);
+    near && box_of.is_level_with(b.position.z) && box_of.is_within(&Hazard::of_body(b), -2.0 * SKIN_M)
 }

@@ -277,9 +277,7 @@ impl<'a> Watcher<'a> {
             let gap_m = between_m - (me.kind.size_m().x + other.kind.size_m().x) * 0.5;
             (between_m > 0.0 && gap_m < BEHIND_M).then_some(gap_m)
         };
-        let near = vehicles.iter().enumerate().filter(|(i, _)| *i != index);
-        let near = near.filter_map(|(i, v)| Some((i, gap_m(v)?)));
-        near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+        nearest(vehicles, index, gap_m)
     }
 
     fn overlaps(&mut self, traffic: &Traffic) {
@@ -327,8 +325,13 @@ fn leader(bodies: &[Body], index: usize) -> Option<usize> {
         let gap_m = ahead_m - (me.kind.size_m().x + other.kind.size_m().x) * 0.5;
         (ahead_m > 0.0 && aside_m < 2.0 && gap_m < BEHIND_M).then_some(gap_m)
     };
-    let near = bodies.iter().enumerate().filter(|(i, _)| *i != index);
-    let near = near.filter_map(|(i, b)| Some((i, gap_m(b)?)));
+    nearest(bodies, index, gap_m)
+}
+
+/// The other one of a list to which the gap is smallest, of those to whom there is one.
+fn nearest<T>(all: &[T], index: usize, gap_m: impl Fn(&T) -> Option<f32>) -> Option<usize> {
+    let others = all.iter().enumerate().filter(|(i, _)| *i != index);
+    let near = others.filter_map(|(i, other)| Some((i, gap_m(other)?)));
     near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
 }
 

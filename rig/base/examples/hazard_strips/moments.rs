@@ -49,8 +49,8 @@ pub fn of(shot: &Shot, film: &Film) -> Vec<Moment> {
 
 /// Whether somebody still drives in the last picture: who gives way to others at once does not show that he did not halt.
 fn rolls_on(shot: &Shot, film: &Film, moment: &Moment) -> bool {
-    let last = moment.at + (shot.times_s[PICTURES - 1] * SCENE_HZ) as usize;
-    last < film.scenes.len() && film.actor(last, moment.who).is_some_and(|actor| actor.speed_mps > ROLLS_MPS)
+    let last = film.after(moment.at, shot.times_s[PICTURES - 1]).and_then(|at| film.actor(at, moment.who));
+    last.is_some_and(|actor| actor.speed_mps > ROLLS_MPS)
 }
 
 /// Moments at which somebody follows another as `shows` says, half a second apart at least.
