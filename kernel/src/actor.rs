@@ -99,6 +99,11 @@ impl ActorKind {
         matches!(self, Self::Pedestrian | Self::Child | Self::Pram | Self::Wheelchair)
     }
 
+    /// On foot with wheels: longer than wide.
+    pub fn is_wheeled_on_foot(self) -> bool {
+        matches!(self, Self::Pram | Self::Wheelchair)
+    }
+
     /// Pedalled: keeps to the kerb, is passed with room, and is not on motorways.
     pub fn is_pedalled(self) -> bool {
         matches!(self, Self::Bicycle | Self::CargoBike)

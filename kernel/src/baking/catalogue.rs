@@ -1,5 +1,6 @@
 //! What signals and signs mean, by the catalogues of countries. What is not in here is for nobody.
 
+use super::pace;
 use crate::map_data::Turn;
 
 /// What a signal or sign tells those whom it is for.
@@ -84,8 +85,6 @@ const ARROWS: [(&str, &str, &[Turn]); 7] = [
 /// Lights of the same catalogue that are for people on foot or bicycles only.
 const NOT_FOR_CARS: [&str; 3] = ["1000002", "1000007", "1000013"];
 
-/// Limits outside this are none that a sign shows, m/s.
-const LIMITS_MPS: std::ops::RangeInclusive<f32> = 1.3..=40.0;
 /// A mile an hour, m/s.
 const MPH_MPS: f32 = 0.44704;
 
@@ -97,15 +96,26 @@ pub(super) fn meaning(signal: &xodr::Signal) -> Option<Meaning> {
     if let Some(turns) = light(signal) {
         return Some(Meaning::Light(turns));
     }
-    let country = country(&signal.country)?;
-    let told = SIGNS.iter().find(|(of, code, _)| *of == country && is_coded(signal, code));
-    match told?.2 {
+    let (country, sign) = sign(&signal.country, &signal.kind, &signal.subtype)?;
+    match sign {
         Sign::Stop => Some(Meaning::Stop),
         Sign::Yield => Some(Meaning::Yield),
         Sign::Priority => Some(Meaning::Priority),
         Sign::BusStop => Some(Meaning::BusStop),
         Sign::Limit => limit_mps(signal, country).map(Meaning::Limit),
     }
+}
+
+/// Whether a sign that a file writes so shows a speed limit.
+pub(super) fn is_limit(country: &str, kind: &str, subtype: &str) -> bool {
+    matches!(sign(country, kind, subtype), Some((_, Sign::Limit)))
+}
+
+/// The country of a sign, and what it is about.
+fn sign(named: &str, kind: &str, subtype: &str) -> Option<(&'static str, Sign)> {
+    let country = country(named)?;
+    let told = SIGNS.iter().find(|(of, code, _)| *of == country && is_coded(kind, subtype, code))?;
+    Some((country, told.2))
 }
 
 fn light(signal: &xodr::Signal) -> Option<&'static [Turn]> {
@@ -130,13 +140,14 @@ fn country(named: &str) -> Option<&'static str> {
 
 /// Whether a signal has a code, which files write as its type, before a number that only says what the sign shows, or as
 /// type and subtype.
-fn is_coded(signal: &xodr::Signal, code: &str) -> bool {
-    let (kind, subtype) = (signal.kind.trim(), signal.subtype.trim());
+fn is_coded(kind: &str, subtype: &str, code: &str) -> bool {
+    let (kind, subtype) = (kind.trim(), subtype.trim());
     let before = kind.rsplit_once('-').map_or(kind, |(before, _)| before);
     let joined = ["", "-", "."].map(|with| format!("{kind}{with}{subtype}"));
     [kind, before].into_iter().chain(joined.iter().map(String::as_str)).any(|told| code.eq_ignore_ascii_case(told))
 }
 
+/// What a sign shows; `None` where it shows no number, or one of no speed.
 fn limit_mps(signal: &xodr::Signal, country: &str) -> Option<f32> {
     use xodr::Unit as U;
     let one_mps = match signal.unit {
@@ -146,6 +157,6 @@ fn limit_mps(signal: &xodr::Signal, country: &str) -> Option<f32> {
         Some(U::KilometrePerHour) | None => 1.0 / 3.6,
         Some(_) => return None,
     };
-    let mps = signal.value? as f32 * one_mps;
-    LIMITS_MPS.contains(&mps).then_some(mps)
+    let shown = signal.value.filter(|value| *value > 0.0)?;
+    Some(pace::within(shown as f32 * one_mps))
 }

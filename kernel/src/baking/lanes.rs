@@ -2,10 +2,11 @@
 
 use super::error::BakeError;
 use super::limits::LANE_POINTS;
+use super::pace;
 use super::rounding::{snap, snap3};
 use super::shapes::point;
-use super::source::{Origin, Source};
-use crate::map_data::{Lane, LaneId, LaneKind, LanePoint, URBAN_MPS};
+use super::source::{Origin, Source, nowhere_to_drive};
+use crate::map_data::{Lane, LaneId, LaneKind, LanePoint};
 use crate::ops;
 
 /// Vertices of a centre line are at most this far apart.
@@ -16,10 +17,6 @@ const MIN_STEP_M: f32 = 0.05;
 const MIN_WIDTH_M: f32 = 0.1;
 /// A lane that starts farther from the end of another does not follow it, whatever the file says.
 const MAX_GAP_M: f32 = 1.5;
-/// Limit where the file gives none, outside towns: 100 km/h.
-const RURAL_MPS: f32 = 100.0 / 3.6;
-/// The same on motorways, and where the file says that there is none: 130 km/h.
-const MOTORWAY_MPS: f32 = 130.0 / 3.6;
 
 /// The lanes of the file, each with its origin, which the source remembers.
 pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError> {
@@ -31,33 +28,37 @@ pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError>
         let Some(at) = net.road_lane(lane.id) else { continue };
         let forward = lane.direction != xodr::Direction::Backward;
         let road = net.road(at.road).map_or("", |r| r.od_id());
+        let refused = |reason: String| {
+            let place = format!("road {road}, section {}, lane {}", at.section, at.od_id);
+            BakeError { place, reason }
+        };
         points_left -= lane.center.points().len() as f64 + f64::from(lane.center.length() / MAX_STEP_M);
         if points_left.is_nan() || points_left < 0.0 {
-            return Err(BakeError {
-                place: format!("road {road}, section {}, lane {}", at.section, at.od_id),
-                reason: format!("expected at most {LANE_POINTS} points on the centre lines of lanes in the file"),
-            });
+            let reason = format!("expected at most {LANE_POINTS} points on the centre lines of lanes in the file");
+            return Err(refused(reason));
         }
         let points = centre_line(lane, forward);
         if points.len() < 2 || points.iter().all(|p| p.half_width_m * 2.0 < MIN_WIDTH_M) {
             continue;
         }
+        let Some(speed_limit_mps) = speed_limit_mps(net, lane) else {
+            return Err(refused(
+                "expected a speed limit above 0 where one drives, but <speed> or a sign says 0".into(),
+            ));
+        };
         origins.push(Origin { lane: lane.id, road: at.road.0, section: at.section, od_id: at.od_id, forward });
         lanes.push(Lane {
             kind: kind(lane.kind),
             name: format!("{road}/{}", at.od_id),
             length_m: points.last().map_or(0.0, |p| p.s_m),
-            speed_limit_mps: speed_limit(net, lane),
+            speed_limit_mps,
             points,
             ..Lane::default()
         });
     }
     origins.into_iter().for_each(|origin| source.remember(origin));
     if !lanes.iter().any(|l| l.kind == LaneKind::Driving) {
-        return Err(BakeError {
-            place: "the whole file".to_owned(),
-            reason: "expected at least one lane of type driving with a width".to_owned(),
-        });
+        return Err(nowhere_to_drive(source.roads));
     }
     link(&source, &mut lanes);
     Ok((source, lanes))
@@ -126,18 +127,11 @@ fn snap_angle(angle_rad: f32) -> f32 {
     ops::wrap_angle(ops::floor(angle_rad * 16384.0 + 0.5) / 16384.0)
 }
 
-fn speed_limit(net: &xodr::RoadNetwork, lane: &xodr::Lane) -> f32 {
-    use xodr::RoadType as R;
+/// The limit of a lane; `None` where it is 0 though one drives there.
+fn speed_limit_mps(net: &xodr::RoadNetwork, lane: &xodr::Lane) -> Option<f32> {
     let middle = lane.center.length() / 2.0;
-    match net.speed_limit_at(lane.id, middle) {
-        Some(xodr::SpeedLimit::Max(mps)) if mps > 0.5 => mps.min(MOTORWAY_MPS),
-        Some(xodr::SpeedLimit::Unlimited) => MOTORWAY_MPS,
-        _ => match net.road_type_at(lane.id, middle) {
-            Some(R::Motorway) => MOTORWAY_MPS,
-            Some(R::Rural) => RURAL_MPS,
-            _ => URBAN_MPS,
-        },
-    }
+    let limit_mps = pace::limit_mps(net.speed_limit_at(lane.id, middle), net.road_type_at(lane.id, middle));
+    limit_mps.or_else(|| (!lane.kind.is_drivable()).then_some(pace::within(0.0)))
 }
 
 /// Tells each lane what follows, precedes and borders it.

@@ -10,6 +10,7 @@ mod lanes;
 mod lights;
 mod limits;
 mod mesh;
+mod pace;
 mod priority;
 mod programme;
 mod props;

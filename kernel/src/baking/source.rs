@@ -3,13 +3,17 @@
 use std::collections::BTreeMap;
 
 use super::error::BakeError;
-use super::limits;
+use super::limits::{self, Checked};
 use crate::map_data::LaneId;
 
 /// A parsed file, and where each baked lane came from.
 pub(super) struct Source {
     pub net: xodr::RoadNetwork,
     pub provenance: xodr::Provenance,
+    /// What was subtracted from the coordinates of the file, metres east and north.
+    pub origin_m: [f64; 2],
+    /// Elements `<road>` of the file.
+    pub roads: usize,
     /// By [`LaneId`].
     pub origins: Vec<Origin>,
     /// The way back from xodr's ids.
@@ -48,9 +52,10 @@ const KERB_M: f32 = 0.125;
 impl Source {
     /// The file, before any lane is baked.
     pub fn read(text: &str) -> Result<Self, BakeError> {
-        limits::check(text)?;
-        let (net, provenance) = xodr::load_str_with_provenance(text).map_err(explain)?;
-        Ok(Self { net, provenance, origins: Vec::new(), ids: BTreeMap::new(), sections: BTreeMap::new() })
+        let Checked { text, origin_m, roads } = limits::check(text)?;
+        let (net, provenance) = xodr::load_str_with_provenance(&text).map_err(|error| explain(error, roads))?;
+        let (origins, ids, sections) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
+        Ok(Self { net, provenance, origin_m, roads, origins, ids, sections })
     }
 
     /// Remembers where the next lane came from.
@@ -90,9 +95,30 @@ impl Source {
     }
 }
 
-fn explain(error: xodr::ImportError) -> BakeError {
+/// The refusal of a file with so many roads, where there is no lane to drive on.
+pub(super) fn nowhere_to_drive(roads: usize) -> BakeError {
+    let expected = "expected a road with a length, a plan view, and a lane of type driving that has a width";
+    let reason = match roads {
+        0 => format!("{expected}, but there is no road"),
+        1 => format!("{expected}, but the only road is none"),
+        _ => format!("{expected}, but none of the {roads} roads is one"),
+    };
+    whole(reason)
+}
+
+/// What xodr says of a file where no road has any lane.
+const NO_LANES: &str = "no lanes found";
+
+fn explain(error: xodr::ImportError, roads: usize) -> BakeError {
+    use xodr::ImportError as E;
     match error {
-        xodr::ImportError::Xml(e) => limits::malformed(&e),
-        other => BakeError { place: "the whole file".to_owned(), reason: format!("expected OpenDRIVE: {other}") },
+        E::Xml(e) => limits::malformed(&e),
+        E::Malformed(what) if what == NO_LANES => nowhere_to_drive(roads),
+        E::Malformed(what) => whole(format!("expected OpenDRIVE that can be read, but it has {what}")),
+        other => whole(format!("expected OpenDRIVE that can be read, but {other}")),
     }
+}
+
+fn whole(reason: String) -> BakeError {
+    BakeError { place: "the whole file".to_owned(), reason }
 }

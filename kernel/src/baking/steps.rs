@@ -42,7 +42,7 @@ pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
     surfaces.push(terrain::bake(&lanes, bounds));
     let props = props::bake(&source, &grid.over(&lanes), &light_heads);
     let props = dressing::bake(&source, grid.over(&lanes), bounds, props);
-    let name = name.to_owned();
+    let (name, origin_m) = (name.to_owned(), source.origin_m);
     let mut map = MapData {
         name,
         digest: 0,
@@ -57,6 +57,7 @@ pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
         surfaces,
         props,
         bounds,
+        origin_m,
     };
     map.digest = map.content_digest();
     Ok(map)
@@ -65,7 +66,7 @@ pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
 /// Room around the lanes that belongs to the map, metres.
 const MARGIN_M: f32 = 60.0;
 
-/// Least and greatest corner of the map; refused where it is larger than any is.
+/// Least and greatest corner of the map; refused where it is larger than any is, or far off its origin.
 fn bounds(lanes: &[Lane]) -> Result<[Vec3; 2], BakeError> {
     let mut low = Vec3::splat(f32::MAX);
     let mut high = Vec3::splat(f32::MIN);
@@ -78,6 +79,10 @@ fn bounds(lanes: &[Lane]) -> Result<[Vec3; 2], BakeError> {
             let reason = format!("expected a map of at most {EXTENT_M} m, but this lane lies farther from others");
             return Err(BakeError { place: format!("lane {}", lane.name), reason });
         }
+    }
+    if high.max(-low).max_element() > EXTENT_M {
+        let reason = format!("expected lanes within {EXTENT_M} m of the middle of all roads, but they lie farther off");
+        return Err(BakeError { place: "the whole file".to_owned(), reason });
     }
     let around = Vec3::new(MARGIN_M, MARGIN_M, 0.0);
     Ok([low - around - Vec3::Z * 5.0, high + around + Vec3::Z * 40.0])

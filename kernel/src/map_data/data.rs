@@ -16,7 +16,7 @@ use super::walkway::{Crosswalk, WalkEdge, WalkNode};
 pub struct MapData {
     /// Name of a bundled map, or the file's stem.
     pub name: String,
-    /// xxh3 over everything below.
+    /// xxh3 over everything below; see [`Self::content_digest`].
     pub digest: u128,
     /// All lanes.
     pub lanes: Vec<Lane>,
@@ -40,6 +40,9 @@ pub struct MapData {
     pub props: Vec<Prop>,
     /// Least and greatest corner of everything.
     pub bounds: [Vec3; 2],
+    /// What was subtracted from the coordinates of the file, metres east and north: whole kilometres, and 0 for all
+    /// maps that lie within 10 km of their file's origin.
+    pub origin_m: [f64; 2],
 }
 
 impl MapData {
@@ -59,6 +62,7 @@ impl MapData {
             surfaces,
             props,
             bounds,
+            origin_m,
         } = self;
         let mut bytes = Vec::new();
         let parts: [&dyn Digested; 11] = [
@@ -75,6 +79,10 @@ impl MapData {
             bounds,
         ];
         parts.iter().for_each(|part| part.digest(&mut bytes));
+        // Maps at their file's origin, which are nearly all, keep the digests that recordings of them hold.
+        if *origin_m != [0.0; 2] {
+            bytes.extend(origin_m.iter().flat_map(|m| m.to_le_bytes()));
+        }
         xxh3_128(&bytes)
     }
 

@@ -3,7 +3,8 @@
 //! A type declared with `digested!` gets [`Digested`] from its field list, so that a field cannot be
 //! in the map but not in its digest. The layout is older than that of [`crate::state`] and must stay:
 //! fields in their order, numbers as four bytes little-endian, floats as their bits, codes of enums as
-//! numbers, lists and texts with their length before them, an absent number as 2^32 - 1.
+//! numbers, lists and texts with their length before them, an absent number as 2^32 - 1. What came later
+//! is appended only where it says something, so that maps of which it says nothing keep their digest.
 
 use glam::Vec3;
 

@@ -1,54 +1,27 @@
 //! The section `[hazards]` of a scenario's text.
 
-use serde::Deserialize;
-
 use crate::traffic::{HazardLevel, HazardRates};
 
 use super::fields::ScenarioError;
-use super::reader::{Given, Reader};
+use super::reader::Section;
 
-/// A level, and rates that replace those of the level.
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Hazards {
-    level: Given<String>,
-    red_light_runners: Given<f32>,
-    rolling_stops: Given<f32>,
-    tailgaters: Given<f32>,
-    cut_ins_per_h: Given<f32>,
-    hard_brakings_per_h: Given<f32>,
-    pull_outs_per_h: Given<f32>,
-    doors_per_h: Given<f32>,
-    inattention: Given<f32>,
-}
-
-impl Hazards {
-    /// Takes over what is given.
-    pub fn read(self, reader: &Reader<'_>, to: &mut HazardRates) -> Result<(), ScenarioError> {
-        if let Some(level) = self.level {
-            let named = HazardLevel::named(level.get_ref());
-            let refused = || {
-                let (line, names) =
-                    (reader.line(level.span().start), HazardLevel::ALL.map(HazardLevel::name).join(", "));
-                ScenarioError(format!("line {line}: hazards.level is {:?}, expected one of {names}", level.get_ref()))
-            };
-            *to = named.ok_or_else(refused)?.rates();
+/// Takes over what a text says of a level, and of rates that replace those of the level.
+pub(super) fn read_hazards(root: &mut Section<'_>, to: &mut HazardRates) -> Result<(), ScenarioError> {
+    let levels = HazardLevel::ALL.map(|level| format!("{:?}", level.name())).join(" or ");
+    root.section("hazards", &format!("level = {levels}"), |section| {
+        if let Some(level) = section.named("level", || levels.clone(), HazardLevel::named)? {
+            *to = level.rates();
         }
         let (share, per_h) = (0.0..=1.0, 0.0..=600.0);
-        reader.take("hazards.red_light_runners", self.red_light_runners, share.clone(), &mut to.red_light_runners)?;
-        reader.take("hazards.rolling_stops", self.rolling_stops, share.clone(), &mut to.rolling_stops)?;
-        reader.take("hazards.tailgaters", self.tailgaters, share, &mut to.tailgaters)?;
-        reader.take("hazards.cut_ins_per_h", self.cut_ins_per_h, per_h.clone(), &mut to.cut_ins_per_h)?;
-        reader.take(
-            "hazards.hard_brakings_per_h",
-            self.hard_brakings_per_h,
-            per_h.clone(),
-            &mut to.hard_brakings_per_h,
-        )?;
-        reader.take("hazards.pull_outs_per_h", self.pull_outs_per_h, per_h, &mut to.pull_outs_per_h)?;
-        reader.take("hazards.doors_per_h", self.doors_per_h, 0.0..=180.0, &mut to.doors_per_h)?;
-        reader.take("hazards.inattention", self.inattention, 0.0..=2.0, &mut to.inattention)
-    }
+        section.number("red_light_runners", share.clone(), &mut to.red_light_runners)?;
+        section.number("rolling_stops", share.clone(), &mut to.rolling_stops)?;
+        section.number("tailgaters", share, &mut to.tailgaters)?;
+        section.number("cut_ins_per_h", per_h.clone(), &mut to.cut_ins_per_h)?;
+        section.number("hard_brakings_per_h", per_h.clone(), &mut to.hard_brakings_per_h)?;
+        section.number("pull_outs_per_h", per_h, &mut to.pull_outs_per_h)?;
+        section.number("doors_per_h", 0.0..=180.0, &mut to.doors_per_h)?;
+        section.number("inattention", 0.0..=2.0, &mut to.inattention)
+    })
 }
 
 /// The section that is read back as these rates. It names no level: that may come to mean others.
@@ -96,10 +69,10 @@ mod tests {
     fn mistakes_are_named_by_line_and_key() {
         let refused = |from: &str, to: &str| Scenario::from_toml(&TEXT.replace(from, to)).expect_err("refused").0;
         let level = refused("raised", "high");
-        assert_eq!(level, "line 4: hazards.level is \"high\", expected one of none, natural, raised");
+        assert_eq!(level, "line 4: hazards.level is \"high\", expected \"none\" or \"natural\" or \"raised\"");
         let range = refused("= 0.25", "= 1.25");
-        assert_eq!(range, "line 5: hazards.rolling_stops is 1.25, expected at least 0 and at most 1");
+        assert_eq!(range, "line 5: hazards.rolling_stops is 1.25, expected a number from 0 to 1");
         let name = refused("rolling_stops", "rolling_stop");
-        assert!(name.starts_with("line 5: unknown field `rolling_stop`, expected"), "{name}");
+        assert!(name.starts_with("line 5: unknown key hazards.rolling_stop, expected one of level, "), "{name}");
     }
 }

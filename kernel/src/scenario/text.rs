@@ -1,72 +1,18 @@
 //! Scenarios as text.
 
-use serde::Deserialize;
+use crate::car::CarSetup;
+use crate::traffic::TrafficCounts;
 
-use super::fields::{MOST_OF_A_KIND, Scenario, ScenarioError};
-use super::hazards::{Hazards, print_hazards};
-use super::reader::{Given, Reader};
-use super::weather::{self, AtStart};
+use super::fields::{EgoStart, MOST_OF_A_KIND, Rules, Scenario, ScenarioError};
+use super::hazards::{print_hazards, read_hazards};
+use super::reader::Section;
+use super::weather::{self, read_weather};
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Text {
-    map: String,
-    #[serde(default)]
-    seed: u64,
-    #[serde(default)]
-    traffic: Traffic,
-    #[serde(default)]
-    hazards: Hazards,
-    #[serde(default)]
-    weather: AtStart,
-    #[serde(default)]
-    ego: Ego,
-    #[serde(default)]
-    car: Car,
-    #[serde(default)]
-    rules: Rules,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Traffic {
-    cars: Given<u16>,
-    motorcycles: Given<u16>,
-    bicycles: Given<u16>,
-    pedestrians: Given<u16>,
-    jaywalks_per_min: Given<f32>,
-    speed_share: Given<[f32; 2]>,
-    headway_s: Given<[f32; 2]>,
-    politeness: Given<f32>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Ego {
-    lane: Given<u32>,
-    s_m: Given<f32>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Car {
-    abs: Option<bool>,
-    esc: Option<bool>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Rules {
-    max_speed_kmh: Given<f32>,
-    max_seconds: Given<u32>,
-    brake_threshold: Given<f32>,
-    steer_threshold: Given<f32>,
-    least_intervention_kmh: Given<f32>,
-    takeover_s: Given<u32>,
-}
+/// What the key `map` names.
+const MAP: &str = "the name of a bundled map or of a file .xodr";
 
 impl Scenario {
-    /// Parses TOML; unknown keys and values out of range are refused by name and line. What the
+    /// Parses TOML; unknown keys, and values of another kind or out of range, are refused by line and name. What the
     /// text leaves out is as in [`Scenario::default_for`] its map and seed. Whether the map exists
     /// is for the caller to check, who knows where maps come from.
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
@@ -80,50 +26,60 @@ impl Scenario {
 }
 
 fn parse(text: &str) -> Result<Scenario, ScenarioError> {
-    let reader = Reader { text };
-    let given: Text = toml::from_str(text).map_err(|error| {
-        let line = reader.line(error.span().map_or(0, |span| span.start));
-        ScenarioError(format!("line {line}: {}", error.message().replace('\n', " ")))
-    })?;
-    let mut scenario = Scenario::default_for(&given.map, given.seed);
-    traffic(&reader, given.traffic, &mut scenario)?;
-    given.hazards.read(&reader, &mut scenario.hazards)?;
-    weather::take(&reader, given.weather, &mut scenario)?;
-    rules(&reader, given.rules, &mut scenario)?;
-    if let Some(lane) = given.ego.lane {
-        scenario.ego.lane = Some(*lane.get_ref());
-    }
-    let helpers = &mut scenario.car;
-    helpers.abs = given.car.abs.unwrap_or(helpers.abs);
-    helpers.esc = given.car.esc.unwrap_or(helpers.esc);
-    reader.take("ego.s_m", given.ego.s_m, 0.0..=1e6, &mut scenario.ego.s_m)?;
+    let mut root = Section::whole_text(text)?;
+    let map = root.named("map", || MAP.into(), |name| Some(name.to_owned()))?;
+    let map = map.ok_or_else(|| ScenarioError(format!("the key map is missing, expected {MAP}")))?;
+    let seed = root.whole("seed", 0..=u64::MAX)?.unwrap_or_default();
+    let mut scenario = Scenario::default_for(&map, seed);
+    read_traffic(&mut root, &mut scenario.traffic)?;
+    read_hazards(&mut root, &mut scenario.hazards)?;
+    read_weather(&mut root, &mut scenario)?;
+    read_ego(&mut root, &mut scenario.ego)?;
+    read_car(&mut root, &mut scenario.car)?;
+    read_rules(&mut root, &mut scenario.rules)?;
+    root.end()?;
     Ok(scenario)
 }
 
-fn traffic(reader: &Reader<'_>, given: Traffic, scenario: &mut Scenario) -> Result<(), ScenarioError> {
-    let to = &mut scenario.traffic;
-    let count = 0..=MOST_OF_A_KIND;
-    reader.take("traffic.cars", given.cars, count.clone(), &mut to.cars)?;
-    reader.take("traffic.motorcycles", given.motorcycles, count.clone(), &mut to.motorcycles)?;
-    reader.take("traffic.bicycles", given.bicycles, count.clone(), &mut to.bicycles)?;
-    reader.take("traffic.pedestrians", given.pedestrians, count, &mut to.pedestrians)?;
-    reader.take("traffic.jaywalks_per_min", given.jaywalks_per_min, 0.0..=60.0, &mut to.jaywalks_per_min)?;
-    let drivers = &mut to.drivers;
-    reader.take_range("traffic.speed_share", given.speed_share, 0.5..=1.5, &mut drivers.speed_share)?;
-    reader.take_range("traffic.headway_s", given.headway_s, 0.5..=4.0, &mut drivers.headway_s)?;
-    reader.take("traffic.politeness", given.politeness, 0.0..=1.0, &mut drivers.politeness)
+fn read_traffic(root: &mut Section<'_>, to: &mut TrafficCounts) -> Result<(), ScenarioError> {
+    root.section("traffic", "keys such as cars = 40", |section| {
+        let count = 0..=MOST_OF_A_KIND;
+        to.cars = section.whole("cars", count.clone())?.unwrap_or(to.cars);
+        to.motorcycles = section.whole("motorcycles", count.clone())?.unwrap_or(to.motorcycles);
+        to.bicycles = section.whole("bicycles", count.clone())?.unwrap_or(to.bicycles);
+        to.pedestrians = section.whole("pedestrians", count)?.unwrap_or(to.pedestrians);
+        section.number("jaywalks_per_min", 0.0..=60.0, &mut to.jaywalks_per_min)?;
+        section.pair("speed_share", 0.5..=1.5, &mut to.drivers.speed_share)?;
+        section.pair("headway_s", 0.5..=4.0, &mut to.drivers.headway_s)?;
+        section.number("politeness", 0.0..=1.0, &mut to.drivers.politeness)
+    })
 }
 
-fn rules(reader: &Reader<'_>, given: Rules, scenario: &mut Scenario) -> Result<(), ScenarioError> {
-    let to = &mut scenario.rules;
-    let threshold = 0.01..=0.99;
-    reader.take("rules.max_speed_kmh", given.max_speed_kmh, 5.0..=130.0, &mut to.max_speed_kmh)?;
-    reader.take("rules.max_seconds", given.max_seconds, 4..=86_400, &mut to.max_seconds)?;
-    reader.take("rules.brake_threshold", given.brake_threshold, threshold.clone(), &mut to.brake_threshold)?;
-    reader.take("rules.steer_threshold", given.steer_threshold, threshold, &mut to.steer_threshold)?;
-    let least = given.least_intervention_kmh;
-    reader.take("rules.least_intervention_kmh", least, 0.0..=130.0, &mut to.least_intervention_kmh)?;
-    reader.take("rules.takeover_s", given.takeover_s, 1..=60, &mut to.takeover_s)
+fn read_ego(root: &mut Section<'_>, to: &mut EgoStart) -> Result<(), ScenarioError> {
+    root.section("ego", "keys such as lane = 3", |section| {
+        to.lane = section.whole("lane", 0..=u32::MAX)?;
+        section.number("s_m", 0.0..=1e6, &mut to.s_m)
+    })
+}
+
+fn read_car(root: &mut Section<'_>, to: &mut CarSetup) -> Result<(), ScenarioError> {
+    root.section("car", "keys such as abs = true", |section| {
+        section.switch("abs", &mut to.abs)?;
+        section.switch("esc", &mut to.esc)
+    })
+}
+
+fn read_rules(root: &mut Section<'_>, to: &mut Rules) -> Result<(), ScenarioError> {
+    root.section("rules", "keys such as max_seconds = 600", |section| {
+        let threshold = 0.01..=0.99;
+        section.number("max_speed_kmh", 5.0..=130.0, &mut to.max_speed_kmh)?;
+        to.max_seconds = section.whole("max_seconds", 4..=86_400)?.unwrap_or(to.max_seconds);
+        section.number("brake_threshold", threshold.clone(), &mut to.brake_threshold)?;
+        section.number("steer_threshold", threshold, &mut to.steer_threshold)?;
+        section.number("least_intervention_kmh", 0.0..=130.0, &mut to.least_intervention_kmh)?;
+        to.takeover_s = section.whole("takeover_s", 1..=60)?.unwrap_or(to.takeover_s);
+        Ok(())
+    })
 }
 
 /// Every key, so that the text still says the same when a default changes.
@@ -166,8 +122,8 @@ fn print(scenario: &Scenario) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::car::CarSetup;
     use crate::traffic::Population;
+    use crate::weather::WeatherChange;
 
     /// A map that is not bundled, so that no map has to be baked.
     const TEXT: &str = "map = \"field\"\nseed = 7\n\n[weather]\nsun_altitude_deg = 30\n\n[ego]\nlane = 2\ns_m = 4.5\n";
@@ -201,28 +157,115 @@ mod tests {
 
     #[test]
     fn mistakes_are_named_by_line_and_key() {
-        let unit = refused("sun_altitude_deg", "sun_altitude_rad");
-        assert!(unit.starts_with("line 5: unknown field `sun_altitude_rad`, expected"), "{unit}");
-        let range = refused("= 30", "= 95");
-        assert_eq!(range, "line 5: weather.sun_altitude_deg is 95, expected at least -90 and at most 90");
-        let takeover = refused("[ego]", "[rules]\ntakeover_s = 0\n\n[ego]");
-        assert_eq!(takeover, "line 8: rules.takeover_s is 0, expected at least 1 and at most 60");
-        let least = refused("[ego]", "[rules]\nleast_intervention_kmh = -1\n\n[ego]");
-        assert_eq!(least, "line 8: rules.least_intervention_kmh is -1, expected at least 0 and at most 130");
-        let order = refused("[ego]", "[traffic]\nheadway_s = [2, 1]\n\n[ego]");
-        let each = "expected the lower one first, each at least 0.5 and at most 4";
-        assert_eq!(order, format!("line 8: traffic.headway_s is [2, 1], {each}"));
-        let far = refused("[ego]", "[traffic]\nheadway_s = [1, nan]\n\n[ego]");
-        assert_eq!(far, format!("line 8: traffic.headway_s is [1, NaN], {each}"));
-        let kind = refused("= 30", "= \"high\"");
-        assert!(kind.starts_with("line 5: ") && !kind.contains('\n'), "{kind}");
-        let number = refused("= 4.5", "= nan");
-        assert!(number.starts_with("line 9: ego.s_m is NaN"), "{number}");
-        let syntax = refused("[ego]", "[ego");
-        assert!(syntax.starts_with("line 7: "), "{syntax}");
-        let section = refused("[ego]", "[wagon]");
-        assert!(section.contains("unknown field `wagon`"), "{section}");
-        let missing = refused("map = \"field\"\n", "");
-        assert!(missing.contains("missing field `map`"), "{missing}");
+        for (from, to, said) in [
+            (
+                "sun_altitude_deg",
+                "sun_altitude_rad",
+                "line 5: unknown key weather.sun_altitude_rad, expected one of preset,",
+            ),
+            (
+                "[ego]",
+                "[wagon]",
+                "line 7: unknown key wagon, expected one of map, seed, traffic, hazards, weather, ego,",
+            ),
+            ("[ego]", "[rules]\nabs = true\n\n[ego]", "line 8: unknown key rules.abs, expected one of max_speed_kmh,"),
+            ("= 30", "= 95", "line 5: weather.sun_altitude_deg is 95, expected a number from -90 to 90"),
+            ("= 30", "= \"high\"", "line 5: weather.sun_altitude_deg is \"high\", expected a number from -90 to 90"),
+            ("= 4.5", "= nan", "line 9: ego.s_m is nan, expected a number from 0 to 1000000"),
+            ("lane = 2", "lane = 2.0", "line 8: ego.lane is 2.0, expected a whole number from 0 to 4294967295"),
+            ("seed = 7", "seed = -7", "line 2: seed is -7, expected a whole number from 0 to 18446744073709551615"),
+            ("seed = 7", "seed = 7e0", "line 2: seed is 7e0, expected a whole number from 0 to "),
+            ("seed = 7", "seed = 7\nseed = 8", "line 3: duplicate key"),
+            ("[ego]", "[ego", "line 7: "),
+            (
+                "map = \"field\"",
+                "map = true",
+                "line 1: map is true, expected the name of a bundled map or of a file .xodr",
+            ),
+            ("map = \"field\"", "", "the key map is missing, expected the name of a bundled map or of a file .xodr"),
+            (
+                "seed = 7",
+                "hazards = \"none\"",
+                "line 2: hazards is \"none\", expected a section [hazards] with level = \"none\" or \"natural\" or \"r",
+            ),
+            (
+                "seed = 7",
+                "traffic = 40",
+                "line 2: traffic is 40, expected a section [traffic] with keys such as cars = 40",
+            ),
+            ("seed = 7", "traffic.cars = -1", "line 2: traffic.cars is -1, expected a whole number from 0 to 500"),
+            ("seed = 7", "traffic.cars = 501", "line 2: traffic.cars is 501, expected a whole number from 0 to 500"),
+            (
+                "seed = 7",
+                "traffic.cars = 70_000",
+                "line 2: traffic.cars is 70_000, expected a whole number from 0 to 500",
+            ),
+            (
+                "[ego]",
+                "[traffic.cars]\n[ego]",
+                "line 7: traffic.cars is a section, expected a whole number from 0 to 500",
+            ),
+            (
+                "[ego]",
+                "[weather.later]\nover_s = []\n[ego]",
+                "line 8: weather.later.over_s is [], expected a number from 1 to",
+            ),
+            (
+                "= 30",
+                "= 30\nlater = 9",
+                "line 6: weather.later is 9, expected a section [weather.later] with keys such as",
+            ),
+            ("= 30", "= 30\npreset = 9", "line 6: weather.preset is 9, expected one of ClearNoon, "),
+            ("[ego]", "[hazards]\nlevel = 0\n[ego]", "line 8: hazards.level is 0, expected \"none\" or \"natural\" or"),
+            ("[ego]", "[car]\nesc = \"off\"\n[ego]", "line 8: car.esc is \"off\", expected true or false"),
+            (
+                "[ego]",
+                "[rules]\ntakeover_s = 0\n[ego]",
+                "line 8: rules.takeover_s is 0, expected a whole number from 1 to 60",
+            ),
+            (
+                "[ego]",
+                "[rules]\nbrake_threshold = 1\n[ego]",
+                "line 8: rules.brake_threshold is 1, expected a number from 0.01",
+            ),
+        ] {
+            let refused = refused(from, to);
+            assert!(refused.starts_with(said) && !refused.contains('\n'), "{refused:?} does not begin with {said:?}");
+        }
+    }
+
+    #[test]
+    fn two_numbers_are_refused_together() {
+        for given in ["[2, 1]", "[1, nan]", "[1]", "[1, 2, 3]", "[1, \"2\"]", "1", "[0.4, 1]", "[1, 4.5]"] {
+            let said = refused("[ego]", &format!("[traffic]\nheadway_s = {given}\n\n[ego]"));
+            let expected = "expected a list of two numbers from 0.5 to 4, the lower one first";
+            assert_eq!(said, format!("line 8: traffic.headway_s is {given}, {expected}"));
+        }
+    }
+
+    #[test]
+    fn every_key_says_what_it_expects_and_shows_the_beginning_of_what_is_long() {
+        let mut scenario = Scenario::default_for("field", 7);
+        (scenario.ego.lane, scenario.later) = (Some(1), Some(WeatherChange { to: scenario.weather, over_s: 60.0 }));
+        let text = scenario.to_toml();
+        let lines: Vec<&str> = text.lines().collect();
+        let (mut section, mut keys) = (String::new(), 0);
+        for (at, line) in lines.iter().enumerate() {
+            if let Some(name) = line.strip_prefix('[') {
+                section = name.replace(']', ".");
+            }
+            let Some((key, _)) = line.split_once(" = ") else { continue };
+            let (wrong, shown) = match key {
+                "map" => ("1979-05-27".to_owned(), "1979-05-27".to_owned()),
+                _ => (format!("\"{}\"", "x".repeat(99)), format!("\"{}...", "x".repeat(39))),
+            };
+            let wrong = format!("{key} = {wrong}");
+            let text = [&lines[..at], &[wrong.as_str()], &lines[at + 1..]].concat().join("\n");
+            let said = Scenario::from_toml(&text).expect_err(&wrong).0;
+            let named = format!("line {}: {section}{key} is {shown}, expected ", at + 1);
+            assert!(said.starts_with(&named), "{said:?} does not begin with {named:?}");
+            keys += 1;
+        }
+        assert!(keys > 45, "only {keys} keys");
     }
 }

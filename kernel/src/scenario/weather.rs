@@ -1,75 +1,42 @@
 //! Weather as text: at the start, and what it becomes.
 
-use serde::Deserialize;
-
 use super::fields::{Scenario, ScenarioError};
-use super::reader::{Given, Reader};
+use super::reader::Section;
 use crate::weather::{Weather, WeatherChange, WeatherPreset};
 
 /// How long the weather takes to change where a text does not say, seconds.
 const CHANGE_S: f32 = 300.0;
 
-/// A section with the keys of weather and one of its own.
-macro_rules! section {
-    ($name:ident, $own:ident: $type:ty) => {
-        #[derive(Default, Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub(super) struct $name {
-            preset: Given<String>,
-            cloudiness_pct: Given<f32>,
-            wind_pct: Given<f32>,
-            sun_altitude_deg: Given<f32>,
-            sun_azimuth_deg: Given<f32>,
-            precipitation_pct: Given<f32>,
-            puddles_pct: Given<f32>,
-            wetness_pct: Given<f32>,
-            fog_density_pct: Given<f32>,
-            fog_distance_m: Given<f32>,
-            $own: $type,
-        }
-
-        impl $name {
-            /// Takes the preset over, and then single values.
-            fn take(self, reader: &Reader<'_>, section: &str, to: &mut Weather) -> Result<(), ScenarioError> {
-                if let Some(name) = self.preset {
-                    let known = WeatherPreset::find(name.get_ref());
-                    let preset = known.ok_or_else(|| unknown(reader, section, &name))?;
-                    *to = preset.weather(to.sun_azimuth_deg);
-                }
-                let take = |key: &str, given, range, to| reader.take(&format!("{section}.{key}"), given, range, to);
-                let percent = || 0.0..=100.0;
-                take("cloudiness_pct", self.cloudiness_pct, percent(), &mut to.cloudiness_pct)?;
-                take("wind_pct", self.wind_pct, percent(), &mut to.wind_pct)?;
-                take("sun_altitude_deg", self.sun_altitude_deg, -90.0..=90.0, &mut to.sun_altitude_deg)?;
-                take("sun_azimuth_deg", self.sun_azimuth_deg, 0.0..=360.0, &mut to.sun_azimuth_deg)?;
-                take("precipitation_pct", self.precipitation_pct, percent(), &mut to.precipitation_pct)?;
-                take("puddles_pct", self.puddles_pct, percent(), &mut to.puddles_pct)?;
-                take("wetness_pct", self.wetness_pct, percent(), &mut to.wetness_pct)?;
-                take("fog_density_pct", self.fog_density_pct, percent(), &mut to.fog_density_pct)?;
-                take("fog_distance_m", self.fog_distance_m, 0.0..=1e5, &mut to.fog_distance_m)
-            }
-        }
-    };
-}
-
-section!(AtStart, later: Option<Later>);
-section!(Later, over_s: Given<f32>);
-
-fn unknown(reader: &Reader<'_>, section: &str, name: &toml::Spanned<String>) -> ScenarioError {
-    let (line, names) = (reader.line(name.span().start), WeatherPreset::names().collect::<Vec<_>>().join(", "));
-    ScenarioError(format!("line {line}: {section}.preset is {:?}, expected one of {names}", name.get_ref()))
-}
-
 /// Takes over what a text says of the weather. What it becomes is, where nothing else is said, as at the start.
-pub(super) fn take(reader: &Reader<'_>, mut given: AtStart, scenario: &mut Scenario) -> Result<(), ScenarioError> {
-    let later = given.later.take();
-    given.take(reader, "weather", &mut scenario.weather)?;
-    let Some(mut later) = later else { return Ok(()) };
-    let (mut to, mut over_s) = (scenario.weather, CHANGE_S);
-    reader.take("weather.later.over_s", later.over_s.take(), 1.0..=86_400.0, &mut over_s)?;
-    later.take(reader, "weather.later", &mut to)?;
-    scenario.later = Some(WeatherChange { to, over_s });
-    Ok(())
+pub(super) fn read_weather(root: &mut Section<'_>, scenario: &mut Scenario) -> Result<(), ScenarioError> {
+    root.section("weather", "keys such as preset = \"ClearNoon\"", |section| {
+        take(section, &mut scenario.weather)?;
+        section.section("later", "keys such as over_s = 300.0", |section| {
+            let mut later = WeatherChange { to: scenario.weather, over_s: CHANGE_S };
+            section.number("over_s", 1.0..=86_400.0, &mut later.over_s)?;
+            take(section, &mut later.to)?;
+            scenario.later = Some(later);
+            Ok(())
+        })
+    })
+}
+
+/// Takes the preset over, and then single values.
+fn take(section: &mut Section<'_>, to: &mut Weather) -> Result<(), ScenarioError> {
+    let presets = || format!("one of {}", WeatherPreset::names().collect::<Vec<_>>().join(", "));
+    if let Some(preset) = section.named("preset", presets, WeatherPreset::find)? {
+        *to = preset.weather(to.sun_azimuth_deg);
+    }
+    let percent = || 0.0..=100.0;
+    section.number("cloudiness_pct", percent(), &mut to.cloudiness_pct)?;
+    section.number("wind_pct", percent(), &mut to.wind_pct)?;
+    section.number("sun_altitude_deg", -90.0..=90.0, &mut to.sun_altitude_deg)?;
+    section.number("sun_azimuth_deg", 0.0..=360.0, &mut to.sun_azimuth_deg)?;
+    section.number("precipitation_pct", percent(), &mut to.precipitation_pct)?;
+    section.number("puddles_pct", percent(), &mut to.puddles_pct)?;
+    section.number("wetness_pct", percent(), &mut to.wetness_pct)?;
+    section.number("fog_density_pct", percent(), &mut to.fog_density_pct)?;
+    section.number("fog_distance_m", 0.0..=1e5, &mut to.fog_distance_m)
 }
 
 /// The sections of a weather, with every key.
@@ -153,16 +120,16 @@ mod tests {
         let later = said("[weather.later]\npreset = \"clearnoon\"");
         assert!(later.starts_with("line 4: weather.later.preset is \"clearnoon\""), "{later}");
         let range = said("[weather]\nfog_distance_m = -1");
-        assert_eq!(range, "line 4: weather.fog_distance_m is -1, expected at least 0 and at most 100000");
+        assert_eq!(range, "line 4: weather.fog_distance_m is -1, expected a number from 0 to 100000");
         for key in ["cloudiness", "wind", "precipitation", "puddles", "wetness", "fog_density"] {
             let range = said(&format!("[weather.later]\nover_s = 9\n{key}_pct = 100.5"));
-            let expected = format!("line 5: weather.later.{key}_pct is 100.5, expected at least 0 and at most 100");
+            let expected = format!("line 5: weather.later.{key}_pct is 100.5, expected a number from 0 to 100");
             assert_eq!(range, expected);
         }
         let time = said("[weather.later]\nover_s = 0");
-        assert_eq!(time, "line 4: weather.later.over_s is 0, expected at least 1 and at most 86400");
-        assert!(said("[weather]\nover_s = 9").contains("unknown field `over_s`"));
-        assert!(said("[weather.later.later]\nover_s = 9").contains("unknown field `later`"));
+        assert_eq!(time, "line 4: weather.later.over_s is 0, expected a number from 1 to 86400");
+        assert!(said("[weather]\nover_s = 9").contains("unknown key weather.over_s,"));
+        assert!(said("[weather.later.later]\nover_s = 9").contains("unknown key weather.later.later,"));
     }
 
     fn weather() -> impl Strategy<Value = Weather> {

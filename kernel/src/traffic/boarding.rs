@@ -101,7 +101,7 @@ impl Streets<'_> {
     }
 
     /// Waits at a stop: until a bus comes, but not for ever, and no longer than who leads.
-    pub(super) fn wait_for_bus(&self, index: usize, next: &mut Walker) {
+    pub(super) fn wait_for_bus(&self, index: usize, near: &mut Vec<Near>, next: &mut Walker) {
         if let Some(call) = self.calls.iter().find(|call| self.wants_aboard(index, next, call)) {
             (next.bus, next.wait_ticks) = (call.bus, 0);
             return;
@@ -112,7 +112,8 @@ impl Streets<'_> {
             (next.mode, next.wait_ticks, next.hops) = (WalkerMode::Walk, 0, next.hops.wrapping_add(1));
         } else if next.wait_ticks < TURNED_TICKS {
             let left = self.places[index].left();
-            self.face(if jaywalk::road_is_left(self.map, self.ways, next) { left } else { -left }, next);
+            let toward = if jaywalk::road_is_left(self.map, self.ways, next) { left } else { -left };
+            self.turn_where_it_stands(index, near, toward, next);
         }
     }
 
@@ -137,7 +138,8 @@ impl Streets<'_> {
             (next.mode, next.wait_ticks) = (WalkerMode::Alights, 0);
             return;
         };
-        let to_door = call.doors[0] - self.bodies[index].position.truncate();
+        let body = &self.bodies[index];
+        let to_door = call.before(0, body.kind) - body.position.truncate();
         // Along the way first, and then straight out of it: what is parked before the bus is not there.
         let along = to_door - call.out * to_door.dot(call.out);
         let off_way = next.offset_m.abs() > self.places[index].half_width_m + OUT_M;

@@ -22,6 +22,12 @@ impl Hazard {
         self.forward * to.x + self.forward.perp() * to.y
     }
 
+    /// The same from that of some places that is nearest to it.
+    pub fn nearest_from_any(&self, places: impl Iterator<Item = Vec2>) -> Vec2 {
+        let ways = places.map(|place| self.nearest_from(place));
+        ways.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or_default()
+    }
+
     /// Whether it is on the same road as something at that height, metres, not on a bridge over it.
     pub fn is_level_with(&self, z: f32) -> bool {
         (self.position.z - z).abs() < LEVEL_M

@@ -1,11 +1,15 @@
 //! The last look: who is slow and would touch another vehicle, or somebody on the road, where it comes to a stand steers straight
 //! on or brakes as hard as can be. All else that keeps vehicles apart looks along lanes; this looks at boxes, tails that swing
-//! out among them.
+//! out among them. Long ones heed people on pavements as well, over which their corners sweep.
+
+use glam::Vec2;
 
 use crate::time::TICK_S;
 
+use super::body::Body;
 use super::drive::{View, turns_in_m};
 use super::hazard::Hazard;
+use super::outline::half_m;
 use super::vehicle::{DECIDE_TICKS, Vehicle};
 
 /// Who is faster takes no last look, m/s.
@@ -14,6 +18,10 @@ const SLOW_MPS: f32 = 7.0;
 const ROOM_M: [f32; 3] = [0.12, 0.04, 0.0];
 /// Who starts looks so far ahead, metres.
 const START_M: f32 = 0.12;
+/// Longer vehicles sweep over pavements, metres.
+const LONG_M: f32 = 5.0;
+/// Half of who is on one, without the room that is kept to whom is on the road, metres.
+const SLIM_M: f32 = 0.1;
 /// The way ahead is looked at in strides of at most this, metres.
 const STRIDE_M: f32 = 1.5;
 
@@ -23,6 +31,13 @@ struct Brink<'a> {
     ahead_m: f32,
     stop_s: f32,
     others: Vec<&'a Hazard>,
+    on_pavements: Vec<Hazard>,
+}
+
+impl Brink<'_> {
+    fn all(&self) -> impl Iterator<Item = &Hazard> {
+        self.others.iter().copied().chain(&self.on_pavements)
+    }
 }
 
 impl View<'_> {
@@ -34,7 +49,7 @@ impl View<'_> {
             return accel_mps2;
         }
         let brink = self.brink(index, next);
-        if brink.others.is_empty() {
+        if brink.all().next().is_none() {
             return accel_mps2;
         }
         let turns = next.drift != 0 || next.drift_aim != 0;
@@ -55,9 +70,23 @@ impl View<'_> {
         let stop_s = next.speed_mps / self.drivers[index].hardest_mps2 + look_s;
         let ahead_m = START_M + next.speed_mps * 0.5 * (stop_s + look_s);
         let now = Hazard::of_body(&self.bodies[index]);
-        let around = self.hazards.reaching(now.position, now.half.length() + ahead_m + ROOM_M[0]);
+        let reach_m = now.half.length() + ahead_m + ROOM_M[0];
+        let around = self.hazards.reaching(now.position, reach_m);
         let other = |h: &&Hazard| h.vehicle != Some(index as u32) && h.is_level_with(now.position.z);
-        Brink { now, ahead_m, stop_s, others: around.filter(other).collect() }
+        let on_pavements = if now.half.x * 2.0 > LONG_M { self.on_pavements(&now, reach_m) } else { Vec::new() };
+        Brink { now, ahead_m, stop_s, others: around.filter(other).collect(), on_pavements }
+    }
+
+    /// Whoever is on foot, and not on the road, within reach of a vehicle.
+    fn on_pavements(&self, now: &Hazard, reach_m: f32) -> Vec<Hazard> {
+        let walked = &self.bodies[self.vehicles.len()..];
+        let near = self.crowd.around(now.position, reach_m).map(|i| &walked[i]);
+        let near = near.filter(|b| {
+            b.position.distance_squared(now.position) < reach_m * reach_m && now.is_level_with(b.position.z)
+        });
+        let on_road = |id: u32| self.hazards.people().iter().any(|h| h.id == id);
+        let slim = |b: &Body| Hazard { half: Vec2::new(SLIM_M + half_m(b.kind), SLIM_M), ..Hazard::of_body(b) };
+        near.filter(|b| !on_road(b.id)).map(slim).collect()
     }
 
     /// Whether a vehicle that steers to a drift comes nearer to anybody than one of `room_m`, who is not so near yet.
@@ -73,7 +102,7 @@ impl View<'_> {
                 }
                 then.is_within(other, m) || then.is_within(&other.after(share * brink.stop_s), m)
             };
-            brink.others.iter().any(|other| room_m.iter().any(|m| meets(other, *m)))
+            brink.all().any(|other| room_m.iter().any(|m| meets(other, *m)))
         })
     }
 

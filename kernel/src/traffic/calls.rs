@@ -2,10 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::actor::ActorKind;
 use crate::map_data::MapData;
 
 use super::actors::Actors;
 use super::body::{Body, Surroundings};
+use super::outline;
 use super::vehicle::Vehicle;
 use super::walker::WalkerMode;
 
@@ -38,6 +40,13 @@ pub(super) struct Call {
     pub riders: usize,
     /// Somebody stands at the door.
     pub awaited: bool,
+}
+
+impl Call {
+    /// Where the middle of somebody is who stands before a door.
+    pub fn before(&self, door: usize, kind: ActorKind) -> Vec2 {
+        self.doors[door] + self.out * outline::half_m(kind)
+    }
 }
 
 /// All buses whose doors are open.

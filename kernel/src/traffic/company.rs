@@ -4,9 +4,15 @@ use glam::Vec2;
 
 use super::body::Body;
 use super::nearby::Nearby;
+use super::outline::{Outline, PERSON_M};
 
 /// People look this far for each other, metres.
 pub(super) const SIGHT_M: f32 = 2.5;
+/// Between the outlines of two people there is always so much, metres.
+const SKIN_M: f32 = 0.02;
+/// The middles of two without wheels are never nearer to each other, metres. Distances below are those of such two; others
+/// keep as much more as their outlines are wider.
+pub(super) const APART_M: f32 = 2.0 * PERSON_M + SKIN_M;
 /// Sideways distance between their middles at which they pass each other, metres.
 const SHOULDER_M: f32 = 0.55;
 /// Whoever is farther aside is in nobody's way, metres.
@@ -29,9 +35,11 @@ const LEVEL_M: f32 = 2.0;
 /// Another person, as somebody sees it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
-    /// From the one to the other, metres.
+    /// From the one to the other, where their lines are nearest to each other, metres.
     pub to: Vec2,
     pub distance_m: f32,
+    /// It never becomes less than this, metres.
+    pub apart_m: f32,
     pub velocity: Vec2,
     pub id: u32,
 }
@@ -40,13 +48,21 @@ pub(super) struct Near {
 pub(super) fn gather(crowd: &Nearby, bodies: &[Body], index: usize, near: &mut Vec<Near>) {
     near.clear();
     let here = bodies[index].position;
+    let outline = Outline::of(&bodies[index]);
     for other in crowd.near(index, SIGHT_M) {
         let body = &bodies[other];
         let to = body.position - here;
         let (flat, rise_m) = (to.truncate(), to.z.abs());
         if flat.length_squared() < SIGHT_M * SIGHT_M && rise_m < LEVEL_M {
-            let velocity = body.velocity_mps.truncate();
-            near.push(Near { to: flat, distance_m: flat.length(), velocity, id: body.id });
+            let other = Outline::of(body);
+            let (to, apart_m) = (outline.to(&other), outline.radius_m + other.radius_m + SKIN_M);
+            near.push(Near {
+                to,
+                distance_m: to.length(),
+                apart_m,
+                velocity: body.velocity_mps.truncate(),
+                id: body.id,
+            });
         }
     }
 }
@@ -68,27 +84,28 @@ pub(super) fn leeway(near: &[Near], ahead: Vec2, wants_mps: f32, room_m: [f32; 2
     let mut first = (SOON_S, u32::MAX);
     for other in near {
         let (ahead_m, aside_m) = (other.to.dot(ahead), other.to.dot(left));
-        if ahead_m < BESIDE_M || aside_m.abs() > SHOULDER_M {
+        let wider_m = other.apart_m - APART_M;
+        if ahead_m < BESIDE_M || aside_m.abs() > SHOULDER_M + wider_m {
             continue;
         }
         let along_mps = other.velocity.dot(ahead);
-        let room_ahead_m = (ahead_m - BEFORE_M).max(0.0);
-        if aside_m.abs() < ASIDE_M {
+        let room_ahead_m = (ahead_m - BEFORE_M - wider_m).max(0.0);
+        if aside_m.abs() < ASIDE_M + wider_m {
             found.most_mps = found.most_mps.min(along_mps.max(0.0) + room_ahead_m / CLOSE_S);
         }
         let soon = (room_ahead_m / (wants_mps - along_mps).max(1e-3), other.id);
         if along_mps < wants_mps && soon < first {
             first = soon;
-            found.aside_m = Some(past(aside_m, along_mps, room_m));
+            found.aside_m = Some(past(aside_m, SHOULDER_M + wider_m, along_mps, room_m));
         }
     }
     found
 }
 
-/// How far to step to the left to pass somebody who is so far to the left, and goes along at a speed: on the nearer side,
-/// if there is room; straight ahead on the right of who comes, and on the left of who goes the same way.
-fn past(aside_m: f32, along_mps: f32, room_m: [f32; 2]) -> f32 {
-    let [right_m, left_m] = [aside_m - SHOULDER_M, aside_m + SHOULDER_M];
+/// How far to step to the left to pass at a distance somebody who is so far to the left, and goes along at a speed: on the
+/// nearer side, if there is room; straight ahead on the right of who comes, and on the left of who goes the same way.
+fn past(aside_m: f32, shoulder_m: f32, along_mps: f32, room_m: [f32; 2]) -> f32 {
+    let [right_m, left_m] = [aside_m - shoulder_m, aside_m + shoulder_m];
     let rightwards = if aside_m.abs() > STRAIGHT_M { aside_m > 0.0 } else { along_mps < MOVES_MPS };
     let [fits_right, fits_left] = [right_m > room_m[0], left_m < room_m[1]];
     if (rightwards && fits_right) || !fits_left { right_m } else { left_m }

@@ -1,33 +1,33 @@
-//! Vehicles that run into each other: because of a mistake, or for all their braking.
+//! Vehicles that run into each other: because of a mistake, for all their braking, or because nobody saw it coming.
 
 use crate::events::EventKind;
 
 use super::actors::Actors;
 use super::body::{Body, Surroundings};
 use super::hazard::Hazard;
+use super::hazards::Hazards;
 use super::lapse::Lapse;
 use super::passage::Told;
 use super::vehicle::Vehicle;
 use super::watchdog::STUCK_S;
 
-/// Nobody farther away is touched, metres.
-const NEAR_M: f32 = 12.0;
+/// In a tick nobody comes nearer to another than by this, metres.
+const MOVED_M: f32 = 2.0;
 /// Touching by less than this is none, metres.
 const SKIN_M: f32 = 0.025;
-/// Who runs into somebody without a mistake of his own brakes harder than this, cm/s²: he has noticed too late.
+/// Who brakes harder than this is looked at in every tick, cm/s²: he may have noticed too late.
 const TOO_LATE_CMPS2: i16 = -300;
 
 impl Actors {
-    /// Whoever makes a mistake, or brakes too late, and touches another vehicle stands from then on, and so does that. The
-    /// watchdog takes them off the road after a minute.
-    pub(super) fn crash(&mut self, around: &Surroundings<'_>, told: &mut Vec<Told>) {
-        let vehicles = &self.state.vehicles;
-        let late = |v: &Vehicle| v.speed_mps > 0.0 && v.accel_cmps2 < TOO_LATE_CMPS2;
-        let endangers = |v: &Vehicle| (v.lapse.endangers() || late(v)) && !around.holds(v.id);
+    /// Whoever touches another vehicle stands from then on, and so does that. The watchdog takes them off the road after a
+    /// minute. `hazards` are those of before the tick.
+    pub(super) fn crash(&mut self, hazards: &Hazards, around: &Surroundings<'_>, told: &mut Vec<Told>) {
         let mut crashed = Vec::new();
-        for (i, _) in vehicles.iter().enumerate().filter(|(_, v)| endangers(v)) {
-            let meets = |k: usize| k != i && !around.holds(vehicles[k].id) && touches(&self.bodies[i], &self.bodies[k]);
-            crashed.extend((0..vehicles.len()).filter(|k| meets(*k)).flat_map(|k| [i, k]));
+        for (i, vehicle) in self.state.vehicles.iter().enumerate() {
+            if looks(vehicle, around) {
+                let touched = self.touched(i, hazards, around);
+                crashed.extend(touched.flat_map(|k| [i, k]));
+            }
         }
         crashed.sort_unstable();
         crashed.dedup();
@@ -39,10 +39,31 @@ impl Actors {
             }
         }
     }
+
+    /// The vehicles of traffic that one touches.
+    fn touched<'a>(
+        &'a self,
+        index: usize,
+        hazards: &'a Hazards,
+        around: &'a Surroundings<'_>,
+    ) -> impl Iterator<Item = usize> + 'a {
+        let (vehicles, body) = (&self.state.vehicles, &self.bodies[index]);
+        let reach_m = body.kind.size_m().truncate().length() * 0.5 + MOVED_M;
+        let driven = |id: u32| vehicles.binary_search_by_key(&id, |v| u32::from(v.id)).ok();
+        let near = hazards.reaching(body.position, reach_m).filter_map(move |hazard| driven(hazard.id));
+        let meets = move |k: &usize| *k != index && !around.holds(vehicles[*k].id);
+        near.filter(move |k| meets(k) && touches(body, &self.bodies[*k]))
+    }
+}
+
+/// Whether it is looked at in a tick whom a vehicle touches: when it decides, and while it is likely to.
+fn looks(vehicle: &Vehicle, around: &Surroundings<'_>) -> bool {
+    let late = vehicle.speed_mps > 0.0 && vehicle.accel_cmps2 < TOO_LATE_CMPS2;
+    let likely = late || vehicle.lapse.endangers();
+    (likely || vehicle.decides(around.tick)) && !around.holds(vehicle.id)
 }
 
 fn touches(a: &Body, b: &Body) -> bool {
-    let near = a.position.distance_squared(b.position) < NEAR_M * NEAR_M;
     let box_of = Hazard::of_body(a);
-    near && box_of.is_level_with(b.position.z) && box_of.is_within(&Hazard::of_body(b), -2.0 * SKIN_M)
+    box_of.is_level_with(b.position.z) && box_of.is_within(&Hazard::of_body(b), -2.0 * SKIN_M)
 }

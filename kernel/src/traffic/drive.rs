@@ -17,6 +17,7 @@ use super::junction::{Members, stopping_m, swept_half_m};
 use super::lane_way::{ConflictKind, LaneConflict};
 use super::lapse::Lapse;
 use super::lists::{Entry, Lists};
+use super::nearby::Nearby;
 use super::plan::{self, Plan, stopping_speed};
 use super::poses::leads_m;
 use super::rates::HazardRates;
@@ -68,6 +69,8 @@ pub(super) struct View<'a> {
     pub lists: &'a Lists,
     pub members: &'a Members,
     pub hazards: &'a Hazards,
+    /// People who stand in the world, by index.
+    pub crowd: &'a Nearby,
     /// Vehicles that are between lanes.
     pub changing: &'a [Hazard],
     pub claims: &'a [Claim],

@@ -37,6 +37,8 @@ const LEVEL_M: f32 = 3.0;
 /// Something that moves freely.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hazard {
+    /// Id of the actor, 0 of the ego car.
+    pub id: u32,
     pub position: glam::Vec3,
     pub velocity: Vec2,
     pub forward: Vec2,
@@ -53,6 +55,7 @@ impl Hazard {
     /// A box that physics moves.
     pub fn of(obstacle: &Obstacle, walker: bool) -> Self {
         Self {
+            id: obstacle.id,
             position: obstacle.position,
             velocity: obstacle.velocity_mps.truncate(),
             forward: direction(obstacle.heading_rad),
@@ -67,6 +70,7 @@ impl Hazard {
     pub fn of_body(body: &Body) -> Self {
         let forward = (body.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
         Self {
+            id: body.id,
             position: body.position,
             velocity: body.velocity_mps.truncate(),
             forward,

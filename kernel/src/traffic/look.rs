@@ -47,7 +47,7 @@ pub(super) struct Sight {
     /// Of those who decide, and of those whom others have to know about.
     plans: Vec<Plan>,
     members: Members,
-    hazards: Hazards,
+    pub hazards: Hazards,
     changing: Vec<Hazard>,
     claims: Vec<Claim>,
     asking: Vec<Asking>,
@@ -100,6 +100,7 @@ impl Sight {
             lists: &self.lists,
             members: &self.members,
             hazards: &self.hazards,
+            crowd: &self.crowd,
             changing: &self.changing,
             claims: &self.claims,
             asking: &self.asking,

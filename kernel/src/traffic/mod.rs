@@ -42,6 +42,7 @@ mod mistakes;
 mod nearby;
 mod off_vehicles;
 mod openings;
+mod outline;
 mod pass;
 mod passage;
 mod perception;
@@ -205,7 +206,7 @@ impl Traffic {
         actors.return_to_map(surroundings, told);
         actors.exchange(&sight.calls, surroundings);
         actors.place_bodies();
-        actors.crash(surroundings, told);
+        actors.crash(&sight.hazards, surroundings, told);
     }
 }
 

@@ -5,8 +5,10 @@ use glam::{Vec2, Vec3};
 
 use super::company::Near;
 use super::hazard::Hazard;
+use super::outline::{self, Outline};
 use super::slack;
 use super::walk::Streets;
+use super::walker::Walker;
 
 /// Whoever waits steps back from vehicles that come by within this of their sides, metres.
 const SWEPT_M: f32 = 0.4;
@@ -16,10 +18,10 @@ const TAIL: f32 = 0.15;
 const SWEEP_S: f32 = 0.8;
 /// Nothing farther away than this sweeps over a place, metres.
 const SWEEPS_M: f32 = 20.0;
-/// Distance kept from vehicles, metres.
-const OFF_VEHICLES_M: f32 = 0.3;
+/// Between an outline and a vehicle there is so much, metres.
+const OFF_VEHICLES_M: f32 = 0.1;
 /// The same from those that move, of whoever is on the road already.
-const OFF_MOVING_M: f32 = 0.2;
+const OFF_MOVING_M: f32 = 0.0;
 /// Whoever goes round one keeps off by so much more, metres.
 const ROUND_M: f32 = 0.1;
 /// What is this far ahead is right before somebody, metres.
@@ -36,37 +38,61 @@ impl Streets<'_> {
     /// The vehicle that stands right before a walker who goes along `direction`.
     pub(super) fn blocked(&self, index: usize, direction: Vec2) -> Option<&Hazard> {
         let here = self.bodies[index].position;
-        let toe = here.truncate() + direction.normalize_or_zero() * TOE_M;
+        let outline = Outline::of(&self.bodies[index]);
+        let toe_m = TOE_M + outline.half.length();
+        let toe = here.truncate() + direction.normalize_or_zero() * toe_m;
         // Nobody stops early before what comes.
-        let off_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
-        let near = self.vehicles_near(here, TOE_M + OFF_VEHICLES_M + ROUND_M);
+        let gap_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
+        let off_m = |block: &Hazard| outline.radius_m + gap_m(block);
+        let near = self.vehicles_near(here, toe_m + outline.radius_m + OFF_VEHICLES_M + ROUND_M);
         nearest(toe, near.filter(|block| block.nearest_from(toe).length() < off_m(block)))
     }
 
     /// The part of a step that leaves others room, and on the road keeps off vehicles: it goes along what is in its way.
-    pub(super) fn free_step(&self, near: &[Near], from: Vec3, step: Vec2, on_road: bool) -> Vec2 {
+    pub(super) fn free_step(&self, index: usize, near: &[Near], step: Vec2, on_road: bool) -> Vec2 {
+        let outline = Outline::of(&self.bodies[index]);
+        let after = |step: Vec2| Outline { middle: outline.middle + step, ..outline };
         let mut part = step;
-        if on_road && self.runs_into_vehicle(from, step) {
-            for block in self.vehicles_near(from, OFF_VEHICLES_M + step.length()) {
-                let to = block.nearest_from(from.truncate());
-                let off_m = to.length();
-                let toward_m = if off_m > 0.0 { part.dot(to) / off_m } else { 0.0 };
-                if toward_m > 0.0 && off_m - toward_m < OFF_VEHICLES_M {
-                    part -= to / off_m * toward_m;
+        if on_road && self.runs_into_vehicle(index, &after(step)) {
+            let off_m = outline.radius_m + OFF_VEHICLES_M;
+            let reach_m = off_m + outline.half.length() + step.length();
+            for block in self.vehicles_near(self.bodies[index].position, reach_m) {
+                let to = block.nearest_from_any(outline.places());
+                let away_m = to.length();
+                let toward_m = if away_m > 0.0 { part.dot(to) / away_m } else { 0.0 };
+                if toward_m > 0.0 && away_m - toward_m < off_m {
+                    part -= to / away_m * toward_m;
                 }
             }
         }
         if slack::is_free(near, part) { part } else { slack::free_part(near, part) }
     }
 
-    /// Whether a step leads nearer to a vehicle that is within reach.
-    pub(super) fn runs_into_vehicle(&self, from: Vec3, step: Vec2) -> bool {
-        let here = from.truncate();
+    /// Whether somebody who becomes `then` comes nearer to a vehicle that is within reach.
+    pub(super) fn runs_into_vehicle(&self, index: usize, then: &Outline) -> bool {
+        let outline = Outline::of(&self.bodies[index]);
+        let off_m = outline.radius_m + OFF_VEHICLES_M;
         let nearer = |block: &Hazard| {
-            let then_m = block.nearest_from(here + step).length();
-            then_m < OFF_VEHICLES_M && then_m < block.nearest_from(here).length() - ALONG_M
+            let then_m = block.nearest_from_any(then.places()).length();
+            then_m < off_m && then_m < block.nearest_from_any(outline.places()).length() - ALONG_M
         };
-        step != Vec2::ZERO && self.vehicles_near(from, OFF_VEHICLES_M + step.length()).any(nearer)
+        let moved_m = outline.middle.distance(then.middle);
+        let moves = moved_m > 0.0 || then.half != outline.half;
+        let reach_m = off_m + outline.half.length() + moved_m;
+        moves && self.vehicles_near(self.bodies[index].position, reach_m).any(nearer)
+    }
+
+    /// Turns somebody towards a direction, as far as others leave the room for it.
+    pub(super) fn turn(&self, index: usize, near: &[Near], step: Vec2, toward: Vec2, next: &mut Walker) {
+        let heading = next.heading;
+        self.face(toward, next);
+        let was = Outline::of(&self.bodies[index]);
+        if was.is_long() && next.heading != heading {
+            let is = was.moved(step, next);
+            let free = slack::may_turn(near, step, was.half, is.half);
+            let off_vehicles = !self.is_on_road(&self.walkers[index]) || !self.runs_into_vehicle(index, &is);
+            next.heading = if free && off_vehicles { next.heading } else { heading };
+        }
     }
 
     /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where
@@ -74,10 +100,11 @@ impl Streets<'_> {
     pub(super) fn swept_from(&self, index: usize) -> Vec2 {
         let place = self.bodies[index].position;
         let here = place.truncate();
+        let half_m = outline::half_m(self.bodies[index].kind);
         let sweeps = |block: &&Hazard| {
             let offset = here - block.position.truncate();
             let ahead_m = block.velocity.length() * SWEEP_S;
-            let aside_m = block.half.y + SWEPT_M + TAIL * (block.half.x - 2.5).max(0.0);
+            let aside_m = block.half.y + SWEPT_M + half_m + TAIL * (block.half.x - 2.5).max(0.0);
             let at = block.turned(offset).abs();
             ahead_m > 0.3 && at.x < block.half.x + ahead_m && at.y < aside_m
         };

@@ -11,11 +11,8 @@ use super::body::Body;
 use super::journey::Journey;
 use super::traits::{Driver, WalkerTraits};
 use super::vehicle::Vehicle;
-use super::walker::{Walker, WalkerMode};
+use super::walker::{Walker, WalkerMode, radians};
 use super::ways::Ways;
-
-/// Radians in 2^-16 turns.
-const TURN_RAD: f32 = core::f32::consts::TAU / 65536.0;
 
 /// Vehicles longer than this have their axles on the way, metres; shorter ones their middle.
 const LONG_M: f32 = 5.0;
@@ -102,7 +99,7 @@ impl Ways {
             position,
             rotation: level_rotation(forward),
             velocity_mps: forward * vehicle.speed_mps,
-            phase_rad: f32::from(vehicle.phase) * TURN_RAD,
+            phase_rad: radians(vehicle.phase),
             lamps: lamps(vehicle),
         }
     }
@@ -118,7 +115,7 @@ fn lamps(vehicle: &Vehicle) -> u8 {
 
 /// Somebody on foot whose way leads over a place.
 pub(super) fn walker_body(walker: &Walker, traits: &WalkerTraits, place: &Place) -> Body {
-    let half_rad = f32::from(walker.heading) * (TURN_RAD * 0.5);
+    let half_rad = radians(walker.heading) * 0.5;
     let (sin, cos) = (ops::sin(half_rad), ops::cos(half_rad));
     let rotation = Quat::from_xyzw(0.0, 0.0, sin, cos);
     let sign = if walker.forward { 1.0 } else { -1.0 };
@@ -134,7 +131,7 @@ pub(super) fn walker_body(walker: &Walker, traits: &WalkerTraits, place: &Place)
         position: place.beside(walker.offset_m),
         rotation,
         velocity_mps: ahead * walker.speed_mps,
-        phase_rad: f32::from(walker.phase) * TURN_RAD,
+        phase_rad: radians(walker.phase),
         lamps: 0,
     }
 }

@@ -17,6 +17,7 @@ use super::calls::{Call, SEATS};
 use super::groups::first_of_group;
 use super::hazard::Hazard;
 use super::jaywalk;
+use super::outline;
 use super::walker::{Walker, WalkerMode, turns};
 
 /// Through a door one gets on so often, and another gets off: 2.5 to 4 and 1.5 to 2.5 s each (Transit Capacity and Quality of
@@ -59,7 +60,8 @@ impl Actors {
         }
         let waits = |w: &Walker| w.mode == WalkerMode::Boards && w.bus == call.bus && !around.holds(w.id);
         let people = self.state.walkers.iter().zip(&self.places).enumerate().filter(|(_, (w, _))| waits(w));
-        let near = people.map(|(i, (w, place))| (place.beside(w.offset_m).truncate().distance(call.doors[0]), w.id, i));
+        let door = |i: usize| call.before(0, self.walker_traits[i].kind);
+        let near = people.map(|(i, (w, place))| (place.beside(w.offset_m).truncate().distance(door(i)), w.id, i));
         let first = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         if let Some((_, _, i)) = first.filter(|(away_m, ..)| *away_m < AT_DOOR_M) {
             let walker = &mut self.state.walkers[i];
@@ -72,14 +74,12 @@ impl Actors {
         let leaves = |w: &Walker| w.rides() && w.bus == call.bus && f32::from(w.wait_ticks) > self.ride_ticks(w);
         let riders = self.state.walkers.iter().enumerate().filter(|(_, w)| leaves(w));
         let first = riders.min_by_key(|(_, w)| (u16::MAX - w.wait_ticks, w.id)).map(|(i, _)| i);
-        let door = call.doors[1];
-        let aside_m = |edge: &WalkEdgeId| self.ways.project(*edge, door).1.abs();
+        let aside_m = |edge: &WalkEdgeId| self.ways.project(*edge, call.doors[1]).1.abs();
         let ways = self.ways.stop_ways[call.stop].iter().copied();
         let edge = ways.min_by(|a, b| aside_m(a).total_cmp(&aside_m(b)));
-        if let (Some(i), Some(edge)) = (first, edge)
-            && self.is_open(door, call.bus, around)
-            && jaywalk::is_free(self.map(), door, self.ways.onto(edge, door))
-        {
+        let (Some(i), Some(edge)) = (first, edge) else { return };
+        let door = call.before(1, self.walker_traits[i].kind);
+        if self.is_open(i, door, call.bus, around) && jaywalk::is_free(self.map(), door, self.ways.onto(edge, door)) {
             self.set_down(i, edge, door, call.out);
         }
     }
@@ -103,15 +103,17 @@ impl Actors {
     }
 
     /// Whether nobody stands where somebody gets off, or is about to drive there; the bus itself is not asked.
-    fn is_open(&self, place: Vec2, bus: u16, around: &Surroundings<'_>) -> bool {
-        let people = self.state.walkers.iter().zip(&self.places).filter(|(w, _)| !w.rides() && !around.holds(w.id));
-        let mut near = people.map(|(w, there)| there.beside(w.offset_m).truncate().distance_squared(place));
+    fn is_open(&self, index: usize, place: Vec2, bus: u16, around: &Surroundings<'_>) -> bool {
+        let half_m = |i: usize| outline::half_m(self.walker_traits[i].kind);
+        let own_m = FREE_M + half_m(index);
+        let people = self.state.walkers.iter().zip(&self.places).enumerate();
+        let mut people = people.filter(|(_, (w, _))| !w.rides() && !around.holds(w.id));
         let vehicles =
             self.state.vehicles.iter().zip(&self.drivers).filter(|(v, _)| v.id != bus && !around.holds(v.id));
         let mut driven = vehicles.map(|(v, driver)| Hazard::of_body(&self.ways.vehicle_body(self.seed, v, driver)));
-        let free = |o: &Obstacle| keeps_off(&Hazard::of(o, false), place);
-        near.all(|square| square > FREE_M * FREE_M)
-            && driven.all(|hazard| keeps_off(&hazard, place))
+        let free = |o: &Obstacle| keeps_off(&Hazard::of(o, false), place, own_m);
+        people.all(|(i, (w, there))| there.beside(w.offset_m).truncate().distance(place) > own_m + half_m(i))
+            && driven.all(|hazard| keeps_off(&hazard, place, own_m))
             && free(&around.ego)
             && around.loose.iter().all(free)
     }
@@ -134,17 +136,17 @@ impl Actors {
         let Some(way) = self.map().walk_edges.get(edge as usize).filter(|way| way.crosswalk.is_none()) else { return };
         let there = self.ways.edge_place(edge, unit(self.seed, Stream::Spawn, id, around.tick) * way.length_m);
         let place = there.position.truncate();
-        if there.position.distance(around.ego.position) > SIGHT_M && self.is_open(place, 0, around) {
+        if there.position.distance(around.ego.position) > SIGHT_M && self.is_open(index, place, 0, around) {
             self.set_down(index, edge, place, there.forward.truncate());
             self.state.walkers[index].bus = 0;
         }
     }
 }
 
-/// Whether a box leaves a place free, now and soon.
-fn keeps_off(hazard: &Hazard, place: Vec2) -> bool {
+/// Whether a box keeps so far off a place, now and soon.
+fn keeps_off(hazard: &Hazard, place: Vec2, room_m: f32) -> bool {
     let local = hazard.turned(place - hazard.position.truncate());
     let comes_m = hazard.velocity.dot(hazard.forward).max(0.0) * FREE_S;
     let nearest = local.clamp(-hazard.half, hazard.half + Vec2::new(comes_m, 0.0));
-    local.distance_squared(nearest) > FREE_M * FREE_M
+    local.distance_squared(nearest) > room_m * room_m
 }

@@ -25,15 +25,17 @@ pub(super) const EGO_CLEARANCE_M: f32 = 20.0;
 const VEHICLE_SPACE_M: Vec2 = Vec2::new(1.5, 0.3);
 /// Free space around a person, metres.
 const WALKER_SPACE_M: Vec2 = Vec2::splat(0.2);
+/// The same around somebody with a pram or in a wheelchair, metres.
+const WHEELED_SPACE_M: Vec2 = Vec2::splat(0.08);
 /// Places that are drawn for each actor.
 const TRIES: u64 = 40;
 /// Who finds none of these free looks all over the map, at places so far apart, metres.
-const SEARCH_M: f32 = 2.5;
+const SEARCH_M: f32 = 1.25;
 /// Places beside and behind somebody at which those start who walk together, metres along the way and aside.
 const BESIDE_M: [[f32; 2]; 8] =
     [[0.0, 0.95], [0.0, -0.95], [0.95, 0.0], [-0.95, 0.0], [0.95, 0.95], [0.95, -0.95], [-0.95, 0.95], [-0.95, -0.95]];
-/// Half the extent of a person, metres.
-const WALKER_M: f32 = 0.25;
+/// Half the extent of a person without wheels, metres.
+const WALKER_M: Vec2 = Vec2::splat(0.25);
 /// Half the width of a lane that is wide enough to start on, metres.
 const LEAST_HALF_M: f32 = 1.2;
 /// Speed at the start of who had to look for a place, m/s.
@@ -280,21 +282,25 @@ impl Spawner<'_> {
         })
     }
 
+    /// Puts somebody on a way, where it likes to walk; beside that where there is no room.
     fn walker(&mut self, number: u64, (edge, s_m): (u32, f32)) -> bool {
         let traits = walker_traits(self.seed, self.next_id());
-        let way = &self.map.walk_edges[edge as usize];
-        let offset_m = traits.place * (way.half_width_m - 0.4).max(0.0);
+        let most_m = (self.map.walk_edges[edge as usize].half_width_m - 0.4).max(0.0);
         let forward = bits(self.seed, Stream::Spawn, number, TRIES + 1) & 1 == 0;
-        self.walker_at(number, edge, s_m, offset_m, forward)
+        let places = [traits.place, 1.0, -1.0].map(|place| place * most_m);
+        places.into_iter().any(|offset_m| self.walker_at(number, edge, s_m, offset_m, forward))
     }
 
     fn walker_at(&mut self, number: u64, edge: u32, s_m: f32, offset_m: f32, forward: bool) -> bool {
         let id = self.next_id();
         let traits = walker_traits(self.seed, id);
         let place = self.ways.edge_place(edge, s_m);
-        let middle = place.beside(offset_m).truncate();
-        let half = Vec2::splat(WALKER_M) + WALKER_SPACE_M;
-        if !self.take(Taken { middle, forward: Vec2::X, half }) {
+        let (middle, along) = (place.beside(offset_m).truncate(), place.forward.truncate().normalize_or(Vec2::X));
+        let (kind, size_m) = (traits.kind, traits.kind.size_m().truncate());
+        let wheeled = (along, size_m * 0.5 + WHEELED_SPACE_M);
+        let round = (Vec2::X, WALKER_M + WALKER_SPACE_M);
+        let (axis, half) = if kind.is_wheeled_on_foot() { wheeled } else { round };
+        if !self.take(Taken { middle, forward: axis, half }) {
             return false;
         }
         let random = bits(self.seed, Stream::Spawn, number, TRIES + 1);

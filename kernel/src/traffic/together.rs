@@ -22,7 +22,7 @@ const AMBLE: f32 = 0.2;
 /// Who follows turns round when it is so far ahead of who goes the other way, metres.
 const TURN_M: f32 = 4.0;
 /// With more people than that in sight, those of the group among them, it falls apart.
-const CROWD: usize = 6;
+const CROWD: usize = 4;
 
 /// What somebody does for the others of the group.
 #[derive(Clone, Copy, Debug, Default)]

@@ -15,6 +15,7 @@ use super::hazard::past_front_m;
 use super::hazards::Hazards;
 use super::jaywalk;
 use super::nearby::Nearby;
+use super::outline::{self, Outline};
 use super::slack;
 use super::traits::WalkerTraits;
 use super::turns::{Turns, end_node};
@@ -30,7 +31,7 @@ pub(super) const SIDESTEP_MPS: f32 = 0.35;
 /// Whoever is slower than this is held up by others, m/s.
 const HELD_UP_MPS: f32 = 0.3;
 /// Whoever has stood before others for this long goes back, so that no crowd can jam.
-const GIVE_WAY_TICKS: u16 = seconds(6) as u16;
+const GIVE_WAY_TICKS: u16 = seconds(3) as u16;
 /// Whoever waits steps back from what sweeps over the kerb at this speed, m/s.
 const BACK_MPS: f32 = 1.2;
 /// Whoever waits looks out for that so often.
@@ -107,7 +108,7 @@ impl Streets<'_> {
             WalkerMode::Wait if !self.looks(&next) => {
                 next.wait_ticks = next.wait_ticks.saturating_add(1);
                 if next.wait_ticks < TURNED_TICKS {
-                    self.face(self.waiting_direction(index, &next), &mut next);
+                    self.turn_where_it_stands(index, near, self.waiting_direction(index, &next), &mut next);
                 }
                 return (next, self.places[index]);
             }
@@ -124,7 +125,7 @@ impl Streets<'_> {
                 self.jaywalk(index, near, &mut next);
             }
             WalkerMode::Boards if next.bus == 0 => {
-                self.wait_for_bus(index, &mut next);
+                self.wait_for_bus(index, near, &mut next);
                 if !self.looks(&next) {
                     return (next, self.places[index]);
                 }
@@ -153,7 +154,7 @@ impl Streets<'_> {
         };
         let (mut place, mut step) = step_to(&next);
         let on_road = self.is_on_road(was);
-        let free = self.free_step(near, self.bodies[index].position, step, on_road);
+        let free = self.free_step(index, near, step, on_road);
         if free != step {
             let change = free - step;
             next.s_m += change.dot(place.forward.truncate().normalize_or(Vec2::X));
@@ -161,7 +162,9 @@ impl Streets<'_> {
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
         }
-        let hindered = on_road && self.runs_into_vehicle(self.bodies[index].position, step);
+        let outline = Outline::of(&self.bodies[index]);
+        let then = Outline { middle: outline.middle + step, ..outline };
+        let hindered = on_road && self.runs_into_vehicle(index, &then);
         if hindered || !slack::is_free(near, step) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
@@ -179,8 +182,17 @@ impl Streets<'_> {
             WalkerMode::Boards => self.toward_bus(&next),
             _ => ahead * if next.forward { 1.0 } else { -1.0 },
         };
-        self.face(toward, &mut next);
+        self.turn(index, near, step, toward, &mut next);
         (next, place)
+    }
+
+    /// Turns somebody who stands. `near` is scratch.
+    pub(super) fn turn_where_it_stands(&self, index: usize, near: &mut Vec<Near>, toward: Vec2, next: &mut Walker) {
+        // Those who are round need no room for it.
+        if outline::half_m(self.bodies[index].kind) > 0.0 {
+            gather(self.crowd, self.bodies, index, near);
+        }
+        self.turn(index, near, Vec2::ZERO, toward, next);
     }
 
     /// Whether somebody who waits looks around in this tick.
@@ -219,8 +231,11 @@ impl Streets<'_> {
         next.s_m += direction * moved_m;
         let likes_m = together.aside_m.unwrap_or_else(|| self.likes_m(index, edge, direction));
         drift(edge, direction, likes_m, &leeway, moved_m, next);
+        // The front stays off the road, and the rear is off it before the crosswalk is left.
+        let half_m = outline::half_m(self.bodies[index].kind);
+        let ends_m = if edge.crosswalk.is_some() { -half_m } else { half_m };
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
-        if left_m <= 0.0 {
+        if left_m <= ends_m {
             self.turn_or_wait(index, near, next);
         }
     }
@@ -340,7 +355,7 @@ impl Streets<'_> {
         }
     }
 
-    fn is_on_road(&self, walker: &Walker) -> bool {
+    pub(super) fn is_on_road(&self, walker: &Walker) -> bool {
         let edge = &self.map.walk_edges[walker.edge as usize];
         edge.crosswalk.is_some() || walker.mode != WalkerMode::Walk || walker.offset_m.abs() > edge.half_width_m + 0.3
     }

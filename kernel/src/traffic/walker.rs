@@ -59,6 +59,14 @@ impl Walker {
     }
 }
 
+/// Radians in 2^-16 turns.
+const TURN_RAD: f32 = core::f32::consts::TAU / 65536.0;
+
+/// 2^-16 turns as radians.
+pub(super) fn radians(turns: u16) -> f32 {
+    f32::from(turns) * TURN_RAD
+}
+
 /// Radians as 2^-16 turns.
 pub(super) fn turns(angle_rad: f32) -> u16 {
     (ops::round(angle_rad * (65536.0 / core::f32::consts::TAU)) as i32) as u16

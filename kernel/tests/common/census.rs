@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use kernel::RoadNetwork;
 use kernel::events::EventKind;
+use kernel::scene::ActorKind;
 use kernel::signals::{self, LightPhase};
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, HazardRates, Obstacle, Surroundings, Traffic, TrafficCounts, Vehicle};
@@ -16,8 +17,10 @@ use kernel::weather::Conditions;
 const STAND_S: u32 = 180;
 /// Ticks between two looks at who overlaps.
 const LOOK_TICKS: Tick = 6;
-/// Radius of a person, metres.
+/// Radius of a person without wheels, metres.
 const PERSON_M: f32 = 0.2;
+/// Circles before and behind the middle one of somebody with wheels.
+const CIRCLES: i32 = 3;
 /// Touching by less than this is none, metres.
 const SKIN_M: f32 = 0.025;
 /// Who stands in the way of one is within this, metres.
@@ -335,15 +338,26 @@ fn nearest<T>(all: &[T], index: usize, gap_m: impl Fn(&T) -> Option<f32>) -> Opt
     near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
 }
 
-/// Whether two road users overlap: vehicles as boxes, people as circles.
+/// Whether two road users overlap: vehicles as boxes, people as circles, with a pram or in a wheelchair as the longest row of
+/// circles inside of their box.
 fn overlap(a: &Body, b: &Body) -> bool {
     let way = (b.position - a.position).truncate();
     match (a.kind.is_on_foot(), b.kind.is_on_foot()) {
-        (true, true) => way.length() < 2.0 * PERSON_M,
-        (true, false) => box_meets_circle(b, -way),
-        (false, true) => box_meets_circle(a, way),
+        (true, true) => circles(a).any(|(at, r_m)| circles(b).any(|(to, s_m)| (way + to - at).length() < r_m + s_m)),
+        (true, false) => circles(a).any(|(at, r_m)| box_meets_circle(b, at - way, r_m)),
+        (false, true) => circles(b).any(|(at, r_m)| box_meets_circle(a, way + at, r_m)),
         (false, false) => boxes_meet(a, b, way),
     }
+}
+
+/// The circles that somebody on foot fills: from its middle, and radius, metres.
+fn circles(body: &Body) -> impl Iterator<Item = (Vec2, f32)> {
+    let size_m = body.kind.size_m();
+    let is_round = matches!(body.kind, ActorKind::Pedestrian | ActorKind::Child);
+    let radius_m = if is_round { PERSON_M } else { size_m.y * 0.5 - SKIN_M };
+    let half_m = if is_round { 0.0 } else { (size_m.x - size_m.y) * 0.5 };
+    let [forward, _] = axes(body);
+    (-CIRCLES..=CIRCLES).map(move |k| (forward * (half_m * k as f32 / CIRCLES as f32), radius_m))
 }
 
 fn axes(body: &Body) -> [Vec2; 2] {
@@ -355,10 +369,10 @@ fn half(body: &Body) -> Vec2 {
     body.kind.size_m().truncate() * 0.5 - SKIN_M
 }
 
-fn box_meets_circle(body: &Body, way: Vec2) -> bool {
+fn box_meets_circle(body: &Body, way: Vec2, radius_m: f32) -> bool {
     let [forward, left] = axes(body);
     let local = Vec2::new(way.dot(forward), way.dot(left));
-    (local - local.clamp(-half(body), half(body))).length() < PERSON_M
+    (local - local.clamp(-half(body), half(body))).length() < radius_m
 }
 
 fn boxes_meet(a: &Body, b: &Body, way: Vec2) -> bool {

@@ -14,6 +14,7 @@ pub mod newest;
 pub mod output;
 pub mod png;
 pub mod progress;
+pub mod room;
 pub mod say;
 pub mod spread;
 pub mod toml_text;

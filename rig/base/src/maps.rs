@@ -83,9 +83,13 @@ impl ScenarioFile {
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let text = files::read_text(path, most::TEXT)?;
         let mut scenario = Scenario::from_toml(&text).map_err(|e| usage_in(path, &e.to_string()))?;
-        let beside: PathBuf = path.parent().unwrap_or(Path::new("")).join(&scenario.map);
-        let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { scenario.map.clone() };
-        let map = Map::find(&name).map_err(|e| if e.is::<Usage>() { usage_in(path, &e.to_string()) } else { e })?;
+        let map = map_of(&scenario, path).map_err(|error| {
+            let place = toml_text::line_of(&text, "map").map_or("map".into(), |line| format!("line {line}: map"));
+            match error.downcast::<Usage>() {
+                Ok(usage) => usage_in(path, &format!("{place}: {usage}")),
+                Err(error) => error.context(format!("{}: {place}", path.display())),
+            }
+        })?;
         scenario.map = map.network.name.clone();
         Ok(Self { scenario, map, path: path.to_owned(), text })
     }
@@ -100,6 +104,39 @@ impl ScenarioFile {
     }
 }
 
+/// The map of a scenario in a file, beside which a map file is looked for, too.
+fn map_of(scenario: &Scenario, file: &Path) -> anyhow::Result<Map> {
+    let beside: PathBuf = file.parent().unwrap_or(Path::new("")).join(&scenario.map);
+    let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { scenario.map.clone() };
+    Map::find(&name)
+}
+
 fn usage_in(path: &Path, reason: &str) -> anyhow::Error {
     anyhow!(Usage(format!("{}: {reason}", path.display())))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::failure::sentence;
+
+    #[test]
+    fn a_map_that_cannot_be_had_is_told_with_the_place_of_its_name() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("run.toml");
+        fs::write(dir.path().join("empty.xodr"), "").expect("writable");
+        for (map, is_usage, said) in [
+            ("atlantis", true, "unknown map \"atlantis\": expected one of city, rural, or an .xodr file"),
+            ("nowhere.xodr", false, "nowhere.xodr: "),
+            ("empty.xodr", false, "empty.xodr: "),
+        ] {
+            fs::write(&path, format!("seed = 1\nmap = {map:?}\n")).expect("writable");
+            let error = ScenarioFile::read(&path).expect_err(map);
+            let (place, sentence) = (format!("{}: line 2: map: ", path.display()), sentence(&error));
+            assert!(sentence.starts_with(&place) && sentence.contains(said), "{sentence}");
+            assert_eq!((error.is::<Usage>(), sentence.matches("run.toml").count()), (is_usage, 1), "{sentence}");
+        }
+    }
 }

@@ -1,7 +1,11 @@
 //! What a run came to.
 
+use std::sync::Arc;
+
+use base::room::RoadUsers;
 use kernel::arbiter::Outcome;
-use replay::{Label, Recording};
+use kernel::{RoadNetwork, World};
+use replay::{Label, Manifest, Recording};
 use serde::Serialize;
 
 /// What a drive came to, or what a recording holds of it.
@@ -15,6 +19,10 @@ pub struct RunFigures {
     pub km: f64,
     /// Simulated minutes.
     pub minutes: f64,
+    /// Road users that the scenario asks for.
+    pub asked: RoadUsers,
+    /// Of these, those for whom the map has no room; unknown without the map, and of a run of another kernel.
+    pub missing: Option<RoadUsers>,
     /// `intervened`, `missed`, `censored`, or `stopped` when it was ended from outside.
     pub outcome: &'static str,
     /// Whether it was a drive to get used to the rig, which does not count.
@@ -28,8 +36,8 @@ pub struct RunFigures {
 }
 
 impl RunFigures {
-    /// Those of a recording.
-    pub fn of(recording: &Recording) -> Self {
+    /// Those of a recording, and of its map where that is there.
+    pub fn of(recording: &Recording, network: Option<&Arc<RoadNetwork>>) -> Self {
         let log = recording.log();
         let outcome = log.summary.as_ref().and_then(|s| s.outcome);
         let annotation = log.annotation.as_ref();
@@ -38,6 +46,8 @@ impl RunFigures {
             seed: log.manifest.scenario.seed,
             km: log.odometer_mm() as f64 / 1e6,
             minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
+            asked: RoadUsers::asked(&log.manifest.scenario.traffic),
+            missing: network.and_then(|network| missing(&log.manifest, network)),
             outcome: outcome_name(outcome),
             familiarisation: study::is_familiarisation(&log.manifest.provenance),
             label: annotation.map(|a| Label::name(a.label)),
@@ -54,6 +64,13 @@ impl std::fmt::Display for RunFigures {
         let Self { km, minutes, outcome, .. } = self;
         write!(f, "{km:.3} km in {minutes:.1} min, {outcome}{label}{practice}")
     }
+}
+
+/// Who of a run found no room: that follows from what it started from.
+fn missing(manifest: &Manifest, network: &Arc<RoadNetwork>) -> Option<RoadUsers> {
+    manifest.check_kernel().ok()?;
+    let world = World::new(&manifest.scenario, network).ok()?;
+    Some(RoadUsers::missing(&world.missing()))
 }
 
 fn outcome_name(outcome: Option<Outcome>) -> &'static str {

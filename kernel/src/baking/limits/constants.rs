@@ -60,9 +60,13 @@ pub const LINKS: usize = 1_000;
 /// records along it, dashes times stations, objects times the lanes beside them.
 pub const STEPS: f64 = 3e9;
 
-/// A coordinate, metres: beyond, 32 bits tell places apart by more than half a metre.
+/// Where a road is in the coordinates of the file, metres east and north: grids of countries write the number of a zone
+/// before the easting (32691000).
+pub const PLACE_M: f64 = 1e8;
+/// Any other coordinate, metres: beyond, 32 bits tell places apart by more than half a metre.
 pub const COORDINATE_M: f64 = 1e7;
-/// The side of a map, metres.
+/// The side of a map, and how far it reaches from its origin, metres: whoever drives off it is still well within the
+/// 1,000 km that a keyframe holds.
 pub const EXTENT_M: f32 = 300_000.0;
 /// Height of a road, metres.
 pub const HEIGHT_M: f64 = 10_000.0;

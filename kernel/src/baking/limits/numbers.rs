@@ -2,16 +2,15 @@
 
 use roxmltree::Node;
 
-use super::constants::{ANGLE_RAD, COORDINATE_M, NAME_BYTES, NUMBER};
+use super::constants::{ANGLE_RAD, COORDINATE_M, NAME_BYTES, NUMBER, PLACE_M};
 use super::place::{refused, said};
 use crate::baking::error::BakeError;
 
 /// What an attribute measures, by its name: the largest number it may hold, either way.
 fn largest(name: &str) -> Option<f64> {
     Some(match name {
-        "s" | "x" | "y" | "t" | "u" | "v" | "z" | "dz" | "length" | "width" | "height" | "radius" | "distance" => {
-            COORDINATE_M
-        }
+        "x" | "y" => PLACE_M,
+        "s" | "t" | "u" | "v" | "z" | "dz" | "length" | "width" | "height" | "radius" | "distance" => COORDINATE_M,
         "sOffset" | "tOffset" | "zOffset" | "sStart" | "sEnd" | "tStart" | "tEnd" | "space" | "validLength" => {
             COORDINATE_M
         }

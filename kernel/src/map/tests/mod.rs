@@ -2,6 +2,7 @@
 
 mod broken;
 mod bundled;
+mod far;
 mod features;
 mod places;
 mod signals;

@@ -263,13 +263,18 @@ fn who_drives_on_a_priority_road_goes_first() {
 
 /// A straight road of three sections with this in its `<type>`, a sign so far along it.
 fn signed_road(speed: &str, sign: &str, s_m: u32) -> RoadNetwork {
+    signed_road_of("town", speed, sign, s_m)
+}
+
+/// The same of a type.
+fn signed_road_of(kind: &str, speed: &str, sign: &str, s_m: u32) -> RoadNetwork {
     let lane = "<center><lane id=\"0\" type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><link>\
         <predecessor id=\"-1\"/><successor id=\"-1\"/></link><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane></right>";
     let sections = [0, 100, 200].map(|s| format!("<laneSection s=\"{s}\">{lane}</laneSection>")).concat();
     let signal = format!("<signal id=\"1\" s=\"{s_m}\" t=\"-3.8\" orientation=\"+\" dynamic=\"no\" {sign}/>");
     let text = format!(
         "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" length=\"300\" junction=\"-1\"><type s=\"0\" \
-         type=\"town\">{speed}</type><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"300\"><line/></geometry>\
+         type=\"{kind}\">{speed}</type><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"300\"><line/></geometry>\
          </planView><lanes>{sections}</lanes><signals>{signal}</signals></road></OpenDRIVE>"
     );
     bake("signed", &text).unwrap()
@@ -287,6 +292,12 @@ fn limits_are_told_in_several_units() {
         ("<speed max=\"10\" unit=\"m/s\"/>", 36.0),
         ("<speed max=\"10\"/>", 36.0),
         ("", 50.0),
+        ("<speed max=\"undefined\"/>", 50.0),
+        ("<speed/>", 50.0),
+        ("<speed max=\"no limit\"/>", 130.0),
+        ("<speed max=\"200\" unit=\"km/h\"/>", 130.0),
+        ("<speed max=\"6\" unit=\"km/h\"/>", 6.0),
+        ("<speed max=\"1\" unit=\"km/h\"/>", 5.0),
     ] {
         assert_eq!(limits_kmh(&signed_road(speed, "type=\"999\"", 10)), [kmh; 3], "{speed}");
     }
@@ -299,13 +310,37 @@ fn limits_are_told_in_several_units() {
         ("country=\"UK\" type=\"670\" value=\"20\"", 32.2),
         ("country=\"US\" type=\"R2-1\" value=\"25\" unit=\"mph\"", 40.2),
         ("country=\"US\" type=\"R2-1\" value=\"40\" unit=\"km/h\"", 40.0),
+        ("type=\"274\" value=\"1\"", 5.0),
+        ("type=\"274\" value=\"140\"", 130.0),
         // Neither is a limit.
+        ("type=\"274\" value=\"-1\"", 60.0),
         ("type=\"274\" value=\"0\"", 60.0),
         ("type=\"274\" value=\"30\" unit=\"t\"", 60.0),
         ("type=\"274\" value=\"30\" invalidated=\"true\"", 60.0),
     ] {
         let map = signed_road("<speed max=\"60\" unit=\"km/h\"/>", sign, 10);
         assert_eq!(limits_kmh(&map), [kmh; 3], "{sign}");
+    }
+}
+
+#[test]
+fn where_no_limit_is_told_the_type_of_the_road_tells_it() {
+    for (kind, kmh) in [
+        ("motorway", 130.0),
+        ("rural", 100.0),
+        ("townExpressway", 80.0),
+        ("town", 50.0),
+        ("townArterial", 50.0),
+        ("unknown", 50.0),
+        ("lowSpeed", 30.0),
+        ("bicycle", 30.0),
+        ("pedestrian", 7.0),
+        ("townPlayStreet", 7.0),
+    ] {
+        for speed in ["", "<speed max=\"undefined\"/>"] {
+            assert_eq!(limits_kmh(&signed_road_of(kind, speed, "type=\"999\"", 10)), [kmh; 3], "{kind}");
+        }
+        assert_eq!(limits_kmh(&signed_road_of(kind, "<speed max=\"no limit\"/>", "type=\"999\"", 10)), [130.0; 3]);
     }
 }
 

@@ -133,6 +133,7 @@ pub fn crossroads(signs: Signs) -> Arc<RoadNetwork> {
         surfaces: Vec::new(),
         props: Vec::new(),
         bounds: [Vec3::splat(-250.0), Vec3::splat(250.0)],
+        origin_m: [0.0; 2],
     };
     Arc::new(map.into())
 }

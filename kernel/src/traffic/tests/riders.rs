@@ -12,6 +12,7 @@ use crate::actor::ActorKind;
 use crate::map::RoadNetwork;
 use crate::state::State;
 use crate::time::{Tick, seconds};
+use crate::traffic::outline::half_m;
 use crate::traffic::{Body, Lapse, Obstacle, Surroundings, Traffic, TrafficState, Walker, WalkerMode};
 use crate::weather::Conditions;
 
@@ -65,15 +66,18 @@ fn exchange(network: &Arc<RoadNetwork>, counts: (u16, u16), seed: u64, minutes: 
             match (was.mode, is.mode) {
                 (WalkerMode::Boards, WalkerMode::Rides) => {
                     on += 1;
-                    let place = local(bus.expect("a bus"), body(&before, is.id).expect("it stood there").position);
-                    let gap_m = place.y * kerb - 1.25;
+                    let rider = body(&before, is.id).expect("it stood there");
+                    let place = local(bus.expect("a bus"), rider.position);
+                    let gap_m = place.y * kerb - 1.25 - half_m(rider.kind);
                     assert!(stands && (0.2..1.2).contains(&gap_m), "tick {tick}: {place} {is:?}");
                     assert!((3.0..5.2).contains(&place.x), "at the front door: {place}");
                 }
                 (WalkerMode::Rides, WalkerMode::Alights) => {
                     off += 1;
-                    let place = local(bus.expect("a bus"), body(t, is.id).expect("it got off").position);
-                    assert!(stands && (place.y * kerb - 1.75).abs() < 0.05, "tick {tick}: {place} {is:?}");
+                    let rider = body(t, is.id).expect("it got off");
+                    let place = local(bus.expect("a bus"), rider.position);
+                    let gap_m = place.y * kerb - 1.25 - half_m(rider.kind);
+                    assert!(stands && (gap_m - 0.5).abs() < 0.05, "tick {tick}: {place} {is:?}");
                     assert!((-1.1..-0.9).contains(&place.x), "at the door in the middle: {place}");
                 }
                 (WalkerMode::Boards, WalkerMode::Boards) if is.bus == 0 => {

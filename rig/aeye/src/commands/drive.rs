@@ -11,6 +11,7 @@ use base::library;
 use base::library::case_path;
 use base::maps::{self, Map, ScenarioFile};
 use base::progress::Interrupt;
+use base::room::NoRoom;
 use base::say::say;
 use drivers::simulate;
 use drivers::vision::Vision;
@@ -56,22 +57,12 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
         print::text(&as_driven(scenario, &map)?)?;
         return Ok(Verdict::Ok);
     }
-    say_missing(&scenario, &map)?;
     if args.headless {
         headless(args, &scenario, &map, json)?;
     } else {
         windows::drive(args, scenario, map, move |path, figures| tell(path, figures, json))?;
     }
     Ok(Verdict::Ok)
-}
-
-/// Says which road users of a scenario have no room on the map.
-fn say_missing(scenario: &Scenario, map: &Map) -> anyhow::Result<()> {
-    let missing = World::new(scenario, &map.network)?.missing();
-    if missing.total() > 0 {
-        say(format_args!("map {} has no room for {missing}", map.network.name));
-    }
-    Ok(())
 }
 
 /// What the run starts from, and where.
@@ -141,7 +132,7 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     manifest.provenance.extend(lineup.cast().provenance_of_run(1).clone());
     manifest.provenance.extend(about);
     let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
-    World::new(scenario, &map.network)?;
+    let no_room = NoRoom::default().of_run(scenario, map)?;
 
     let mut publisher = args.foxglove().map(Publisher::bind).transpose()?;
     let path = args.record();
@@ -150,6 +141,7 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     }
     maps::put_beside(map.foreign.as_ref(), path)?;
     let file = File::create(path).with_context(|| path.display().to_string())?;
+    no_room.into_iter().for_each(say);
     let interrupt = Interrupt::listen();
     let mut second = Every::second();
     let keep_on = |world: &World| {
@@ -160,5 +152,5 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
         !interrupt.is_raised()
     };
     simulate::drive_as(&manifest, map, vision, file, keep_on).with_context(|| path.display().to_string())?;
-    tell(path, &RunFigures::of(&Recording::open(path)?), json)
+    tell(path, &RunFigures::of(&Recording::open(path)?, Some(&map.network)), json)
 }

@@ -7,6 +7,8 @@ use base::json;
 use base::maps::{Map, ScenarioFile};
 use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
+use base::room::NoRoom;
+use base::say::say;
 use base::spread::jobs;
 use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::Eye;
@@ -17,6 +19,7 @@ use render::AdapterChoice;
 
 use super::figures::{CampaignFigures, figures};
 use super::plan::Plan;
+use super::run_line::RunLine;
 use super::until::Until;
 use super::workers::drive_all;
 
@@ -58,13 +61,36 @@ pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Campaig
     AdapterChoice::default().find()?;
     let _folder = OutputFolder::open(&plan.out)?;
     let jobs = jobs(options.jobs);
+    let mut no_room = NoRoom::default();
+    say_of_first_runs(&plan, &mut no_room)?;
     let mut runs = Vec::new();
     for eye in &eyes {
         runs.extend(drive_all(&plan, eye, jobs, interrupt)?);
     }
+    say_of_runs(&runs, &mut no_room);
     let figures = figures(plan.seed, plan.until, &names, runs);
     output::write_file(&plan.out.join("campaign.json"), json::json_file(&figures)?.as_bytes())?;
     Ok(figures)
+}
+
+/// Says who has no room in the first run on each map: before hours are driven without them.
+fn say_of_first_runs(plan: &Plan, no_room: &mut NoRoom) -> anyhow::Result<()> {
+    let runs = match plan.until {
+        Until::Runs(runs) => runs.min(plan.maps.len() as u32),
+        Until::Km(_) | Until::Cases(_) | Until::PedestrianCases(_) => plan.maps.len() as u32,
+    };
+    for run in 0..runs {
+        let map = &plan.maps[plan.map_index(run)];
+        no_room.of_run(&plan.scenario_of(run), map)?.into_iter().for_each(say);
+    }
+    Ok(())
+}
+
+/// Says it of maps on which the first run had room and a later one had not.
+fn say_of_runs(runs: &[RunLine], no_room: &mut NoRoom) {
+    let figures = runs.iter().map(|run| &run.figures);
+    let told = figures.filter_map(|figures| no_room.of(&figures.map, &figures.asked, figures.missing.as_ref()?));
+    told.for_each(say);
 }
 
 /// What the options come to.

@@ -1,7 +1,9 @@
 //! What is kept of a run.
 
 use std::path::Path;
+use std::sync::Arc;
 
+use kernel::RoadNetwork;
 use measures::run_figures::RunFigures;
 use measures::statistics::Ride;
 use replay::{Label, Recording};
@@ -29,15 +31,20 @@ pub struct RunLine {
 }
 
 impl RunLine {
-    /// That of a recording at a path, from which the corner case at another was cut, if there is one.
-    pub fn new(checkpoint: &str, path: &Path, recording: &Recording, case: Option<&Path>) -> Self {
+    /// That of a recording on a map at a path, from which the corner case at another was cut, if there is one.
+    pub fn new(
+        checkpoint: &str,
+        path: &Path,
+        (recording, network): (&Recording, &Arc<RoadNetwork>),
+        case: Option<&Path>,
+    ) -> Self {
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         Self {
             file: name(path),
             case: case.map(name),
             checkpoint: checkpoint.to_owned(),
             without_intervention: None,
-            figures: RunFigures::of(recording),
+            figures: RunFigures::of(recording, Some(network)),
             ride: Ride::of(recording),
         }
     }

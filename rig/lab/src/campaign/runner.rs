@@ -58,7 +58,8 @@ impl<'a> Runner<'a> {
             }
         };
         let case = self.cut(run, &recording)?;
-        let mut line = RunLine::new(self.eye.name(), &path, &recording, case.as_deref());
+        let network = &self.plan.maps[self.plan.map_index(run)].network;
+        let mut line = RunLine::new(self.eye.name(), &path, (&recording, network), case.as_deref());
         line.without_intervention = self.counterfactual(run, &recording)?;
         let verdict = line.without_intervention.is_some().then(|| self.plan.counterfactual_path(self.eye.name(), run));
         let files = std::iter::once(path).chain(case).chain(verdict).collect();

@@ -1,5 +1,6 @@
 //! Campaigns on paper.
 
+use base::room::RoadUsers;
 use measures::run_figures::RunFigures;
 use measures::statistics::Ride;
 
@@ -13,6 +14,8 @@ fn runs(each: impl IntoIterator<Item = (f64, bool)>) -> Vec<RunLine> {
         seed: 1,
         km,
         minutes: 1.0,
+        asked: RoadUsers::default(),
+        missing: None,
         outcome: "censored",
         familiarisation: false,
         label: None,

@@ -8,6 +8,7 @@
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use anyhow::{Context, bail};
 use base::failure::Usage;
@@ -15,6 +16,8 @@ use base::files::{self, most};
 use base::maps::{self, Map};
 use base::output::{self, OutputFolder};
 use base::progress::{self, Bar, Interrupt};
+use base::room::NoRoom;
+use base::say::say;
 use base::spread::{jobs, on_threads};
 use drivers::vision;
 use kernel::World;
@@ -83,6 +86,7 @@ pub(super) fn build(
     let parts = prepare(out, recipe, &adapter)?;
     let scenes = recipe.scenes();
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
+    let no_room = Mutex::default();
     let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
     on_threads(jobs(threads), scenes.len(), fresh, |renderers, index| {
         let scene = &scenes[index];
@@ -96,7 +100,7 @@ pub(super) fn build(
             Some(renderer) => renderer,
             none => none.insert(Renderer::new(&map.network, &options)?),
         };
-        let mut studio = Studio { recipe, out, adapter: &adapter, renderer, interrupt, bar: &bar };
+        let mut studio = Studio { recipe, out, adapter: &adapter, renderer, interrupt, bar: &bar, no_room: &no_room };
         let lines = provenance::text(&studio.shoot(scene, map)?)?;
         output::write_file(&part, lines.as_bytes())
     })?;
@@ -234,6 +238,7 @@ struct Studio<'a> {
     renderer: &'a mut Renderer,
     interrupt: &'a Interrupt,
     bar: &'a Bar,
+    no_room: &'a Mutex<NoRoom>,
 }
 
 impl Studio<'_> {
@@ -246,6 +251,7 @@ impl Studio<'_> {
             let mut scenario = map.scenario(scene.seed(self.recipe, leg));
             scenario.traffic.pedestrians = self.recipe.pedestrians.unwrap_or(scenario.traffic.pedestrians);
             let mut drive = ExpertDrive::new(&scenario, map)?;
+            self.say_who_is_missing(drive.world());
             while lines.len() < scene.frames as usize && drive.next_frame()? {
                 lines.push(self.keep(scene, drive.world(), lines.len() as u32)?);
             }
@@ -258,6 +264,12 @@ impl Studio<'_> {
             leg += 1;
         }
         Ok(lines)
+    }
+
+    fn say_who_is_missing(&self, world: &World) {
+        let mut no_room = self.no_room.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let told = no_room.of_world(world);
+        self.bar.suspend(|| told.into_iter().for_each(say));
     }
 
     /// Draws and writes a frame; the digest of its drive's recording is not known yet.

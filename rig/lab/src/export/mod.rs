@@ -24,6 +24,7 @@ use base::progress::{self, Interrupt};
 use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
+use kernel::RoadNetwork;
 use kernel::time::{TICK_HZ, Tick};
 use measures::footage::decisive_tick;
 use replay::{Exported, Log, Recording, exported};
@@ -190,7 +191,9 @@ fn export_one(
     }
     let (log, network) = (recording.log(), recording.network()?);
     let window = window(log, args)?;
-    let (about, counts) = (about(recording, &window, (args, size), camera.eyes), Counts::of(log, &window));
+    let mut about = about(recording, &window, (args, size), camera.eyes);
+    about.extend(origin(&network));
+    let counts = Counts::of(log, &window);
     let (from, to) = window.ticks.clone().into_inner();
     let kept = there == Some(Exported { about: about.clone(), is_whole: true });
     let export = Export { file: file.to_owned(), out, from, to, kept, counts };
@@ -242,4 +245,10 @@ fn about(
         ("program", env!("CARGO_PKG_VERSION").to_owned()),
     ];
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// What to add to coordinates to have those of the map's file, where they differ: metres to the east and to the north.
+fn origin(network: &RoadNetwork) -> Option<(String, String)> {
+    let [east_m, north_m] = network.origin_m;
+    ([east_m, north_m] != [0.0; 2]).then(|| ("origin_m".to_owned(), format!("{east_m} {north_m}")))
 }

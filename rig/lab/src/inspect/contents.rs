@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::Context;
 use base::failure::Failure;
 use base::json::Typed;
 use base::words;
+use kernel::RoadNetwork;
 use kernel::time::Tick;
 use measures::{Criticality, Measures, RunFigures, Tally};
 use replay::{Note, Recording};
@@ -148,11 +150,12 @@ impl NoteLine {
 }
 
 impl Contents {
-    /// Those of a file that holds this recording, with its measures or why there are none.
+    /// Those of a file that holds this recording, with its map where that is there, and its measures or why there are
+    /// none.
     pub(super) fn read(
         file: &Path,
         recording: &Recording,
-        measured: Result<Measures, replay::Error>,
+        (network, measured): (Option<&Arc<RoadNetwork>>, Result<Measures, replay::Error>),
         reveal: bool,
     ) -> anyhow::Result<Self> {
         let bytes = std::fs::metadata(file).with_context(|| file.display().to_string())?.len();
@@ -188,7 +191,7 @@ impl Contents {
             last_tick: log.last_tick(),
             keyframes: log.keyframes.len(),
             masks: log.masks.len(),
-            figures: RunFigures::of(recording),
+            figures: RunFigures::of(recording, network),
             map_digest: format!("{:032x}", manifest.map_digest),
             embedded_map: manifest.foreign_map.as_ref().is_some_and(|map| map.embedded),
             provenance: study::tellable(&manifest.provenance, reveal),
@@ -199,7 +202,7 @@ impl Contents {
             notes: log.notes.iter().map(NoteLine::of).collect(),
             unmeasured: measured.as_ref().err().map(ToString::to_string),
             measures: measured.ok(),
-            criticality: recording.network().and_then(|network| Criticality::of_case(log, &network)).ok().flatten(),
+            criticality: network.and_then(|network| Criticality::of_case(log, network).ok().flatten()),
             scenario: manifest.scenario.to_toml(),
         })
     }

@@ -67,13 +67,11 @@ pub fn inspect(options: &Options, mut show: impl FnMut(&Contents) -> anyhow::Res
 /// A file, what is printed for it, and whether its replay is not the run that was recorded.
 fn look(file: &Path, reveal: bool) -> anyhow::Result<(Recording, Contents, bool)> {
     let recording = Recording::open(file)?;
-    let measured = measure(&recording);
+    let (network, measured) = match recording.network() {
+        Ok(network) => (Some(network.clone()), Measures::of(recording.log(), &network)),
+        Err(error) => (None, Err(error)),
+    };
     let diverged = matches!(measured, Err(replay::Error::Diverged(_)));
-    let contents = Contents::read(file, &recording, measured, reveal)?;
+    let contents = Contents::read(file, &recording, (network.as_ref(), measured), reveal)?;
     Ok((recording, contents, diverged))
-}
-
-/// The measures of a recording, or why there are none.
-fn measure(recording: &Recording) -> Result<Measures, replay::Error> {
-    Measures::of(recording.log(), &recording.network()?)
 }

@@ -35,6 +35,9 @@ fn text(c: &Contents) -> String {
     line("file", format!("{} ({}, {} bytes)", c.file, c.kind, c.bytes));
     line("map", format!("{}{}", c.figures.map, if c.embedded_map { " (embedded)" } else { "" }));
     line("seed", c.figures.seed.to_string());
+    if let Some(missing) = c.figures.missing.and_then(|missing| missing.of(&c.figures.asked)) {
+        line("no room for", missing);
+    }
     line("ticks", format!("{} to {}{}", c.first_tick, c.last_tick, if c.finished { "" } else { " (cut off)" }));
     line("driven", format!("{:.3} km, {:.2} min, {}", c.figures.km, c.figures.minutes, c.figures.outcome));
     line(

@@ -6,6 +6,7 @@ use std::sync::mpsc::Sender;
 
 use base::clock::SessionClock;
 use base::maps;
+use base::room::NoRoom;
 use kernel::Seat;
 use kernel::time::{TICK_HZ, Tick};
 use replay::Annotation;
@@ -40,6 +41,7 @@ pub struct Session {
     pub runs: Runs,
     pub pace: Pace,
     pub sights: Sights,
+    no_room: NoRoom,
     plan: Plan,
     cutters: Cutters,
     outbox: Sender<Message>,
@@ -68,7 +70,8 @@ impl Session {
             runs,
             pace: Pace::new(clock),
             sights: Sights::default(),
-            cutters: Cutters::new(board, outbox.clone(), plan.tell.clone()),
+            no_room: NoRoom::default(),
+            cutters: Cutters::new(board, outbox.clone(), plan.map.network.clone(), plan.tell.clone()),
             plan,
             outbox,
         };
@@ -92,6 +95,7 @@ impl Session {
     fn prepare(&mut self) -> anyhow::Result<()> {
         let world = self.runs.prepare(&self.plan)?;
         self.display.begin(world);
+        self.no_room.of_world(world).into_iter().for_each(|line| self.voice.say(format_args!("{line}")));
         self.voice.say(format_args!("run {} is ready: N starts it", self.runs.number()));
         self.sights = Sights::default();
         self.pace.restart();
@@ -175,7 +179,7 @@ impl Session {
 
     /// What follows the last run of the session, for which nobody waits any more.
     pub fn look_back(&self, path: &Path) -> anyhow::Result<()> {
-        aftermath::of(path, &*self.plan.tell).map(drop)
+        aftermath::of(path, &self.plan.map.network, &*self.plan.tell).map(drop)
     }
 
     /// Waits until the cases of all runs but the last are cut.
