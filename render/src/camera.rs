@@ -31,6 +31,9 @@ pub struct Camera {
     pub height: u32,
 }
 
+/// From optical axes (x right, y down, z along the view) to those of a [`Camera`].
+pub const OPTICAL: Quat = Quat::from_xyzw(-0.5, 0.5, -0.5, 0.5);
+
 /// From [`EgoScene::position`] (below the rear axle) to the middle of the ego car's footprint, metres
 /// forward.
 pub const EGO_MIDDLE_M: f32 = kernel::ego::CENTRE_M.x;
@@ -74,6 +77,14 @@ impl Camera {
     fn level(width: u32, height: u32) -> Self {
         let fov_x_rad = core::f32::consts::FRAC_PI_2;
         Self { mount: Mount::World, position: Vec3::ZERO, rotation: Quat::IDENTITY, fov_x_rad, width, height }
+    }
+
+    /// What its pixels are, row by row as a 3x3 matrix: square, without distortion, the middle of the first one at
+    /// (0.5, 0.5).
+    pub fn intrinsics(&self) -> [f64; 9] {
+        let (width, height) = (f64::from(self.width), f64::from(self.height));
+        let focal = 0.5 * width / f64::from(kernel::ops::tan(0.5 * self.fov_x_rad));
+        [focal, 0.0, 0.5 * width, 0.0, focal, 0.5 * height, 0.0, 0.0, 1.0]
     }
 
     /// Position and rotation in the world.

@@ -1,7 +1,8 @@
 //! What every part of the rig stands on: recordings and maps found by name, results that appear whole or not
-//! at all, progress and Ctrl-C, the clock, work spread over threads, pictures as files, what is said,
+//! at all, progress and Ctrl-C, the clock, work spread over threads, pictures as files, what may be asked for, what is said,
 //! and the words for it all.
 
+pub mod asked;
 pub mod chart;
 pub mod clock;
 pub mod failure;

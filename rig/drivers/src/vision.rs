@@ -1,9 +1,10 @@
 //! What the semantic driver sees in a simulated drive: in lockstep with the ticks, with a declared
 //! latency, so that the same run gives the same masks on a fast and on a slow machine.
 
+use std::io;
 use std::path::Path;
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 use base::failure::Usage;
 use kernel::World;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
@@ -120,7 +121,7 @@ fn load(path: &Path) -> anyhow::Result<Checkpoint> {
     let known = BUNDLED.join(", ");
     let sentence = format!("{}: no such checkpoint; expected one of {known}, truth, or an ONNX file", path.display());
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("onnx")) {
-        bail!("{sentence}");
+        return Err(io::Error::new(io::ErrorKind::NotFound, sentence).into());
     }
     Err(Usage(sentence).into())
 }

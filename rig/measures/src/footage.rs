@@ -1,5 +1,6 @@
 //! The scenes of a window of a recording or case, from a replay that compared every tick of it.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -33,10 +34,8 @@ impl Footage {
         let recording = Recording::open(path)?;
         let network = recording.network().with_context(file)?;
         let log = recording.into_log();
-        let ticks = window(&log, last, fps);
-        if ticks.is_empty() {
-            bail!("{}: holds no tick of that window", file());
-        }
+        let asked = Asked { last: Some(last), from: None, to: None, fps };
+        let ticks: Vec<Tick> = Window::of(&log, &asked).with_context(file)?.pictures().collect();
         let scenes = scenes(&log, &network, &ticks, see).with_context(file)?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let name = name.strip_suffix(".mcap").unwrap_or(&name).to_owned();
@@ -52,18 +51,61 @@ pub fn decisive_tick(log: &Log) -> Tick {
     }
 }
 
-/// The ticks of the window's frames, ascending; those before the log's first are left out.
-fn window(log: &Log, last: Tick, fps: u32) -> Vec<Tick> {
-    let end = decisive_tick(log);
-    let stride = Tick::from(TICK_HZ / fps);
-    let count = last.div_ceil(stride);
-    let tick = |before: Tick| end.checked_sub(before * stride).filter(|tick| *tick >= log.first_tick());
-    (0..count).rev().filter_map(tick).collect()
+/// The window of a log that is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// Its length, where it ends at the [`decisive_tick`]; the other two count only without it.
+    pub last: Option<Tick>,
+    /// Its first tick; none: that of the log.
+    pub from: Option<Tick>,
+    /// Its last tick; none: that of the log.
+    pub to: Option<Tick>,
+    /// Pictures a second, a divisor of the tick rate.
+    pub fps: u32,
+}
+
+/// A window of a log, and which of its ticks have a picture.
+#[derive(Clone, Debug)]
+pub struct Window {
+    /// The ticks, of which there is at least one.
+    pub ticks: RangeInclusive<Tick>,
+    /// Ticks from one picture to the next.
+    pub stride: Tick,
+    /// A tick that has a picture, if it is within.
+    pub anchor: Tick,
+}
+
+impl Window {
+    /// The ticks that are asked for, as far as the log holds them.
+    pub fn of(log: &Log, asked: &Asked) -> anyhow::Result<Self> {
+        let (first, last) = (log.first_tick(), log.last_tick());
+        let anchor = decisive_tick(log);
+        let (from, to) = match asked.last {
+            Some(length) => ((anchor + 1).saturating_sub(length), anchor),
+            None => (asked.from.unwrap_or(first), asked.to.unwrap_or(last)),
+        };
+        let ticks = from.max(first)..=to.min(last);
+        if ticks.is_empty() {
+            let seconds = |tick: Tick| tick as f64 / f64::from(TICK_HZ);
+            bail!("holds {:.2} s to {:.2} s of its run, and nothing of that window", seconds(first), seconds(last));
+        }
+        Ok(Self { ticks, stride: Tick::from(TICK_HZ / asked.fps), anchor })
+    }
+
+    /// Whether a tick has a picture.
+    pub fn has_picture(&self, tick: Tick) -> bool {
+        tick.abs_diff(self.anchor).is_multiple_of(self.stride)
+    }
+
+    /// The ticks that have a picture, ascending.
+    pub fn pictures(&self) -> impl Iterator<Item = Tick> {
+        self.ticks.clone().filter(|tick| self.has_picture(*tick))
+    }
 }
 
 /// The scenes at these ticks. A case made by another kernel cannot be replayed; its stored scenes
-/// can still be drawn.
-fn scenes(
+/// can still be drawn. `see` is shown the world at each tick, unless another kernel made the log.
+pub fn scenes(
     log: &Log,
     network: &Arc<RoadNetwork>,
     ticks: &[Tick],

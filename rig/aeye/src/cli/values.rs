@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use base::library;
+use base::{asked, library};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::Screens;
@@ -72,43 +72,36 @@ pub fn screens() -> impl TypedValueParser<Value = Screens> {
     PossibleValuesParser::new(["1", "3"]).map(|number| if number == "3" { Screens::Three } else { Screens::One })
 }
 
-/// Pixels of the greatest picture, 4096x4096: what every adapter draws and reads back in one piece.
-const MOST_PIXELS: u32 = 1 << 24;
-
 /// `WxH`, as in `512x256`.
 pub fn size(text: &str) -> Result<(u32, u32), String> {
-    let side = |s: &str| s.parse::<u32>().ok().filter(|n| (8..=8192).contains(n));
-    let sides = text.split_once('x').and_then(|(w, h)| Some((side(w)?, side(h)?)));
-    sides.filter(|(w, h)| w * h <= MOST_PIXELS).ok_or_else(|| {
-        format!("expected WIDTHxHEIGHT with sides of 8 to 8192 and at most {MOST_PIXELS} pixels, as in 512x256")
-    })
+    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let size = sides.filter(|size| asked::is_size(*size));
+    size.ok_or_else(|| format!("expected WIDTHxHEIGHT with {}, as in 512x256", asked::sizes()))
 }
 
 /// A time such as `3s`, `0.5s`, `2m` or `1h`, as ticks. A number alone is seconds.
-fn ticks(text: &str) -> Option<f64> {
+fn ticks(text: &str) -> Option<Tick> {
     let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
     let unit = units.iter().find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, *seconds)));
     let (number, seconds) = unit.unwrap_or((text, 1.0));
-    let ticks = number.parse::<f64>().ok()? * seconds * f64::from(TICK_HZ);
-    Some(ticks.round()).filter(|ticks| (0.0..=1e9).contains(ticks))
+    asked::ticks(number.parse::<f64>().ok()? * seconds)
 }
 
 /// How long something takes, as ticks.
 pub fn duration(text: &str) -> Result<Tick, String> {
-    let ticks = ticks(text).filter(|ticks| *ticks >= 1.0);
-    ticks.map(|t| t as Tick).ok_or_else(|| "expected a duration, as in 3s, 0.5s or 2m".into())
+    ticks(text).filter(|ticks| *ticks >= 1).ok_or_else(|| "expected a duration, as in 3s, 0.5s or 2m".into())
 }
 
 /// A time of a run, as a tick.
 pub fn moment(text: &str) -> Result<Tick, String> {
-    ticks(text).map(|t| t as Tick).ok_or_else(|| "expected a time of the run, as in 0s, 12.5s or 2m".into())
+    ticks(text).ok_or_else(|| "expected a time of the run, as in 0s, 12.5s or 2m".into())
 }
 
 /// A duration in whole seconds.
 pub fn seconds(range: RangeInclusive<u32>) -> impl Fn(&str) -> Result<u32, String> + Clone + Send + Sync + 'static {
     move |text| {
-        let seconds = ticks(text).map(|ticks| ticks / f64::from(TICK_HZ)).filter(|s| s.fract() == 0.0);
-        let seconds = seconds.map(|s| s as u32).filter(|s| range.contains(s));
+        let whole = ticks(text).filter(|ticks| ticks.is_multiple_of(TICK_HZ.into()));
+        let seconds = whole.map(|ticks| (ticks / Tick::from(TICK_HZ)) as u32).filter(|s| range.contains(s));
         let (low, high) = (range.start(), range.end());
         seconds.ok_or_else(|| format!("expected whole seconds from {low}s to {high}s, as in 20s or 2m"))
     }
@@ -146,8 +139,8 @@ pub fn people(text: &str) -> Result<u16, String> {
 
 /// Frames a second that fall on ticks.
 pub fn frame_rate(text: &str) -> Result<u32, String> {
-    let fps = text.parse::<u32>().ok().filter(|f| *f > 0 && TICK_HZ.is_multiple_of(*f));
-    fps.ok_or_else(|| format!("expected a divisor of {TICK_HZ}, as in 10"))
+    let fps = text.parse::<u32>().ok().filter(|fps| asked::is_frame_rate(*fps));
+    fps.ok_or_else(|| format!("expected {}", asked::frame_rates()))
 }
 
 #[cfg(test)]

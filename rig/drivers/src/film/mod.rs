@@ -4,6 +4,7 @@
 pub mod digests;
 pub mod reel;
 pub mod seen;
+mod viewpoint;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,6 +13,8 @@ use anyhow::Context;
 use kernel::RoadNetwork;
 use kernel::time::Tick;
 use replay::{Log, MaskShown, Recording};
+
+pub use viewpoint::Viewpoint;
 
 use crate::recorded_eye::RecordedEye;
 

@@ -129,8 +129,9 @@ pub fn evaluate(
     dataset: &Path,
     split: &str,
     asked: Option<u16>,
+    interrupt: &Interrupt,
 ) -> anyhow::Result<Evaluation> {
-    look(checkpoint, dataset, split, None, jobs(asked))
+    look((checkpoint, dataset, split), None, jobs(asked), interrupt)
 }
 
 /// As [`evaluate`]; the masks go below a new folder.
@@ -140,9 +141,10 @@ pub fn evaluate_and_keep(
     split: &str,
     predictions: &Path,
     asked: Option<u16>,
+    interrupt: &Interrupt,
 ) -> anyhow::Result<Evaluation> {
     let folder = PendingFolder::new(predictions)?;
-    let evaluation = look(checkpoint, dataset, split, Some(folder.path()), jobs(asked))?;
+    let evaluation = look((checkpoint, dataset, split), Some(folder.path()), jobs(asked), interrupt)?;
     folder.finish()?;
     Ok(evaluation)
 }
@@ -155,13 +157,11 @@ struct Seen {
 
 /// Looks at every frame on so many threads, and writes the masks below a folder if there is one.
 fn look(
-    checkpoint: &CheckpointChoice,
-    dataset: &Path,
-    split: &str,
+    (checkpoint, dataset, split): (&CheckpointChoice, &Path, &str),
     predictions: Option<&Path>,
     jobs: usize,
+    interrupt: &Interrupt,
 ) -> anyhow::Result<Evaluation> {
-    let interrupt = Interrupt::listen();
     check_whole(dataset)?;
     let images = split::images(dataset, split)?;
     let (first, _) = png::read(&images[0], 3)?;
@@ -302,7 +302,7 @@ mod tests {
     fn truth_is_perfect_and_ignored_pixels_stay_ignored() {
         let dir = tempfile::tempdir().expect("a folder");
         dataset(dir.path());
-        let all = evaluate(&CheckpointChoice::Truth, dir.path(), "val", None).expect("measured");
+        let all = evaluate(&CheckpointChoice::Truth, dir.path(), "val", None, &Interrupt::default()).expect("measured");
         assert_eq!((all.figures.miou, all.frames()), (Some(1.0), 4));
         assert_eq!(all.figures.pixels, 4 * 64 * 32 - 4 * 16 * 16, "a quarter of the upper half is Ground");
         assert_eq!(
@@ -320,8 +320,8 @@ mod tests {
         let (data, masks) = (dir.path().join("data"), dir.path().join("masks"));
         dataset(&data);
         let early = CheckpointChoice::Bundled("early");
-        let one = look(&early, &data, "val", Some(&masks), 1).expect("measured");
-        assert_eq!(one, look(&early, &data, "val", None, 3).expect("measured"));
+        let one = look((&early, &data, "val"), Some(&masks), 1, &Interrupt::default()).expect("measured");
+        assert_eq!(one, look((&early, &data, "val"), None, 3, &Interrupt::default()).expect("measured"));
         let mut sum = ConfusionMatrix::default();
         for image in split::images(&data, "val").expect("pictures") {
             let mask = png::read(&prediction(&masks, &image), 1).expect("a mask").1;
@@ -337,7 +337,8 @@ mod tests {
         let dir = tempfile::tempdir().expect("a folder");
         dataset(dir.path());
         let said = |checkpoint: &CheckpointChoice, split: &str| {
-            let said = evaluate(checkpoint, dir.path(), split, None).expect_err("refused").to_string();
+            let said = evaluate(checkpoint, dir.path(), split, None, &Interrupt::default());
+            let said = said.expect_err("refused").to_string();
             assert!(!said.contains('\n'), "{said}");
             said
         };

@@ -277,7 +277,8 @@ impl Stages<'_> {
         if self.interrupt.is_raised() {
             bail!("interrupted; the same command goes on from there");
         }
-        let evaluation = eval::evaluate(&CheckpointChoice::File(network.to_owned()), dataset, TEST, self.jobs)?;
+        let network = CheckpointChoice::File(network.to_owned());
+        let evaluation = eval::evaluate(&network, dataset, TEST, self.jobs, &self.interrupt)?;
         Ok(evaluation.scenes.into_iter().map(|scene| scene.matrix).collect())
     }
 

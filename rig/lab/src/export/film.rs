@@ -1,7 +1,6 @@
 //! Puts a window of a log into a file: simulates it again, comparing every tick, and draws.
 
 use std::io::Write;
-use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use anyhow::Context;
@@ -11,6 +10,7 @@ use kernel::scene::{EgoScene, SceneSnapshot};
 use kernel::time::{CLIP_STRIDE_TICKS, TICK_HZ, Tick};
 use kernel::{RoadNetwork, World};
 use measures::criticality::{SAMPLE_TICKS, Sampler, WARM_UP_SAMPLES};
+use measures::footage::Window;
 use replay::{Log, Replayer, nanoseconds};
 use serde::Serialize;
 use viewers::messages::actors::actors;
@@ -24,23 +24,6 @@ use super::happenings;
 use super::sink::Sink;
 use super::topics::Topics;
 use crate::looks::{Studio, look};
-
-/// What is exported of a log.
-pub struct Window {
-    /// The ticks.
-    pub ticks: RangeInclusive<Tick>,
-    /// Ticks from one picture to the next.
-    pub stride: Tick,
-    /// A tick that has a picture, if it is within.
-    pub anchor: Tick,
-}
-
-impl Window {
-    /// Whether a tick has a picture.
-    fn has_picture(&self, tick: Tick) -> bool {
-        tick.abs_diff(self.anchor).is_multiple_of(self.stride)
-    }
-}
 
 /// What is written of a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -57,7 +40,7 @@ impl Counts {
     /// That of a window of a log.
     pub fn of(log: &Log, window: &Window) -> Self {
         Self {
-            frames: window.ticks.clone().filter(|tick| window.has_picture(*tick)).count(),
+            frames: window.pictures().count(),
             poses: window.ticks.clone().count(),
             events: happenings::lines(log, &window.ticks).len(),
         }

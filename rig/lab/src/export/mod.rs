@@ -25,16 +25,16 @@ use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 use kernel::RoadNetwork;
-use kernel::time::{TICK_HZ, Tick};
-use measures::footage::decisive_tick;
-use replay::{Exported, Log, Recording, exported};
+use kernel::time::Tick;
+use measures::footage::{Asked, Window};
+use replay::{Exported, Recording, exported};
 use serde::Serialize;
 
 use super::looks::{Size, open_eyes};
 use super::pipeline::Studios;
 
+use film::Camera;
 pub use film::Counts;
-use film::{Camera, Window};
 use sink::Sink;
 
 /// The layout for viewers, in a folder of several exports.
@@ -190,7 +190,7 @@ fn export_one(
         bail!("{}: exists already and is no export; expected another place", out.display());
     }
     let (log, network) = (recording.log(), recording.network()?);
-    let window = window(log, args)?;
+    let window = Window::of(log, &Asked { last: args.last, from: args.from, to: args.to, fps: args.fps })?;
     let mut about = about(recording, &window, (args, size), camera.eyes);
     about.extend(origin(&network));
     let counts = Counts::of(log, &window);
@@ -209,22 +209,6 @@ fn export_one(
     })?;
     sink.finish()?.finish()?;
     Ok(export)
-}
-
-/// The ticks that are asked for.
-fn window(log: &Log, args: &Options) -> anyhow::Result<Window> {
-    let (first, last) = (log.first_tick(), log.last_tick());
-    let anchor = decisive_tick(log);
-    let (from, to) = match args.last {
-        Some(length) => ((anchor + 1).saturating_sub(length), anchor),
-        None => (args.from.unwrap_or(first), args.to.unwrap_or(last)),
-    };
-    let ticks = from.max(first)..=to.min(last);
-    if ticks.is_empty() {
-        let seconds = |tick: Tick| tick as f64 / f64::from(TICK_HZ);
-        bail!("holds {:.2} s to {:.2} s of its run, and nothing of that window", seconds(first), seconds(last));
-    }
-    Ok(Window { ticks, stride: Tick::from(TICK_HZ / args.fps), anchor })
 }
 
 /// What the export was made from.

@@ -5,61 +5,18 @@ use std::sync::Arc;
 use base::failure::{is_divergence, sentence};
 use base::image::Image;
 use base::newest::Newest;
-use drivers::film::Film;
 use drivers::film::reel::{Moment, Reel};
 use drivers::film::seen::{Picture, Seen, SeenTrack};
+use drivers::film::{Film, Viewpoint};
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::{ConfusionMatrix, Mask};
-use render::{Camera, Frame, RenderOptions, Renderer};
+use render::{Frame, RenderOptions, Renderer};
 
 use super::layers::{self, Layer};
 
 /// Width of images and true classes, pixels: the multiple of the semantic driver's camera nearest below.
 const WIDTH: u32 = 768;
-/// Ground from left to right in the view from above, metres.
-const TOP_SPAN_M: f32 = 70.0;
-
-/// From where a tick is looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Viewpoint {
-    /// As both drivers see.
-    #[default]
-    Driver,
-    /// From behind and above the car.
-    Chase,
-    /// Straight down, north up.
-    Top,
-}
-
-impl Viewpoint {
-    /// The one that follows, in a circle.
-    pub fn next(self) -> Self {
-        match self {
-            Self::Driver => Self::Chase,
-            Self::Chase => Self::Top,
-            Self::Top => Self::Driver,
-        }
-    }
-
-    /// What people call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Driver => "driver",
-            Self::Chase => "chase",
-            Self::Top => "from above",
-        }
-    }
-
-    fn camera(self, (width, height): (u32, u32)) -> Camera {
-        match self {
-            Self::Driver => Camera::driver(width, height),
-            Self::Chase => Camera::chase(width, height),
-            Self::Top => Camera::top(width, height, TOP_SPAN_M),
-        }
-    }
-}
-
 /// What is to be shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {

@@ -2,12 +2,13 @@
 
 use std::ops::RangeInclusive;
 
+use drivers::film::Viewpoint;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
 use replay::Log;
 
 use super::layers::Layer;
 use super::playback::Playback;
-use super::projector::{Request, Viewpoint};
+use super::projector::Request;
 use super::range::MarkedRange;
 use super::timeline::{Timeline, seconds};
 

@@ -1,21 +1,19 @@
 //! What the drivers' camera is, and the pictures that it took.
 
 use foxglove::messages::{CameraCalibration, CompressedImage};
-use glam::Quat;
+pub use render::camera::OPTICAL;
+
 use render::Camera;
 
 use super::parts::stamp;
 
 /// Frame of the camera's optical axes: x right, y down, z along the view.
 pub const CAMERA: &str = "camera";
-/// From optical axes to those of [`Camera`]: x along the view, y left, z up.
-pub const OPTICAL: Quat = Quat::from_xyzw(-0.5, 0.5, -0.5, 0.5);
 
 /// What the camera's pixels are: square, and without distortion.
 pub fn calibration(camera: &Camera, time_ns: u64) -> CameraCalibration {
-    let (width, height) = (f64::from(camera.width), f64::from(camera.height));
-    let focal = 0.5 * width / f64::from(kernel::ops::tan(0.5 * camera.fov_x_rad));
-    let (cx, cy) = (0.5 * width, 0.5 * height);
+    let k = camera.intrinsics();
+    let [fx, _, cx, _, fy, cy, ..] = k;
     CameraCalibration {
         timestamp: stamp(time_ns),
         frame_id: CAMERA.into(),
@@ -23,9 +21,9 @@ pub fn calibration(camera: &Camera, time_ns: u64) -> CameraCalibration {
         height: camera.height,
         distortion_model: "plumb_bob".into(),
         d: vec![0.0; 5],
-        k: vec![focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0],
+        k: k.to_vec(),
         r: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-        p: vec![focal, 0.0, cx, 0.0, 0.0, focal, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
+        p: vec![fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use base::png;
+use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
 use perception::cityscapes::{Kind, Place};
 use perception::training::Split;
@@ -81,7 +82,7 @@ fn listed(files: &[(String, Vec<u8>)]) -> Vec<(&str, &[u8])> {
 
 fn read_dataset(folder: &Path) -> anyhow::Result<()> {
     let trained = Split::read(folder, "train", 16, 8).map(drop).map_err(anyhow::Error::new);
-    lab::eval::evaluate(&CheckpointChoice::Truth, folder, "val", Some(1)).map(drop).and(trained)
+    lab::eval::evaluate(&CheckpointChoice::Truth, folder, "val", Some(1), &Interrupt::default()).map(drop).and(trained)
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What the window looks like: both views above, the facts and the events below them, and at the
 //! bottom the timeline with its buttons.
 
-use drivers::film::Film;
+use drivers::film::{Film, Viewpoint};
 use egui::{Align, Color32, Layout, Panel, Rect, RichText, Sense, Ui, Vec2};
 
 use super::colours::ATTENTION;
@@ -9,7 +9,7 @@ use super::{bar, facts};
 use crate::desktop::{HudText, Picture, overlay};
 use crate::view::hud;
 use crate::view::layers::Layer;
-use crate::view::projector::{Shown, Viewpoint};
+use crate::view::projector::Shown;
 use crate::view::timeline::seconds;
 use crate::view::viewing::{Action, FRAME_TICKS, Viewing};
 
