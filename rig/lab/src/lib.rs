@@ -17,6 +17,7 @@ pub mod plot;
 pub mod redrive;
 pub mod report;
 pub mod rerender;
+pub mod shots;
 pub mod store;
 pub mod train;
 pub mod verify;

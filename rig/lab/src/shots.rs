@@ -1,0 +1,149 @@
+//! A recording or case, opened so that any of its ticks can be drawn, and series of its pictures, each made when it is
+//! asked for.
+
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use anyhow::{Context, bail};
+use base::asked;
+use base::failure::Usage;
+use drivers::film::Viewpoint;
+use kernel::time::Tick;
+use kernel::{RoadNetwork, SceneSnapshot};
+use measures::footage::{Asked, Window, scenes};
+use render::{Camera, Frame, RenderOptions, Renderer};
+use replay::{Log, Recording};
+
+use super::looks::Size;
+
+/// Pictures whose scenes are simulated at once: a replay begins at a keyframe, up to 7 s before the first of them.
+const AT_ONCE: usize = 32;
+
+/// A file and what draws it; the map and the renderer are made when they are needed first.
+pub struct Stage {
+    path: PathBuf,
+    recording: Recording,
+    network: OnceLock<Arc<RoadNetwork>>,
+    renderer: Mutex<Option<Renderer>>,
+}
+
+impl Stage {
+    /// Reads a file; one whose writer was stopped is read as far as it goes.
+    pub fn open(path: &Path) -> anyhow::Result<Self> {
+        let recording = Recording::open(path)?;
+        Ok(Self { path: path.to_owned(), recording, network: OnceLock::new(), renderer: Mutex::new(None) })
+    }
+
+    /// Where it was read.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What it holds.
+    pub fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    fn log(&self) -> &Log {
+        self.recording.log()
+    }
+
+    fn network(&self) -> anyhow::Result<&Arc<RoadNetwork>> {
+        match self.network.get() {
+            Some(network) => Ok(network),
+            None => {
+                let network = self.recording.network()?;
+                Ok(self.network.get_or_init(|| network))
+            }
+        }
+    }
+
+    fn draw(&self, scene: &SceneSnapshot, camera: &Camera) -> anyhow::Result<Frame> {
+        let mut renderer = self.renderer.lock().unwrap_or_else(PoisonError::into_inner);
+        let renderer = match renderer.as_mut() {
+            Some(renderer) => renderer,
+            None => renderer.insert(Renderer::new(self.network()?, &RenderOptions::default())?),
+        };
+        Ok(renderer.draw(scene, camera)?)
+    }
+}
+
+/// Pictures of a window of a file, by ascending tick.
+pub struct Shots {
+    stage: Arc<Stage>,
+    camera: Camera,
+    ticks: Vec<Tick>,
+    /// Those of the pictures that were asked for last, from the first of them on.
+    scenes: Mutex<(usize, Vec<SceneSnapshot>)>,
+}
+
+/// A picture, and what it is of.
+pub struct Shot {
+    /// All its planes.
+    pub frame: Frame,
+    /// The scene.
+    pub scene: SceneSnapshot,
+    /// The camera.
+    pub camera: Camera,
+}
+
+impl Shots {
+    /// The pictures of a window; those of `last` are the ones that `aeye rerender` makes.
+    pub fn of_window(stage: &Arc<Stage>, asked: &Asked, viewpoint: Viewpoint, size: Size) -> anyhow::Result<Self> {
+        if !asked::is_frame_rate(asked.fps) {
+            return Err(Usage(format!("{} frames a second; expected {}", asked.fps, asked::frame_rates())).into());
+        }
+        let window = Window::of(stage.log(), asked).with_context(|| stage.path.display().to_string())?;
+        Self::of(stage, window.pictures().collect(), viewpoint, size)
+    }
+
+    /// The picture of a tick.
+    pub fn of_tick(stage: &Arc<Stage>, tick: Tick, viewpoint: Viewpoint, size: Size) -> anyhow::Result<Self> {
+        let (first, last) = held(stage.log()).into_inner();
+        if !(first..=last).contains(&tick) {
+            let path = stage.path.display();
+            return Err(Usage(format!("{path}: holds ticks {first} to {last}, and no tick {tick}")).into());
+        }
+        Self::of(stage, vec![tick], viewpoint, size)
+    }
+
+    fn of(stage: &Arc<Stage>, ticks: Vec<Tick>, viewpoint: Viewpoint, size: Size) -> anyhow::Result<Self> {
+        if !asked::is_size(size) {
+            let (width, height) = size;
+            return Err(Usage(format!("pictures of {width}x{height}; expected {}", asked::sizes())).into());
+        }
+        let scenes = Mutex::new((0, Vec::new()));
+        Ok(Self { stage: stage.clone(), camera: viewpoint.camera(size), ticks, scenes })
+    }
+
+    /// Their ticks.
+    pub fn ticks(&self) -> &[Tick] {
+        &self.ticks
+    }
+
+    /// Draws one of them.
+    pub fn draw(&self, index: usize) -> anyhow::Result<Shot> {
+        let file = || self.stage.path.display().to_string();
+        let scene = self.scene(index).with_context(file)?;
+        let frame = self.stage.draw(&scene, &self.camera).with_context(file)?;
+        Ok(Shot { frame, scene, camera: self.camera })
+    }
+
+    fn scene(&self, index: usize) -> anyhow::Result<SceneSnapshot> {
+        let mut known = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
+        let from = index - index % AT_ONCE;
+        if known.0 != from || known.1.is_empty() {
+            let Some(ticks) = self.ticks.get(from..self.ticks.len().min(from + AT_ONCE)) else {
+                bail!("has {} pictures, and none at {index}", self.ticks.len());
+            };
+            *known = (from, scenes(self.stage.log(), self.stage.network()?, ticks, |_, _| ())?);
+        }
+        known.1.get(index - from).cloned().context("a scene for each tick")
+    }
+}
+
+/// The ticks that can be drawn.
+fn held(log: &Log) -> RangeInclusive<Tick> {
+    log.first_tick()..=log.last_tick()
+}
