@@ -1,5 +1,5 @@
 //! The build without windows asks for nothing but a C compiler: by the names of its packages, none of them links a
-//! library of the system, and none is there for windows, wheels or CUDA.
+//! library of the system, and none is there for windows, wheels or CUDA. Nor is one for the Python package.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,11 +13,11 @@ const OUTSIDE: [&str; 11] =
 /// that is compiled along.
 const SELF_CONTAINED: [&str; 3] = ["linux-raw-sys", "renderdoc-sys", "zstd-sys"];
 
-/// Packages that are compiled for the program on this machine, by name.
-fn packages(features: &[&str]) -> BTreeSet<String> {
+/// Packages that are compiled for one of the workspace on this machine, by name.
+fn packages(package: &str, features: &[&str]) -> BTreeSet<String> {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace is above"));
-    cargo.args(["tree", "--locked", "--offline", "--package=aeye", "--edges=normal,build", "--prefix=none"]);
+    cargo.args(["tree", "--locked", "--offline", "--package", package, "--edges=normal,build", "--prefix=none"]);
     let output = cargo.arg("--format={p}").args(features).output().expect("cargo starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).expect("UTF-8");
@@ -32,8 +32,9 @@ fn from_outside(packages: &BTreeSet<String>) -> Vec<&str> {
 
 #[test]
 fn a_build_without_windows_asks_the_system_for_no_library() {
-    assert_eq!(from_outside(&packages(&["--no-default-features"])), Vec::<&str>::new());
-    let full = packages(&[]);
+    assert_eq!(from_outside(&packages("aeye", &["--no-default-features"])), Vec::<&str>::new());
+    assert_eq!(from_outside(&packages("python", &[])), Vec::<&str>::new());
+    let full = packages("aeye", &[]);
     let found = from_outside(&full);
     for (word, feature) in [("libudev-sys", "live"), ("winit", "live"), ("tract-cuda", "cuda")] {
         assert!(found.contains(&word), "{word} is no longer what {feature} asks for: {found:?}");

@@ -10,7 +10,7 @@ const MAX_FILE_LINES: usize = 600;
 const MAX_FUNCTION_LINES: usize = 100;
 
 /// Every crate by its folder, and which others of the workspace it may depend on; each stands above those.
-const IMPORTS: [(&str, &[&str]); 14] = [
+const IMPORTS: [(&str, &[&str]); 15] = [
     ("tests/hunt", &[]),
     ("intake", &[]),
     ("kernel", &["hunt"]),
@@ -23,6 +23,7 @@ const IMPORTS: [(&str, &[&str]); 14] = [
     ("rig/measures", &["kernel", "replay", "base", "drivers", "study"]),
     ("rig/viewers", &["kernel", "render", "base"]),
     ("rig/lab", &["kernel", "perception", "render", "replay", "base", "drivers", "study", "measures", "viewers"]),
+    ("python", &["kernel", "perception", "render", "replay", "base", "drivers", "measures", "lab"]),
     ("rig/live", &["kernel", "perception", "render", "replay", "base", "drivers", "study", "measures", "viewers"]),
     (
         "rig/aeye",
@@ -37,7 +38,7 @@ const ONLOOKERS: [&str; 2] = ["tests", "benches"];
 const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows/", "rig/live/src/view/windows/"];
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str]); 14] = [
+const NAMED_ONCE: [(&str, &[&str]); 16] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
     ("roxmltree::", &["kernel/src/baking/limits/"]),
@@ -54,6 +55,8 @@ const NAMED_ONCE: [(&str, &[&str]); 14] = [
         &["rig/viewers/src/server/access.rs", "rig/viewers/src/server/client.rs", "rig/viewers/src/server/tests.rs"],
     ),
     ("evdev::", &["rig/live/src/drive/force/linux.rs"]),
+    ("pyo3::", &["python/src/"]),
+    ("numpy::", &["python/src/"]),
     // What cannot be printed must not end a drive: `base::say` and `aeye::print` see to that.
     ("println!(", &[]),
 ];

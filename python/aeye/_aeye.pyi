@@ -1,0 +1,306 @@
+"""The native half of the package `aeye`, which is what to import."""
+
+from collections.abc import Iterator
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal, TypedDict, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+CLASSES: dict[int, str]
+"""The 23 classes, tags of CARLA 0.9.10: what they are called by the number that masks have."""
+
+class SeatControls(TypedDict):
+    steering: NDArray[np.float32]
+    throttle: NDArray[np.float32]
+    brake: NDArray[np.float32]
+    hand_brake: NDArray[np.bool_]
+    reverse: NDArray[np.bool_]
+    seen: NDArray[np.bool_]
+    indicate_left: NDArray[np.bool_]
+    indicate_right: NDArray[np.bool_]
+    horn: NDArray[np.bool_]
+    lights: NDArray[np.bool_]
+    wipers: NDArray[np.bool_]
+
+class Controls(TypedDict):
+    semantic: SeatControls
+    safety: SeatControls
+
+class Events(TypedDict):
+    tick: NDArray[np.uint64]
+    kind: NDArray[np.str_]
+    actor: NDArray[np.uint32]
+    speed_mps: NDArray[np.float32]
+
+class Masks(TypedDict):
+    tick_shown: NDArray[np.uint64]
+    tick_of_frame: NDArray[np.uint64]
+    digest: NDArray[np.uint64]
+
+class Labels(TypedDict):
+    label: Literal["walker", "vehicle", "rules", "boredom"]
+    comment: str
+    perception_caused: bool | None
+
+class Ego(TypedDict):
+    position_m: NDArray[np.float32]
+    rotation_xyzw: NDArray[np.float32]
+    speed_mps: float
+    wheel_angle_rad: float
+
+class Actors(TypedDict):
+    id: NDArray[np.uint32]
+    instance_id: NDArray[np.uint16]
+    kind: NDArray[np.str_]
+    position_m: NDArray[np.float32]
+    rotation_xyzw: NDArray[np.float32]
+    size_m: NDArray[np.float32]
+    speed_mps: NDArray[np.float32]
+
+@final
+class Camera:
+    """The pinhole camera of a frame, in the axes that OpenCV uses: x to the right, y down, z along the view."""
+
+    @property
+    def width(self) -> int:
+        """Pixels a row."""
+
+    @property
+    def height(self) -> int:
+        """Rows."""
+
+    @property
+    def intrinsics(self) -> NDArray[np.float64]:
+        """The matrix K, float64 of shape (3, 3), pixels. The middle of the first pixel is at (0.5, 0.5)."""
+
+    @property
+    def world_from_camera(self) -> NDArray[np.float64]:
+        """From camera to world, float64 of shape (4, 4), metres: x east, y north, z up."""
+
+@final
+class Frame:
+    """A picture of a tick, its ground truth, and what there is in the scene. The arrays are the renderer's own memory."""
+
+    @property
+    def tick(self) -> int:
+        """The tick, 60 a second."""
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time since the start of the run, seconds."""
+
+    @property
+    def rgb(self) -> NDArray[np.uint8]:
+        """Colour, uint8 of shape (height, width, 3): red, green, blue (sRGB)."""
+
+    @property
+    def class_ids(self) -> NDArray[np.uint8]:
+        """Class of each pixel, uint8 of shape (height, width): keys of `aeye.CLASSES`."""
+
+    @property
+    def instance_ids(self) -> NDArray[np.uint16]:
+        """Instance of each pixel, uint16 of shape (height, width).
+
+        0 for none, up to 32767 an actor's number, from 32768 on a parked car's, 65535 the ego car.
+        """
+
+    @property
+    def depth_m(self) -> NDArray[np.float32]:
+        """Distance along the view, float32 of shape (height, width), metres; infinite for the sky."""
+
+    @property
+    def camera(self) -> Camera:
+        """Where it was taken from, and how."""
+
+    @property
+    def ego(self) -> Ego:
+        """The ego car.
+
+        `position_m`, shape (3,), is below the middle of its rear axle; `rotation_xyzw`, shape (4,), a quaternion from
+        its axes (x ahead, y left, z up) to the world's; `wheel_angle_rad` is positive to the right.
+        """
+
+    @property
+    def actors(self) -> Actors:
+        """The other road users, a row each.
+
+        `instance_id` is that of `instance_ids`; `position_m`, shape (n, 3), the middle of the footprint;
+        `rotation_xyzw` has the shape (n, 4); `size_m`, shape (n, 3), is length, width and height.
+        """
+
+@final
+class Frames:
+    """The frames of a window, as a sequence: each is drawn when it is asked for, and none is kept."""
+
+    @property
+    def ticks(self) -> NDArray[np.uint64]:
+        """Their ticks, uint64 of shape (n,), ascending."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int, /) -> Frame: ...
+    def __iter__(self) -> Iterator[Frame]: ...
+
+@final
+class Recording:
+    """A recording or corner case. Nothing of it can be changed."""
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+
+    @property
+    def kind(self) -> Literal["recording", "case"]:
+        """`recording` or `case`."""
+
+    @property
+    def finished(self) -> bool:
+        """Whether its writer came to its end; if not, up to a second is missing."""
+
+    @property
+    def map(self) -> str:
+        """Name of the map."""
+
+    @property
+    def seed(self) -> int:
+        """Seed of the scenario."""
+
+    @property
+    def scenario(self) -> str:
+        """What the run started from, as TOML."""
+
+    @property
+    def first_tick(self) -> int:
+        """The tick of the state that it starts from, 0 in recordings; it can be drawn, and has no controls."""
+
+    @property
+    def ticks(self) -> NDArray[np.uint64]:
+        """Ticks, 60 a second, uint64 of shape (n,): of the rows of `controls` and `hashes`."""
+
+    @property
+    def controls(self) -> Controls:
+        """What both drivers did at each tick, all of shape (n,).
+
+        `steering` is in [-1, 1], positive to the right, `throttle` and `brake` are in [0, 1].
+        """
+
+    @property
+    def hashes(self) -> NDArray[np.uint32]:
+        """The low 32 bits of the hash of the world's state at each tick, uint32 of shape (n,)."""
+
+    @property
+    def events(self) -> Events:
+        """What happened, a row each: `actor` is 0 for none, `speed_mps` that of the ego car."""
+
+    @property
+    def masks(self) -> Masks:
+        """The masks that came onto the semantic driver's screen, a row each."""
+
+    @property
+    def labels(self) -> Labels | None:
+        """What was said about the takeover; None where nothing was said.
+
+        `perception_caused` is None where nobody tried.
+        """
+
+    def inspect(self, *, reveal: bool = False) -> dict[str, Any]:
+        """What is in the file, as `aeye inspect --json` prints it.
+
+        It is simulated for that, which takes a while. The checkpoint of blind drives is told with `reveal` only.
+        """
+
+    def verify(self, *, rewind: int | None = None) -> dict[str, Any]:
+        """Simulates it again and compares every tick, as `aeye verify` does, and gives what that prints with `--json`.
+
+        With `rewind`, 1 to 600, it also goes back so many ticks again and again.
+
+        Raises DivergedError where a tick differs (which one and how it says), EngineError where another version of the
+        simulation made the file.
+        """
+
+    def frames(
+        self,
+        *,
+        last: float | None = 3.0,
+        from_: float | None = None,
+        to: float | None = None,
+        fps: int = 10,
+        size: tuple[int, int] = (256, 128),
+        camera: Literal["driver", "chase", "top"] = "driver",
+    ) -> Frames:
+        """The frames of a window.
+
+        Those are the last seconds before the takeover (or the end), as `aeye rerender` draws them, or, with `from_` or
+        `to` or with `last=None`, those between two times of the run (seconds; None: its start, its end). `size` is
+        (width, height) in pixels, `fps` a divisor of 60.
+
+        Raises InputError where there is nothing in the window, or a value cannot be.
+        """
+
+    def frame(
+        self,
+        tick: int,
+        *,
+        size: tuple[int, int] = (256, 128),
+        camera: Literal["driver", "chase", "top"] = "driver",
+    ) -> Frame:
+        """The picture of a tick.
+
+        Raises InputError where the file has no such tick, EngineError where another version of the simulation made it
+        (of its cases, the ticks with a stored scene can be drawn) or no graphics driver is there.
+        """
+
+@final
+class Segmenter:
+    """A segmentation network: `early` or `full`, which come with the package, or an ONNX file that takes one image.
+
+    Raises FileError where there is no such file, InputError where it is no such network.
+    """
+
+    def __new__(cls, checkpoint: str | PathLike[str]) -> Segmenter: ...
+    @property
+    def name(self) -> str:
+        """`early`, `full`, or the file's name without its ending."""
+
+    @property
+    def digest(self) -> str:
+        """BLAKE3 of the file, hexadecimal."""
+
+    @property
+    def classes(self) -> dict[int, str]:
+        """The classes that it tells apart: what they are called by the number that masks have."""
+
+    def predict(self, rgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """The class of every pixel, uint8 of shape (height, width), of a picture.
+
+        That is uint8 of shape (height, width, 3): red, green, blue. Pictures of a size that the network does not take
+        are resampled for it.
+
+        Raises InputError for any other array, EngineError where the network fails.
+        """
+
+def open(path: str | PathLike[str]) -> Recording:
+    """Opens a recording or corner case and checks every byte of it.
+
+    One whose writer was stopped is read as far as it goes (`finished` tells).
+
+    Raises FileError where it cannot be read, InputError where it is damaged or no recording.
+    """
+
+def evaluate(
+    checkpoint: str | PathLike[str],
+    dataset: str | PathLike[str],
+    *,
+    split: str = "val",
+    jobs: int | None = None,
+) -> dict[str, Any]:
+    """Measures a checkpoint (`early`, `full`, `truth` or an ONNX file) on a split of a dataset in the layout of Cityscapes.
+
+    Gives what `aeye eval --json` prints: IoU of each class, confusion matrix, recall of pedestrians. `jobs` frames are
+    looked at at the same time (None: one a core); the result does not depend on it. Ctrl-C ends it.
+
+    Raises FileError where something is missing, InputError where it is not what it should be.
+    """

@@ -1,0 +1,228 @@
+//! Recordings and corner cases.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use base::asked;
+use base::failure::Failed;
+use base::json::json_line;
+use drivers::film::Viewpoint;
+use drivers::vision::DEFAULT_SIZE;
+use kernel::time::Tick;
+use lab::shots::{Shots, Stage};
+use lab::{inspect, verify};
+use measures::footage::Asked;
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use replay::Log;
+
+use crate::errors::{diverged, input, raise};
+use crate::frame::Frame;
+use crate::frames::Frames;
+use crate::log;
+use crate::work::{parsed, work};
+
+/// A recording or corner case. Nothing of it can be changed.
+#[pyclass(frozen, module = "aeye")]
+pub struct Recording {
+    stage: Arc<Stage>,
+}
+
+/// Opens a recording or corner case and checks every byte of it.
+///
+/// One whose writer was stopped is read as far as it goes (`finished` tells).
+///
+/// Raises FileError where it cannot be read, InputError where it is damaged or no recording.
+#[pyfunction]
+pub fn open(py: Python<'_>, path: PathBuf) -> PyResult<Recording> {
+    let stage = py.detach(|| Stage::open(&path)).map_err(|error| raise(&error))?;
+    Ok(Recording { stage: Arc::new(stage) })
+}
+
+impl Recording {
+    fn log(&self) -> &Log {
+        self.stage.recording().log()
+    }
+
+    fn path_buf(&self) -> &Path {
+        self.stage.path()
+    }
+}
+
+#[pymethods]
+impl Recording {
+    /// The file.
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.path_buf().to_owned()
+    }
+
+    /// `recording` or `case`.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        if self.log().manifest.case.is_some() { "case" } else { "recording" }
+    }
+
+    /// Whether its writer came to its end; if not, up to a second is missing.
+    #[getter]
+    fn finished(&self) -> bool {
+        self.stage.recording().finished()
+    }
+
+    /// Name of the map.
+    #[getter]
+    fn map(&self) -> &str {
+        &self.log().manifest.scenario.map
+    }
+
+    /// Seed of the scenario.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.log().manifest.scenario.seed
+    }
+
+    /// What the run started from, as TOML.
+    #[getter]
+    fn scenario(&self) -> String {
+        self.log().manifest.scenario.to_toml()
+    }
+
+    /// The tick of the state that it starts from, 0 in recordings; it can be drawn, and has no controls.
+    #[getter]
+    fn first_tick(&self) -> Tick {
+        self.log().first_tick()
+    }
+
+    /// Ticks, 60 a second, uint64 of shape (n,): of the rows of `controls` and `hashes`.
+    #[getter]
+    fn ticks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+        (self.log().first_tick() + 1..=self.log().last_tick()).collect::<Vec<_>>().into_pyarray(py)
+    }
+
+    /// What both drivers did at each tick: `semantic` and `safety`, each with `steering` (float32, [-1, 1], positive to
+    /// the right), `throttle` and `brake` (float32, [0, 1]), and the switches `hand_brake`, `reverse`, `seen`,
+    /// `indicate_left`, `indicate_right`, `horn`, `lights` and `wipers` (bool), all of shape (n,).
+    #[getter]
+    fn controls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        log::controls(py, self.log())
+    }
+
+    /// The low 32 bits of the hash of the world's state at each tick, uint32 of shape (n,).
+    #[getter]
+    fn hashes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.log().hashes.clone().into_pyarray(py)
+    }
+
+    /// What happened, a row each: `tick` (uint64), `kind` (names, as in `aeye inspect --json`), `actor` (uint32, 0 for
+    /// none), `speed_mps` (float32, of the ego car).
+    #[getter]
+    fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        log::events(py, self.log())
+    }
+
+    /// The masks that came onto the semantic driver's screen, a row each: `tick_shown`, `tick_of_frame`, `digest`
+    /// (uint64).
+    #[getter]
+    fn masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        log::masks(py, self.log())
+    }
+
+    /// What was said about the takeover: `label` (walker, vehicle, rules or boredom), `comment`, and
+    /// `perception_caused` (bool, or None where nobody tried); None where nothing was said.
+    #[getter]
+    fn labels<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        log::labels(py, self.log())
+    }
+
+    /// What is in the file, as `aeye inspect --json` prints it: how it came about, what its run came to, what the
+    /// drivers did, how critical it was. It is simulated for that, which takes a while.
+    ///
+    /// The checkpoint of blind drives is told with `reveal` only.
+    #[pyo3(signature = (*, reveal = false))]
+    fn inspect<'py>(&self, py: Python<'py>, reveal: bool) -> PyResult<Bound<'py, PyAny>> {
+        let files = vec![self.path()];
+        let options = inspect::Options { files, reveal, jobs: Some(1) };
+        let line = work(py, move |_| {
+            let mut line = String::new();
+            let inspected = inspect::inspect(&options, |contents| {
+                line = json_line(contents)?;
+                Ok(())
+            })?;
+            Failed::check(&inspected.failed, inspected.read)?;
+            Ok(line)
+        })?;
+        parsed(py, &line)
+    }
+
+    /// Simulates it again and compares every tick, as `aeye verify` does; with `rewind`, 1 to 600, also goes back so
+    /// many ticks again and again. Gives what `aeye verify --json` prints.
+    ///
+    /// Raises DivergedError where a tick differs (which one and how it says), EngineError where another version of the
+    /// simulation made the file.
+    #[pyo3(signature = (*, rewind = None))]
+    fn verify<'py>(&self, py: Python<'py>, rewind: Option<u16>) -> PyResult<Bound<'py, PyAny>> {
+        let files = vec![self.path()];
+        let options = verify::Options { files, rewind, against: None, jobs: Some(1) };
+        let (line, text, is_equal) = work(py, move |_| {
+            let (mut line, mut text) = (String::new(), String::new());
+            let verified = verify::verify(&options, |checked| {
+                (line, text) = (json_line(checked)?, checked.to_string());
+                Ok(())
+            })?;
+            Failed::check(&verified.failed, verified.checked)?;
+            Ok((line, text, verified.diverged.is_empty()))
+        })?;
+        if is_equal { parsed(py, &line) } else { Err(diverged(text)) }
+    }
+
+    /// The frames of a window: the last seconds before the takeover (or the end), as `aeye rerender` draws them, or,
+    /// with `from_` or `to` or with `last=None`, those between two times of the run (seconds; None: its start, its end).
+    ///
+    /// `size` is (width, height) in pixels, `fps` a divisor of 60, `camera` one of `driver`, `chase` and `top`.
+    ///
+    /// Raises InputError where there is nothing in the window, or a value cannot be.
+    #[pyo3(signature = (*, last = Some(3.0), from_ = None, to = None, fps = 10, size = DEFAULT_SIZE, camera = "driver"))]
+    fn frames(
+        &self,
+        last: Option<f64>,
+        from_: Option<f64>,
+        to: Option<f64>,
+        fps: u32,
+        size: (u32, u32),
+        camera: &str,
+    ) -> PyResult<Frames> {
+        let is_between = from_.is_some() || to.is_some();
+        let asked = Asked {
+            last: last.filter(|_| !is_between).map(ticks).transpose()?,
+            from: from_.map(ticks).transpose()?,
+            to: to.map(ticks).transpose()?,
+            fps,
+        };
+        let shots = Shots::of_window(&self.stage, &asked, viewpoint(camera)?, size);
+        Ok(shots.map_err(|error| raise(&error))?.into())
+    }
+
+    /// The picture of a tick.
+    ///
+    /// Raises InputError where the file has no such tick, EngineError where another version of the simulation made it
+    /// (of its cases, the ticks with a stored scene can be drawn) or no graphics driver is there.
+    #[pyo3(signature = (tick, *, size = DEFAULT_SIZE, camera = "driver"))]
+    fn frame(&self, py: Python<'_>, tick: Tick, size: (u32, u32), camera: &str) -> PyResult<Frame> {
+        let shots = Shots::of_tick(&self.stage, tick, viewpoint(camera)?, size).map_err(|error| raise(&error))?;
+        Frames::from(shots).draw(py, 0)
+    }
+
+    fn __repr__(&self) -> String {
+        let (kind, path, log) = (self.kind(), self.path_buf().display(), self.log());
+        format!("Recording({kind} {path}, ticks {} to {})", log.first_tick(), log.last_tick())
+    }
+}
+
+fn viewpoint(name: &str) -> PyResult<Viewpoint> {
+    name.parse().map_err(|error| raise(&anyhow::Error::from(error)))
+}
+
+fn ticks(seconds: f64) -> PyResult<Tick> {
+    asked::ticks(seconds).ok_or_else(|| input(format!("{seconds} s; expected a time of the run in seconds, 0 or more")))
+}
