@@ -2,7 +2,7 @@
 
 PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers \
 	libxkbcommon-x11-0 libxcursor1 libxi6 libxrandr2 libx11-xcb1
-TEST_PACKAGES := xvfb xdotool
+TEST_PACKAGES := xvfb xdotool python3-venv
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 
 # What checks the dependencies; a version that is not this one is replaced.
@@ -27,6 +27,7 @@ test: setup tools
 	cargo clippy --release --workspace --all-targets -- -D warnings
 	cargo clippy --release -p aeye --no-default-features --all-targets -- -D warnings
 	cargo test --release --workspace
+	python/test.sh $(dir $(AEYE))../python
 	kernel/tests/portable.sh
 
 ## The same hashes, keyframes and recordings from other builds, aarch64 among them.

@@ -1,0 +1,86 @@
+"""Recordings and cases: tables, and what the commands say of them."""
+
+import shutil
+from pathlib import Path
+
+import aeye
+import numpy as np
+import pytest
+
+OLD = Path(__file__).parents[2] / "tests" / "old_recordings" / "1-corner.case.mcap"
+
+
+def test_rows_are_ticks(drive):
+    recording = aeye.open(str(drive))
+    assert (recording.kind, recording.map, recording.finished) == ("recording", "city", True)
+    assert recording.first_tick == 0 and recording.path == drive
+    ticks = recording.ticks
+    assert ticks.dtype == np.uint64 and np.array_equal(ticks, np.arange(1, len(ticks) + 1))
+    assert recording.hashes.shape == ticks.shape and recording.hashes.dtype == np.uint32
+    for seat in ("semantic", "safety"):
+        columns = recording.controls[seat]
+        assert all(column.shape == ticks.shape for column in columns.values())
+        assert {columns[name].dtype for name in ("steering", "throttle", "brake")} == {np.dtype(np.float32)}
+        assert np.abs(columns["steering"]).max() <= 1 and 0 <= columns["throttle"].min()
+        assert columns["hand_brake"].dtype == np.bool_
+    assert recording.controls["semantic"]["throttle"].max() > 0, "somebody drives"
+    assert recording.labels is None
+    assert len(recording.masks["digest"]) > 0 and recording.masks["digest"].dtype == np.uint64
+
+
+@pytest.mark.parametrize("which", ["drive", "case"])
+def test_inspect_and_verify_say_what_the_commands_say(which, request, said):
+    path = request.getfixturevalue(which)
+    recording = aeye.open(path)
+    told = said("inspect", path)
+    assert recording.inspect() == told
+    assert recording.verify() == said("verify", path)
+    assert recording.verify(rewind=30)["ok"] is True
+    events = recording.events
+    assert events["tick"].tolist() == [event["tick"] for event in told["events"]]
+    assert events["kind"].tolist() == [event["kind"] for event in told["events"]]
+    assert events["actor"].tolist() == [event["actor"] for event in told["events"]]
+    assert recording.scenario == told["scenario"]
+
+
+def test_a_case_has_a_window_and_labels(case):
+    recording = aeye.open(case)
+    assert recording.kind == "case"
+    assert recording.labels is not None and recording.labels["label"] in ("walker", "vehicle", "rules", "boredom")
+    takeover = recording.inspect()["intervention"]["tick"]
+    frames = recording.frames()
+    assert (len(frames), frames.ticks[-1]) == (30, takeover)
+    assert "Intervention" in recording.events["kind"]
+
+
+def test_a_case_of_another_version_is_read_but_not_replayed():
+    recording = aeye.open(OLD)
+    assert recording.kind == "case" and recording.labels["label"] == recording.inspect()["label"]
+    with pytest.raises(aeye.Error, match="made on the map|made by kernel"):
+        recording.verify()
+
+
+def test_errors_are_one_sentence_of_the_kind_that_fits(drive, tmp_path):
+    recording = aeye.open(drive)
+    gone, damaged = tmp_path / "gone.mcap", tmp_path / "damaged.mcap"
+    shutil.copy(drive, damaged)
+    with damaged.open("r+b") as file:
+        file.seek(5000)
+        file.write(b"damage")
+    refused = [
+        (aeye.FileError, OSError, lambda: aeye.open(gone), "gone.mcap: "),
+        (aeye.InputError, ValueError, lambda: aeye.open(damaged), "damaged.mcap: damaged at "),
+        (aeye.InputError, ValueError, lambda: recording.frames(fps=7), "7 frames a second; expected a divisor of 60"),
+        (aeye.InputError, ValueError, lambda: recording.frames(fps=0), "expected a divisor of 60"),
+        (aeye.InputError, ValueError, lambda: recording.frames(size=(4, 4)), "4x4; expected sides of 8 to 8192"),
+        (aeye.InputError, ValueError, lambda: recording.frames(last=float("nan")), "expected a time of the run"),
+        (aeye.InputError, ValueError, lambda: recording.frames(from_=500.0), "nothing of that window"),
+        (aeye.InputError, ValueError, lambda: recording.frames(camera="side"), "expected driver, chase or top"),
+        (aeye.InputError, ValueError, lambda: recording.frame(10**6), "holds ticks 0 to "),
+    ]
+    for kind, builtin, call, words in refused:
+        with pytest.raises(kind) as caught:
+            call()
+        said = str(caught.value)
+        assert words in said and "\n" not in said
+        assert isinstance(caught.value, builtin) and isinstance(caught.value, aeye.Error)
