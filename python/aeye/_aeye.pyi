@@ -3,16 +3,29 @@
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, TypedDict, final
+from typing import Any, Literal, TypedDict, final, type_check_only
 
 import numpy as np
 from numpy.typing import NDArray
+
+__all__ = [
+    "CLASSES",
+    "Camera",
+    "Frame",
+    "Frames",
+    "Recording",
+    "Segmenter",
+    "__version__",
+    "evaluate",
+    "open",
+]
 
 __version__: str
 
 CLASSES: dict[int, str]
 """The 23 classes, tags of CARLA 0.9.10: what they are called by the number that masks have."""
 
+@type_check_only
 class SeatControls(TypedDict):
     steering: NDArray[np.float32]
     throttle: NDArray[np.float32]
@@ -26,32 +39,38 @@ class SeatControls(TypedDict):
     lights: NDArray[np.bool_]
     wipers: NDArray[np.bool_]
 
+@type_check_only
 class Controls(TypedDict):
     semantic: SeatControls
     safety: SeatControls
 
+@type_check_only
 class Events(TypedDict):
     tick: NDArray[np.uint64]
     kind: NDArray[np.str_]
     actor: NDArray[np.uint32]
     speed_mps: NDArray[np.float32]
 
+@type_check_only
 class Masks(TypedDict):
     tick_shown: NDArray[np.uint64]
     tick_of_frame: NDArray[np.uint64]
     digest: NDArray[np.uint64]
 
+@type_check_only
 class Labels(TypedDict):
     label: Literal["walker", "vehicle", "rules", "boredom"]
     comment: str
     perception_caused: bool | None
 
+@type_check_only
 class Ego(TypedDict):
     position_m: NDArray[np.float32]
     rotation_xyzw: NDArray[np.float32]
     speed_mps: float
     wheel_angle_rad: float
 
+@type_check_only
 class Actors(TypedDict):
     id: NDArray[np.uint32]
     instance_id: NDArray[np.uint16]
@@ -83,7 +102,10 @@ class Camera:
 
 @final
 class Frame:
-    """A picture of a tick, its ground truth, and what there is in the scene. The arrays are the renderer's own memory."""
+    """A picture of a tick, its ground truth, and what there is in the scene.
+
+    The arrays are the renderer's own memory.
+    """
 
     @property
     def tick(self) -> int:
@@ -297,10 +319,11 @@ def evaluate(
     split: str = "val",
     jobs: int | None = None,
 ) -> dict[str, Any]:
-    """Measures a checkpoint (`early`, `full`, `truth` or an ONNX file) on a split of a dataset in the layout of Cityscapes.
+    """Measures a checkpoint on a split of a dataset in the layout of Cityscapes.
 
-    Gives what `aeye eval --json` prints: IoU of each class, confusion matrix, recall of pedestrians. `jobs` frames are
-    looked at at the same time (None: one a core); the result does not depend on it. Ctrl-C ends it.
+    The checkpoint is `early`, `full`, `truth` or an ONNX file. Gives what `aeye eval --json` prints: IoU of each class,
+    confusion matrix, recall of pedestrians. `jobs` frames are looked at at the same time (None: one a core); the result
+    does not depend on it. Ctrl-C ends it.
 
     Raises FileError where something is missing, InputError where it is not what it should be.
     """

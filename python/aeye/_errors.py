@@ -14,7 +14,7 @@ class InputError(Error, ValueError):
 
 
 class EngineError(Error, RuntimeError):
-    """Something cannot be computed here: no graphics driver, another version of the simulation, a network that fails."""
+    """Something cannot be computed here: no graphics driver, another simulation, a network that fails."""
 
 
 class DivergedError(EngineError):

@@ -48,6 +48,12 @@ impl Frames {
         self.draw(py, index)
     }
 
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let builtins = slf.py().import("builtins")?;
+        let numbers = builtins.call_method1("range", (slf.len()?,))?;
+        builtins.call_method1("map", (slf.getattr("__getitem__")?, numbers))
+    }
+
     fn __repr__(&self) -> String {
         format!("Frames(of {} ticks)", self.__len__())
     }

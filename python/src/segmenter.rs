@@ -102,7 +102,8 @@ fn picture(array: &Bound<'_, PyAny>) -> PyResult<Frame> {
     let (Ok(width), Ok(height), 3) = (u32::try_from(width), u32::try_from(height), channels) else {
         return Err(refuse());
     };
-    // One that is a part of another array, or turned, has gaps.
-    let rgb = array.as_slice().map_or_else(|_| array.as_array().iter().copied().collect(), <[u8]>::to_vec);
+    // One that is a part of another array, or turned, does not lie in memory row by row.
+    let pixels = array.as_array();
+    let rgb = pixels.as_slice().map_or_else(|| pixels.iter().copied().collect(), <[u8]>::to_vec);
     Ok(Frame { width, height, rgb, ..Frame::default() })
 }

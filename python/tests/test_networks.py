@@ -23,6 +23,7 @@ def test_masks_have_the_size_of_their_pictures_however_these_lie_in_memory():
     whole = network.predict(noise[::2, ::2].copy())
     assert (whole.shape, whole.dtype) == ((128, 256), np.uint8)
     assert np.array_equal(network.predict(noise[::2, ::2]), whole), "a part with gaps"
+    assert np.array_equal(network.predict(np.asfortranarray(noise[::2, ::2])), whole), "column by column"
     assert network.predict(noise[:96, :192]).shape == (96, 192)
     assert np.array_equal(network.predict(noise[::2, ::2]), whole), "as before the other size"
     assert set(np.unique(whole).tolist()) <= network.classes.keys()

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, bail};
+use anyhow::Context;
+use base::failure::Usage;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, SceneSnapshot, World};
 use replay::{Case, Divergence, Error, Log, Recording, Replayer};
@@ -87,7 +88,10 @@ impl Window {
         let ticks = from.max(first)..=to.min(last);
         if ticks.is_empty() {
             let seconds = |tick: Tick| tick as f64 / f64::from(TICK_HZ);
-            bail!("holds {:.2} s to {:.2} s of its run, and nothing of that window", seconds(first), seconds(last));
+            let (first, last) = (seconds(first), seconds(last));
+            return Err(
+                Usage(format!("holds {first:.2} s to {last:.2} s of its run, and nothing of that window")).into()
+            );
         }
         Ok(Self { ticks, stride: Tick::from(TICK_HZ / asked.fps), anchor })
     }
