@@ -50,10 +50,10 @@ impl Streets<'_> {
 
     /// The part of a step that leaves others room, and on the road keeps off vehicles: it goes along what is in its way.
     pub(super) fn free_step(&self, index: usize, near: &[Near], step: Vec2, on_road: bool) -> Vec2 {
-        let outline = Outline::of(&self.bodies[index]);
-        let after = |step: Vec2| Outline { middle: outline.middle + step, ..outline };
         let mut part = step;
-        if on_road && self.runs_into_vehicle(index, &after(step)) {
+        let outline = Outline::of(&self.bodies[index]);
+        let then = Outline { middle: outline.middle + step, ..outline };
+        if on_road && self.runs_into_vehicle(index, &then) {
             let off_m = outline.radius_m + OFF_VEHICLES_M;
             let reach_m = off_m + outline.half.length() + step.length();
             for block in self.vehicles_near(self.bodies[index].position, reach_m) {

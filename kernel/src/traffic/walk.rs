@@ -162,9 +162,8 @@ impl Streets<'_> {
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
         }
-        let outline = Outline::of(&self.bodies[index]);
-        let then = Outline { middle: outline.middle + step, ..outline };
-        let hindered = on_road && self.runs_into_vehicle(index, &then);
+        let then = |outline: Outline| Outline { middle: outline.middle + step, ..outline };
+        let hindered = on_road && self.runs_into_vehicle(index, &then(Outline::of(&self.bodies[index])));
         if hindered || !slack::is_free(near, step) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
