@@ -213,7 +213,8 @@ impl Streets<'_> {
         let mut leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
         let held_up = leeway.most_mps < HELD_UP_MPS;
         let blocks = edge.crosswalk.and_then(|_| self.blocked(index, ahead));
-        let begins = edge.crosswalk.filter(|_| next.speed_mps < HELD_UP_MPS && gone_m(edge, next) < KERB_M);
+        let half_m = outline::half_m(self.bodies[index].kind);
+        let begins = edge.crosswalk.filter(|_| next.speed_mps < HELD_UP_MPS && gone_m(edge, next) < KERB_M + half_m);
         if begins.is_some_and(|crosswalk| !self.may_cross(index, crosswalk, next)) {
             halt(next);
         } else if let Some(block) = blocks {
@@ -231,7 +232,6 @@ impl Streets<'_> {
         let likes_m = together.aside_m.unwrap_or_else(|| self.likes_m(index, edge, direction));
         drift(edge, direction, likes_m, &leeway, moved_m, next);
         // The front stays off the road, and the rear is off it before the crosswalk is left.
-        let half_m = outline::half_m(self.bodies[index].kind);
         let ends_m = if edge.crosswalk.is_some() { -half_m } else { half_m };
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         if left_m <= ends_m {
