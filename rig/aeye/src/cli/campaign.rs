@@ -37,7 +37,6 @@ const DRIVES: [&str; 15] = [
 #[derive(Args, Clone, Debug)]
 #[command(group = clap::ArgGroup::new("goal").args(["km", "cases", "pedestrian_cases"]))]
 #[command(group = clap::ArgGroup::new("end").required(true).multiple(true).args(ENDS))]
-#[command(group = clap::ArgGroup::new("drives").multiple(true).args(DRIVES))]
 pub struct CampaignArgs {
     /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
     /// the same runs.
@@ -93,10 +92,10 @@ pub struct CampaignArgs {
     #[arg(long, value_name = "I/N", requires = "runs", conflicts_with = "print_scenario")]
     pub shard: Option<Share>,
     /// Drive nothing, and put together what shards drove.
-    #[arg(long, requires = "folders", conflicts_with = "drives")]
+    #[arg(long, requires = "folders", conflicts_with_all = DRIVES)]
     pub collect: bool,
     /// The folders of shards for `--collect`, or folders that hold those.
-    #[arg(requires = "collect", value_name = "DIR", value_parser = file())]
+    #[arg(value_name = "DIR", value_parser = file())]
     pub folders: Vec<PathBuf>,
     /// Print the scenario of the first run, as a file for `--scenario`, and do nothing.
     #[arg(long)]

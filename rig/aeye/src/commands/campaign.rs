@@ -15,6 +15,12 @@ pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
         print::result(json, &collect(&Collection { folders, jobs: args.jobs, out })?)?;
         return Ok(Verdict::Ok);
     }
+    if let Some(folder) = args.folders.first() {
+        let folder = folder.display();
+        return Err(
+            Usage(format!("{folder}: is given to a campaign; expected --collect, which alone takes folders")).into()
+        );
+    }
     let options = options(args)?;
     if args.print_scenario {
         print::text(&plan(&options)?.scenario_of(0).to_toml())?;

@@ -64,12 +64,13 @@ mod tests {
         for of in 1..6 {
             let shares: Vec<Share> = (1..=of).map(|shard| Share { shard, of }).collect();
             for runs in 0..13 {
-                let numbers = |share: &Share| (0..).map_while(move |turn| share.number(turn).filter(|n| *n < runs));
-                let mut all: Vec<u32> = shares.iter().flat_map(|share| numbers(share).collect::<Vec<_>>()).collect();
+                let below = |number: &u32| *number < runs;
+                let numbers = |share: Share| (0..).map_while(move |turn| share.number(turn).filter(below));
+                let mut all: Vec<u32> = shares.iter().flat_map(|share| numbers(*share)).collect();
                 all.sort_unstable();
                 assert_eq!(all, (0..runs).collect::<Vec<_>>());
-                assert!(shares.iter().all(|share| numbers(share).count() == share.count(runs) as usize));
-                assert!(shares.iter().all(|share| numbers(share).all(|run| share.has(run))));
+                assert!(shares.iter().all(|share| numbers(*share).count() == share.count(runs) as usize));
+                assert!(shares.iter().all(|share| numbers(*share).all(|run| share.has(run))));
             }
         }
         assert_eq!(Share { shard: 2, of: 2 }.number(u32::MAX), None);
