@@ -139,6 +139,14 @@ mod tests {
     }
 
     #[test]
+    fn two_side_by_side_nearer_than_they_may_be_get_on_and_apart() {
+        let to = Vec2::Y * 0.55;
+        let near = [Near { to, distance_m: 0.55, apart_m: 0.57, velocity: Vec2::ZERO, id: 1 }];
+        let part = free_part(&near, Vec2::new(0.02, 1e-4));
+        assert!(part.x > 0.019 && part.y < 0.0 && is_free(&near, part), "{part}");
+    }
+
+    #[test]
     fn who_is_in_the_way_is_slid_along() {
         let near = [seen(Vec2::ZERO, Vec2::new(0.42, 0.1))];
         let part = free_part(&near, Vec2::new(0.02, 0.0));
