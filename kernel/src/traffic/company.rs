@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use super::body::Body;
 use super::nearby::Nearby;
-use super::outline::{APART_M, Outline};
+use super::outline::{self, APART_M};
 
 /// People look this far for each other, metres.
 pub(super) const SIGHT_M: f32 = 2.5;
@@ -44,14 +44,16 @@ pub(super) struct Near {
 pub(super) fn gather(crowd: &Nearby, bodies: &[Body], index: usize, near: &mut Vec<Near>) {
     near.clear();
     let here = bodies[index].position;
-    let outline = Outline::of(&bodies[index]);
+    let is_round = !bodies[index].kind.is_wheeled_on_foot();
     for other in crowd.near(index, SIGHT_M) {
         let body = &bodies[other];
         let to = body.position - here;
         let (flat, rise_m) = (to.truncate(), to.z.abs());
         if flat.length_squared() < SIGHT_M * SIGHT_M && rise_m < LEVEL_M {
-            let is_round = !outline.is_long() && !body.kind.is_wheeled_on_foot();
-            let (to, apart_m) = if is_round { (flat, APART_M) } else { outline.apart(&Outline::of(body)) };
+            let (to, apart_m) = match is_round && !body.kind.is_wheeled_on_foot() {
+                true => (flat, APART_M),
+                false => outline::apart(&bodies[index], body),
+            };
             near.push(Near {
                 to,
                 distance_m: to.length(),

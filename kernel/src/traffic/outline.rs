@@ -36,6 +36,13 @@ fn radius_m(kind: ActorKind) -> f32 {
     if kind.is_wheeled_on_foot() { kind.size_m().y * 0.5 } else { PERSON_M }
 }
 
+/// From the nearest place of the line of one to that of another, and how long that is at least, metres.
+#[cold]
+pub(super) fn apart(one: &Body, other: &Body) -> (Vec2, f32) {
+    let (one, other) = (Outline::of(one), Outline::of(other));
+    (one.to(&other), one.radius_m + other.radius_m + SKIN_M)
+}
+
 impl Outline {
     /// That of somebody where it is.
     pub fn of(body: &Body) -> Self {
@@ -59,11 +66,6 @@ impl Outline {
     pub fn places(&self) -> impl Iterator<Item = Vec2> + use<> {
         let Self { middle, half, .. } = *self;
         PLACES.into_iter().take(if self.is_long() { PLACES.len() } else { 1 }).map(move |share| middle + half * share)
-    }
-
-    /// From the nearest place of its line to that of another's, and how long that is at least, metres.
-    pub fn apart(&self, other: &Self) -> (Vec2, f32) {
-        (self.to(other), self.radius_m + other.radius_m + SKIN_M)
     }
 
     /// From the nearest place of its line to that of another's.

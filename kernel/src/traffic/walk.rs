@@ -154,16 +154,18 @@ impl Streets<'_> {
         };
         let (mut place, mut step) = step_to(&next);
         let on_road = self.is_on_road(was);
-        let free = self.free_step(index, near, step, on_road);
+        let then = |step: Vec2| Outline { middle: before + step, ..Outline::of(&self.bodies[index]) };
+        let hinders = |step: Vec2| on_road && self.runs_into_vehicle(index, &then(step));
+        let mut hindered = hinders(step);
+        let free = self.free_step(index, near, step, hindered);
         if free != step {
             let change = free - step;
             next.s_m += change.dot(place.forward.truncate().normalize_or(Vec2::X));
             next.offset_m += change.dot(place.left());
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
+            hindered = hinders(step);
         }
-        let then = |outline: Outline| Outline { middle: outline.middle + step, ..outline };
-        let hindered = on_road && self.runs_into_vehicle(index, &then(Outline::of(&self.bodies[index])));
         if hindered || !slack::is_free(near, step) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
@@ -187,8 +189,7 @@ impl Streets<'_> {
 
     /// Turns somebody who stands. `near` is scratch.
     pub(super) fn turn_where_it_stands(&self, index: usize, near: &mut Vec<Near>, toward: Vec2, next: &mut Walker) {
-        // Those who are round need no room for it.
-        if outline::half_m(self.bodies[index].kind) > 0.0 {
+        if self.bodies[index].kind.is_wheeled_on_foot() {
             gather(self.crowd, self.bodies, index, near);
         }
         self.turn(index, near, Vec2::ZERO, toward, next);
