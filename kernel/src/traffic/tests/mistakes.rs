@@ -367,14 +367,15 @@ fn two_that_touch_because_of_a_mistake_stand_and_are_taken_off_the_road() {
     assert!(gone_s.iter().all(|s| (55..80).contains(s)), "{gone_s:?}");
 }
 
-/// Who collides when a vehicle rolls at 9 m/s, with an acceleration, into one whose middle is so far before it and stands.
-fn who_collides(behind_m: f32, accel_cmps2: i16) -> [bool; 2] {
+/// Which of two collide that are so far behind each other, by their middles, and go so fast (m/s, who is ahead first); who is
+/// behind accelerates.
+fn who_collides(behind_m: f32, speeds_mps: [f32; 2], accel_cmps2: i16) -> [bool; 2] {
     let mut traffic = start(&crossroads(Signs::Yield), 20, 4, HazardRates::NONE);
     let vehicles = &mut traffic.actors.state.vehicles;
     let (first, second) = (vehicles[0], vehicles[1]);
     let s_m = 80.0 - behind_m;
-    vehicles[0] = Vehicle { lane: 0, before: 0, s_m: 80.0, speed_mps: 0.0, ..first };
-    vehicles[1] = Vehicle { lane: 0, before: 0, s_m, speed_mps: 9.0, accel_cmps2, ..second };
+    vehicles[0] = Vehicle { lane: 0, before: 0, s_m: 80.0, speed_mps: speeds_mps[0], ..first };
+    vehicles[1] = Vehicle { lane: 0, before: 0, s_m, speed_mps: speeds_mps[1], accel_cmps2, ..second };
     traffic.actors.place_bodies();
     let mut collided = BTreeSet::new();
     let tell = |t: &Traffic, _| {
@@ -389,10 +390,10 @@ fn who_collides(behind_m: f32, accel_cmps2: i16) -> [bool; 2] {
 
 #[test]
 fn who_brakes_too_late_has_a_collision_too() {
-    assert_eq!(who_collides(5.5, -800), [true; 2]);
+    assert_eq!(who_collides(5.5, [0.0, 9.0], -800), [true; 2]);
 }
 
 #[test]
-fn who_touches_somebody_for_no_reason_has_a_collision_too() {
-    assert_eq!(who_collides(4.0, 0), [true; 2]);
+fn who_rolls_on_while_it_touches_somebody_has_a_collision_too() {
+    assert_eq!(who_collides(4.0, [0.5, 0.0], 0), [true; 2]);
 }
