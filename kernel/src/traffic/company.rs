@@ -4,16 +4,12 @@ use glam::Vec2;
 
 use super::body::Body;
 use super::nearby::Nearby;
-use super::outline::{Outline, PERSON_M};
+use super::outline::{self, APART_M};
 
 /// People look this far for each other, metres.
 pub(super) const SIGHT_M: f32 = 2.5;
-/// Between the outlines of two people there is always so much, metres.
-const SKIN_M: f32 = 0.02;
-/// The middles of two without wheels are never nearer to each other, metres. Distances below are those of such two; others
-/// keep as much more as their outlines are wider.
-pub(super) const APART_M: f32 = 2.0 * PERSON_M + SKIN_M;
-/// Sideways distance between their middles at which they pass each other, metres.
+/// Sideways distance between their middles at which two without wheels pass each other, metres. Others keep as much more as they
+/// are wider, here and below.
 const SHOULDER_M: f32 = 0.55;
 /// Whoever is farther aside is in nobody's way, metres.
 const ASIDE_M: f32 = 0.45;
@@ -48,14 +44,16 @@ pub(super) struct Near {
 pub(super) fn gather(crowd: &Nearby, bodies: &[Body], index: usize, near: &mut Vec<Near>) {
     near.clear();
     let here = bodies[index].position;
-    let outline = Outline::of(&bodies[index]);
+    let is_round = !bodies[index].kind.is_wheeled_on_foot();
     for other in crowd.near(index, SIGHT_M) {
         let body = &bodies[other];
         let to = body.position - here;
         let (flat, rise_m) = (to.truncate(), to.z.abs());
         if flat.length_squared() < SIGHT_M * SIGHT_M && rise_m < LEVEL_M {
-            let other = Outline::of(body);
-            let (to, apart_m) = (outline.to(&other), outline.radius_m + other.radius_m + SKIN_M);
+            let (to, apart_m) = match is_round && !body.kind.is_wheeled_on_foot() {
+                true => (flat, APART_M),
+                false => outline::apart(&bodies[index], body),
+            };
             near.push(Near {
                 to,
                 distance_m: to.length(),

@@ -56,11 +56,12 @@ impl Actors {
     }
 }
 
-/// Whether it is looked at in a tick whom a vehicle touches: when it decides, and while it is likely to.
+/// Whether it is looked at in a tick whom a vehicle touches: when it moves and decides, and while it is likely to.
 fn looks(vehicle: &Vehicle, around: &Surroundings<'_>) -> bool {
     let late = vehicle.speed_mps > 0.0 && vehicle.accel_cmps2 < TOO_LATE_CMPS2;
     let likely = late || vehicle.lapse.endangers();
-    (likely || vehicle.decides(around.tick)) && !around.holds(vehicle.id)
+    let moves = vehicle.speed_mps > 0.0 && vehicle.decides(around.tick);
+    (likely || moves) && !around.holds(vehicle.id)
 }
 
 fn touches(a: &Body, b: &Body) -> bool {

@@ -1,5 +1,7 @@
 //! Who is near whom or a place, kept in order along an axis from tick to tick.
 
+use std::cmp::Ordering;
+
 use glam::{Vec2, Vec3};
 
 /// The axis: askew to streets, which mostly follow the compass, so that few are in one place along it.
@@ -12,6 +14,21 @@ fn along(position: Vec3) -> f32 {
 /// The place in the order of who is not present.
 const ABSENT: u32 = u32::MAX;
 
+fn compare(a: &(f32, u32), b: &(f32, u32)) -> Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+}
+
+/// Sorts by insertion, which is quickest for what is nearly in order: from one tick to the next hardly anybody changes places.
+fn put_right(order: &mut [(f32, u32)]) {
+    for i in 1..order.len() {
+        let mut at = i;
+        while at > 0 && compare(&order[at], &order[at - 1]) == Ordering::Less {
+            order.swap(at, at - 1);
+            at -= 1;
+        }
+    }
+}
+
 /// Those of a list by their place.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Nearby {
@@ -19,22 +36,26 @@ pub(super) struct Nearby {
     order: Vec<(f32, u32)>,
     /// For each index its place in the order; [`ABSENT`] for who is not present.
     rank: Vec<u32>,
+    /// For each index its place along the axis.
+    along: Vec<Option<f32>>,
 }
 
 impl Nearby {
     /// Takes the positions of those who are present out of a list of so many. The order follows from them alone.
     pub fn rebuild(&mut self, count: usize, position: impl Fn(usize) -> Option<Vec3>) {
-        let at = |i: u32| position(i as usize).map(along);
-        let there = (0..count as u32).filter_map(|i| Some((at(i)?, i)));
-        let same = self.rank.len() == count && self.order.iter().all(|(_, i)| at(*i).is_some());
-        if same && self.order.len() == there.clone().count() {
-            self.order.iter_mut().for_each(|(place, i)| *place = at(*i).unwrap_or(*place));
+        self.along.clear();
+        self.along.extend((0..count).map(|i| position(i).map(along)));
+        let at = &self.along;
+        let present = at.iter().flatten().count();
+        let same = self.rank.len() == count && self.order.len() == present;
+        if same && self.order.iter().all(|(_, i)| at[*i as usize].is_some()) {
+            self.order.iter_mut().for_each(|(place, i)| *place = at[*i as usize].unwrap_or(*place));
+            put_right(&mut self.order);
         } else {
             self.order.clear();
-            self.order.extend(there);
+            self.order.extend((0..count as u32).filter_map(|i| Some((at[i as usize]?, i))));
+            self.order.sort_by(compare);
         }
-        // Stable, as that is quick for what is nearly in order: from one tick to the next hardly anybody changes places.
-        self.order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         self.rank.clear();
         self.rank.resize(count, ABSENT);
         for (rank, (_, index)) in self.order.iter().enumerate() {

@@ -48,12 +48,12 @@ impl Streets<'_> {
         nearest(toe, near.filter(|block| block.nearest_from(toe).length() < off_m(block)))
     }
 
-    /// The part of a step that leaves others room, and on the road keeps off vehicles: it goes along what is in its way.
-    pub(super) fn free_step(&self, index: usize, near: &[Near], step: Vec2, on_road: bool) -> Vec2 {
-        let outline = Outline::of(&self.bodies[index]);
-        let after = |step: Vec2| Outline { middle: outline.middle + step, ..outline };
+    /// The part of a step that leaves others room, and keeps off the vehicles that it is `hindered` by: it goes along what is in
+    /// its way.
+    pub(super) fn free_step(&self, index: usize, near: &[Near], step: Vec2, hindered: bool) -> Vec2 {
         let mut part = step;
-        if on_road && self.runs_into_vehicle(index, &after(step)) {
+        if hindered {
+            let outline = Outline::of(&self.bodies[index]);
             let off_m = outline.radius_m + OFF_VEHICLES_M;
             let reach_m = off_m + outline.half.length() + step.length();
             for block in self.vehicles_near(self.bodies[index].position, reach_m) {
@@ -86,13 +86,17 @@ impl Streets<'_> {
     pub(super) fn turn(&self, index: usize, near: &[Near], step: Vec2, toward: Vec2, next: &mut Walker) {
         let heading = next.heading;
         self.face(toward, next);
-        let was = Outline::of(&self.bodies[index]);
-        if was.is_long() && next.heading != heading {
-            let is = was.moved(step, next);
-            let free = slack::may_turn(near, step, was.half, is.half);
-            let off_vehicles = !self.is_on_road(&self.walkers[index]) || !self.runs_into_vehicle(index, &is);
-            next.heading = if free && off_vehicles { next.heading } else { heading };
+        // Those who are round need no room for it.
+        if self.bodies[index].kind.is_wheeled_on_foot() && next.heading != heading {
+            next.heading = if self.may_turn(index, near, step, next) { next.heading } else { heading };
         }
+    }
+
+    fn may_turn(&self, index: usize, near: &[Near], step: Vec2, next: &Walker) -> bool {
+        let was = Outline::of(&self.bodies[index]);
+        let is = was.moved(step, next);
+        let off_vehicles = || !self.is_on_road(&self.walkers[index]) || !self.runs_into_vehicle(index, &is);
+        slack::may_turn(near, step, was.half, is.half) && off_vehicles()
     }
 
     /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where

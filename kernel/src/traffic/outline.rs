@@ -9,7 +9,11 @@ use super::body::Body;
 use super::walker::{Walker, radians};
 
 /// Radius of who has no wheels, metres.
-pub(super) const PERSON_M: f32 = 0.2;
+const PERSON_M: f32 = 0.2;
+/// Between two outlines there is always so much, metres.
+const SKIN_M: f32 = 0.02;
+/// The middles of two without wheels are never nearer to each other, metres.
+pub(super) const APART_M: f32 = 2.0 * PERSON_M + SKIN_M;
 /// Places of the line at which it is looked at, as shares of its half; a circle has the first alone.
 const PLACES: [f32; 3] = [0.0, 1.0, -1.0];
 
@@ -30,6 +34,13 @@ pub(super) fn half_m(kind: ActorKind) -> f32 {
 
 fn radius_m(kind: ActorKind) -> f32 {
     if kind.is_wheeled_on_foot() { kind.size_m().y * 0.5 } else { PERSON_M }
+}
+
+/// From the nearest place of the line of one to that of another, and how long that is at least, metres.
+#[cold]
+pub(super) fn apart(one: &Body, other: &Body) -> (Vec2, f32) {
+    let (one, other) = (Outline::of(one), Outline::of(other));
+    (one.to(&other), one.radius_m + other.radius_m + SKIN_M)
 }
 
 impl Outline {
@@ -59,9 +70,6 @@ impl Outline {
 
     /// From the nearest place of its line to that of another's.
     pub fn to(&self, other: &Self) -> Vec2 {
-        if !self.is_long() && !other.is_long() {
-            return other.middle - self.middle;
-        }
         let from = |place: Vec2| other.nearest(place) - place;
         let back = |place: Vec2| place - self.nearest(place);
         let ways = [

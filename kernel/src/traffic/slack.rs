@@ -15,9 +15,17 @@ const BEND_M: f32 = 0.01;
 /// Times that a step is turned along whoever is in its way.
 const TURNS: u32 = 3;
 
+/// Whoever is nearer than that steps aside by so much at most in a tick, metres: else two could stand side by side for ever, as
+/// neither may move in the least towards the other.
+const BACK_M: f32 = 0.002;
+
 /// How far somebody may move towards another, metres.
 fn half_slack_m(near: &Near) -> f32 {
-    (0.5 * (near.distance_m - near.apart_m)).max(0.0)
+    half_gap_m(near).max(0.0)
+}
+
+fn half_gap_m(near: &Near) -> f32 {
+    0.5 * (near.distance_m - near.apart_m)
 }
 
 /// Whether a step leaves everybody's half to them.
@@ -38,7 +46,8 @@ pub(super) fn free_part(near: &[Near], step: Vec2) -> Vec2 {
     let mut part = step;
     for _ in 0..TURNS {
         for n in close() {
-            part -= n.to / n.distance_m * (part.dot(n.to) / n.distance_m - half_slack_m(n)).max(0.0);
+            let toward_m = part.dot(n.to) / n.distance_m;
+            part -= n.to / n.distance_m * (toward_m - half_gap_m(n).max(-BACK_M)).max(0.0);
         }
     }
     let share = |n: &Near| {
@@ -62,8 +71,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::traffic::company::APART_M;
-    use crate::traffic::outline::Outline;
+    use crate::traffic::outline::{APART_M, Outline};
 
     fn seen(from: Vec2, to: Vec2) -> Near {
         Near { to: to - from, distance_m: to.distance(from), apart_m: APART_M, velocity: Vec2::ZERO, id: 1 }
@@ -128,6 +136,14 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn two_side_by_side_nearer_than_they_may_be_get_on_and_apart() {
+        let to = Vec2::Y * 0.55;
+        let near = [Near { to, distance_m: 0.55, apart_m: 0.57, velocity: Vec2::ZERO, id: 1 }];
+        let part = free_part(&near, Vec2::new(0.02, 1e-4));
+        assert!(part.x > 0.019 && part.y < 0.0 && is_free(&near, part), "{part}");
     }
 
     #[test]

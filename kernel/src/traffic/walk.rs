@@ -154,17 +154,18 @@ impl Streets<'_> {
         };
         let (mut place, mut step) = step_to(&next);
         let on_road = self.is_on_road(was);
-        let free = self.free_step(index, near, step, on_road);
+        let then = |step: Vec2| Outline { middle: before + step, ..Outline::of(&self.bodies[index]) };
+        let hinders = |step: Vec2| on_road && self.runs_into_vehicle(index, &then(step));
+        let mut hindered = hinders(step);
+        let free = self.free_step(index, near, step, hindered);
         if free != step {
             let change = free - step;
             next.s_m += change.dot(place.forward.truncate().normalize_or(Vec2::X));
             next.offset_m += change.dot(place.left());
             (place, step) = step_to(&next);
             next.speed_mps = next.speed_mps.min(step.length() / TICK_S);
+            hindered = hinders(step);
         }
-        let outline = Outline::of(&self.bodies[index]);
-        let then = Outline { middle: outline.middle + step, ..outline };
-        let hindered = on_road && self.runs_into_vehicle(index, &then);
         if hindered || !slack::is_free(near, step) {
             next = Walker { wait_ticks: next.wait_ticks, speed_mps: 0.0, ..*was };
             (place, step) = (self.places[index], Vec2::ZERO);
@@ -188,8 +189,7 @@ impl Streets<'_> {
 
     /// Turns somebody who stands. `near` is scratch.
     pub(super) fn turn_where_it_stands(&self, index: usize, near: &mut Vec<Near>, toward: Vec2, next: &mut Walker) {
-        // Those who are round need no room for it.
-        if outline::half_m(self.bodies[index].kind) > 0.0 {
+        if self.bodies[index].kind.is_wheeled_on_foot() {
             gather(self.crowd, self.bodies, index, near);
         }
         self.turn(index, near, Vec2::ZERO, toward, next);
@@ -214,7 +214,8 @@ impl Streets<'_> {
         let mut leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
         let held_up = leeway.most_mps < HELD_UP_MPS;
         let blocks = edge.crosswalk.and_then(|_| self.blocked(index, ahead));
-        let begins = edge.crosswalk.filter(|_| next.speed_mps < HELD_UP_MPS && gone_m(edge, next) < KERB_M);
+        let half_m = outline::half_m(self.bodies[index].kind);
+        let begins = edge.crosswalk.filter(|_| next.speed_mps < HELD_UP_MPS && gone_m(edge, next) < KERB_M + half_m);
         if begins.is_some_and(|crosswalk| !self.may_cross(index, crosswalk, next)) {
             halt(next);
         } else if let Some(block) = blocks {
@@ -232,7 +233,6 @@ impl Streets<'_> {
         let likes_m = together.aside_m.unwrap_or_else(|| self.likes_m(index, edge, direction));
         drift(edge, direction, likes_m, &leeway, moved_m, next);
         // The front stays off the road, and the rear is off it before the crosswalk is left.
-        let half_m = outline::half_m(self.bodies[index].kind);
         let ends_m = if edge.crosswalk.is_some() { -half_m } else { half_m };
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         if left_m <= ends_m {

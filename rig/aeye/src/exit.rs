@@ -2,8 +2,9 @@
 
 use std::process::ExitCode;
 
-use base::failure::{Usage, is_divergence};
+use base::failure::{Usage, is_divergence, may_pass};
 use base::progress::interrupted;
+use lab::campaign::TooFew;
 
 /// What a command that ran to its end says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,13 +22,18 @@ impl Verdict {
     }
 }
 
-/// The exit code as a number: 0 ok, 1 error (unreadable, damaged), 2 usage, 3 a check failed.
+/// What `sysexits.h` calls a temporary failure.
+const TRY_AGAIN: u8 = 75;
+
+/// The exit code as a number: 0 ok, 1 error (unreadable, damaged), 2 usage, 3 a check failed or runs are missing,
+/// 75 what may go well if it is tried again (the disk is full, another process is at work).
 pub fn number(result: &anyhow::Result<Verdict>) -> u8 {
     match result {
         Ok(Verdict::Ok) => 0,
         Ok(Verdict::CheckFailed) => 3,
         Err(error) if error.is::<Usage>() => 2,
-        Err(error) if is_divergence(error) => 3,
+        Err(error) if is_divergence(error) || error.is::<TooFew>() => 3,
+        Err(error) if may_pass(error) => TRY_AGAIN,
         Err(_) => 1,
     }
 }

@@ -15,9 +15,10 @@ const GROUPS: [(&str, &[&str]); 6] = [
 ];
 
 /// A call of each command.
-const EXAMPLES: [&str; 25] = [
+const EXAMPLES: [&str; 26] = [
     "aeye drive --headless --map city --checkpoint early --max-time 2m --record drive.mcap",
     "aeye campaign --checkpoint early,full --km 5 --out runs",
+    "aeye campaign --collect shards --out runs",
     "aeye verify runs --jobs 4",
     "aeye inspect runs/early-0003.case.mcap --json",
     "aeye statistics runs more-runs --reference early",

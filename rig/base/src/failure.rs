@@ -1,6 +1,7 @@
 //! What can go wrong with a command, beyond what libraries say.
 
 use std::fmt;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use serde::Serialize;
@@ -16,6 +17,33 @@ impl std::fmt::Display for Usage {
 }
 
 impl std::error::Error for Usage {}
+
+/// Another process has what is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InUse(pub String);
+
+impl fmt::Display for InUse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for InUse {}
+
+/// Whether the same command may go well later on: another process is at work, or the system has no room now.
+pub fn may_pass(error: &anyhow::Error) -> bool {
+    let passes = |kind| {
+        matches!(
+            kind,
+            ErrorKind::StorageFull
+                | ErrorKind::QuotaExceeded
+                | ErrorKind::OutOfMemory
+                | ErrorKind::TimedOut
+                | ErrorKind::StaleNetworkFileHandle
+        )
+    };
+    error.is::<InUse>() || error.chain().any(|e| e.downcast_ref::<io::Error>().is_some_and(|e| passes(e.kind())))
+}
 
 /// A file among many that a command could not work on, while it went on with the rest.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -135,6 +163,14 @@ mod tests {
         assert_eq!(failed.to_string(), "1 of 3 files failed");
         assert_eq!(failed.sentences().collect::<Vec<_>>(), ["a.mcap: no room"]);
         assert!(!is_divergence(&error) && Failed::check(&[], 2).is_ok());
+    }
+
+    #[test]
+    fn what_may_pass_is_told_from_what_will_not() {
+        let io = |kind: ErrorKind| anyhow::Error::from(io::Error::from(kind)).context("a.mcap");
+        assert!(may_pass(&io(ErrorKind::StorageFull)) && may_pass(&io(ErrorKind::QuotaExceeded)));
+        assert!(may_pass(&InUse("a: another aeye is at work there".into()).into()));
+        assert!(!may_pass(&io(ErrorKind::NotFound)) && !may_pass(&Usage("no such map".into()).into()));
     }
 
     #[test]

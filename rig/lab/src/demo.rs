@@ -117,7 +117,7 @@ fn campaign_options(options: &Options, checkpoint: CheckpointChoice, out: &Path)
         maps: vec!["all".into()],
         embed_map: false,
         scenario: None,
-        until: Until::Cases(CASES),
+        goal: Until::Cases(CASES).into(),
         pedestrians: Some(PEDESTRIANS),
         hazards: Some(HAZARDS),
         weather: None,

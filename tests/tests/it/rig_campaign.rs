@@ -9,7 +9,7 @@ use base::maps::Map;
 use base::progress::Interrupt;
 use drivers::simulate;
 use drivers::vision::{Eye, Vision};
-use lab::campaign::{Plan, RunLine, Until, drive_all};
+use lab::campaign::{Plan, RunLine, Share, Task, Until, drive_all};
 use render::{RenderOptions, Renderer};
 use replay::Recording;
 
@@ -23,13 +23,18 @@ fn plan(out: &Path) -> Plan {
         weather: None,
         run_seconds: 10,
         seed: 5,
-        until: Until::Runs(2),
+        goal: Until::Runs(2).into(),
         out: out.to_owned(),
     }
 }
 
 fn drive(out: &Path, jobs: usize) -> Vec<RunLine> {
-    drive_all(&plan(out), &Eye::Truth, jobs, &Interrupt::default()).expect("a campaign")
+    drive_as(&plan(out), jobs).expect("a campaign")
+}
+
+fn drive_as(plan: &Plan, jobs: usize) -> anyhow::Result<Vec<RunLine>> {
+    let interrupt = &Interrupt::default();
+    drive_all(&Task { plan, share: Share::WHOLE, adapters: &[], jobs, interrupt }, &Eye::Truth)
 }
 
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -60,8 +65,8 @@ fn jobs_and_interruptions_do_not_change_a_campaign() {
 fn runs_that_do_not_count_leave_nothing_behind() {
     let dir = tempfile::tempdir().expect("a folder");
     // The first run is enough, but others are driven beside it until that is known.
-    let plan = Plan { until: Until::Km(0.01), ..plan(dir.path()) };
-    let lines = drive_all(&plan, &Eye::Truth, 3, &Interrupt::default()).expect("a campaign");
+    let plan = Plan { goal: Until::Km(0.01).into(), ..plan(dir.path()) };
+    let lines = drive_as(&plan, 3).expect("a campaign");
     assert_eq!(lines.len(), 1);
     let names: Vec<String> = contents(dir.path()).into_keys().filter(|name| !name.contains("-0000.")).collect();
     assert!(names.is_empty(), "{names:?}");
@@ -89,7 +94,7 @@ fn runs_that_were_done_before_their_turn_are_not_driven_again() {
     let other = Plan { seed: 6, ..plan(dir.path()) };
     fs::create_dir_all(&waiting).expect("writable");
     whole.keys().for_each(wait);
-    let others = drive_all(&other, &Eye::Truth, 1, &Interrupt::default()).expect("a campaign");
+    let others = drive_as(&other, 1).expect("a campaign");
     assert!(others.iter().zip(&lines).all(|(other, line)| other.figures.seed != line.figures.seed));
 }
 
@@ -99,7 +104,7 @@ fn recordings_of_another_campaign_are_not_taken_for_this_one() {
     let dir = tempfile::tempdir().expect("a folder");
     drive(dir.path(), 1);
     let other = Plan { seed: 6, ..plan(dir.path()) };
-    let error = drive_all(&other, &Eye::Truth, 1, &Interrupt::default()).expect_err("another seed");
+    let error = drive_as(&other, 1).expect_err("another seed");
     assert!(error.to_string().contains("another campaign"), "{error}");
 }
 
@@ -111,7 +116,7 @@ fn a_run_that_is_cut_off_is_told_and_driven_again_when_it_is_gone() {
     let path = dir.path().join(&whole[0].file);
     let bytes = fs::read(&path).expect("a recording");
     fs::write(&path, &bytes[..bytes.len() - 9]).expect("writable");
-    let error = drive_all(&plan(dir.path()), &Eye::Truth, 1, &Interrupt::default()).expect_err("cut off").to_string();
+    let error = drive_as(&plan(dir.path()), 1).expect_err("cut off").to_string();
     assert!(error.starts_with(path.to_str().expect("UTF-8")) && error.contains("is cut off"), "{error}");
     fs::remove_file(&path).expect("there");
     assert_eq!(drive(dir.path(), 1), whole);

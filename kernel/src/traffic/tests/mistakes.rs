@@ -367,24 +367,33 @@ fn two_that_touch_because_of_a_mistake_stand_and_are_taken_off_the_road() {
     assert!(gone_s.iter().all(|s| (55..80).contains(s)), "{gone_s:?}");
 }
 
-#[test]
-fn who_brakes_too_late_has_a_collision_too() {
-    let network = crossroads(Signs::Yield);
-    let mut traffic = start(&network, 20, 4, HazardRates::NONE);
+/// Which of two collide that are so far behind each other, by their middles, and go so fast (m/s, who is ahead first); who is
+/// behind accelerates.
+fn who_collides(behind_m: f32, speeds_mps: [f32; 2], accel_cmps2: i16) -> [bool; 2] {
+    let mut traffic = start(&crossroads(Signs::Yield), 20, 4, HazardRates::NONE);
     let vehicles = &mut traffic.actors.state.vehicles;
     let (first, second) = (vehicles[0], vehicles[1]);
-    vehicles[0] = Vehicle { lane: 0, before: 0, s_m: 80.0, speed_mps: 0.0, ..first };
-    vehicles[1] = Vehicle { lane: 0, before: 0, s_m: 74.5, speed_mps: 9.0, accel_cmps2: -800, ..second };
+    let s_m = 80.0 - behind_m;
+    vehicles[0] = Vehicle { lane: 0, before: 0, s_m: 80.0, speed_mps: speeds_mps[0], ..first };
+    vehicles[1] = Vehicle { lane: 0, before: 0, s_m, speed_mps: speeds_mps[1], accel_cmps2, ..second };
     traffic.actors.place_bodies();
     let mut collided = BTreeSet::new();
-    watch(
-        &mut traffic,
-        1,
-        |_| {},
-        |t, _| {
-            let told = t.told().iter().filter(|(kind, _)| *kind == EventKind::HazardCollision);
-            collided.extend(told.map(|(_, id)| *id));
-        },
-    );
-    assert_eq!(collided, BTreeSet::from([first.id, second.id].map(u32::from)));
+    let tell = |t: &Traffic, _| {
+        let told = t.told().iter().filter(|(kind, _)| *kind == EventKind::HazardCollision);
+        collided.extend(told.map(|(_, id)| *id));
+    };
+    watch(&mut traffic, 1, |_| {}, tell);
+    let ids = [first.id, second.id].map(u32::from);
+    assert!(collided.iter().all(|id| ids.contains(id)), "{collided:?}");
+    ids.map(|id| collided.contains(&id))
+}
+
+#[test]
+fn who_brakes_too_late_has_a_collision_too() {
+    assert_eq!(who_collides(5.5, [0.0, 9.0], -800), [true; 2]);
+}
+
+#[test]
+fn who_rolls_on_while_it_touches_somebody_has_a_collision_too() {
+    assert_eq!(who_collides(4.0, [0.5, 0.0], 0), [true; 2]);
 }

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use super::crossroads::{Signs, crossroads};
-use super::{MINUTE, car_at, counts, nowhere, run};
+use super::{MINUTE, behind, car_at, counts, nowhere, run};
 use glam::Vec3;
 
 use crate::actor::ActorKind;
+use crate::controls::Controls;
 use crate::map::{RoadNetwork, WalkEdge, bundled};
 use crate::time::Tick;
 use crate::traffic::{
@@ -122,6 +123,38 @@ fn who_crosses_close_before_a_car_gets_past_it() {
     }
     let away_m = traffic.bodies()[0].position.distance(place.beside(offset_m));
     assert!(away_m > 4.0, "{away_m} m: {:?}", traffic.state().walkers[0]);
+}
+
+#[test]
+fn who_stands_with_a_pram_half_off_the_kerb_looks_before_it_goes_on() {
+    let network = crossroads(Signs::Yield);
+    let spawned = with_people(&network, 1, 2101).state().clone();
+    let crosswalk = network.walk_edges.iter().position(|e| e.crosswalk.is_some()).expect("there is one");
+    // The speed a tick later of somebody of a kind whose middle is 1 m from the kerb, and whether a car behind it blows its horn.
+    let speed_mps = |kind: ActorKind, ego_flags: u8| {
+        let walker = |id: u16| Walker {
+            id,
+            edge: crosswalk as u32,
+            s_m: 1.0,
+            offset_m: 0.0,
+            forward: true,
+            mode: WalkerMode::Walk,
+            speed_mps: 0.0,
+            ..spawned.walkers[0]
+        };
+        let alone = |id: u16| {
+            let state = TrafficState { vehicles: Vec::new(), walkers: vec![walker(id)] };
+            Traffic::with(&counts(1), 2101, network.ways(), state)
+        };
+        let is_of_kind = |traffic: &Traffic| traffic.bodies()[0].kind == kind;
+        let mut traffic = (100..1000).map(alone).find(is_of_kind).expect("there is one");
+        let ego = behind(traffic.bodies()[0].position, Vec3::Y, 8.0);
+        traffic.step(&Surroundings { tick: 1, ego, ego_flags, loose: &[], conditions: Conditions::default() });
+        traffic.state().walkers[0].speed_mps
+    };
+    assert!(speed_mps(ActorKind::Pram, 0) > 0.0, "nothing comes");
+    assert_eq!(speed_mps(ActorKind::Pram, Controls::HORN), 0.0, "its rear is not on the road yet");
+    assert!(speed_mps(ActorKind::Pedestrian, Controls::HORN) > 0.0, "who is on the road goes on");
 }
 
 #[test]

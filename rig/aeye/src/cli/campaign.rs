@@ -6,18 +6,46 @@ use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
+use lab::campaign::Share;
 use lab::experiment::Preset;
 
-use super::values::{CHECKPOINTS, MAPS, hazards, jobs, people, preset, seconds, weather};
+use super::values::{CHECKPOINTS, MAPS, file, hazards, jobs, people, preset, seconds, weather};
+
+/// What says when a campaign is over, or that there is none.
+const ENDS: [&str; 6] = ["runs", "km", "cases", "pedestrian_cases", "print_scenario", "collect"];
+
+/// What decides which runs are driven.
+const DRIVES: [&str; 15] = [
+    "checkpoint",
+    "maps",
+    "embed_map",
+    "scenario",
+    "runs",
+    "km",
+    "cases",
+    "pedestrian_cases",
+    "pedestrians",
+    "hazards",
+    "weather",
+    "run_seconds",
+    "seed",
+    "shard",
+    "print_scenario",
+];
 
 /// Arguments of `campaign`.
 #[derive(Args, Clone, Debug)]
-#[command(group = clap::ArgGroup::new("until").args(["runs", "km", "cases", "pedestrian_cases"]))]
-#[command(group = clap::ArgGroup::new("end").required(true).multiple(true).args(["until", "print_scenario"]))]
+#[command(group = clap::ArgGroup::new("goal").args(["km", "cases", "pedestrian_cases"]))]
+#[command(group = clap::ArgGroup::new("end").required(true).multiple(true).args(ENDS))]
 pub struct CampaignArgs {
     /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
     /// the same runs.
-    #[arg(long, required_unless_present = "print_scenario", value_delimiter = ',', value_name = CHECKPOINTS)]
+    #[arg(
+        long,
+        required_unless_present_any = ["print_scenario", "collect"],
+        value_delimiter = ',',
+        value_name = CHECKPOINTS
+    )]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones (default: the scenario's
     /// map, or all).
@@ -29,7 +57,7 @@ pub struct CampaignArgs {
     /// A scenario file; its seed and length are replaced for each run.
     #[arg(long, value_name = "FILE.toml")]
     pub scenario: Option<PathBuf>,
-    /// Number of runs of each checkpoint.
+    /// Number of runs of each checkpoint; beside another goal, how many runs must come to that.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub runs: Option<u32>,
     /// Kilometres of each checkpoint.
@@ -60,6 +88,15 @@ pub struct CampaignArgs {
     /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Drive one share of the runs: of N, the I-th one. Each has a folder of its own.
+    #[arg(long, value_name = "I/N", requires = "runs", conflicts_with = "print_scenario")]
+    pub shard: Option<Share>,
+    /// Drive nothing, and put together what shards drove.
+    #[arg(long, requires = "folders", conflicts_with_all = DRIVES)]
+    pub collect: bool,
+    /// The folders of shards for `--collect`, or folders that hold those.
+    #[arg(value_name = "DIR", value_parser = file())]
+    pub folders: Vec<PathBuf>,
     /// Print the scenario of the first run, as a file for `--scenario`, and do nothing.
     #[arg(long)]
     pub print_scenario: bool,

@@ -22,7 +22,7 @@ pub use shell::{CompletionsArgs, ManArgs};
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
 ///
 /// Data goes to stdout, progress and errors to stderr. Exit codes: 0 ok, 1 error (unreadable,
-/// damaged), 2 usage, 3 a check failed.
+/// damaged), 2 usage, 3 a check failed, 75 may go well if it is tried again.
 #[derive(Debug, Parser)]
 #[command(name = "aeye", version)]
 pub struct Cli {
@@ -95,12 +95,21 @@ mod tests {
     }
 
     #[test]
-    fn a_campaign_needs_exactly_one_end() {
+    fn a_campaign_needs_an_end_and_shards_a_number_of_runs() {
         let parse = |tail: &[&str]| {
             let head = ["aeye", "campaign", "--checkpoint", "truth", "--out", "d"];
             Cli::try_parse_from(head.iter().chain(tail)).is_ok()
         };
         assert!(parse(&["--runs", "4"]) && parse(&["--km", "1.5"]));
-        assert!(!parse(&[]) && !parse(&["--runs", "4", "--cases", "1"]));
+        assert!(!parse(&[]) && !parse(&["--km", "4", "--cases", "1"]) && parse(&["--runs", "4", "--cases", "1"]));
+        assert!(parse(&["--runs", "4", "--shard", "2/3"]) && parse(&["--runs", "4", "--km", "1", "--shard", "2/3"]));
+        assert!(!parse(&["--km", "1", "--shard", "2/3"]) && !parse(&["--runs", "4", "--shard", "4/3"]));
+        let collect = |tail: &[&str]| {
+            let head = ["aeye", "campaign", "--collect", "a", "b", "--out", "d"];
+            Cli::try_parse_from(head.iter().chain(tail)).is_ok()
+        };
+        assert!(collect(&[]) && collect(&["--jobs", "2"]));
+        assert!(Cli::try_parse_from(["aeye", "campaign", "--collect", "--out", "d"]).is_err());
+        assert!([["--runs", "4"], ["--seed", "1"], ["--shard", "1/2"]].iter().all(|tail| !collect(tail)));
     }
 }

@@ -4,9 +4,8 @@ use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::bail;
-
 use super::create_folder;
+use crate::failure::InUse;
 
 /// A folder of results while its command works there: no other process can have it. Dropped, folders that were made
 /// for it and hold nothing are gone.
@@ -59,7 +58,8 @@ fn claim(path: &Path) -> anyhow::Result<Option<File>> {
     match folder.try_lock() {
         Ok(()) => Ok(Some(folder)),
         Err(TryLockError::WouldBlock) => {
-            bail!("{}: another aeye is at work there; expected another folder, or to wait", path.display())
+            let path = path.display();
+            Err(InUse(format!("{path}: another aeye is at work there; expected another folder, or to wait")).into())
         }
         Err(TryLockError::Error(_)) => Ok(None),
     }

@@ -1,124 +1,107 @@
-//! Simulated drives in parallel, resumable, and their figures.
+//! Simulated drives in parallel, resumable: a campaign from its options to its figures, or a shard of one.
 
 use std::fmt;
-use std::path::PathBuf;
 
-use base::json;
-use base::maps::{Map, ScenarioFile};
-use base::output::{self, OutputFolder};
+use base::json::Typed;
+use base::output::OutputFolder;
 use base::progress::Interrupt;
 use base::room::NoRoom;
 use base::say::say;
 use base::spread::jobs;
-use drivers::checkpoint::{CheckpointChoice, check_names};
+use base::words;
+use drivers::checkpoint::check_names;
 use drivers::vision::Eye;
-use kernel::scenario::HazardLevel;
-use kernel::weather::WeatherPreset;
-use measures::statistics::table;
 use render::AdapterChoice;
+use serde::Serialize;
 
-use super::figures::{CampaignFigures, figures};
+use super::figures::CampaignFigures;
+use super::options::{Options, plan};
 use super::plan::Plan;
 use super::run_line::RunLine;
-use super::until::Until;
+use super::shard::Shard;
+use super::share::Share;
+use super::sum::{Driven, sum_up};
+use super::task::Task;
 use super::workers::drive_all;
-
-/// What is driven, and until when.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// What the semantic driver sees; each of them drives the same runs.
-    pub checkpoint: Vec<CheckpointChoice>,
-    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones. None: the scenario's map, or all.
-    pub maps: Vec<String>,
-    /// Whether the files of foreign maps stand in the recordings, instead of once beside them.
-    pub embed_map: bool,
-    /// A scenario file; its seed and length are replaced for each run.
-    pub scenario: Option<PathBuf>,
-    /// When each checkpoint has driven enough.
-    pub until: Until,
-    /// People on foot, instead of as many as the scenario or the map's default has.
-    pub pedestrians: Option<u16>,
-    /// How often people at the wheel endanger others, instead of what the scenario says.
-    pub hazards: Option<HazardLevel>,
-    /// Weather, if not as the scenario or the map's default says.
-    pub weather: Option<WeatherPreset>,
-    /// Longest simulated time of a run, seconds.
-    pub run_seconds: u32,
-    /// Seed of the campaign; run `i` follows from it and `i` alone.
-    pub seed: u64,
-    /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
-    pub jobs: Option<u16>,
-    /// Folder of the results; a campaign that was interrupted goes on there.
-    pub out: PathBuf,
-}
 
 /// Drives a campaign, writes its files, and gives its figures.
 pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<CampaignFigures> {
-    check_names(&options.checkpoint)?;
-    let plan = plan(options)?;
-    let eyes = options.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;
-    let names: Vec<String> = eyes.iter().map(|eye| eye.name().to_owned()).collect();
-    AdapterChoice::default().find()?;
+    let (plan, eyes) = open(options)?;
     let _folder = OutputFolder::open(&plan.out)?;
-    let jobs = jobs(options.jobs);
-    let mut no_room = NoRoom::default();
-    say_of_first_runs(&plan, &mut no_room)?;
-    let mut runs = Vec::new();
-    for eye in &eyes {
-        runs.extend(drive_all(&plan, eye, jobs, interrupt)?);
-    }
-    say_of_runs(&runs, &mut no_room);
-    let figures = figures(plan.seed, plan.until, &names, runs);
-    output::write_file(&plan.out.join("campaign.json"), json::json_file(&figures)?.as_bytes())?;
+    let task = Task { plan: &plan, share: Share::WHOLE, adapters: &[], jobs: jobs(options.jobs), interrupt };
+    let figures = sum_up(plan.seed, plan.goal, drive_share(&task, &eyes)?)?;
+    figures.write(&plan.out)?;
     Ok(figures)
 }
 
+/// Drives a share of a campaign, for [`collect`](super::collect) to sum up.
+pub fn drive_shard(options: &Options, share: Share, interrupt: &Interrupt) -> anyhow::Result<ShardFigures> {
+    let (plan, eyes) = open(options)?;
+    let _folder = OutputFolder::open(&plan.out)?;
+    let adapters = Shard::enter(&plan, &eyes, share)?.adapters();
+    let task = Task { plan: &plan, share, adapters: &adapters, jobs: jobs(options.jobs), interrupt };
+    let runs: Vec<RunLine> = drive_share(&task, &eyes)?.into_iter().flat_map(|driven| driven.runs).collect();
+    let cases = runs.iter().filter(|run| run.case.is_some()).count();
+    Ok(ShardFigures { share, runs: runs.len(), km: runs.iter().map(|run| run.figures.km).sum(), cases })
+}
+
+/// What is driven, and who looks.
+fn open(options: &Options) -> anyhow::Result<(Plan, Vec<Eye>)> {
+    check_names(&options.checkpoint)?;
+    let plan = plan(options)?;
+    let eyes = options.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;
+    AdapterChoice::default().find()?;
+    Ok((plan, eyes))
+}
+
+/// Drives what is not there yet of the runs of each checkpoint.
+fn drive_share(task: &Task<'_>, eyes: &[Eye]) -> anyhow::Result<Vec<Driven>> {
+    let mut no_room = NoRoom::default();
+    say_of_first_runs(task, &mut no_room)?;
+    let drive = |eye: &Eye| Ok(Driven { checkpoint: eye.name().to_owned(), runs: drive_all(task, eye)? });
+    let driven = eyes.iter().map(drive).collect::<anyhow::Result<Vec<_>>>()?;
+    say_of_runs(driven.iter().flat_map(|driven| &driven.runs), &mut no_room);
+    Ok(driven)
+}
+
 /// Says who has no room in the first run on each map: before hours are driven without them.
-fn say_of_first_runs(plan: &Plan, no_room: &mut NoRoom) -> anyhow::Result<()> {
-    let runs = match plan.until {
-        Until::Runs(runs) => runs.min(plan.maps.len() as u32),
-        Until::Km(_) | Until::Cases(_) | Until::PedestrianCases(_) => plan.maps.len() as u32,
-    };
-    for run in 0..runs {
-        let map = &plan.maps[plan.map_index(run)];
-        no_room.of_run(&plan.scenario_of(run), map)?.into_iter().for_each(say);
+fn say_of_first_runs(task: &Task<'_>, no_room: &mut NoRoom) -> anyhow::Result<()> {
+    for run in (0..task.plan.maps.len()).map_while(|turn| task.number(turn)) {
+        let map = &task.plan.maps[task.plan.map_index(run)];
+        no_room.of_run(&task.plan.scenario_of(run), map)?.into_iter().for_each(say);
     }
     Ok(())
 }
 
 /// Says it of maps on which the first run had room and a later one had not.
-fn say_of_runs(runs: &[RunLine], no_room: &mut NoRoom) {
-    let figures = runs.iter().map(|run| &run.figures);
+fn say_of_runs<'a>(runs: impl Iterator<Item = &'a RunLine>, no_room: &mut NoRoom) {
+    let figures = runs.map(|run| &run.figures);
     let told = figures.filter_map(|figures| no_room.of(&figures.map, &figures.asked, figures.missing.as_ref()?));
     told.for_each(say);
 }
 
-/// What the options come to.
-pub fn plan(options: &Options) -> anyhow::Result<Plan> {
-    let file = options.scenario.as_deref().map(ScenarioFile::read).transpose()?;
-    let maps = match &file {
-        Some(file) if options.maps.is_empty() => vec![file.map.clone()],
-        _ if options.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
-        _ => Map::find_all(&options.maps)?,
-    };
-    let maps = if options.embed_map { maps.into_iter().map(Map::embedded).collect() } else { maps };
-    if let Some(file) = &file {
-        maps.iter().try_for_each(|map| file.check_start(map))?;
-    }
-    let scenario = file.map(|file| file.scenario);
-    let Options { until, pedestrians, hazards, weather, run_seconds, seed, .. } = *options;
-    Ok(Plan { maps, scenario, pedestrians, hazards, weather, run_seconds, seed, until, out: options.out.clone() })
+/// What a shard came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShardFigures {
+    /// Which one it is.
+    #[serde(flatten)]
+    pub share: Share,
+    /// Runs of all checkpoints.
+    pub runs: usize,
+    /// Kilometres of them.
+    pub km: f64,
+    /// Corner cases among them.
+    pub cases: usize,
 }
 
-impl fmt::Display for CampaignFigures {
+/// What `aeye campaign --shard` prints.
+impl Typed for ShardFigures {
+    const TYPE: &'static str = "aeye.campaign.shard";
+}
+
+impl fmt::Display for ShardFigures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let columns = self.checkpoints.iter();
-        let columns = columns.map(|c| (c.checkpoint.as_str(), &c.statistics, c.against_first.as_ref()));
-        f.write_str(&table(columns))?;
-        for each in self.checkpoints.iter().filter(|each| !each.interventions.is_empty()) {
-            let verdicts: Vec<_> = each.interventions.iter().map(|(verdict, n)| format!("{n} {verdict}")).collect();
-            write!(f, "\n{}: without the interventions: {}", each.checkpoint, verdicts.join(", "))?;
-        }
-        Ok(())
+        let (runs, cases) = (words::count(self.runs, "run"), words::count(self.cases, "corner case"));
+        write!(f, "shard {}: {runs}, {:.3} km, {cases}", self.share, self.km)
     }
 }

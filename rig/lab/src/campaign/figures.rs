@@ -1,11 +1,15 @@
 //! What a campaign came to, computed from its recordings alone.
 
 use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
 
-use base::json::Typed;
-use measures::statistics::{Comparison, Ride, Statistics};
+use base::json::{self, Typed};
+use base::output;
+use measures::statistics::{Comparison, Ride, Statistics, table};
 use serde::Serialize;
 
+use super::machine::Machine;
 use super::run_line::RunLine;
 use super::until::Until;
 
@@ -36,6 +40,9 @@ pub struct CampaignFigures {
     pub cases: u64,
     /// The figures of each checkpoint.
     pub checkpoints: Vec<CheckpointFigures>,
+    /// Kinds of machines that drove; absent where all were of one kind.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub machines: Vec<Machine>,
     /// The runs, in order.
     pub runs: Vec<RunLine>,
 }
@@ -43,6 +50,13 @@ pub struct CampaignFigures {
 /// `campaign.json`, and what `aeye campaign` prints.
 impl Typed for CampaignFigures {
     const TYPE: &'static str = "aeye.campaign";
+}
+
+impl CampaignFigures {
+    /// Writes `campaign.json` to a folder.
+    pub fn write(&self, folder: &Path) -> anyhow::Result<()> {
+        output::write_file(&folder.join("campaign.json"), json::json_file(self)?.as_bytes())
+    }
 }
 
 /// The figures of a campaign's runs.
@@ -60,5 +74,18 @@ pub fn figures(seed: u64, until: Until, checkpoints: &[String], runs: Vec<RunLin
         each.push(CheckpointFigures { checkpoint: name.clone(), statistics, interventions, against_first });
     }
     let (km, cases) = (each.iter().map(|c| c.statistics.km).sum(), each.iter().map(|c| c.statistics.cases).sum());
-    CampaignFigures { seed, until, km, cases, checkpoints: each, runs }
+    CampaignFigures { seed, until, km, cases, checkpoints: each, machines: Vec::new(), runs }
+}
+
+impl fmt::Display for CampaignFigures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = self.checkpoints.iter();
+        let columns = columns.map(|c| (c.checkpoint.as_str(), &c.statistics, c.against_first.as_ref()));
+        f.write_str(&table(columns))?;
+        for each in self.checkpoints.iter().filter(|each| !each.interventions.is_empty()) {
+            let verdicts: Vec<_> = each.interventions.iter().map(|(verdict, n)| format!("{n} {verdict}")).collect();
+            write!(f, "\n{}: without the interventions: {}", each.checkpoint, verdicts.join(", "))?;
+        }
+        Ok(())
+    }
 }

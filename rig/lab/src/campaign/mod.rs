@@ -2,19 +2,35 @@
 //! results do not depend on how many worlds run at the same time, or on interruptions.
 
 mod aside;
+mod collect;
 mod drive;
 mod figures;
+mod gather;
+mod kept;
+mod machine;
+mod options;
+mod places;
 mod plan;
 mod run_line;
 mod runner;
+mod shard;
+mod shards;
+mod share;
+mod sum;
+mod task;
 #[cfg(test)]
 mod tests;
 mod until;
 mod workers;
 
-pub use drive::{Options, drive, plan};
+pub use collect::{Collection, collect};
+pub use drive::{ShardFigures, drive, drive_shard};
 pub use figures::{CampaignFigures, figures};
+pub use options::{Options, plan};
 pub use plan::Plan;
 pub use run_line::RunLine;
-pub use until::Until;
+pub use share::Share;
+pub use sum::TooFew;
+pub use task::Task;
+pub use until::{Goal, Until};
 pub use workers::drive_all;

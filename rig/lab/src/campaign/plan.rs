@@ -8,7 +8,7 @@ use kernel::rng::{self, Stream};
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
 
-use super::until::Until;
+use super::until::Goal;
 
 /// Everything that decides what a campaign's runs are.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ pub struct Plan {
     /// Seed of the campaign.
     pub seed: u64,
     /// When it is over.
-    pub until: Until,
+    pub goal: Goal,
     /// Where the files go.
     pub out: PathBuf,
 }
@@ -42,7 +42,7 @@ impl Plan {
     /// The scenario of a run.
     pub fn scenario_of(&self, run: u32) -> Scenario {
         let map = &self.maps[self.map_index(run)];
-        let seed = rng::bits(self.seed, Stream::Scenario, u64::from(run), 0) >> 32;
+        let seed = seed_of(self.seed, run);
         let mut scenario = self.scenario.clone().unwrap_or_else(|| map.scenario(seed));
         scenario.map = map.network.name.clone();
         scenario.seed = seed;
@@ -52,19 +52,9 @@ impl Plan {
         scenario.hazards = self.hazards.map_or(scenario.hazards, HazardLevel::rates);
         scenario
     }
+}
 
-    /// File of a run's recording.
-    pub fn recording_path(&self, checkpoint: &str, run: u32) -> PathBuf {
-        self.out.join(format!("{checkpoint}-{run:04}.mcap"))
-    }
-
-    /// File of what would have happened without a run's intervention.
-    pub fn counterfactual_path(&self, checkpoint: &str, run: u32) -> PathBuf {
-        self.out.join(format!("{checkpoint}-{run:04}.counterfactual.json"))
-    }
-
-    /// File of a run's corner case.
-    pub fn case_path(&self, checkpoint: &str, run: u32) -> PathBuf {
-        self.out.join(format!("{checkpoint}-{run:04}.case.mcap"))
-    }
+/// The seed of a run of a campaign with a seed.
+pub fn seed_of(campaign: u64, run: u32) -> u64 {
+    rng::bits(campaign, Stream::Scenario, u64::from(run), 0) >> 32
 }

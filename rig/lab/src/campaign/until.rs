@@ -1,7 +1,7 @@
 //! When a campaign is over.
 
 use measures::statistics::Sampling;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::run_line::RunLine;
 
@@ -11,7 +11,7 @@ pub const STALLED_RUNS: usize = 200;
 const CREEP_M: u64 = 5;
 
 /// When a campaign is over; counted for each checkpoint.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", content = "value", rename_all = "snake_case")]
 pub enum Until {
     /// So many runs.
@@ -22,6 +22,31 @@ pub enum Until {
     Cases(u32),
     /// So many corner cases with the label `walker`.
     PedestrianCases(u32),
+}
+
+/// When a campaign is over, or has failed to get there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// What is enough.
+    pub until: Until,
+    /// Runs of each checkpoint that must come to that, if there may not be any number.
+    pub most: Option<u32>,
+}
+
+impl Goal {
+    /// The number that no run reaches, if there is one.
+    pub fn end(self) -> Option<u32> {
+        match self.until {
+            Until::Runs(runs) => Some(runs),
+            Until::Km(_) | Until::Cases(_) | Until::PedestrianCases(_) => self.most,
+        }
+    }
+}
+
+impl From<Until> for Goal {
+    fn from(until: Until) -> Self {
+        Self { until, most: None }
+    }
 }
 
 impl Until {
@@ -59,6 +84,17 @@ impl Until {
             Self::Km(km) => ((1000.0 * runs.iter().map(|r| r.figures.km).sum::<f64>()) as u64, (1000.0 * km) as u64),
             Self::Cases(n) => (runs.iter().filter(|r| r.case.is_some()).count() as u64, n.into()),
             Self::PedestrianCases(n) => (runs.iter().filter(|r| r.is_pedestrian_case()).count() as u64, n.into()),
+        }
+    }
+
+    /// How much of how much runs came to, as in `2 of 3 corner cases`.
+    pub fn words(&self, runs: &[RunLine]) -> String {
+        let (done, of) = self.progress(runs);
+        match self {
+            Self::Runs(_) => format!("{done} of {of} runs"),
+            Self::Km(km) => format!("{} of {km} km", done as f64 / 1000.0),
+            Self::Cases(_) => format!("{done} of {of} corner cases"),
+            Self::PedestrianCases(_) => format!("{done} of {of} corner cases with people on foot"),
         }
     }
 }

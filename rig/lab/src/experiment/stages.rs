@@ -191,7 +191,7 @@ impl Stages<'_> {
             maps: self.recipe.maps.clone(),
             embed_map: false,
             scenario: None,
-            until,
+            goal: until.into(),
             pedestrians,
             hazards: None,
             weather: None,

@@ -1,0 +1,57 @@
+//! What a campaign is asked for, and what that comes to.
+
+use std::path::PathBuf;
+
+use base::maps::{Map, ScenarioFile};
+use drivers::checkpoint::CheckpointChoice;
+use kernel::scenario::HazardLevel;
+use kernel::weather::WeatherPreset;
+
+use super::plan::Plan;
+use super::until::Goal;
+
+/// What is driven, and until when.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What the semantic driver sees; each of them drives the same runs.
+    pub checkpoint: Vec<CheckpointChoice>,
+    /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones. None: the scenario's map, or all.
+    pub maps: Vec<String>,
+    /// Whether the files of foreign maps stand in the recordings, instead of once beside them.
+    pub embed_map: bool,
+    /// A scenario file; its seed and length are replaced for each run.
+    pub scenario: Option<PathBuf>,
+    /// When each checkpoint has driven enough.
+    pub goal: Goal,
+    /// People on foot, instead of as many as the scenario or the map's default has.
+    pub pedestrians: Option<u16>,
+    /// How often people at the wheel endanger others, instead of what the scenario says.
+    pub hazards: Option<HazardLevel>,
+    /// Weather, if not as the scenario or the map's default says.
+    pub weather: Option<WeatherPreset>,
+    /// Longest simulated time of a run, seconds.
+    pub run_seconds: u32,
+    /// Seed of the campaign; run `i` follows from it and `i` alone.
+    pub seed: u64,
+    /// Worlds simulated at the same time (default: one a core); the results do not depend on it.
+    pub jobs: Option<u16>,
+    /// Folder of the results; a campaign that was interrupted goes on there.
+    pub out: PathBuf,
+}
+
+/// What the options come to.
+pub fn plan(options: &Options) -> anyhow::Result<Plan> {
+    let file = options.scenario.as_deref().map(ScenarioFile::read).transpose()?;
+    let maps = match &file {
+        Some(file) if options.maps.is_empty() => vec![file.map.clone()],
+        _ if options.maps.is_empty() => Map::find_all(&["all".to_owned()])?,
+        _ => Map::find_all(&options.maps)?,
+    };
+    let maps = if options.embed_map { maps.into_iter().map(Map::embedded).collect() } else { maps };
+    if let Some(file) = &file {
+        maps.iter().try_for_each(|map| file.check_start(map))?;
+    }
+    let scenario = file.map(|file| file.scenario);
+    let Options { goal, pedestrians, hazards, weather, run_seconds, seed, .. } = *options;
+    Ok(Plan { maps, scenario, pedestrians, hazards, weather, run_seconds, seed, goal, out: options.out.clone() })
+}
