@@ -83,7 +83,7 @@ impl View<'_> {
         let considers = next.is_due(self.tick, CONSIDER_TICKS);
         let side = next.manoeuvre.side();
         next.manoeuvre = match next.manoeuvre {
-            Manoeuvre::Keep if considers => {
+            Manoeuvre::Keep if considers && next.lapse != Lapse::CutsIn => {
                 next.signal_ticks = 0;
                 self.wish(index, plan, seeker)
             }

@@ -78,7 +78,7 @@ impl Door {
     }
 }
 
-/// The doors of parked cars whose edges come over a lane outside junctions.
+/// The doors of parked cars, one of each at most, whose edges come over a lane outside junctions.
 pub(super) fn door_spots(places: &Places) -> Vec<DoorSpot> {
     let numbered = places.parked.cars.iter().zip(0..);
     let spots = numbered.flat_map(|(car, parked)| [1.0, -1.0].map(|side| spot(car, parked, side)));
@@ -90,7 +90,10 @@ pub(super) fn door_spots(places: &Places) -> Vec<DoorSpot> {
             lane.junction.is_none() && (lane.at(place.s_m).position.z - edge.z).abs() < LEVEL_M
         })
     };
-    spots.filter(in_lane).collect()
+    // Between two lanes the door on the left counts: one a car, as its id is.
+    let mut found: Vec<DoorSpot> = spots.filter(in_lane).collect();
+    found.dedup_by_key(|spot| spot.parked);
+    found
 }
 
 fn spot(car: &Prop, parked: u32, side: f32) -> DoorSpot {

@@ -29,7 +29,7 @@ const RUNNERS: f32 = 0.25;
 const RUN_MPS: f32 = 2.8;
 /// Candidates whose way is looked at in one tick.
 const TRIES: usize = 8;
-/// Radius of a walker, metres.
+/// Half the width that somebody needs to get past what stands there, metres.
 const WALKER_M: f32 = 0.35;
 /// Braking that jaywalkers expect of vehicles, m/s², and after which time, s.
 const BRAKE_MPS2: f32 = 3.5;

@@ -22,8 +22,6 @@ use super::zebra;
 
 /// After this long at a line a vehicle goes before those that have the right of way.
 pub(super) const PATIENCE_TICKS: u16 = 240;
-/// After this long at an open line a vehicle without room behind the junction is left the next that there is.
-pub(super) const ROOM_TICKS: u16 = 30 * 60;
 /// Braking that a yellow light asks for at most, m/s².
 pub(super) const YELLOW_BRAKE_MPS2: f32 = 4.0;
 /// Braking within which a vehicle asks for its grant, m/s².

@@ -17,7 +17,7 @@ use super::hazards::Hazards;
 use super::horn::Horn;
 use super::jaywalk;
 use super::journey::Journey;
-use super::junction::{EGO, Member, Members, ROOM_TICKS, swept_half_m};
+use super::junction::{EGO, Member, Members, swept_half_m};
 use super::lists::{Entry, Lists};
 use super::nearby::Nearby;
 use super::pass;
@@ -26,15 +26,13 @@ use super::state::TrafficState;
 use super::step::Step;
 use super::turns::Turns;
 use super::vehicle::Vehicle;
-use super::walk::Streets;
+use super::walk::{ASTRAY_M, Streets};
 use super::walker::{Walker, WalkerMode};
 
 /// The ego car is expected at a junction that it reaches within this time, s.
 const EGO_EXPECTED_S: f32 = 4.0;
 /// Slower than this it lets others go, m/s.
 const EGO_WAITS_MPS: f32 = 1.0;
-/// Who walks so far beside a way is on the road, metres.
-const ASTRAY_M: f32 = 0.3;
 
 /// Buffers of a step.
 #[derive(Clone, Debug, Default)]
@@ -148,10 +146,11 @@ impl Sight {
         self.plans.clear();
         let watched = self.tick.is_multiple_of(seconds(1));
         for (i, vehicle) in actors.state.vehicles.iter().enumerate() {
-            let plan = match watched || vehicle.decides(self.tick) || vehicle.counts_at_junction() {
-                true => self.plan_of(actors, i, vehicle),
-                false => Plan::default(),
-            };
+            let plan =
+                match watched || vehicle.decides(self.tick) || vehicle.counts_at_junction() || vehicle.wants_room() {
+                    true => self.plan_of(actors, i, vehicle),
+                    false => Plan::default(),
+                };
             self.plans.push(plan);
         }
     }
@@ -254,7 +253,7 @@ impl Sight {
         let Some(line) = &plan.line else { return };
         let vehicle = &actors.state.vehicles[i];
         let in_turn = vehicle.flags & (Vehicle::GRANTED | Vehicle::ASKING) != 0;
-        let wants_room = !in_turn && vehicle.wait_ticks > ROOM_TICKS;
+        let wants_room = !in_turn && vehicle.wants_room();
         if in_turn || wants_room {
             let inside = &self.steps_of(plan)[line.inside.0..line.inside.1];
             let holds = vehicle.flags & Vehicle::GRANTED != 0;

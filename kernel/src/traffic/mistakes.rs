@@ -42,9 +42,9 @@ const TAILGATE_S: f32 = 0.5;
 const HALT_MPS2: f32 = 1.5;
 /// Speeds from which a driver halts, m/s.
 const HALT_FROM_MPS: [f32; 2] = [3.0, 15.0];
-/// The way ahead on which no junction or crosswalk is, metres.
+/// The way ahead on which no junction or crosswalk is, metres, or more where it comes to a stand later.
 const HALT_CLEAR_M: f32 = 60.0;
-/// Nor so far behind, metres.
+/// Nor so far behind, nor beyond where it stands, metres.
 const HALT_BEHIND_M: f32 = 15.0;
 /// Least and most time of a halt, tenths of a second.
 const HALTS_DS: [u8; 2] = [40, 120];
@@ -204,8 +204,10 @@ impl View<'_> {
         let [least, most] = HALT_FROM_MPS;
         let steps = self.steps_of(plan);
         let ways = &self.ways.lanes;
-        let mut near = steps.iter().take_while(|step| step.start_m < HALT_CLEAR_M);
-        let ahead = |m: f32| (-HALT_BEHIND_M..HALT_CLEAR_M).contains(&m);
+        let stops_m = next.speed_mps * next.speed_mps / (2.0 * HALT_MPS2) + HALT_BEHIND_M;
+        let clear_m = stops_m.max(HALT_CLEAR_M);
+        let mut near = steps.iter().take_while(|step| step.start_m < clear_m);
+        let ahead = |m: f32| (-HALT_BEHIND_M..clear_m).contains(&m);
         let clear = near.all(|step| {
             let way = &ways[step.lane as usize];
             way.zone.is_none() && !way.crosswalks.iter().any(|c| ahead(step.start_m + c.near_m))
@@ -220,7 +222,7 @@ impl View<'_> {
             && clear
             && kerb.is_none()
             && next.manoeuvre == Manoeuvre::Keep
-            && plan.dead_end_m.is_none_or(|m| m > HALT_CLEAR_M)
+            && plan.dead_end_m.is_none_or(|m| m > clear_m)
     }
 
     /// Where across its lane a vehicle halts at the kerb, metres to the left of the middle.

@@ -203,7 +203,7 @@ impl Traffic {
         sight.next = std::mem::replace(&mut actors.state, next);
         sight.places = std::mem::replace(&mut actors.places, places);
         mistakes::tell(&sight.next.vehicles, &actors.state.vehicles, told);
-        actors.return_to_map(surroundings, told);
+        actors.return_to_map(&sight.next.vehicles, surroundings, told);
         actors.exchange(&sight.calls, surroundings);
         actors.place_bodies();
         actors.crash(&sight.hazards, surroundings, told);

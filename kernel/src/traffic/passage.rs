@@ -6,7 +6,6 @@ use crate::events::EventKind;
 use crate::geometry::rectangles_overlap;
 use crate::map_data::LaneId;
 use crate::rng::{Stream, below};
-use crate::time::seconds;
 
 use super::actors::Actors;
 use super::body::{Body, Surroundings};
@@ -35,8 +34,8 @@ pub(super) type Told = (EventKind, u32);
 
 impl Actors {
     /// Moves vehicles that stand where the map ends, and those that the watchdog takes off the road, to a
-    /// lane on which a road begins. What the watchdog found goes to `told`.
-    pub(super) fn return_to_map(&mut self, around: &Surroundings<'_>, told: &mut Vec<Told>) {
+    /// lane on which a road begins. What the watchdog found goes to `told`; `before` are they a tick earlier.
+    pub(super) fn return_to_map(&mut self, before: &[Vehicle], around: &Surroundings<'_>, told: &mut Vec<Told>) {
         for i in 0..self.state.vehicles.len() {
             let vehicle = self.state.vehicles[i];
             if around.holds(vehicle.id) {
@@ -47,7 +46,7 @@ impl Actors {
                 self.enter_map(i, around, vehicle.stuck_s >= STUCK_S);
                 continue;
             }
-            if vehicle.stuck_s == STUCK_S && around.tick.is_multiple_of(seconds(1)) {
+            if vehicle.stuck_s == STUCK_S && before[i].stuck_s < STUCK_S {
                 told.push((EventKind::Stuck, id));
             }
             let off = vehicle.stuck_s >= DISSOLVE_S && self.enter_map(i, around, vehicle.stuck_s >= DISSOLVE_SEEN_S);

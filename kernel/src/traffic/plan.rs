@@ -32,7 +32,7 @@ pub(super) struct Line {
     pub passed: bool,
     /// The step whose lane ends at the junction.
     pub approach: usize,
-    /// The steps inside the junction: from, and one past the last.
+    /// The steps inside the junction: from, and one past the last, or as many as the plan has.
     pub inside: (usize, usize),
 }
 
@@ -107,8 +107,9 @@ pub(super) fn plan(
     }
     plan.steps = (first as u32, out.len() as u32);
     let count = out.len() - first;
-    plan.line = plan.line.filter(|line| line.inside.1 <= count);
+    plan.line = plan.line.filter(|line| line.inside.0 < count);
     if let Some(line) = &mut plan.line {
+        line.inside.1 = line.inside.1.min(count);
         let hold_m = zebra::kept_clear(ways, &out[first..], driver, line.ahead_m - LINE_MARGIN_M);
         line.hold_m = line.ahead_m.min(hold_m + LINE_MARGIN_M);
     }

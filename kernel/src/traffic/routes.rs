@@ -14,7 +14,7 @@ use super::lane_way::LaneWay;
 /// Goals inside the map, and where roads leave it.
 const GOALS: usize = 24;
 const EXITS: usize = 16;
-/// Goals inside, and exits, times lanes are at most this but for the least of four each.
+/// Goals inside times lanes are at most this, and exits times lanes, but for the least of four each.
 const TABLE: usize = 1_000_000;
 /// A change of lane is worth this detour, s.
 pub(super) const CHANGE_S: f32 = 8.0;

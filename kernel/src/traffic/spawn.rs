@@ -113,7 +113,8 @@ impl Taken {
 /// Everybody who is asked for, as far as the map has room.
 pub(super) fn spawn(counts: &TrafficCounts, seed: u64, ways: &Ways, ego: Vec3) -> TrafficState {
     let (map, ego) = (&*ways.places.map, ego.truncate());
-    let mut spawner = Spawner { counts, seed, map, ways, ego, taken: Vec::new(), state: TrafficState::default() };
+    let mut spawner =
+        Spawner { counts, seed, map, ways, ego, taken: Vec::new(), next_id: 1, state: TrafficState::default() };
     spawner.vehicles();
     spawner.walkers();
     spawner.state
@@ -126,14 +127,12 @@ struct Spawner<'a> {
     ways: &'a Ways,
     ego: Vec2,
     taken: Vec<Taken>,
+    /// Of whom is looked for room next; what somebody is follows from it.
+    next_id: u16,
     state: TrafficState,
 }
 
 impl Spawner<'_> {
-    fn next_id(&self) -> u16 {
-        (self.state.vehicles.len() + self.state.walkers.len() + 1) as u16
-    }
-
     fn take(&mut self, place: Taken) -> bool {
         let free = self.taken.iter().all(|other| !other.meets(&place));
         let clear = self.ego.distance(place.middle) > EGO_CLEARANCE_M + place.half.length();
@@ -197,7 +196,7 @@ impl Spawner<'_> {
     }
 
     fn vehicle(&mut self, kind: ActorKind, most_mps: f32, (lane, s_m): (u32, f32)) -> bool {
-        let id = self.next_id();
+        let id = self.next_id;
         let driver = driver(&self.counts.drivers, self.seed, id, kind);
         let half_m = driver.size_m.x * 0.5;
         let way = &self.map.lanes[lane as usize];
@@ -219,6 +218,7 @@ impl Spawner<'_> {
         }
         let desired = (way.speed_limit_mps * driver.limit_share).min(driver.top_mps).min(most_mps);
         let speed_mps = desired.min(stopping_speed(end_m - s_m - half_m - 2.0, 1.0));
+        self.next_id += 1;
         self.state.vehicles.push(Vehicle {
             id,
             kind,
@@ -261,9 +261,11 @@ impl Spawner<'_> {
             let found = self.joins(number)
                 || drawn.into_iter().any(|t| self.walker(number, pick(&stretches, t)))
                 || search(&stretches, from, |place| self.walker(number, place));
-            if !found {
+            // What has wheels needs more room than the others.
+            if !found && !walker_traits(self.seed, self.next_id).kind.is_wheeled_on_foot() {
                 return;
             }
+            self.next_id += u16::from(!found);
         }
     }
 
@@ -271,7 +273,7 @@ impl Spawner<'_> {
     fn joins(&mut self, number: u64) -> bool {
         let Some(before) = self.state.walkers.last().copied() else { return false };
         let group = |id| first_of_group(self.seed, id);
-        if group(before.id) != group(self.next_id()) {
+        if group(before.id) != group(self.next_id) {
             return false;
         }
         let way = &self.map.walk_edges[before.edge as usize];
@@ -284,7 +286,7 @@ impl Spawner<'_> {
 
     /// Puts somebody on a way, where it likes to walk; beside that where there is no room.
     fn walker(&mut self, number: u64, (edge, s_m): (u32, f32)) -> bool {
-        let traits = walker_traits(self.seed, self.next_id());
+        let traits = walker_traits(self.seed, self.next_id);
         let most_m = (self.map.walk_edges[edge as usize].half_width_m - 0.4).max(0.0);
         let forward = bits(self.seed, Stream::Spawn, number, TRIES + 1) & 1 == 0;
         let places = [traits.place, 1.0, -1.0].map(|place| place * most_m);
@@ -292,7 +294,7 @@ impl Spawner<'_> {
     }
 
     fn walker_at(&mut self, number: u64, edge: u32, s_m: f32, offset_m: f32, forward: bool) -> bool {
-        let id = self.next_id();
+        let id = self.next_id;
         let traits = walker_traits(self.seed, id);
         let place = self.ways.edge_place(edge, s_m);
         let (middle, along) = (place.beside(offset_m).truncate(), place.forward.truncate().normalize_or(Vec2::X));
@@ -305,6 +307,7 @@ impl Spawner<'_> {
         }
         let random = bits(self.seed, Stream::Spawn, number, TRIES + 1);
         let ahead = if forward { place.forward } else { -place.forward };
+        self.next_id += 1;
         self.state.walkers.push(Walker {
             id,
             mode: WalkerMode::Walk,

@@ -19,9 +19,10 @@ impl Ways {
         let places = self.places.clone();
         for stop in &places.map.bus_stops {
             let edges = 0..places.map.walk_edges.len() as WalkEdgeId;
-            let onto: Vec<_> = edges.filter(|edge| self.opens_onto(stop, *edge)).collect();
+            let doors = self.doors(stop);
+            let onto: Vec<_> = edges.filter(|edge| self.opens_onto(stop, &doors, *edge)).collect();
             for &edge in &onto {
-                let (s_m, _) = self.project(edge, self.doors(stop)[0].0);
+                let (s_m, _) = self.project(edge, doors[0].0);
                 self.edges[edge as usize].stops.push(s_m);
             }
             self.stop_ways.push(onto);
@@ -38,13 +39,13 @@ impl Ways {
     }
 
     /// Whether one gets from the doors of a bus at a stop onto a sidewalk.
-    fn opens_onto(&self, stop: &BusStop, edge: WalkEdgeId) -> bool {
+    fn opens_onto(&self, stop: &BusStop, doors: &[(Vec2, Vec2)], edge: WalkEdgeId) -> bool {
         let map = &*self.places.map;
         let way = &map.walk_edges[edge as usize];
         // Most are far away.
         let near = |door: &Vec2| way.points[0].truncate().distance(*door) < way.length_m + way.half_width_m + REACH_M;
         way.crosswalk.is_none()
-            && self.doors(stop).iter().filter(|(door, _)| near(door)).any(|(door, out)| {
+            && doors.iter().filter(|(door, _)| near(door)).any(|(door, out)| {
                 let (s_m, offset_m) = self.project(edge, *door);
                 let place = self.edge_place(edge, s_m).position;
                 let there = place.truncate();

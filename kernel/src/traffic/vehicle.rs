@@ -3,11 +3,13 @@
 use crate::actor::ActorKind;
 use crate::map_data::LaneId;
 use crate::state;
-use crate::time::Tick;
+use crate::time::{Tick, seconds};
 
 use super::lapse::Lapse;
 use super::manoeuvre::Manoeuvre;
 
+/// After this long at an open line a vehicle without room behind the junction is left the next that there is.
+const ROOM_TICKS: u16 = seconds(30) as u16;
 /// Drivers decide so often: 20 times a second, faster than anybody reacts. Between that they hold pedals and wheel.
 pub(super) const DECIDE_TICKS: u8 = 3;
 
@@ -84,6 +86,11 @@ impl Vehicle {
     /// Whether it is in a junction, may enter one, or asks for that.
     pub(super) fn counts_at_junction(&self) -> bool {
         self.flags & (Self::GRANTED | Self::ASKING | Self::CROSSING) != 0
+    }
+
+    /// Whether it has waited so long that others leave it the room behind its junction.
+    pub(super) fn wants_room(&self) -> bool {
+        self.wait_ticks > ROOM_TICKS
     }
 
     /// Ticks for which it has waited at a tick, also since its driver last counted: so that all compare the same.

@@ -63,6 +63,9 @@ const GIVE_UP_TICKS: u16 = seconds(90) as u16;
 /// Whoever stands before a vehicle on the road for this long turns back.
 pub(super) const TURN_BACK_TICKS: u16 = seconds(8) as u16;
 
+/// Who walks so far beside a way is on the road, metres.
+pub(super) const ASTRAY_M: f32 = 0.3;
+
 /// What every walker sees of the previous tick.
 pub(super) struct Streets<'a> {
     pub map: &'a MapData,
@@ -357,7 +360,9 @@ impl Streets<'_> {
 
     pub(super) fn is_on_road(&self, walker: &Walker) -> bool {
         let edge = &self.map.walk_edges[walker.edge as usize];
-        edge.crosswalk.is_some() || walker.mode != WalkerMode::Walk || walker.offset_m.abs() > edge.half_width_m + 0.3
+        edge.crosswalk.is_some()
+            || walker.mode != WalkerMode::Walk
+            || walker.offset_m.abs() > edge.half_width_m + ASTRAY_M
     }
 
     /// Turns the body towards a direction.
@@ -397,7 +402,7 @@ fn drift(edge: &WalkEdge, direction: f32, likes_m: f32, leeway: &Leeway, moved_m
 
 /// Whoever has stood before others for long turns back.
 fn give_way(held_up: bool, next: &mut Walker) {
-    next.wait_ticks = if held_up { next.wait_ticks + 1 } else { 0 };
+    next.wait_ticks = if held_up { next.wait_ticks.saturating_add(1) } else { 0 };
     if next.wait_ticks > GIVE_WAY_TICKS {
         next.wait_ticks = 0;
         next.forward = !next.forward;

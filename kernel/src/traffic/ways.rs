@@ -11,9 +11,9 @@ use super::reasons::{Draw, draws};
 use super::routes::{Class, Routes};
 use super::walker::Walker;
 use crate::actor::ActorKind;
-use crate::map_data::{Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, WalkEdgeId};
+use crate::map_data::{Crosswalk, Lane, LaneId, LaneKind, LightGroupId, MapData, Place, WalkEdge, WalkEdgeId};
 use crate::ops;
-use crate::places::Places;
+use crate::places::{Grid, Places};
 
 /// Sidewalks farther apart than this do not face each other across a road, metres.
 const FACING_M: f32 = 32.0;
@@ -69,7 +69,7 @@ impl Ways {
             places: places.clone(),
             routes: Routes::new(&map.lanes, &lanes, kerb),
             lanes,
-            edges: draws(map, kerb).into_iter().enumerate().map(|(e, draw)| edge_way(map, e, draw)).collect(),
+            edges: edge_ways(map, kerb),
             crosswalk_lights: map.crosswalks.iter().map(|c| crosswalk_lights(map, c)).collect(),
             entries: entries(places),
             bicycle_entries: Vec::new(),
@@ -176,27 +176,36 @@ fn kerb(places: &Places) -> i8 {
     if count(-1.0) > count(1.0) { 1 } else { -1 }
 }
 
-fn edge_way(map: &MapData, index: usize, draw: Draw) -> EdgeWay {
-    let edge = &map.walk_edges[index];
+fn edge_ways(map: &MapData, kerb: i8) -> Vec<EdgeWay> {
+    let with_facing = map.walk_edges.iter().zip(facing(map));
+    with_facing.zip(draws(map, kerb)).map(|((edge, facing), draw)| edge_way(edge, facing, draw)).collect()
+}
+
+fn edge_way(edge: &WalkEdge, facing: Vec<u32>, draw: Draw) -> EdgeWay {
     let mut s_m = vec![0.0];
     for pair in edge.points.windows(2) {
         s_m.push(s_m[s_m.len() - 1] + pair[0].truncate().distance(pair[1].truncate()));
     }
-    let facing = if edge.crosswalk.is_none() && edge.beside.is_some() { facing(map, index) } else { Vec::new() };
     EdgeWay { s_m, forward: directions(edge.points.iter().copied()), facing, draw, stops: Vec::new() }
 }
 
-fn facing(map: &MapData, index: usize) -> Vec<u32> {
-    let (low, high) = extent(&map.walk_edges[index].points);
-    let near = |points: &[Vec3]| {
-        let (l, h) = extent(points);
-        l.cmple(high + FACING_M).all() && h.cmpge(low - FACING_M).all()
+/// For each sidewalk beside a lane the others, ascending, that are near enough to face it.
+fn facing(map: &MapData) -> Vec<Vec<u32>> {
+    let edges = &map.walk_edges;
+    let is_sidewalk = |i: usize| edges[i].crosswalk.is_none() && edges[i].beside.is_some();
+    let extents: Vec<_> = edges.iter().map(|e| extent(&e.points)).collect();
+    let grid = Grid::new(&extents, FACING_M);
+    let near = |of: usize| {
+        let (low, high) = extents[of];
+        let reach_m = (high - low).max_element() * 0.5 + FACING_M;
+        let touches = |(l, h): (Vec2, Vec2)| l.cmple(high + FACING_M).all() && h.cmpge(low - FACING_M).all();
+        let faces = |i: &u32| *i as usize != of && is_sidewalk(*i as usize) && touches(extents[*i as usize]);
+        let mut found: Vec<u32> = grid.around((low + high) * 0.5, reach_m).filter(faces).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
     };
-    let others = map.walk_edges.iter().enumerate();
-    others
-        .filter(|(i, e)| *i != index && e.crosswalk.is_none() && e.beside.is_some() && near(&e.points))
-        .map(|(i, _)| i as u32)
-        .collect()
+    (0..edges.len()).map(|i| if is_sidewalk(i) { near(i) } else { Vec::new() }).collect()
 }
 
 fn extent(points: &[Vec3]) -> (Vec2, Vec2) {

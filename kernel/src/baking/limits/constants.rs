@@ -82,3 +82,10 @@ pub const ANGLE_RAD: f64 = 1e6;
 pub const TURN_RAD: f64 = 200.0;
 /// Any other number.
 pub const NUMBER: f64 = 1e15;
+
+/// From one place on a road to the next there are at most this many metres: lanes are drawn across what is between
+/// them. Roads are torn by centimetres, poorly made ones by metres.
+pub const GAP_M: f64 = 100.0;
+
+/// A sign shows less than this, whatever its unit.
+pub const SHOWN: f64 = 1_000.0;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use roxmltree::Node;
 
-use super::constants::PAIRS;
+use super::constants::{GAP_M, PAIRS};
 use super::document::children;
 use super::numbers::number;
 use super::place::refused;
@@ -17,10 +17,6 @@ const SQUARE_M: f64 = 10.0;
 const STEP_M: f64 = 8.0;
 /// A curve is followed in steps of this, metres.
 const PART_M: f64 = 2.0;
-
-/// From one place on a road to the next there are at most this many metres: lanes are drawn across what is between
-/// them. Roads are torn by centimetres, poorly made ones by metres.
-const GAP_M: f64 = 100.0;
 
 /// Stretches of lanes by the square of the plane that they lie in, and the last road there.
 #[derive(Default)]

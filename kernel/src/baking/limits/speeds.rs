@@ -2,6 +2,7 @@
 
 use roxmltree::Node;
 
+use super::constants::SHOWN;
 use super::document::children;
 use super::numbers::number;
 use super::place::{refused, said};
@@ -12,8 +13,6 @@ use crate::baking::error::BakeError;
 const WORDS: [&str; 2] = ["no limit", "undefined"];
 /// What a limit may be in; m/s where a file does not say.
 const UNITS: [&str; 3] = ["m/s", "km/h", "mph"];
-/// A sign shows less than this, whatever its unit.
-const SHOWN: f64 = 1_000.0;
 
 /// Checks the limits that a road, its lanes and its signs tell.
 pub fn check(road: Node<'_, '_>) -> Result<(), BakeError> {

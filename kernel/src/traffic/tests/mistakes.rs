@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::crossroads::{Signs, crossroads};
 use super::{MINUTE, counts, nowhere, overlaps};
+use crate::actor::ActorKind;
 use crate::events::EventKind;
 use crate::map::{RoadNetwork, StopKind, bake, bundled};
 use crate::signals::{LightPhase, phase};
@@ -210,6 +211,49 @@ fn so_often_is_cut_in_as_is_asked_for() {
     let mut traffic = on_ring(100, 1, rates);
     let [k, n] = by_the_hour(&mut traffic, 20, Lapse::CutsIn, |view, i| view.cut_in(i, &view.plans[i]).is_some());
     agrees("cut-ins", k, n, 360.0 / 3600.0);
+}
+
+#[test]
+fn who_cuts_in_takes_the_other_lane_at_once() {
+    let rates = HazardRates { cut_ins_per_h: 360.0, ..HazardRates::NONE };
+    let mut traffic = on_ring(100, 2, rates);
+    let mut last = traffic.state().vehicles.clone();
+    let mut began = 0;
+    let cuts_in = |v: &Vehicle| v.lapse == Lapse::CutsIn;
+    watch(
+        &mut traffic,
+        5,
+        |_| {},
+        |t, tick| {
+            let now = &t.state().vehicles;
+            for (was, is) in last.iter().zip(now).filter(|(was, is)| !cuts_in(was) && cuts_in(is)) {
+                began += 1;
+                assert!(is.manoeuvre.is_between_lanes() && is.lane != was.lane, "tick {tick}: {is:?}");
+            }
+            last.clone_from(now);
+        },
+    );
+    assert!(began > 20, "{began}");
+}
+
+#[test]
+fn nobody_halts_at_the_kerb_whose_way_there_ends_on_a_crosswalk() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = start(&network, 20, 2, HazardRates::NONE);
+    let crosswalk = traffic.actors.ways.lanes[0].crosswalks[0];
+    let mut can_halt = |speed_mps: f32, before_m: f32| {
+        let vehicle = &mut traffic.actors.state.vehicles[0];
+        let s_m = crosswalk.near_m - before_m;
+        *vehicle = Vehicle { kind: ActorKind::Car, lane: 0, before: 0, s_m, speed_mps, ..*vehicle };
+        traffic.actors.place_bodies();
+        let mut sight = Sight::default();
+        let conditions = Conditions::default();
+        sight.look(&traffic.actors, &Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], conditions });
+        let view = sight.view(&traffic.actors);
+        view.can_halt(&view.plans[0], &view.vehicles[0])
+    };
+    // From 14.5 m/s it needs 70 m.
+    assert_eq!([can_halt(10.0, 65.0), can_halt(14.5, 65.0), can_halt(14.5, 95.0)], [true, false, true]);
 }
 
 #[test]

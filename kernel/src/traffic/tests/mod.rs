@@ -13,7 +13,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, WalkerMode};
+use super::{
+    Body, Obstacle, Population, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, WalkerMode, look, traits,
+};
 use crate::controls::Controls;
 use crate::events::EventKind;
 use crate::map::{RoadNetwork, StopKind, bundled};
@@ -310,6 +312,109 @@ fn who_stands_without_a_reason_is_told_and_then_taken_off_the_road() {
 }
 
 #[test]
+fn who_stands_is_told_once() {
+    let traffic = lone_car(&crossroads(Signs::Yield));
+    let told = |before_s: u8, now_s: u8| {
+        let (mut actors, mut told) = (traffic.actors.clone(), Vec::new());
+        let vehicle = actors.state.vehicles[0];
+        actors.state.vehicles[0] = Vehicle { stuck_s: now_s, ..vehicle };
+        let before = [Vehicle { stuck_s: before_s, ..vehicle }];
+        let conditions = Conditions::default();
+        let around = Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], conditions };
+        actors.return_to_map(&before, &around, &mut told);
+        told.len()
+    };
+    assert_eq!([told(59, 60), told(60, 60), told(60, 61)], [1, 0, 0]);
+}
+
+#[test]
+fn who_waits_long_for_room_counts_in_every_tick() {
+    let network = crossroads(Signs::Yield);
+    let mut traffic = lone_car(&network);
+    let vehicle = &mut traffic.actors.state.vehicles[0];
+    (vehicle.s_m, vehicle.speed_mps, vehicle.wait_ticks) = (network.lanes[0].length_m - 12.0, 0.0, 1801);
+    traffic.actors.place_bodies();
+    let mut sight = look::Sight::default();
+    for tick in 1..4 {
+        let conditions = Conditions::default();
+        sight.look(&traffic.actors, &Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[], conditions });
+        assert!(sight.view(&traffic.actors).plans[0].line.is_some(), "tick {tick}");
+    }
+}
+
+/// A road into a junction, through it in so many lane sections, and out of it again.
+fn in_sections(count: usize) -> Arc<RoadNetwork> {
+    let lane = "<lane id=\"-1\" type=\"driving\"><link><predecessor id=\"-1\"/><successor id=\"-1\"/></link>\
+                <width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane>";
+    let road = |id: u32, x: u32, junction: &str, link: &str, sections: usize| {
+        let section = |k: usize| {
+            let s_m = 100.0 / sections as f32 * k as f32;
+            let center = "<center><lane id=\"0\" type=\"none\"/></center>";
+            format!("<laneSection s=\"{s_m}\">{center}<right>{lane}</right></laneSection>")
+        };
+        let sections: String = (0..sections).map(section).collect();
+        format!(
+            "<road id=\"{id}\" length=\"100\" junction=\"{junction}\"><link>{link}</link><planView>\
+             <geometry s=\"0\" x=\"{x}\" y=\"0\" hdg=\"0\" length=\"100\"><line/></geometry></planView>\
+             <lanes>{sections}</lanes></road>"
+        )
+    };
+    let to = |end: &str, kind: &str, id: u32, contact: &str| {
+        format!("<{end} elementType=\"{kind}\" elementId=\"{id}\"{contact}/>")
+    };
+    let (at_start, at_end) = (" contactPoint=\"start\"", " contactPoint=\"end\"");
+    let through = to("predecessor", "road", 1, at_end) + &to("successor", "road", 3, at_start);
+    let text = format!(
+        "<?xml version=\"1.0\"?><OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>{}{}{}\
+         <junction id=\"9\"><connection id=\"0\" incomingRoad=\"1\" connectingRoad=\"2\" contactPoint=\"start\">\
+         <laneLink from=\"-1\" to=\"-1\"/></connection></junction></OpenDRIVE>",
+        road(1, 0, "-1", &to("successor", "junction", 9, ""), 1),
+        road(2, 100, "9", &through, count),
+        road(3, 200, "-1", &to("predecessor", "junction", 9, ""), 1),
+    );
+    Arc::new(crate::map::bake("sections", &text).expect("it bakes"))
+}
+
+#[test]
+fn a_junction_of_many_sections_has_its_line() {
+    for sections in [1, 20, 30, 60] {
+        let network = in_sections(sections);
+        let approach = network.lanes.iter().position(|l| l.junction.is_none() && !l.successors.is_empty());
+        let approach = approach.expect("there is one") as u32;
+        let traffic = Traffic::spawn(&TrafficCounts { cars: 1, ..TrafficCounts::NONE }, 1, network.ways(), Vec3::MAX);
+        let mut actors = traffic.actors;
+        let vehicle = &mut actors.state.vehicles[0];
+        (vehicle.lane, vehicle.before, vehicle.s_m, vehicle.speed_mps) = (approach, approach, 90.0, 5.0);
+        actors.place_bodies();
+        let mut sight = look::Sight::default();
+        let conditions = Conditions::default();
+        sight.look(&actors, &Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], conditions });
+        let line = sight.view(&actors).plans[0].line.expect("it has one");
+        assert_eq!(line.inside, (1, 1 + sections.min(23)), "{sections}");
+    }
+}
+
+#[test]
+fn who_finds_no_room_with_a_pram_leaves_it_to_others() {
+    let network = bundled("rural").expect("it is bundled");
+    let (mut skipped, mut placed) = (0, 0);
+    for seed in 2101..2131 {
+        let counts = TrafficCounts { pedestrians: 500, ..TrafficCounts::NONE };
+        let traffic = Traffic::spawn(&counts, seed, network.ways(), nowhere().position);
+        let walkers = &traffic.state().walkers;
+        for pair in walkers.windows(2) {
+            for id in pair[0].id + 1..pair[1].id {
+                let kind = traits::walker_traits(seed, id).kind;
+                assert!(kind.is_wheeled_on_foot(), "seed {seed}: {id} is a {kind:?}");
+                skipped += 1;
+            }
+        }
+        placed += walkers.len();
+    }
+    assert!(skipped > 0, "of {placed} nobody was left out");
+}
+
+#[test]
 fn vehicles_pass_what_stands_beside_their_lane() {
     let network = crossroads(Signs::Yield);
     let mut traffic = lone_car(&network);
@@ -397,16 +502,8 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             let ego = behind(body.position, body.rotation * Vec3::Y, 8.0);
             let goes = |ego_flags: u8| {
                 let mut fork = traffic.clone();
-                for tick in tick..tick + 240 {
-                    for tick in tick..tick + Tick::from(DECIDE_TICKS) {
-                        fork.step(&Surroundings {
-                            tick,
-                            ego,
-                            ego_flags,
-                            loose: &[],
-                            conditions: Conditions::default(),
-                        });
-                    }
+                for tick in tick..tick + 600 {
+                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
                     let walker = fork.state().walkers.iter().find(|w| w.id == id).expect("it is there");
                     let edge = &network.walk_edges[walker.edge as usize];
                     if walker.mode != WalkerMode::Wait && edge.crosswalk.is_some() {
