@@ -7,6 +7,7 @@
 ...     wrong = network.predict(frame.rgb) != frame.class_ids
 """
 
+from aeye import datasets
 from aeye._aeye import (
     CLASSES,
     Camera,
@@ -15,10 +16,13 @@ from aeye._aeye import (
     Recording,
     Segmenter,
     __version__,
+    campaign,
     evaluate,
     open,
+    redrive,
 )
 from aeye._errors import DivergedError, EngineError, Error, FileError, InputError
+from aeye._tables import Table
 
 __all__ = [
     "CLASSES",
@@ -32,7 +36,11 @@ __all__ = [
     "InputError",
     "Recording",
     "Segmenter",
+    "Table",
     "__version__",
+    "campaign",
+    "datasets",
     "evaluate",
     "open",
+    "redrive",
 ]

@@ -16,8 +16,10 @@ __all__ = [
     "Recording",
     "Segmenter",
     "__version__",
+    "campaign",
     "evaluate",
     "open",
+    "redrive",
 ]
 
 __version__: str
@@ -310,6 +312,59 @@ def open(path: str | PathLike[str]) -> Recording:
     One whose writer was stopped is read as far as it goes (`finished` tells).
 
     Raises FileError where it cannot be read, InputError where it is damaged or no recording.
+    """
+
+def campaign(
+    checkpoint: str | PathLike[str] | list[str | PathLike[str]],
+    out: str | PathLike[str],
+    *,
+    runs: int | None = None,
+    km: float | None = None,
+    cases: int | None = None,
+    pedestrian_cases: int | None = None,
+    maps: str | PathLike[str] | list[str | PathLike[str]] | None = None,
+    scenario: str | PathLike[str] | None = None,
+    pedestrians: int | None = None,
+    hazards: Literal["none", "natural", "raised"] | None = None,
+    weather: str | None = None,
+    max_time: float = 240.0,
+    seed: int = 1,
+    jobs: int | None = None,
+) -> dict[str, Any]:
+    """Lets bots drive through checkpoints until there are so many runs, kilometres or cases of each.
+
+    As `aeye campaign` does, and gives what that prints with `--json`; `runs` of it is a `Table`. Recordings, corner cases
+    and `campaign.json` go to the folder `out`. Ctrl-C ends it; what was driven stays, and the same call goes on there.
+
+    `checkpoint` are `early`, `full`, `truth` or ONNX files, `maps` names of bundled maps or OpenDRIVE files (None: the
+    scenario's, or all bundled ones), `weather` is one of CARLA's names. A run takes at most `max_time` simulated seconds.
+    `jobs` worlds are simulated at the same time (None: one a core); the results do not depend on it.
+
+    Raises InputError for a value that cannot be, FileError where a file is not there or cannot be written.
+    """
+
+def redrive(
+    files: str | PathLike[str] | list[str | PathLike[str]],
+    out: str | PathLike[str],
+    *,
+    without_intervention: bool = False,
+    checkpoint: str | PathLike[str] | None = None,
+    recorded: str | PathLike[str] | list[str | PathLike[str]] | None = None,
+    vary: int = 0,
+    after: float = 10.0,
+    jobs: int | None = None,
+) -> dict[str, Any]:
+    """Drives recordings or cases on from before their intervention.
+
+    As `aeye redrive` does, and gives what that prints with `--json`; `forks` of it is a `Table`. Their recordings go to
+    the folder `out`. Ctrl-C ends it; what was driven stays.
+
+    Either `without_intervention`: what would have happened if the safety driver had done nothing? Or through a
+    `checkpoint`: is there an intervention again? `recorded` are files in which checkpoints of the recordings may be found.
+    Each file has `vary` further forks, 0 to 30, and a fork goes on for `after` seconds, 1 to 60.
+
+    Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where none of them can
+    be driven on.
     """
 
 def evaluate(

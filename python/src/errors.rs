@@ -24,6 +24,11 @@ pub fn input(sentence: String) -> PyErr {
     exception(INPUT, sentence)
 }
 
+/// It cannot be computed here.
+pub fn engine(sentence: String) -> PyErr {
+    exception(ENGINE, sentence)
+}
+
 /// A replay is not the run that was recorded.
 pub fn diverged(sentence: String) -> PyErr {
     exception(DIVERGED, sentence)

@@ -6,23 +6,25 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
 use crate::errors::raise;
+use crate::forked::{self, Owned};
 use crate::frame::Frame;
 
 /// The frames of a window, as a sequence: each is drawn when it is asked for, and none is kept.
 #[pyclass(frozen, sequence, module = "aeye")]
 pub struct Frames {
-    shots: Shots,
+    shots: Owned<Shots>,
 }
 
 impl From<Shots> for Frames {
     fn from(shots: Shots) -> Self {
-        Self { shots }
+        Self { shots: Owned::new(shots) }
     }
 }
 
 impl Frames {
     /// Draws one of them while Python's other threads go on.
     pub fn draw(&self, py: Python<'_>, index: usize) -> PyResult<Frame> {
+        forked::check()?;
         let shot = py.detach(|| self.shots.draw(index)).map_err(|error| raise(&error))?;
         Frame::of(py, shot)
     }

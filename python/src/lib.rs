@@ -2,8 +2,10 @@
 //! Everything is done by the crates that the command `aeye` stands on; here it takes Python's form.
 
 mod camera;
+mod campaigns;
 mod columns;
 mod errors;
+mod forked;
 mod frame;
 mod frames;
 mod log;
@@ -23,6 +25,8 @@ mod _aeye {
 
     #[pymodule_export]
     use crate::camera::Camera;
+    #[pymodule_export]
+    use crate::campaigns::{campaign, redrive};
     #[pymodule_export]
     use crate::frame::Frame;
     #[pymodule_export]

@@ -18,15 +18,19 @@ use pyo3::types::PyDict;
 use replay::Log;
 
 use crate::errors::{diverged, input, raise};
+use crate::forked::Owned;
 use crate::frame::Frame;
 use crate::frames::Frames;
 use crate::log;
 use crate::work::{parsed, work};
 
+// Signatures that Python shows say it in numbers.
+const _: () = assert!(DEFAULT_SIZE.0 == 256 && DEFAULT_SIZE.1 == 128);
+
 /// A recording or corner case. Nothing of it can be changed.
 #[pyclass(frozen, module = "aeye")]
 pub struct Recording {
-    stage: Arc<Stage>,
+    stage: Owned<Arc<Stage>>,
 }
 
 /// Opens a recording or corner case and checks every byte of it.
@@ -37,7 +41,7 @@ pub struct Recording {
 #[pyfunction]
 pub fn open(py: Python<'_>, path: PathBuf) -> PyResult<Recording> {
     let stage = py.detach(|| Stage::open(&path)).map_err(|error| raise(&error))?;
-    Ok(Recording { stage: Arc::new(stage) })
+    Ok(Recording { stage: Owned::new(Arc::new(stage)) })
 }
 
 impl Recording {
@@ -182,7 +186,10 @@ impl Recording {
     /// `size` is (width, height) in pixels, `fps` a divisor of 60, `camera` one of `driver`, `chase` and `top`.
     ///
     /// Raises InputError where there is nothing in the window, or a value cannot be.
-    #[pyo3(signature = (*, last = Some(3.0), from_ = None, to = None, fps = 10, size = DEFAULT_SIZE, camera = "driver"))]
+    #[pyo3(
+        signature = (*, last = Some(3.0), from_ = None, to = None, fps = 10, size = DEFAULT_SIZE, camera = "driver"),
+        text_signature = "($self, *, last=3.0, from_=None, to=None, fps=10, size=(256, 128), camera='driver')"
+    )]
     fn frames(
         &self,
         last: Option<f64>,
@@ -207,7 +214,10 @@ impl Recording {
     ///
     /// Raises InputError where the file has no such tick, EngineError where another version of the simulation made it
     /// (of its cases, the ticks with a stored scene can be drawn) or no graphics driver is there.
-    #[pyo3(signature = (tick, *, size = DEFAULT_SIZE, camera = "driver"))]
+    #[pyo3(
+        signature = (tick, *, size = DEFAULT_SIZE, camera = "driver"),
+        text_signature = "($self, tick, *, size=(256, 128), camera='driver')"
+    )]
     fn frame(&self, py: Python<'_>, tick: Tick, size: (u32, u32), camera: &str) -> PyResult<Frame> {
         let shots = Shots::of_tick(&self.stage, tick, viewpoint(camera)?, size).map_err(|error| raise(&error))?;
         Frames::from(shots).draw(py, 0)

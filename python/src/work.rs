@@ -47,3 +47,11 @@ pub fn work<T: Send>(py: Python<'_>, work: impl FnOnce(&Interrupt) -> anyhow::Re
 pub fn parsed<'py>(py: Python<'py>, line: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (line,))
 }
+
+/// The same, whose rows under a key are a table.
+pub fn tabled<'py>(py: Python<'py>, line: &str, rows: &str) -> PyResult<Bound<'py, PyAny>> {
+    let parsed = parsed(py, line)?;
+    let table = py.import("aeye._tables")?.call_method1("Table", (parsed.get_item(rows)?,))?;
+    parsed.set_item(rows, table)?;
+    Ok(parsed)
+}

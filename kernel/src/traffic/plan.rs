@@ -16,7 +16,7 @@ const LOOK_BRAKE_MPS2: f32 = 2.0;
 /// Room beyond a junction that the plan covers, metres.
 const BEYOND_JUNCTION_M: f32 = 20.0;
 /// Most lanes of a plan.
-const MAX_STEPS: usize = 24;
+const MAX_STEPS: usize = 256;
 
 /// The line before the next junction.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,89 @@
+"""Datasets give the frames of the files, also in other processes."""
+
+import multiprocessing
+import pickle
+import shutil
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import aeye
+import numpy as np
+import pytest
+from aeye.datasets import CornerCases, Natural
+
+
+@pytest.fixture(scope="module")
+def files(drive: Path, case: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a drive and, below it, two cases."""
+    folder = tmp_path_factory.mktemp("files")
+    (folder / "below").mkdir()
+    shutil.copy(drive, folder / "drive.mcap")
+    for name in ("a.case.mcap", "b.case.mcap"):
+        shutil.copy(case, folder / "below" / name)
+    return folder
+
+
+def test_samples_are_the_frames_of_the_files(files):
+    cases = CornerCases(files, size=(64, 32), last=2.0, fps=20)
+    window = aeye.open(files / "below" / "a.case.mcap").frames(last=2.0, fps=20, size=(64, 32))
+    assert len(window) > 32, "more than one piece"
+    assert [path.name for path in cases.paths] == ["a.case.mcap", "b.case.mcap"]
+    assert len(cases) == 2 * len(window)
+    for index in (0, 33, len(window) - 1, len(window), -1):
+        rgb, class_ids = cases[index]
+        frame = window[index % len(window)]
+        assert np.array_equal(rgb, frame.rgb) and np.array_equal(class_ids, frame.class_ids)
+        assert cases.path_of(index).name == ("a" if 0 <= index < len(window) else "b") + ".case.mcap"
+    with pytest.raises(IndexError):
+        cases[len(cases)]
+
+
+def test_a_drive_is_taken_from_its_start_to_its_end(files):
+    natural = Natural(files, size=(64, 32), fps=2, transform=lambda frame: frame.tick)
+    assert [path.name for path in natural.paths] == ["drive.mcap"]
+    assert [natural[i] for i in range(len(natural))] == list(range(0, 541, 30))
+
+
+def test_what_was_asked_for_last_is_kept(files):
+    drawn = []
+    cases = CornerCases(files, size=(32, 16), last=1.0, transform=lambda frame: drawn.append(frame.tick), keep=1)
+    half = len(cases) // 2
+    for index in (0, 1, half, half + 1, 0):
+        cases[index]
+    assert len(drawn) == 3 * half, "each case is drawn as a whole, and the first one twice"
+
+
+@pytest.mark.parametrize(("folder", "error"), [("gone", aeye.FileError), (".", aeye.InputError)])
+def test_a_folder_without_cases_is_refused(folder, error, tmp_path):
+    with pytest.raises(error, match="no "):
+        CornerCases(tmp_path / folder)
+
+
+def last_sample(dataset: CornerCases, answer: Connection) -> None:
+    """What a worker does; the sum of the picture, or the sentence of what is wrong."""
+    try:
+        answer.send(int(dataset[-1][0].sum()))
+    except aeye.Error as error:
+        answer.send(str(error))
+
+
+def asked(method: str, dataset: CornerCases) -> int | str:
+    mine, its = multiprocessing.Pipe()
+    process = multiprocessing.get_context(method).Process(target=last_sample, args=(dataset, its))
+    process.start()
+    answered = mine.poll(60)
+    process.kill()
+    process.join()
+    assert answered
+    return mine.recv()
+
+
+def test_workers_open_their_own_device(files):
+    # The parent has drawn the first case and the workers draw the second one.
+    dataset = CornerCases(files, size=(64, 32))
+    assert len(dataset[0]) == 2
+    expected = int(CornerCases(files, size=(64, 32))[-1][0].sum())
+    assert asked("spawn", dataset) == expected
+    assert int(pickle.loads(pickle.dumps(dataset))[-1][0].sum()) == expected
+    said = asked("fork", dataset)
+    assert "forked" in str(said) and "spawn" in str(said)
