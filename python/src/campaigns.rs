@@ -1,6 +1,6 @@
 //! Drives by bots: campaigns, and corner cases driven on.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use base::failure::Failed;
 use base::json::json_line;
@@ -65,8 +65,8 @@ pub fn campaign<'py>(
     jobs: Option<u16>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let options = Options {
-        checkpoint: checkpoint.list().iter().map(choice).collect::<PyResult<_>>()?,
-        maps: maps.map(|maps| maps.list().iter().map(text).collect()).unwrap_or_default(),
+        checkpoint: checkpoint.list().iter().map(|path| choice(path)).collect::<PyResult<_>>()?,
+        maps: maps.map(|maps| maps.list().iter().map(|path| text(path)).collect()).unwrap_or_default(),
         embed_map: false,
         scenario,
         goal: goal(runs, km, [cases, pedestrian_cases])?,
@@ -114,11 +114,11 @@ pub fn redrive<'py>(
     if vary > 30 {
         return Err(input(format!("vary={vary}; expected 0 to 30")));
     }
-    let recorded = recorded.map(|recorded| recorded.list().iter().map(choice).collect()).transpose()?;
+    let recorded = recorded.map(|recorded| recorded.list().iter().map(|path| choice(path)).collect()).transpose()?;
     let options = forks::Options {
         files: files.list(),
         without_intervention,
-        checkpoint: checkpoint.as_ref().map(choice).transpose()?,
+        checkpoint: checkpoint.as_deref().map(choice).transpose()?,
         recorded: recorded.unwrap_or_default(),
         reveal: false,
         vary,
@@ -134,11 +134,11 @@ pub fn redrive<'py>(
     tabled(py, &line, "forks")
 }
 
-fn text(path: &PathBuf) -> String {
+fn text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-fn choice(path: &PathBuf) -> PyResult<CheckpointChoice> {
+fn choice(path: &Path) -> PyResult<CheckpointChoice> {
     text(path).parse().map_err(input)
 }
 

@@ -36,7 +36,7 @@ impl Actors {
     /// Moves vehicles that stand where the map ends, and those that the watchdog takes off the road, to a
     /// lane on which a road begins. What the watchdog found goes to `told`; `before` are they a tick earlier.
     pub(super) fn return_to_map(&mut self, before: &[Vehicle], around: &Surroundings<'_>, told: &mut Vec<Told>) {
-        for i in 0..self.state.vehicles.len() {
+        for (i, was) in before.iter().enumerate() {
             let vehicle = self.state.vehicles[i];
             if around.holds(vehicle.id) {
                 continue;
@@ -46,7 +46,7 @@ impl Actors {
                 self.enter_map(i, around, vehicle.stuck_s >= STUCK_S);
                 continue;
             }
-            if vehicle.stuck_s == STUCK_S && before[i].stuck_s < STUCK_S {
+            if vehicle.stuck_s == STUCK_S && was.stuck_s < STUCK_S {
                 told.push((EventKind::Stuck, id));
             }
             let off = vehicle.stuck_s >= DISSOLVE_S && self.enter_map(i, around, vehicle.stuck_s >= DISSOLVE_SEEN_S);
