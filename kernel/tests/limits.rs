@@ -132,6 +132,20 @@ fn numbers_that_are_none_are_refused_where_they_count() {
 }
 
 #[test]
+fn what_is_no_number_is_refused_by_road_and_attribute() {
+    let text = file(&[road()]);
+    let geometry = "<geometry s=\"0\"";
+    assert!(text.contains(geometry) && text.contains("length=\"100\""), "{text}");
+    for (number, says) in [("abc", "abc"), ("6e2,5", "6e2,5"), ("", "nothing")] {
+        let geometry = text.replacen("<geometry s=\"0\"", &format!("<geometry s=\"{number}\""), 1);
+        refused(&geometry, &["road 7", "s of <geometry> to be a number", says]);
+        refused(&text.replacen("length=\"100\"", &format!("length=\"{number}\""), 1), &["road 7", "length", says]);
+        let section = text.replacen("<laneSection s=\"0\"", &format!("<laneSection s=\"{number}\""), 1);
+        refused(&section, &["road 7", "s of <laneSection> to be a number", says]);
+    }
+}
+
+#[test]
 fn roads_and_junctions_are_counted() {
     refused(&file(&(0..50_001).map(|id| Road::straight(id, [0.0; 3], 1.0)).collect::<Vec<_>>()), &["roads", "50001"]);
     let connection = "<connection id=\"0\" incomingRoad=\"7\" connectingRoad=\"7\" contactPoint=\"start\"/>";

@@ -44,6 +44,9 @@ fn name(node: Node<'_, '_>) -> Option<String> {
 
 /// A text of the file, fit for one line.
 pub fn said(text: &str) -> String {
+    if text.trim().is_empty() {
+        return "nothing".to_owned();
+    }
     let mut said: String = text.chars().take(SAID).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if text.chars().nth(SAID).is_some() {
         said.push_str("...");

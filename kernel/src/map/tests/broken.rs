@@ -45,7 +45,7 @@ fn a_map_without_a_lane_to_drive_on_is_refused() {
         (straight("50", "0", ""), "but the only road is none"),
         (straight("50", "3.5", "").replace("<width", "<wide"), "but the only road is none"),
         (straight("50", "3.5", "").replace("planView", "plan"), "but the only road is none"),
-        (straight("", "3.5", "</road><road id=\"2\" length=\"5\">"), "but none of the 2 roads is one"),
+        (straight("0", "3.5", "</road><road id=\"2\" length=\"5\">"), "but none of the 2 roads is one"),
         ("<OpenDRIVE/>".to_owned(), "but there is no road"),
     ] {
         assert_eq!(refused(&text), format!("{expected}, {but}"));
