@@ -52,7 +52,6 @@ fn at_most(k: u64, n: u64, p: f64) -> f64 {
 
 /// The configured rate lies in the exact interval (Clopper and Pearson, 99 %) of what was counted.
 fn agrees(what: &str, k: u64, n: u64, p: f64) {
-    println!("{what}: {k} of {n} where {p} is configured");
     assert!(k >= 10, "{what}: {k} of {n} are too few to tell");
     let (low, high) = (at_most(k, n, p), 1.0 - at_most(k - 1, n, p));
     assert!(low > 0.005 && high > 0.005, "{what}: {k} of {n} where {p} is configured");
