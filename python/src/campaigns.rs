@@ -4,14 +4,12 @@ use std::path::{Path, PathBuf};
 
 use base::failure::Failed;
 use base::json::json_line;
-use drivers::checkpoint::CheckpointChoice;
-use kernel::scenario::HazardLevel;
-use kernel::weather::WeatherPreset;
 use lab::campaign::{Goal, Options, Until, drive};
 use lab::redrive as forks;
 use pyo3::prelude::*;
 
 use crate::errors::input;
+use crate::values::{choice, jobs_at_once, level, people, preset, whole_seconds};
 use crate::work::{tabled, work};
 
 /// One of something, or several.
@@ -64,18 +62,21 @@ pub fn campaign<'py>(
     seed: u64,
     jobs: Option<u16>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    if pedestrian_cases.is_some() && pedestrians == Some(0) {
+        return Err(input("pedestrian_cases with pedestrians=0; expected more than 0".to_owned()));
+    }
     let options = Options {
         checkpoint: checkpoint.list().iter().map(|path| choice(path)).collect::<PyResult<_>>()?,
         maps: maps.map(|maps| maps.list().iter().map(|path| text(path)).collect()).unwrap_or_default(),
         embed_map: false,
         scenario,
         goal: goal(runs, km, [cases, pedestrian_cases])?,
-        pedestrians,
+        pedestrians: pedestrians.map(people).transpose()?,
         hazards: hazards.map(level).transpose()?,
         weather: weather.map(preset).transpose()?,
         run_seconds: whole_seconds(max_time, "max_time", 10..=86_400)?,
         seed,
-        jobs,
+        jobs: jobs.map(jobs_at_once).transpose()?,
         out,
     };
     let line = work(py, |interrupt| json_line(&drive(&options, interrupt)?))?;
@@ -123,7 +124,7 @@ pub fn redrive<'py>(
         reveal: false,
         vary,
         seconds: whole_seconds(after, "after", 1..=60)?,
-        jobs,
+        jobs: jobs.map(jobs_at_once).transpose()?,
         out,
     };
     let line = work(py, |interrupt| {
@@ -138,10 +139,6 @@ fn text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-fn choice(path: &Path) -> PyResult<CheckpointChoice> {
-    text(path).parse().map_err(input)
-}
-
 fn goal(runs: Option<u32>, km: Option<f64>, [cases, pedestrian_cases]: [Option<u32>; 2]) -> PyResult<Goal> {
     let goal = match (km, cases, pedestrian_cases) {
         (Some(km), None, None) if km > 0.0 && km.is_finite() => Goal { until: Until::Km(km), most: runs },
@@ -154,23 +151,4 @@ fn goal(runs: Option<u32>, km: Option<f64>, [cases, pedestrian_cases]: [Option<u
         true => Err(input("0 runs or cases; expected 1 or more".to_owned())),
         false => Ok(goal),
     }
-}
-
-fn level(name: &str) -> PyResult<HazardLevel> {
-    let names = || HazardLevel::ALL.map(HazardLevel::name).join(", ");
-    HazardLevel::named(name).ok_or_else(|| input(format!("hazards=\"{name}\"; expected one of {}", names())))
-}
-
-fn preset(name: &str) -> PyResult<WeatherPreset> {
-    let names = || WeatherPreset::names().collect::<Vec<_>>().join(", ");
-    let found = WeatherPreset::find(name).copied();
-    found.ok_or_else(|| input(format!("weather=\"{name}\"; expected one of {}", names())))
-}
-
-fn whole_seconds(seconds: f64, name: &str, within: std::ops::RangeInclusive<u32>) -> PyResult<u32> {
-    let whole = (seconds.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&seconds)).then_some(seconds as u32);
-    whole.filter(|seconds| within.contains(seconds)).ok_or_else(|| {
-        let (least, most) = (within.start(), within.end());
-        input(format!("{name}={seconds}; expected whole seconds from {least} to {most}"))
-    })
 }

@@ -12,6 +12,7 @@ mod log;
 mod metrics;
 mod recording;
 mod segmenter;
+mod values;
 mod work;
 
 use pyo3::pymodule;

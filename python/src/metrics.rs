@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use base::json::json_line;
-use drivers::checkpoint::CheckpointChoice;
 use lab::eval::{self, Summary};
 use pyo3::prelude::*;
 
-use crate::errors::input;
+use crate::values::{choice, jobs_at_once};
 use crate::work::{parsed, work};
 
 /// Measures a checkpoint (`early`, `full`, `truth` or an ONNX file) on a split of a dataset in the layout of Cityscapes.
@@ -24,7 +23,8 @@ pub fn evaluate<'py>(
     split: &str,
     jobs: Option<u16>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let choice: CheckpointChoice = checkpoint.to_string_lossy().parse().map_err(input)?;
+    let choice = choice(&checkpoint)?;
+    let jobs = jobs.map(jobs_at_once).transpose()?;
     let line = work(py, |interrupt| {
         let evaluation = eval::evaluate(&choice, &dataset, split, jobs, interrupt)?;
         json_line(&Summary::new(&evaluation, &dataset, split))

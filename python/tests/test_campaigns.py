@@ -47,6 +47,10 @@ def test_rows_are_a_table(tmp_path):
         {"runs": 1, "weather": "Sunny"},
         {"runs": 1, "max_time": 2.5},
         {"runs": 1, "maps": "gone.xodr"},
+        {"runs": 1, "pedestrians": 501},
+        {"runs": 1, "jobs": 0},
+        {"runs": 1, "jobs": 257},
+        {"pedestrian_cases": 1, "pedestrians": 0},
     ],
 )
 def test_what_cannot_be_is_refused(asked, tmp_path):

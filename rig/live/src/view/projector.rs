@@ -17,6 +17,7 @@ use super::layers::{self, Layer};
 
 /// Width of images and true classes, pixels: the multiple of the semantic driver's camera nearest below.
 const WIDTH: u32 = 768;
+
 /// What is to be shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
