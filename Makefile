@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test matrix bench oracles peers kills fuzz properties check-long headless setup tools build
+.PHONY: demo test matrix bench dist oracles peers cluster kills fuzz properties check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -39,15 +39,27 @@ matrix: setup
 bench: setup
 	cargo bench --workspace --bench budgets
 
-## Compares what is computed here with what programs of others make of the same files (Python, PyPI).
+## A release for this machine's architecture in dist/: both programs as tarballs, the wheel, and SHA256SUMS; each is tried.
+dist: PACKAGES += python3-venv
+dist: setup
+	rig/aeye/dist/pack.sh $(dir $(AEYE))../dist dist
+	rig/aeye/dist/try.sh dist
+
+## Compares what is computed here with what programs of others make of the same files (Python, PyPI; TORCH=1: PyTorch's, too).
 oracles: PACKAGES += python3-venv
 oracles: build
 	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
 
-## Drives the same towns with SUMO (PyPI), and says how fast either is.
+## Drives the same towns with SUMO (PyPI), steps environments of Gymnasium (PyPI), and says how fast each is.
 peers: PACKAGES += python3-venv
 peers: build
 	benches/peers/run.sh $(dir $(AEYE))world_speed $(dir $(AEYE))../peers
+	benches/peers/gym.sh $(dir $(AEYE))episode_speed $(dir $(AEYE))../peers
+
+## The same campaign alone, in shards, on Ray (PyPI) and as a Slurm array, with somebody killed in each, and an experiment: the same files.
+cluster: PACKAGES += python3-venv slurm-wlm munge
+cluster: build
+	tests/cluster/run.sh $(AEYE) $(dir $(AEYE))../cluster
 
 ## Kills the program 200 times in everything that takes long; what was finished must stay.
 kills: setup

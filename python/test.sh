@@ -18,10 +18,7 @@ environment() {
 }
 
 cargo build --release --workspace --bins
-grep '^maturin' "$here/requirements.txt" | environment build
-rm -rf "$folder/wheels"
-CARGO=$here/workspace_cargo.sh "$folder/build/bin/maturin" build --release --locked --manifest-path "$here/Cargo.toml" \
-	--auditwheel skip --out "$folder/wheels"
+"$here/wheel.sh" "$folder"
 
 { grep -v '^maturin' "$here/requirements.txt" && ls "$folder"/wheels/*.whl; } | environment try
 cd "$folder"

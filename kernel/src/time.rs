@@ -22,7 +22,7 @@ pub const DATASET_FPS: u32 = 1;
 /// Ticks from one dataset frame to the next.
 pub const DATASET_STRIDE_TICKS: Tick = (TICK_HZ / DATASET_FPS) as Tick;
 /// Ticks from one keyframe to the next, unless the ego touches another actor.
-pub const KEYFRAME_TICKS: Tick = 7 * TICK_HZ as Tick;
+pub const KEYFRAME_TICKS: Tick = 12 * TICK_HZ as Tick;
 
 const _: () = {
     assert!(TICK_HZ.is_multiple_of(CLIP_FPS));

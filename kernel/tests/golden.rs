@@ -1,11 +1,14 @@
-//! A scripted drive on every bundled map goes as the golden timeline says, second by second and part
-//! by part, in every build. `AEYE_BLESS=1 cargo test -p kernel --release --test golden` writes it, and
+//! A scripted drive on every bundled map and through a roundabout goes as the golden timeline says, second by second and
+//! part by part, in every build. `AEYE_BLESS=1 cargo test -p kernel --release --test golden` writes it, and
 //! the kernel has another identity from then on ([`kernel::identity`]).
 #![allow(clippy::disallowed_methods, reason = "tests may read files and the environment")]
 
 mod common;
+#[path = "common/roundabout.rs"]
+mod roundabout;
 
 use std::fmt::Write;
+use std::sync::Arc;
 
 use common::script;
 use kernel::arbiter::Phase;
@@ -15,7 +18,8 @@ use kernel::scenario::Scenario;
 use kernel::signals::LightPhase;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::world::PARTS;
-use kernel::{Seat, World};
+use kernel::{RoadNetwork, Seat, World};
+use roundabout::Roundabout;
 
 const TICKS: Tick = 3600;
 
@@ -29,9 +33,9 @@ struct Drive {
     scenario: &'static str,
 }
 
-/// With these seeds the script brings about everything that a map can hold; on the last drive others make mistakes, while
-/// rain begins.
-const DRIVES: [Drive; 3] = [
+/// With these seeds the script brings about everything that a map can hold; on one drive others make mistakes, while
+/// rain begins, and on the last they drive round, which they do on no bundled map.
+const DRIVES: [Drive; 4] = [
     Drive { name: "city", map: "city", seed: 101, scenario: "" },
     Drive { name: "rural", map: "rural", seed: 6, scenario: "" },
     Drive {
@@ -42,12 +46,20 @@ const DRIVES: [Drive; 3] = [
                    hard_brakings_per_h = 120.0\npull_outs_per_h = 600.0\n\
                    [weather.later]\npreset = \"HardRainNoon\"\nover_s = 40.0\n",
     },
+    Drive { name: ROUND, map: ROUND, seed: 61, scenario: "[traffic]\ncars = 50\nmotorcycles = 4\nbicycles = 6\n" },
 ];
 
 impl Drive {
     fn scenario(&self) -> Scenario {
         let Self { map, seed, scenario, .. } = self;
         Scenario::from_toml(&format!("map = \"{map}\"\nseed = {seed}\n{scenario}")).expect("a valid scenario")
+    }
+
+    fn network(&self) -> Arc<RoadNetwork> {
+        match self.map {
+            ROUND => Arc::new(map::bake(ROUND, &Roundabout::default().open_drive()).expect("it bakes")),
+            bundled => map::bundled(bundled).expect("it is bundled"),
+        }
     }
 }
 
@@ -56,6 +68,9 @@ const LIT: [&str; 1] = ["city"];
 /// The drive on which others make mistakes, and those that it must hold.
 const MISTAKEN: &str = "mistakes";
 const MISTAKES: [EventKind; 3] = [EventKind::HazardRollingStop, EventKind::HazardBraking, EventKind::HazardPullOut];
+/// The drive through a roundabout, and how many of its seconds somebody drives round at least.
+const ROUND: &str = "roundabout";
+const ROUND_S: u32 = 30;
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden_timeline.txt");
 
 /// What a drive held, so that its hash cannot come to stand for less.
@@ -68,6 +83,8 @@ struct Held {
     waited: bool,
     /// It waited, and drove on at green before anyone intervened.
     light_kept: bool,
+    /// Seconds in which somebody was where a roundabout is.
+    round_s: u32,
 }
 
 impl Held {
@@ -84,6 +101,9 @@ impl Held {
         let absent = |kind: &&EventKind| self.events[**kind as usize] == 0;
         if drive == MISTAKEN {
             return MISTAKES.iter().filter(absent).map(|kind| format!("{kind:?}")).collect();
+        }
+        if drive == ROUND {
+            return if self.round_s < ROUND_S { vec!["vehicles that drive round".to_owned()] } else { Vec::new() };
         }
         let lit = LIT.contains(&drive);
         // What the watchdog tells is a failure of traffic, and mistakes are rare by themselves.
@@ -103,15 +123,16 @@ impl Held {
 /// changed, a hash that differs says the values did.
 fn drive(drive: &Drive) -> String {
     let name = drive.name;
-    let network = map::bundled(drive.map).expect("it is bundled");
+    let network = drive.network();
     let mut world = World::new(&drive.scenario(), &network).expect("the scenario fits");
-    let mut held = Held { events: Default::default(), overridden: false, waited: false, light_kept: false };
+    let mut held = Held { events: Default::default(), overridden: false, waited: false, light_kept: false, round_s: 0 };
     let mut seconds = String::new();
     for _ in 0..TICKS {
         let output = world.step(&script::input(&world));
         output.events.iter().for_each(|event| held.events[event.kind as usize] += 1);
         held.note(world.arbiter().phase, output.applied.pedals, &world.hud());
         if output.tick.is_multiple_of(Tick::from(TICK_HZ)) {
+            held.round_s += u32::from(somebody_drives_round(&world));
             let hashes = world.part_hashes().map(|hash| format!("{:08x}", hash as u32)).join(" ");
             writeln!(seconds, "{name} {} {hashes}", output.tick / Tick::from(TICK_HZ)).expect("writing to a string");
         }
@@ -123,6 +144,12 @@ fn drive(drive: &Drive) -> String {
     let lacks = held.lacks(name);
     assert!(lacks.is_empty(), "the drive lacks {}: {head}", lacks.join(", "));
     format!("{head}\n{seconds}")
+}
+
+/// Whether a vehicle is within the outer edge of the roundabout's ring, whose middle is at zero.
+fn somebody_drives_round(world: &World) -> bool {
+    let inside = |at: glam::Vec3| f64::from(at.truncate().length()) < Roundabout::default().radius_m + 2.5;
+    world.scene().actors.iter().any(|actor| actor.kind.is_car_or_heavier() && inside(actor.position))
 }
 
 /// What differs first between two timelines: which parts of the state, on which map, in which second.

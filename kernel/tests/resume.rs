@@ -28,7 +28,7 @@ fn worlds_resumed_from_every_keyframe_stay_identical() {
     let mut others = vec![World::resume(&scenario, &network, &first).expect("it resumes")];
     let mut keyframes = 0;
     let mut collisions = 0;
-    for _ in 0..6_000 {
+    for _ in 0..7_200 {
         let input = script::input(&original);
         let mut keyframe = None;
         let before = original.clone();
@@ -106,7 +106,7 @@ fn a_forged_keyframe_never_panics() {
 
 #[test]
 fn a_truncated_or_mismatched_keyframe_is_refused_in_one_sentence() {
-    let (world, keyframe) = driven(700);
+    let (world, keyframe) = driven(KEYFRAME_TICKS + 100);
     for length in 0..keyframe.bytes.len() {
         let cut = Keyframe { tick: keyframe.tick, bytes: keyframe.bytes[..length].to_vec() };
         let error = World::resume(world.scenario(), world.network(), &cut).err().expect("it is refused");

@@ -6,6 +6,9 @@ use crate::{Checkpoint, PerceptionError};
 /// was trained to the end. Their cards are in `perception/checkpoints`.
 pub const BUNDLED: [&str; 2] = ["early", "full"];
 
+/// What ground truth is called among checkpoints.
+pub const TRUTH: &str = "truth";
+
 const FILES: [&[u8]; BUNDLED.len()] =
     [include_bytes!("../checkpoints/early.onnx"), include_bytes!("../checkpoints/full.onnx")];
 

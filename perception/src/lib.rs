@@ -30,7 +30,7 @@ pub mod training;
 #[cfg(test)]
 mod zoo;
 
-pub use bundled::{BUNDLED, bundled};
+pub use bundled::{BUNDLED, TRUTH, bundled};
 pub use checkpoint::Checkpoint;
 pub use classes::ClassMap;
 pub use compute::Compute;

@@ -11,17 +11,23 @@ from aeye import datasets
 from aeye._aeye import (
     CLASSES,
     Camera,
+    External,
     Frame,
     Frames,
     Recording,
     Segmenter,
     __version__,
     campaign,
+    cases,
+    collect,
+    compare,
     evaluate,
+    experiment,
     open,
+    pieces,
     redrive,
 )
-from aeye._errors import DivergedError, EngineError, Error, FileError, InputError
+from aeye._errors import DivergedError, EngineError, Error, FileError, InputError, MissingRunsError
 from aeye._tables import Table
 
 __all__ = [
@@ -30,17 +36,24 @@ __all__ = [
     "DivergedError",
     "EngineError",
     "Error",
+    "External",
     "FileError",
     "Frame",
     "Frames",
     "InputError",
+    "MissingRunsError",
     "Recording",
     "Segmenter",
     "Table",
     "__version__",
     "campaign",
+    "cases",
+    "collect",
+    "compare",
     "datasets",
     "evaluate",
+    "experiment",
     "open",
+    "pieces",
     "redrive",
 ]

@@ -1,24 +1,34 @@
 """The native half of the package `aeye`, which is what to import."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, TypedDict, final, type_check_only
+from typing import Any, Literal, Protocol, TypeAlias, TypedDict, final, type_check_only
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aeye._tables import Table
+
 __all__ = [
     "CLASSES",
     "Camera",
+    "Episodes",
+    "External",
     "Frame",
     "Frames",
     "Recording",
     "Segmenter",
+    "Setting",
     "__version__",
     "campaign",
+    "cases",
+    "collect",
+    "compare",
     "evaluate",
+    "experiment",
     "open",
+    "pieces",
     "redrive",
 ]
 
@@ -306,6 +316,146 @@ class Segmenter:
         Raises InputError for any other array, EngineError where the network fails.
         """
 
+@final
+class External:
+    """A function in the place of a checkpoint, for `campaign`, `compare`, `redrive`, `evaluate` and `aeye.gym`.
+
+    So a network of PyTorch, JAX or TensorRT drives without an ONNX file.
+
+    `function` takes a picture, uint8 of shape (height, width, 3): red, green, blue, and gives the class of every pixel,
+    uint8 of shape (height, width): keys of `aeye.CLASSES`. Threads call it, several at once where there are `jobs`; what it
+    raises ends the call and is raised there. In a drive pictures have the `size`, (width, height) in pixels.
+
+    Recordings and results say `name` and `version`, which no file stands behind: a function that changes needs another
+    version, or results of the old one are taken for its own.
+
+    Raises InputError for a name that no file can have or that is a checkpoint's of this package, and for a size that
+    cannot be.
+    """
+
+    def __new__(
+        cls,
+        function: Callable[[NDArray[np.uint8]], NDArray[np.uint8]],
+        *,
+        name: str,
+        version: str,
+        size: tuple[int, int] = (256, 128),
+    ) -> External: ...
+    @property
+    def function(self) -> Callable[[NDArray[np.uint8]], NDArray[np.uint8]]:
+        """The function."""
+
+    @property
+    def name(self) -> str:
+        """What it is called in results."""
+
+    @property
+    def version(self) -> str:
+        """Which one of that name it is."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the pictures that it looks at in a drive, pixels."""
+
+    def __getnewargs_ex__(self) -> tuple[tuple[Callable[..., Any]], dict[str, Any]]:
+        """What it is made of, to travel to other processes with its function."""
+
+_Checkpoint: TypeAlias = str | PathLike[str] | External
+
+@final
+class Setting:
+    """What drives start from, for `aeye.gym`.
+
+    A bundled map or an OpenDRIVE file (`map`), or a `scenario` file, and what is to be otherwise than it says.
+
+    Raises FileError where a file is not there, InputError for a value that cannot be.
+    """
+
+    def __new__(
+        cls,
+        *,
+        map: str | PathLike[str] | None = None,
+        scenario: str | PathLike[str] | None = None,
+        hazards: str | None = None,
+        weather: str | None = None,
+        pedestrians: int | None = None,
+        max_time: float | None = None,
+        brake_threshold: float | None = None,
+        steer_threshold: float | None = None,
+    ) -> Setting: ...
+
+@type_check_only
+class Arrays(Protocol):
+    """A tuple of masks, images, HUDs and figures, each with a row for each place."""
+
+    def __iter__(self) -> Iterator[NDArray[Any] | None]: ...
+
+@final
+class Episodes:
+    """So many places for drives that are stepped together, for `aeye.gym`.
+
+    `jobs` of them at the same time (None: one a core). An agent has the `seat` and holds its controls for `ticks` of a step, a
+    bot has the other. `masks` and `images` say what is observed; images have a `size`, (width, height) (None: that of masks);
+    `record` is a folder for recordings.
+
+    Raises FileError where a file is not there, InputError for a value that cannot be.
+    """
+
+    HUD: list[str]
+    HUD_RANGES: list[list[float]]
+    FIGURES: list[str]
+
+    def __new__(
+        cls,
+        places: int,
+        *,
+        seat: str = "semantic",
+        checkpoint: _Checkpoint | None = None,
+        ticks: int = 6,
+        masks: bool = True,
+        images: bool = False,
+        size: tuple[int, int] | None = None,
+        record: str | PathLike[str] | None = None,
+        jobs: int | None = None,
+    ) -> Episodes: ...
+    @property
+    def mask_size(self) -> tuple[int, int]:
+        """Width and height of masks, pixels: those that the checkpoint takes."""
+
+    @property
+    def image_size(self) -> tuple[int, int]:
+        """Width and height of images, pixels."""
+
+    def reset(self, places: list[int], seeds: list[int], setting: Setting, arrays: Arrays) -> None:
+        """Starts drives at places and writes what is to be seen into the rows of `arrays`.
+
+        Each has a seed. Those that still go on there end.
+
+        Raises EngineError where there is no graphics driver, FileError where a recording cannot be written.
+        """
+
+    def step(self, places: list[int], actions: NDArray[np.float32], arrays: Arrays) -> None:
+        """Steps the drives at places by `actions`, float32 of shape (n, 3): steering, throttle and brake of each.
+
+        Raises InputError where no drive goes on, EngineError where it cannot be drawn or seen.
+        """
+
+    def finish(self, places: list[int]) -> list[Path | None]:
+        """Ends the drives at places and tells where their recordings are.
+
+        None of those that are not recorded, have not begun or are over.
+
+        Raises FileError where a recording cannot be written.
+        """
+
+    def draw(self, place: int, camera: str, size: tuple[int, int]) -> NDArray[np.uint8]:
+        """A picture of the drive at a place from a `camera` (`driver`, `chase` or `top`).
+
+        uint8 of shape (height, width, 3).
+
+        Raises InputError where no drive goes on, EngineError where it cannot be drawn.
+        """
+
 def open(path: str | PathLike[str]) -> Recording:
     """Opens a recording or corner case and checks every byte of it.
 
@@ -315,7 +465,7 @@ def open(path: str | PathLike[str]) -> Recording:
     """
 
 def campaign(
-    checkpoint: str | PathLike[str] | list[str | PathLike[str]],
+    checkpoint: _Checkpoint | list[_Checkpoint],
     out: str | PathLike[str],
     *,
     runs: int | None = None,
@@ -330,17 +480,94 @@ def campaign(
     max_time: float = 240.0,
     seed: int = 1,
     jobs: int | None = None,
+    shard: tuple[int, int] | None = None,
 ) -> dict[str, Any]:
     """Lets bots drive through checkpoints until there are so many runs, kilometres or cases of each.
 
     As `aeye campaign` does, and gives what that prints with `--json`; `runs` of it is a `Table`. Recordings, corner cases
     and `campaign.json` go to the folder `out`. Ctrl-C ends it; what was driven stays, and the same call goes on there.
 
-    `checkpoint` are `early`, `full`, `truth` or ONNX files, `maps` names of bundled maps or OpenDRIVE files (None: the
+    `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
     scenario's, or all bundled ones), `weather` is one of CARLA's names. A run takes at most `max_time` simulated seconds.
     `jobs` worlds are simulated at the same time (None: one a core); the results do not depend on it.
 
-    Raises InputError for a value that cannot be, FileError where a file is not there or cannot be written.
+    With `shard`, (i, n), it drives every n-th run alone, up to `runs`, into a folder for `collect`, and gives what `aeye
+    campaign --shard --json` prints.
+
+    Raises InputError for a value that cannot be, FileError where a file is not there or cannot be written,
+    MissingRunsError where `runs` do not come to the goal.
+    """
+
+def collect(
+    folders: str | PathLike[str] | list[str | PathLike[str]],
+    out: str | PathLike[str],
+    *,
+    jobs: int | None = None,
+) -> dict[str, Any]:
+    """Puts together what the shards of a campaign drove.
+
+    As `aeye campaign --collect` does: the files of one process in the folder `out`, and what that prints with `--json`;
+    `runs` of it is a `Table`. It drives nothing and needs no graphics driver.
+
+    `folders` are those of shards, or hold such folders. `jobs` runs are read at the same time (None: one a core).
+
+    Raises MissingRunsError where runs are not there yet, EngineError where the folders are not of one
+    campaign and program.
+    """
+
+def experiment(
+    recipe: str | PathLike[str],
+    out: str | PathLike[str],
+    *,
+    jobs: int | None = None,
+    piece: str | None = None,
+) -> dict[str, Any]:
+    """Does what a recipe says in the folder `out`, or what is left of it there.
+
+    As `aeye experiment` does, and gives what that prints with `--json`. Ctrl-C ends it; the same call goes on there.
+
+    `recipe` is a preset (`smoke`, `small`, `desk`, `paper`) or a TOML file. `jobs` drives are made at the same time (None: one a
+    core); the results do not depend on it.
+
+    With `piece`, the name of one of `pieces`, that one is done alone, and what `aeye experiment --piece --json` prints is
+    given; other processes may do others in the same folder.
+
+    Raises InputError for a value that cannot be, FileError where a file is not there or cannot be written, EngineError
+    where what a piece needs is not there.
+    """
+
+def pieces(recipe: str | PathLike[str], out: str | PathLike[str]) -> list[dict[str, Any]]:
+    """The pieces of an experiment that are not done yet in the folder `out` and can be done now.
+
+    Each with what it needs there, as `aeye experiment --pieces --json` prints them. When none is left, `experiment` does
+    the rest.
+
+    Raises InputError for a value that cannot be, FileError where a file is not there.
+    """
+
+def compare(
+    cases: str | PathLike[str] | list[str | PathLike[str]],
+    checkpoints: list[_Checkpoint],
+    out: str | PathLike[str],
+    *,
+    gates: list[str] | None = None,
+    no_worse_than: str | None = None,
+    size: tuple[int, int] | None = None,
+    jobs: int | None = None,
+) -> dict[str, Any]:
+    """Which corner cases a checkpoint fixes and breaks against another.
+
+    As `aeye compare` does, and gives what that prints with `--json`; `cases` of it is a `Table`. `compare.json` and
+    `report.html` go to the folder `out`; the same call with more cases or checkpoints looks only at those. Ctrl-C ends it.
+
+    `cases` are files, or folders with cases anywhere below; `checkpoints` two or more, the first of which is the baseline:
+    `early`, `full`, `truth`, ONNX files or `External`. `gates` are conditions on all others, as in `ped_iou>=0.5`, and
+    `no_worse_than` names a checkpoint than which no other may be worse; `gates` of what is given says which were passed.
+    Pictures have the `size`, (width, height) (None: that of the first network). `jobs` frames are looked at at the same
+    time (None: one a core); the results do not depend on it.
+
+    Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where no case can be
+    drawn.
     """
 
 def redrive(
@@ -348,8 +575,8 @@ def redrive(
     out: str | PathLike[str],
     *,
     without_intervention: bool = False,
-    checkpoint: str | PathLike[str] | None = None,
-    recorded: str | PathLike[str] | list[str | PathLike[str]] | None = None,
+    checkpoint: _Checkpoint | None = None,
+    recorded: _Checkpoint | list[_Checkpoint] | None = None,
     vary: int = 0,
     after: float = 10.0,
     jobs: int | None = None,
@@ -360,15 +587,69 @@ def redrive(
     the folder `out`. Ctrl-C ends it; what was driven stays.
 
     Either `without_intervention`: what would have happened if the safety driver had done nothing? Or through a
-    `checkpoint`: is there an intervention again? `recorded` are files in which checkpoints of the recordings may be found.
+    `checkpoint`: is there an intervention again? `recorded` are those among which checkpoints of the recordings may be found.
     Each file has `vary` further forks, 0 to 30, and a fork goes on for `after` seconds, 1 to 60.
 
     Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where none of them can
     be driven on.
     """
 
+def cases(
+    folders: str | PathLike[str] | list[str | PathLike[str]],
+    *,
+    index: str | PathLike[str] | None = None,
+    scan: bool = True,
+    label: str | list[str] | None = None,
+    verdict: str | list[str] | None = None,
+    map: str | list[str] | None = None,
+    weather: str | list[str] | None = None,
+    hazards: str | list[str] | None = None,
+    checkpoint: str | list[str] | None = None,
+    perception_caused: str | list[str] | None = None,
+    overlooked: str | list[str] | None = None,
+    ttc_below: float | None = None,
+    fork_ttc_below: float | None = None,
+    reviewed: str | list[str] | None = None,
+    tag: str | list[str] | None = None,
+    near: str | PathLike[str] | None = None,
+    unique: bool = False,
+    sort: str = "file",
+    descending: bool = False,
+    limit: int | None = None,
+    measure: bool = False,
+    recorded: _Checkpoint | list[_Checkpoint] | None = None,
+    set_review: str | None = None,
+    add_tag: str | list[str] | None = None,
+    remove_tag: str | list[str] | None = None,
+    reveal: bool = False,
+    jobs: int | None = None,
+) -> Table:
+    """Finds corner cases by what is known of them.
+
+    As `aeye cases` does, and gives a `Table` with a dictionary for each, as that prints with `--json`; `file` of it
+    is the path. The index of the `folders`, in the file `index` (None: `cases.sqlite` in the one folder), is
+    brought up to date first, unless `scan` is False; files that cannot be read are left out with a warning. With
+    files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
+
+    Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom.
+    `verdict`: necessary, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a
+    checkpoint's digest begins with). `weather`: rain, wet, dry, fog, night, day, or a name of CARLA's. `hazards`:
+    none, natural, raised, own. `perception_caused`: yes, no, unknown. `overlooked`: any, walker, vehicle or a kind
+    of road user, as in `child:200` with so many pixels of them. `ttc_below` and `fork_ttc_below`: seconds to
+    collision, measured, and without the takeover. `reviewed`: yes, no, accepted, rejected, unclear. `tag`: tags.
+    `near`: cases whose situation is nearly that of this file; `unique`: one of each group that are nearly the same.
+    `sort`: file, ttc, fork-ttc, speed, overlooked, distance; `descending` and `limit` of it.
+
+    `measure` simulates and draws those cases that were not measured, through the checkpoints of their drives, which
+    are found among `recorded` if they do not come with the package. `set_review`, `add_tag` and `remove_tag` say
+    what came of looking at the cases. `reveal` tells the checkpoints of blind drives.
+
+    Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where the index
+    cannot be read or nothing can be drawn.
+    """
+
 def evaluate(
-    checkpoint: str | PathLike[str],
+    checkpoint: _Checkpoint,
     dataset: str | PathLike[str],
     *,
     split: str = "val",
@@ -376,7 +657,7 @@ def evaluate(
 ) -> dict[str, Any]:
     """Measures a checkpoint on a split of a dataset in the layout of Cityscapes.
 
-    The checkpoint is `early`, `full`, `truth` or an ONNX file. Gives what `aeye eval --json` prints: IoU of each class,
+    The checkpoint is `early`, `full`, `truth`, an ONNX file or an `External`. Gives what `aeye eval --json` prints: IoU of each class,
     confusion matrix, recall of pedestrians. `jobs` frames are looked at at the same time (None: one a core); the result
     does not depend on it. Ctrl-C ends it.
 

@@ -19,3 +19,7 @@ class EngineError(Error, RuntimeError):
 
 class DivergedError(EngineError):
     """A replay is not the run that was recorded."""
+
+
+class MissingRunsError(EngineError):
+    """Shards have not driven all runs that are needed, or all runs do not come to the goal."""

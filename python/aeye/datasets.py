@@ -10,10 +10,10 @@ a dataset that has been read in the parent needs `multiprocessing_context="spawn
 
 from bisect import bisect_right
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 from aeye._aeye import Frame, Frames, Recording
 from aeye._aeye import open as open_file
@@ -23,8 +23,14 @@ __all__ = ["CornerCases", "Natural", "Sample"]
 
 Sample = Any
 
-# Frames that are simulated and drawn together: a replay begins at a keyframe, up to 7 s before the first of them.
+_Places: TypeAlias = str | PathLike[str] | Iterable[str | PathLike[str]]
+
+# Frames that are simulated and drawn together where they are asked for in any order: a replay begins at a keyframe, up to
+# 12 s before the first of them.
 _AT_ONCE = 32
+# Who goes on by no more than so many goes through all of them, as a worker does beside others: the ones between are theirs.
+_STRIDE = 2 * _AT_ONCE
+_NOT_DRAWN = object()
 
 
 def _pair(frame: Frame) -> Sample:
@@ -39,7 +45,7 @@ class _Windows:
 
     def __init__(
         self,
-        folder: str | PathLike[str],
+        folder: _Places,
         kind: Literal["recording", "case"],
         window: dict[str, Any],
         transform: Callable[[Frame], Sample] | None,
@@ -55,7 +61,7 @@ class _Windows:
         self._pieces: list[tuple[int, range]] = []
         self._first: list[int] = []
         count = 0
-        for path, ticks in _found(Path(folder), kind, window):
+        for path, ticks in _found(folder, kind, window):
             for start in range(0, ticks, _AT_ONCE):
                 piece = range(start, min(start + _AT_ONCE, ticks))
                 self._pieces.append((len(self.paths), piece))
@@ -68,6 +74,7 @@ class _Windows:
     def _forget(self) -> None:
         self._open: tuple[int, Frames] | None = None
         self._drawn: OrderedDict[int, list[Sample]] = OrderedDict()
+        self._last = -1
 
     def __len__(self) -> int:
         return self._count
@@ -76,20 +83,26 @@ class _Windows:
         number = index + self._count if index < 0 else index
         if not 0 <= number < self._count:
             raise IndexError(f"sample {index} of {self._count}")
+        goes_on = 0 < number - self._last <= _STRIDE
+        self._last = number
         piece = _last_at_most(self._first, number)
-        if piece not in self._drawn:
-            self._drawn[piece] = self._draw(piece)
+        samples = self._drawn.setdefault(piece, [_NOT_DRAWN] * len(self._pieces[piece][1]))
         self._drawn.move_to_end(piece)
         while len(self._drawn) > self._keep:
             self._drawn.popitem(last=False)
-        return self._drawn[piece][number - self._first[piece]]
+        at = number - self._first[piece]
+        if samples[at] is _NOT_DRAWN:
+            self._draw(piece, samples, range(at, at + 1) if goes_on else range(len(samples)))
+        return samples[at]
 
-    def _draw(self, piece: int) -> list[Sample]:
+    def _draw(self, piece: int, samples: list[Sample], which: range) -> None:
         file, rows = self._pieces[piece]
         if self._open is None or self._open[0] != file:
             self._open = (file, open_file(self.paths[file]).frames(**self._window))
         frames = self._open[1]
-        return [self._transform(frames[row]) for row in rows]
+        for at in which:
+            if samples[at] is _NOT_DRAWN:
+                samples[at] = self._transform(frames[rows[at]])
 
     def path_of(self, index: int) -> Path:
         """The file that a sample is of."""
@@ -98,7 +111,7 @@ class _Windows:
 
     def __getstate__(self) -> dict[str, Any]:
         # Graphics devices are of this process; a worker opens its own.
-        return {name: value for name, value in vars(self).items() if name not in ("_open", "_drawn")}
+        return {name: value for name, value in vars(self).items() if name not in ("_open", "_drawn", "_last")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -109,7 +122,9 @@ class _Windows:
 
 
 class CornerCases(_Windows):
-    """The frames before each takeover, of all cases (`*.mcap`) in a folder and those below it.
+    """The frames before each takeover, of all cases (`*.mcap`) in a folder and those below it, or of a list of cases and folders.
+
+    A list is taken in its order: `CornerCases([row["file"] for row in aeye.cases("runs", label="walker")])`.
 
     A sample is `transform(frame)`, or else `(rgb, class_ids)`: uint8 of shape (height, width, 3) and (height, width),
     classes being keys of `aeye.CLASSES`. `last` are seconds before the takeover, `size` is (width, height). With
@@ -117,12 +132,12 @@ class CornerCases(_Windows):
 
     `keep` pieces of 32 samples stay in memory in each process, those that were asked for last: 100 MB at 256x128.
 
-    Raises FileError where the folder is not there, InputError where it holds no case, or a file is damaged.
+    Raises FileError where a folder or file is not there, InputError where there is no case, or a file is damaged.
     """
 
     def __init__(
         self,
-        folder: str | PathLike[str],
+        folder: _Places,
         *,
         size: tuple[int, int] = (256, 128),
         last: float = 3.0,
@@ -153,15 +168,37 @@ class Natural(_Windows):
         super().__init__(folder, "recording", {"last": None, "fps": fps, "size": size}, transform, keep)
 
 
-def _found(folder: Path, kind: str, window: dict[str, Any]) -> list[tuple[Path, int]]:
+def _found(places: _Places, kind: str, window: dict[str, Any]) -> list[tuple[Path, int]]:
     """The files of a kind and how many frames their window has."""
-    if not folder.is_dir():
-        raise FileError(f"{folder}: no such folder")
-    opened: list[Recording] = [open_file(path) for path in sorted(folder.rglob("*.mcap"))]
-    found = [(file.path, len(file.frames(**window))) for file in opened if file.kind == kind]
+    if isinstance(places, (str, PathLike)):
+        folder = Path(places)
+        if not folder.is_dir():
+            raise FileError(f"{folder}: no such folder")
+        found = _below(folder, kind)
+    else:
+        found = [file for place in map(Path, places) for file in _named(place, kind)]
+        if not found:
+            raise InputError(f"an empty list; expected at least one {kind} (*.mcap)")
+    return [(file.path, len(file.frames(**window))) for file in found]
+
+
+def _below(folder: Path, kind: str) -> list[Recording]:
+    """The files of a kind below a folder."""
+    opened = [open_file(path) for path in sorted(folder.rglob("*.mcap"))]
+    found = [file for file in opened if file.kind == kind]
     if not found:
         raise InputError(f"{folder}: holds no {kind} (*.mcap)")
     return found
+
+
+def _named(place: Path, kind: str) -> list[Recording]:
+    """What stands in a list: a folder, or a file, which is to be of the kind."""
+    if place.is_dir():
+        return _below(place, kind)
+    file = open_file(place)
+    if file.kind != kind:
+        raise InputError(f"{place}: a {file.kind}; expected a {kind}")
+    return [file]
 
 
 def _last_at_most(ascending: list[int], number: int) -> int:

@@ -4,6 +4,7 @@ use std::io;
 
 use anyhow::Error;
 use base::failure::{Usage, is_divergence, sentence};
+use lab::campaign::TooFew;
 use perception::PerceptionError;
 use pyo3::prelude::*;
 use render::RenderError;
@@ -13,6 +14,7 @@ const FILE: &str = "FileError";
 const INPUT: &str = "InputError";
 const ENGINE: &str = "EngineError";
 const DIVERGED: &str = "DivergedError";
+const MISSING_RUNS: &str = "MissingRunsError";
 
 /// The exception that stands for an error.
 pub fn raise(error: &Error) -> PyErr {
@@ -59,6 +61,7 @@ fn kind_of_cause(cause: &(dyn std::error::Error + 'static)) -> Option<&'static s
         _ => ENGINE,
     };
     None.or_else(|| cause.is::<Usage>().then_some(INPUT))
+        .or_else(|| cause.is::<TooFew>().then_some(MISSING_RUNS))
         .or_else(|| cause.is::<io::Error>().then_some(FILE))
         .or_else(|| cause.downcast_ref().map(of_log))
         .or_else(|| cause.downcast_ref().map(of_perception))

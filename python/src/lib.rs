@@ -4,10 +4,16 @@
 mod camera;
 mod campaigns;
 mod columns;
+mod compare;
 mod errors;
+mod experiments;
+mod external;
 mod forked;
+mod forks;
 mod frame;
 mod frames;
+mod gym;
+mod library;
 mod log;
 mod metrics;
 mod recording;
@@ -27,11 +33,23 @@ mod _aeye {
     #[pymodule_export]
     use crate::camera::Camera;
     #[pymodule_export]
-    use crate::campaigns::{campaign, redrive};
+    use crate::campaigns::{campaign, collect};
+    #[pymodule_export]
+    use crate::compare::compare;
+    #[pymodule_export]
+    use crate::experiments::{experiment, pieces};
+    #[pymodule_export]
+    use crate::external::External;
+    #[pymodule_export]
+    use crate::forks::redrive;
     #[pymodule_export]
     use crate::frame::Frame;
     #[pymodule_export]
     use crate::frames::Frames;
+    #[pymodule_export]
+    use crate::gym::{Episodes, Setting};
+    #[pymodule_export]
+    use crate::library::cases;
     #[pymodule_export]
     use crate::metrics::evaluate;
     #[pymodule_export]

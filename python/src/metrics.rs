@@ -6,10 +6,11 @@ use base::json::json_line;
 use lab::eval::{self, Summary};
 use pyo3::prelude::*;
 
-use crate::values::{choice, jobs_at_once};
+use crate::external::{Checkpoint, Raised};
+use crate::values::jobs_at_once;
 use crate::work::{parsed, work};
 
-/// Measures a checkpoint (`early`, `full`, `truth` or an ONNX file) on a split of a dataset in the layout of Cityscapes.
+/// Measures a checkpoint (`early`, `full`, `truth`, an ONNX file or an `External`) on a split of a dataset in the layout of Cityscapes.
 /// Gives what `aeye eval --json` prints: IoU of each class, confusion matrix, recall of pedestrians. `jobs` frames are
 /// looked at at the same time (None: one a core); the result does not depend on it. Ctrl-C ends it.
 ///
@@ -18,16 +19,17 @@ use crate::work::{parsed, work};
 #[pyo3(signature = (checkpoint, dataset, *, split = "val", jobs = None))]
 pub fn evaluate<'py>(
     py: Python<'py>,
-    checkpoint: PathBuf,
+    checkpoint: Checkpoint<'py>,
     dataset: PathBuf,
     split: &str,
     jobs: Option<u16>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let choice = choice(&checkpoint)?;
+    let raised = Raised::default();
+    let choice = checkpoint.choice(&raised)?;
     let jobs = jobs.map(jobs_at_once).transpose()?;
-    let line = work(py, |interrupt| {
+    let line = raised.or(work(py, |interrupt| {
         let evaluation = eval::evaluate(&choice, &dataset, split, jobs, interrupt)?;
         json_line(&Summary::new(&evaluation, &dataset, split))
-    })?;
+    }))?;
     parsed(py, &line)
 }

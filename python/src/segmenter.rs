@@ -11,6 +11,7 @@ use pyo3::types::PyDict;
 use render::Frame;
 
 use crate::errors::{input, raise};
+use crate::values::described;
 
 /// A segmentation network: `early` or `full`, which come with the package, or an ONNX file that takes one image.
 ///
@@ -89,14 +90,7 @@ impl Segmenter {
 
 /// A picture that somebody hands over.
 fn picture(array: &Bound<'_, PyAny>) -> PyResult<Frame> {
-    let refuse = || {
-        let of = |name: &str| array.getattr(name).and_then(|value| value.str()?.extract::<String>());
-        let found = match (of("dtype"), of("shape")) {
-            (Ok(kind), Ok(shape)) => format!("{kind} of shape {shape}"),
-            _ => array.get_type().to_string(),
-        };
-        input(format!("expected an array of uint8 of shape (height, width, 3), got {found}"))
-    };
+    let refuse = || input(format!("expected an array of uint8 of shape (height, width, 3), got {}", described(array)));
     let array = array.extract::<PyReadonlyArray3<'_, u8>>().map_err(|_| refuse())?;
     let [height, width, channels] = *array.shape() else { return Err(refuse()) };
     let (Ok(width), Ok(height), 3) = (u32::try_from(width), u32::try_from(height), channels) else {

@@ -1,18 +1,49 @@
 //! Values as Python hands them over; the same are refused as by the command.
 
 use std::ops::RangeInclusive;
-use std::path::Path;
 
-use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::weather::WeatherPreset;
+use lab::share::Share;
+use numpy::PyUntypedArray;
 use pyo3::prelude::*;
 
 use crate::errors::input;
 
-/// A checkpoint.
-pub fn choice(path: &Path) -> PyResult<CheckpointChoice> {
-    path.to_string_lossy().parse().map_err(input)
+/// One of something, or several.
+#[derive(FromPyObject)]
+pub enum OneOrMore<T> {
+    /// Tried first: a path is no list.
+    One(T),
+    More(Vec<T>),
+}
+
+impl<T> OneOrMore<T> {
+    /// All of them.
+    pub fn list(self) -> Vec<T> {
+        match self {
+            Self::One(one) => vec![one],
+            Self::More(more) => more,
+        }
+    }
+}
+
+/// Width and height of pictures.
+pub fn picture_size((width, height): (u32, u32)) -> PyResult<(u32, u32)> {
+    let is_side = |side| (8..=8192).contains(&side);
+    if is_side(width) && is_side(height) {
+        return Ok((width, height));
+    }
+    Err(input(format!("size {width}x{height}; expected sides of 8 to 8192")))
+}
+
+/// What somebody handed over in the place of an array: kind and shape, or the type of what is none.
+pub fn described(value: &Bound<'_, PyAny>) -> String {
+    let of = |name: &str| value.getattr(name).and_then(|value| value.str()?.extract::<String>());
+    match (of("dtype"), of("shape")) {
+        (Ok(kind), Ok(shape)) if value.is_instance_of::<PyUntypedArray>() => format!("{kind} of shape {shape}"),
+        _ => value.get_type().to_string(),
+    }
 }
 
 /// How much is done at the same time.
@@ -46,4 +77,10 @@ pub fn whole_seconds(seconds: f64, name: &str, within: RangeInclusive<u32>) -> P
         let (least, most) = (within.start(), within.end());
         input(format!("{name}={seconds}; expected whole seconds from {least} to {most}"))
     })
+}
+
+/// A share of a campaign: which one, from 1 on, and of how many.
+pub fn share((shard, of): (u32, u32)) -> PyResult<Share> {
+    let refused = |_| input(format!("shard=({shard}, {of}); expected (i, n) with i from 1 to n"));
+    format!("{shard}/{of}").parse().map_err(refused)
 }

@@ -48,9 +48,19 @@ def test_what_was_asked_for_last_is_kept(files):
     drawn = []
     cases = CornerCases(files, size=(32, 16), last=1.0, transform=lambda frame: drawn.append(frame.tick), keep=1)
     half = len(cases) // 2
-    for index in (0, 1, half, half + 1, 0):
+    for index in (half + 1, 0, 1, half, 0):
         cases[index]
-    assert len(drawn) == 3 * half, "each case is drawn as a whole, and the first one twice"
+    assert len(drawn) == 2 * (half + 1), "the first case is drawn as a whole, twice, since who goes back wants any order"
+
+
+def test_who_goes_on_draws_what_is_asked_for_alone(files):
+    drawn = []
+    cases = CornerCases(files, size=(32, 16), last=1.0, transform=lambda frame: drawn.append(frame.tick) or frame.tick)
+    every_other = [cases[index] for index in range(0, len(cases), 2)]
+    assert drawn == every_other, "the ones between are another worker's"
+    assert [cases[index] for index in range(0, len(cases), 2)] == every_other
+    in_between = {cases[index] for index in range(1, len(cases), 2)}
+    assert len(drawn) == len(cases) and in_between.isdisjoint(every_other), "none twice"
 
 
 @pytest.mark.parametrize(("folder", "error"), [("gone", aeye.FileError), (".", aeye.InputError)])

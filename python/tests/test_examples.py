@@ -27,6 +27,11 @@ def test_own_network(case):
     assert mine < early
 
 
+def test_random_agent(tmp_path):
+    said = run("random_agent.py", tmp_path)
+    assert "verified" in said and "eight drives" in said
+
+
 @pytest.mark.skipif(importlib.util.find_spec("torch") is None, reason="PyTorch is not installed")
 def test_train_torch(case):
     losses = [float(line.split()[-1]) for line in run("train_torch.py", case.parent).splitlines()]

@@ -40,16 +40,27 @@ pub fn adapters() -> Vec<AdapterInfo> {
 /// so it is left out.
 fn found() -> &'static [wgpu::Adapter] {
     static FOUND: OnceLock<Vec<wgpu::Adapter>> = OnceLock::new();
-    FOUND.get_or_init(|| {
-        let backends = wgpu::Backends::PRIMARY;
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        descriptor.backends = backends;
-        descriptor.flags = wgpu::InstanceFlags::empty();
-        let instance = wgpu::Instance::new(descriptor);
-        let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
-        adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-        adapters
-    })
+    FOUND.get_or_init(look)
+}
+
+fn look() -> Vec<wgpu::Adapter> {
+    let backends = wgpu::Backends::PRIMARY;
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(descriptor);
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    adapters
+}
+
+/// The adapter to make a device from. Mesa's CPU driver (22.3) walks through the scenes of all devices of an instance, while
+/// others draw them: one that reads a picture back then ends the process by SIGSEGV. So CPU devices have an instance each.
+fn to_itself(at: usize) -> wgpu::Adapter {
+    let shared = &found()[at];
+    let is_same = |adapter: &wgpu::Adapter| adapter.get_info() == shared.get_info();
+    let own = (shared.get_info().device_type == wgpu::DeviceType::Cpu).then(look);
+    own.and_then(|own| own.into_iter().find(is_same)).unwrap_or_else(|| shared.clone())
 }
 
 fn rank(kind: wgpu::DeviceType) -> u8 {
@@ -92,16 +103,21 @@ impl AdapterChoice {
 
     /// The adapter that would draw; the error says what to install.
     pub fn find(&self) -> Result<AdapterInfo, RenderError> {
-        self.open().map(|(_, info)| info)
+        self.best().map(|(_, info)| info)
     }
 
-    /// The best adapter of the wanted kind.
-    pub(crate) fn open(&self) -> Result<(&'static wgpu::Adapter, AdapterInfo), RenderError> {
+    /// The best adapter of the wanted kind, for one device.
+    pub(crate) fn open(&self) -> Result<(wgpu::Adapter, AdapterInfo), RenderError> {
+        self.best().map(|(at, info)| (to_itself(at), info))
+    }
+
+    /// Number and description of the best adapter of the wanted kind.
+    fn best(&self) -> Result<(usize, AdapterInfo), RenderError> {
         let mut names = Vec::new();
-        for adapter in found() {
+        for (at, adapter) in found().iter().enumerate() {
             let info = describe(&adapter.get_info());
             if self.accepts(&info) {
-                return Ok((adapter, info));
+                return Ok((at, info));
             }
             names.push(info.name);
         }

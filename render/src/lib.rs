@@ -20,6 +20,7 @@ mod noise;
 mod rain;
 mod renderer;
 mod scenery;
+mod shadows;
 pub mod tags;
 mod view;
 pub mod wind;

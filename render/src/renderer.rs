@@ -9,6 +9,7 @@ use crate::gpu::{Draws, Gpu, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
+use crate::shadows::ShadowMaps;
 use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, RenderError};
 
@@ -61,8 +62,7 @@ pub struct Renderer {
     moving: Moving,
     blobs: Vec<BlobVertex>,
     targets: Option<Targets>,
-    /// What the shadow map shows, and which parked cars it leaves out.
-    shadowed: Option<(ShadowBox, Vec<usize>)>,
+    shadows: ShadowMaps,
 }
 
 impl Renderer {
@@ -88,8 +88,16 @@ impl Renderer {
             moving: Moving::default(),
             blobs: Vec::new(),
             targets: None,
-            shadowed: None,
+            shadows: ShadowMaps::new(1),
         })
+    }
+
+    /// The same with so many shadow maps, for drives that take turns at it: with a map for each, none casts its shadows anew
+    /// in every picture. Pictures are the same with any number.
+    pub fn with_shadow_maps(self, count: usize) -> Self {
+        // Shadows of what moves are cast in every picture.
+        let count = if self.quality.moving_shadows { 1 } else { count };
+        Self { shadows: ShadowMaps::new(count), ..self }
     }
 
     /// Draws a snapshot and reads all planes back.
@@ -107,8 +115,8 @@ impl Renderer {
         }
         let shadow = ShadowBox::ahead_of(view.eye, view.ahead, light.sun, self.quality.shadow_reach_m);
         let gone = gone(scene);
-        let shadowed = self.shadowed.as_ref().is_some_and(|(last, left_out)| *last == shadow && *left_out == gone);
-        let stale = self.quality.moving_shadows || !shadowed;
+        let (shadow_map, is_cast) = self.shadows.find(shadow, gone.clone());
+        let stale = self.quality.moving_shadows || !is_cast;
         let texel = 1.0 / self.quality.shadow_side as f32;
         let draws = Draws {
             uniform: SceneUniform::new(&view, scene, &light, shadow.matrix(), texel),
@@ -117,6 +125,7 @@ impl Renderer {
             fixed_indices: self.scenery.visible(&view, &gone),
             casters: stale.then(|| self.scenery.near_line(shadow.centre, light.sun, 1.42 * shadow.reach_m, &gone)),
             moving_casts: self.quality.moving_shadows,
+            shadow_map,
             blobs: &self.blobs,
             weather: rain::is_drawn(&scene.weather),
             drops: rain::drops(&scene.weather),
@@ -128,7 +137,6 @@ impl Renderer {
             _ => Targets::new(&self.gpu, width, height, self.quality.samples),
         };
         self.passes.submit(&self.gpu, &draws, &targets);
-        self.shadowed = Some((shadow, gone));
         self.targets.insert(targets).read(&self.gpu, scene.tick)
     }
 

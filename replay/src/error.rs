@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::layout::{FORMAT_VERSION, OLDEST_VERSION};
+use crate::program::release;
 
 /// Why a log could not be written, read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -33,12 +34,17 @@ pub enum Error {
         version: u16,
     },
     /// Only the kernel that made a log can drive it again.
-    #[error("made by kernel {made}, this is {this}; only the kernel that made a log can drive it again")]
+    #[error(
+        "made by kernel {made}, this is {this}; only the kernel that made a log can drive it again{}",
+        release(program.as_deref())
+    )]
     Kernel {
         /// [`kernel::identity`] of the writer.
         made: String,
         /// [`kernel::identity`] of this program.
         this: String,
+        /// The program that has it, where the log names it.
+        program: Option<String>,
     },
     /// The foreign map of the log is not at hand.
     #[error("its map {map} is not in it, and {file} is not beside it")]

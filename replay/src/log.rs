@@ -10,7 +10,7 @@ use kernel::events::Event;
 use kernel::time::Tick;
 use kernel::{Keyframe, RoadNetwork, Scenario, SceneSnapshot, TickInput};
 
-use crate::{Error, FORMAT_VERSION, Mark, Note};
+use crate::{Error, FORMAT_VERSION, Mark, Note, PROGRAM, WRITTEN_BY};
 
 /// Where a run came from, as names and values: seat drivers, checkpoint with its digest, camera,
 /// latency. Nothing here steers a replay.
@@ -38,13 +38,14 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// The manifest of a new run. `foreign_map` is the map's file when it is not bundled.
+    /// The manifest of a new run of this program. `foreign_map` is the map's file when it is not bundled.
     pub fn new(
         scenario: &Scenario,
         network: &RoadNetwork,
         foreign_map: Option<ForeignMap>,
-        provenance: Provenance,
+        mut provenance: Provenance,
     ) -> Self {
+        provenance.insert(WRITTEN_BY.to_owned(), PROGRAM.to_owned());
         Self {
             format: FORMAT_VERSION,
             kernel: kernel::identity(),

@@ -10,7 +10,7 @@ use kernel::{Keyframe, RoadNetwork};
 use crate::block::Block;
 use crate::layout::{Channel, nanoseconds};
 use crate::scan::{Message, Scan, scan};
-use crate::{Error, ForeignMap, Log, Manifest, wire};
+use crate::{Error, ForeignMap, Log, Manifest, WRITTEN_BY, wire};
 
 /// A recording or case whose bytes have all been checked.
 #[derive(Clone, Debug)]
@@ -108,7 +108,8 @@ impl Manifest {
     /// Refuses a kernel that is not the run's.
     pub fn check_kernel(&self) -> Result<(), Error> {
         let (made, this) = (self.kernel.clone(), kernel::identity());
-        if made == this { Ok(()) } else { Err(Error::Kernel { made, this }) }
+        let program = || self.provenance.get(WRITTEN_BY).cloned();
+        if made == this { Ok(()) } else { Err(Error::Kernel { made, this, program: program() }) }
     }
 
     /// Refuses a kernel or map that is not the run's.
@@ -303,6 +304,7 @@ impl Log {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::PROGRAM;
     use crate::testing::sample;
     use proptest::prelude::*;
 
@@ -329,6 +331,21 @@ mod tests {
         let now = sample(61);
         let manifest = Manifest { format: 1, kernel: "0.1.0".into(), engines: String::new(), ..now.manifest.clone() };
         assert_eq!(old.log(), &Log { manifest, notes: Vec::new(), ..now });
+    }
+
+    #[test]
+    fn a_log_of_another_kernel_says_which_program_has_it() {
+        let said = |program: Option<&str>| {
+            let provenance = program.map(|program| (WRITTEN_BY.to_owned(), program.to_owned())).into_iter().collect();
+            let manifest = Manifest { kernel: "0.0.9-0123".into(), provenance, ..sample(1).manifest };
+            manifest.check_kernel().expect_err("another kernel").to_string()
+        };
+        let this = kernel::identity();
+        let sentence =
+            format!("made by kernel 0.0.9-0123, this is {this}; only the kernel that made a log can drive it again");
+        assert_eq!(said(None), sentence);
+        assert_eq!(said(Some("aeye 0.0.9")), format!("{sentence}, which is that of aeye 0.0.9"));
+        assert_eq!(said(Some(PROGRAM)), format!("{sentence}, which is that of another build of {PROGRAM}"));
     }
 
     #[test]

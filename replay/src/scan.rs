@@ -46,12 +46,8 @@ pub(crate) struct Scan {
 
 /// Reads a whole file.
 pub(crate) fn scan(bytes: &[u8]) -> Result<Scan, Error> {
-    if !bytes.starts_with(MAGIC) {
-        let cut = bytes.len() < MAGIC.len() && MAGIC.starts_with(bytes);
-        let reason = if cut { "the file ends here" } else { "this is no MCAP file" };
-        return Err(Error::damaged("byte 0", reason));
-    }
-    let finished = bytes.len() >= MAGIC.len() + DATA_END + FOOTER + MAGIC.len() && bytes.ends_with(MAGIC);
+    starts_as_mcap(bytes)?;
+    let finished = is_finished(bytes);
     let data = if finished {
         let end = end_of_data(bytes)?;
         let data = Data::read(&mut Walk::new(&bytes[..end], true))?;
@@ -66,12 +62,27 @@ pub(crate) fn scan(bytes: &[u8]) -> Result<Scan, Error> {
     Ok(Scan { format: data.format.unwrap_or(FORMAT_VERSION), messages: data.messages, finished })
 }
 
+/// Refuses what does not begin as every file of MCAP.
+pub(crate) fn starts_as_mcap(bytes: &[u8]) -> Result<(), Error> {
+    if bytes.starts_with(MAGIC) {
+        return Ok(());
+    }
+    let cut = bytes.len() < MAGIC.len() && MAGIC.starts_with(bytes);
+    let reason = if cut { "the file ends here" } else { "this is no MCAP file" };
+    Err(Error::damaged("byte 0", reason))
+}
+
+/// Whether a file has its footer.
+pub(crate) fn is_finished(bytes: &[u8]) -> bool {
+    bytes.len() >= MAGIC.len() + DATA_END + FOOTER + MAGIC.len() && bytes.ends_with(MAGIC)
+}
+
 fn damaged(at: usize, what: &str) -> Error {
     Error::damaged(format!("byte {at}"), what)
 }
 
 /// Checks both checksums of a finished file and gives the end of its data.
-fn end_of_data(bytes: &[u8]) -> Result<usize, Error> {
+pub(crate) fn end_of_data(bytes: &[u8]) -> Result<usize, Error> {
     let footer_at = bytes.len() - MAGIC.len() - FOOTER;
     let footer = &bytes[footer_at..bytes.len() - MAGIC.len()];
     if !is_head(footer, op::FOOTER, FOOTER) {
@@ -311,7 +322,7 @@ impl Data {
     }
 }
 
-fn is_of_export(record: &Raw<'_>) -> bool {
+pub(crate) fn is_of_export(record: &Raw<'_>) -> bool {
     mcap::parse_record(record.op, record.body).is_ok_and(|record| export::about(&record).is_some())
 }
 
@@ -324,7 +335,7 @@ fn check_data_end(record: &Raw<'_>, data: &[u8]) -> Result<(), Error> {
     }
 }
 
-fn unfold(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, String> {
+pub(crate) fn unfold(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, String> {
     if header.uncompressed_size > MAX_RECORD {
         return Err(format!("it claims {} bytes, more than {MAX_RECORD}", header.uncompressed_size));
     }

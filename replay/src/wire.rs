@@ -369,6 +369,16 @@ pub(crate) fn scenes_bytes(scenes: &[SceneSnapshot]) -> Vec<u8> {
 }
 
 pub(crate) fn scenes(bytes: &[u8], format: u16) -> Result<Vec<SceneSnapshot>, Wrong> {
+    scene_rows(bytes, format)?.iter().map(|row| state("scene", row)).collect()
+}
+
+/// The last of the scenes, if there are any.
+pub(crate) fn last_scene(bytes: &[u8], format: u16) -> Result<Option<SceneSnapshot>, Wrong> {
+    scene_rows(bytes, format)?.last().map(|row| state("scene", row)).transpose()
+}
+
+/// State bytes of each scene.
+fn scene_rows(bytes: &[u8], format: u16) -> Result<Vec<Vec<u8>>, Wrong> {
     let (lengths, stacked): (Vec<usize>, Vec<u8>) = decode(bytes)?;
     let mut rows = columns::unstack(&lengths, &stacked)?;
     if format < LAMPS_AND_RAIN_SINCE {
@@ -377,7 +387,7 @@ pub(crate) fn scenes(bytes: &[u8], format: u16) -> Result<Vec<SceneSnapshot>, Wr
             row.extend([0; RAIN_TO_FOG]);
         }
     }
-    rows.iter().map(|row| state("scene", row)).collect()
+    Ok(rows)
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 #
 # Usage: run.sh AEYE FOLDER
 # AEYE is the program; below FOLDER go a Python environment and, anew each time, what the oracles need
-# and make. An oracle is a file *.py beside this one, which fails where the two differ.
+# and make. An oracle is a file *.py beside this one, which fails where the two differ. With TORCH=1 also those of PyTorch, whose
+# packages take 5 GB of disk.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -13,11 +14,15 @@ folder=$(cd "$2" && pwd)
 venv=$folder/venv
 work=$folder/work
 
-if ! cmp -s "$here/requirements.txt" "$venv/installed.txt"; then
-	python3 -m venv --clear "$venv"
-	"$venv/bin/python" -m pip install --quiet --disable-pip-version-check --requirement "$here/requirements.txt"
-	cp "$here/requirements.txt" "$venv/installed.txt"
-fi
+# environment FOLDER REQUIREMENTS
+environment() {
+	cmp -s "$2" "$1/installed.txt" && return
+	python3 -m venv --clear "$1"
+	"$1/bin/python" -m pip install --quiet --disable-pip-version-check --requirement "$2"
+	cp "$2" "$1/installed.txt"
+}
+
+environment "$venv" "$here/requirements.txt"
 export PATH="$venv/bin:$PATH"
 rm -rf "$work"
 mkdir "$work"
@@ -32,3 +37,9 @@ python "$here/export_readers.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.cas
 "$aeye" dataset natural --scenes 2 --val-scenes 1 --test-scenes 1 --frames 4 --test-frames 2 --out "$work/natural"
 "$aeye" dataset cases "$work/drives" --out "$work/cases"
 python "$here/cityscapes_layout.py" "$work/natural" "$work/cases"
+if [ -n "${TORCH:-}" ]; then
+	environment "$folder/torch" "$here/requirements_torch.txt"
+	"$folder/torch/bin/python" "$here/torch_readers.py" "$work/natural" "$work/cases"
+else
+	echo "torch_readers.py: left out; TORCH=1 runs it"
+fi

@@ -1,5 +1,6 @@
 //! Scenes shared by the integration tests and the benchmarks.
 
+pub mod command;
 pub mod files;
 pub mod recordings;
 pub mod roads;

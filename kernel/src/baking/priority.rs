@@ -7,17 +7,19 @@ use super::signs::Governed;
 use super::source::Source;
 use super::stops::Crossed;
 use crate::geometry::direction;
-use crate::map_data::{Lane, LaneId, LaneKind, StopKind, StopLine, Turn};
+use crate::map_data::{Lane, LaneId, LaneKind, StopKind, StopLine, Turn, circles};
 
 /// Decides who goes first at every overlap, and adds the stop lines of those who wait without a sign.
 pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crossed: &Crossed, governed: &[Governed]) -> Vec<Lane> {
     let yields = Yields::new(source);
     let told = governed.iter().filter(|g| g.meaning == Meaning::Priority);
     let first: BTreeSet<LaneId> = told.map(|g| g.lane).collect();
+    let round: BTreeSet<LaneId> = circles(&lanes).into_iter().flat_map(|circle| circle.lanes).collect();
+    let known = Known { yields: &yields, first: &first, round: &round };
     for a in 0..lanes.len() as LaneId {
         for k in 0..lanes[a as usize].conflicts.len() {
             let b = lanes[a as usize].conflicts[k].lane;
-            lanes[a as usize].conflicts[k].other_first = gives_way(source, &yields, &lanes, &first, a, b);
+            lanes[a as usize].conflicts[k].other_first = gives_way(source, &known, &lanes, a, b);
         }
     }
     for before in 0..lanes.len() {
@@ -35,14 +37,28 @@ pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, crossed: &Crossed, gov
     lanes
 }
 
+/// What tells who goes first, beside how lanes lie.
+struct Known<'a> {
+    yields: &'a Yields,
+    /// Lanes before junctions with a sign that they go first.
+    first: &'a BTreeSet<LaneId>,
+    /// Lanes of roundabouts.
+    round: &'a BTreeSet<LaneId>,
+}
+
 /// Whether traffic on junction lane `a` waits for traffic on `b`; never true both ways.
-fn gives_way(source: &Source, yields: &Yields, lanes: &[Lane], first: &BTreeSet<LaneId>, a: LaneId, b: LaneId) -> bool {
+fn gives_way(source: &Source, known: &Known<'_>, lanes: &[Lane], a: LaneId, b: LaneId) -> bool {
     let (one, other) = (&lanes[a as usize], &lanes[b as usize]);
-    if let Some(told) = priority(source, yields, lanes, a, b) {
+    if let Some(told) = priority(source, known.yields, lanes, a, b) {
         return told;
     }
-    match (sign(lanes, first, one), sign(lanes, first, other)) {
+    match (sign(lanes, known.first, one), sign(lanes, known.first, other)) {
         (x, y) if x != y => return x > y,
+        _ => {}
+    }
+    // Who comes into a roundabout waits, with or without a sign.
+    match (known.round.contains(&a), known.round.contains(&b)) {
+        (x, y) if x != y => return y,
         _ => {}
     }
     let (from, towards) = (direction(one.start().heading_rad), direction(other.start().heading_rad));

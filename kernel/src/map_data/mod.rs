@@ -4,6 +4,7 @@
 //! of it is part of every recording. Nothing that is derived from it is kept here.
 
 mod bus_stop;
+mod circles;
 mod data;
 mod digest;
 mod ids;
@@ -14,6 +15,7 @@ mod scenery;
 mod walkway;
 
 pub use bus_stop::BusStop;
+pub(crate) use circles::{Circle, circles};
 pub use data::MapData;
 pub use ids::{LaneId, LightGroupId, WalkEdgeId};
 pub use junction::{Junction, LightGroup, LightHead};

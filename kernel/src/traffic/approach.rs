@@ -1,13 +1,15 @@
 //! What a vehicle does before a junction: it asks to enter, waits at the line, and gives back what it was granted.
 
-use crate::map_data::StopKind;
+use crate::map_data::{LaneId, StopKind};
 use crate::time::seconds;
 
 use super::drive::View;
 use super::hazard::{Seeker, side, sight};
-use super::junction::{self, Signal, has_room};
+use super::junction::{self, Signal};
 use super::lapse::Lapse;
+use super::lists::Entry;
 use super::plan::{Line, Plan};
+use super::roundabout::Roundabout;
 use super::step::{LINE_MARGIN_M, Step};
 use super::vehicle::{DECIDE_TICKS, Vehicle};
 
@@ -33,7 +35,7 @@ impl View<'_> {
         if next.lapse == Lapse::RunsRed {
             next.flags |= Vehicle::GRANTED;
         } else if next.flags & Vehicle::GRANTED != 0 {
-            let keeps = junction::near_enough(next, line, 6.0) && !self.lost_room(index, plan, line, next);
+            let keeps = junction::near_enough(next, line, 6.0) && !self.lost_use(index, plan, line, next);
             if junction::must_stop(signal, next, line, self.pace_mps(plan, line, next)) || !keeps {
                 next.flags &= !Vehicle::GRANTED;
             }
@@ -57,12 +59,53 @@ impl View<'_> {
         before.map_or(next.speed_mps, |leader| next.speed_mps.min(leader.speed_mps))
     }
 
-    /// Whether one that stands before the line with a grant has no room beyond the junction any more.
-    fn lost_room(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle) -> bool {
-        let (steps, driver) = (self.steps_of(plan), &self.drivers[index]);
-        let known = (self.map, self.ways, self.lists);
+    /// Whether one that stands before the line with a grant cannot use it any more: there is no room beyond the junction, or
+    /// somebody without one slipped in before it.
+    fn lost_use(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle) -> bool {
         let waits = next.speed_mps < 0.1 && line.ahead_m > 0.0 && !line.passed;
-        waits && !has_room(known, plan, line, steps, index, driver, f32::MAX)
+        waits && !(self.leads(plan, line) && self.has_room(index, plan, line, next, || f32::MAX))
+    }
+
+    /// Whether there is room for a vehicle, if the junction before it belongs to a roundabout that it enters or drives round.
+    fn has_room_to_circulate(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle) -> Option<bool> {
+        let (steps, driver) = (self.steps_of(plan), &self.drivers[index]);
+        let circle = |step: usize| self.ways.lanes[steps[step].lane as usize].circle;
+        if circle(line.approach).is_some() {
+            return circle(line.inside.0).map(|_| true);
+        }
+        let roundabout = &self.ways.roundabouts[line.enters(self.ways, steps)? as usize];
+        let others = self.taking(roundabout).filter(|entry| entry.vehicle as usize != index);
+        let taken_m = others.map(|entry| 2.0 * entry.half_m + driver.gap_m).sum();
+        Some(roundabout.has_room(taken_m, driver.size_m.x + driver.gap_m, next.wait_ticks))
+    }
+
+    /// From a vehicle's middle to where the junction before it ends, metres.
+    fn end_m(&self, plan: &Plan, line: &Line) -> f32 {
+        let last = self.steps_of(plan)[line.inside.1 - 1];
+        last.start_m + self.map.lanes[last.lane as usize].length_m
+    }
+
+    /// All who are on the way round, come in, or may.
+    fn taking(&self, roundabout: &Roundabout) -> impl Iterator<Item = &Entry> {
+        let on = |lane: &LaneId| {
+            // Who reaches over an end stands in two lists.
+            let length_m = self.map.lanes[*lane as usize].length_m;
+            self.lists.on(*lane).iter().filter(move |entry| (0.0..length_m).contains(&entry.s_m))
+        };
+        let may = |entry: &&Entry| self.vehicles[entry.vehicle as usize].flags & Vehicle::GRANTED != 0;
+        let (inside, before) = roundabout.lanes();
+        inside.flat_map(on).chain(before.flat_map(on).filter(may))
+    }
+
+    /// Whether there is room beyond the junction, as far as something stands in the way `stands_m` from a vehicle's middle.
+    fn has_room(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle, stands_m: impl Fn() -> f32) -> bool {
+        let known = (self.map, self.ways, self.lists);
+        let (steps, driver) = (self.steps_of(plan), &self.drivers[index]);
+        let beyond = || junction::has_room(known, plan, line, steps, index, driver, stands_m());
+        match self.has_room_to_circulate(index, plan, line, next) {
+            Some(room) => room && stands_m() > self.end_m(plan, line) + driver.size_m.x + driver.gap_m,
+            None => beyond(),
+        }
     }
 
     fn wait(&self, index: usize, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
@@ -86,15 +129,18 @@ impl View<'_> {
         }
     }
 
-    /// Whether a vehicle wants to enter the junction before it now.
-    fn asks(&self, index: usize, plan: &Plan, line: &Line, signal: Signal, next: &Vehicle) -> bool {
-        let free = plan.leader.is_none_or(|leader| {
+    /// Whether nobody is between a vehicle and its line who may not enter.
+    fn leads(&self, plan: &Plan, line: &Line) -> bool {
+        plan.leader.is_none_or(|leader| {
             let ahead = &self.vehicles[leader.vehicle as usize];
             leader.gap_m > line.ahead_m || ahead.flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0
-        });
-        let (known, steps) = ((self.map, self.ways, self.lists), self.steps_of(plan));
-        let room = || has_room(known, plan, line, steps, index, &self.drivers[index], self.standing_m(index, steps));
-        junction::near_enough(next, line, 0.0) && signal == Signal::Open && free && room()
+        })
+    }
+
+    /// Whether a vehicle wants to enter the junction before it now.
+    fn asks(&self, index: usize, plan: &Plan, line: &Line, signal: Signal, next: &Vehicle) -> bool {
+        let room = || self.has_room(index, plan, line, next, || self.standing_m(index, self.steps_of(plan)));
+        junction::near_enough(next, line, 0.0) && signal == Signal::Open && self.leads(plan, line) && room()
     }
 
     /// From a vehicle's middle to the nearest thing that stands in its way and cannot be passed, metres. Who passes somebody

@@ -21,7 +21,7 @@ use super::nearby::Nearby;
 use super::plan::{self, Plan, stopping_speed};
 use super::poses::leads_m;
 use super::rates::HazardRates;
-use super::sideways::{EDGE_M, drift, pass_drift};
+use super::sideways::{EDGE_M, beside, drift, pass_drift};
 use super::step::{LINE_MARGIN_M, Step};
 use super::traits::Driver;
 use super::vehicle::Vehicle;
@@ -239,8 +239,12 @@ impl View<'_> {
     }
 
     fn side(&self, index: usize, plan: &Plan, seeker: &Seeker) -> Side {
-        let side = self.wanted_side(index, plan, seeker);
-        if self.vehicles[index].manoeuvre.is_between_lanes() {
+        let (vehicle, side) = (&self.vehicles[index], self.wanted_side(index, plan, seeker));
+        // Who makes room may have somebody on the lane beside.
+        let aside_m = side.aim_m - self.likes_m(index);
+        let makes_room = !vehicle.manoeuvre.passes() && aside_m != 0.0;
+        let alongside = makes_room && beside(self.map, vehicle.lane, aside_m > 0.0).is_some();
+        if vehicle.manoeuvre.is_between_lanes() || alongside {
             Side { aim_m: self.beside_others(index, plan, seeker, side.aim_m), ..side }
         } else {
             side
@@ -304,7 +308,9 @@ impl View<'_> {
         let heeds_waiting = !crossing && next.stuck_s < crosswalk::HEED_S && !self.is_honked_at(index);
         let mut wall_m = plan.dead_end_m.map_or(f32::MAX, |m| m - front_m - 1.0);
         if let Some(line) = plan.line.filter(|_| next.flags & Vehicle::GRANTED == 0) {
-            wall_m = wall_m.min(line.ahead_m - LINE_MARGIN_M);
+            let (line_m, back_m) = (line.ahead_m - LINE_MARGIN_M, line.back_m);
+            let stoppable = plan::braking_needed(next.speed_mps, line_m - back_m + 0.3) < CROSSWALK_BRAKE_MPS2;
+            wall_m = wall_m.min(if stoppable { line_m - back_m } else { line_m });
         }
         for step in steps {
             for span in &self.ways.lanes[step.lane as usize].crosswalks {

@@ -14,8 +14,9 @@ use crate::time::{TICK_S, Tick};
 use super::lane_way::{ConflictKind, LaneConflict};
 use super::lists::Lists;
 use super::plan::{Line, Plan, braking_needed};
+use super::roundabout::{goes_round_first, is_followed};
 use super::step::Step;
-use super::traits::Driver;
+use super::traits::{Driver, LONG_HALF_M};
 use super::vehicle::Vehicle;
 use super::ways::Ways;
 use super::zebra;
@@ -31,11 +32,8 @@ const ASK_M: f32 = 8.0;
 /// Braking with which whoever is ahead is expected to come to a stand, m/s².
 const AHEAD_BRAKE_MPS2: f32 = 2.0;
 
-/// Half of the length up to which a vehicle turns within its lane, metres.
-const LONG_HALF_M: f32 = 2.5;
-
 /// Somebody in a zone of junctions, or before it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Member {
     pub zone: u32,
     /// Index of the vehicle; [`EGO`] for the ego car.
@@ -45,8 +43,13 @@ pub(super) struct Member {
     pub holds: bool,
     /// Waits for room behind the junction, and would enter but for that.
     pub wants_room: bool,
-    /// [`swept_half_m`] of it.
+    /// The roundabout in which it drives round, and the one that it comes into.
+    pub rounds: Option<u32>,
+    pub enters: Option<u32>,
+    /// Half of its length, metres.
     pub half_m: f32,
+    /// [`swept_half_m`] of it.
+    pub swept_half_m: f32,
     pub wait_ticks: u16,
     /// Its lanes in this zone, a stretch of the list of [`Members`].
     pub lanes: (u32, u32),
@@ -123,21 +126,37 @@ impl Members {
 /// Whether `other` on lane `there` keeps the one who asks out, where their lanes conflict.
 fn prevents(asking: &Member, other: &Member, conflict: &LaneConflict, there: &Step) -> bool {
     // Who has waited long for room is not taken it by others; for them the way across stays open.
-    if conflict.kind == ConflictKind::Diverge || (other.wants_room && conflict.kind != ConflictKind::Merge) {
+    let merges = conflict.kind == ConflictKind::Merge;
+    if conflict.kind == ConflictKind::Diverge || (other.wants_room && (!merges || asking.rounds.is_some())) {
         return false;
     }
     if other.holds {
+        if merges && (asking.rounds.is_some() || other.rounds.is_some()) {
+            return !is_followed(asking.rounds.is_some(), conflict, there, other.half_m);
+        }
         // A long vehicle sweeps more than its lane: nobody passes close behind it, nor does it.
         let long = other.half_m > LONG_HALF_M || asking.half_m > LONG_HALF_M;
-        let rear_m = -there.start_m - other.half_m;
+        let rear_m = -there.start_m - other.swept_half_m;
         return long || rear_m < conflict.there[1];
     }
     !goes_before(asking, other, conflict.precedence)
 }
 
-/// The order of two who ask, the same seen from both: the impatient first, then the right of way,
-/// then the longer wait, then the smaller id.
+/// The order of two who ask, the same seen from both: who is in a roundabout first, or it would fill up, until those who
+/// want in have waited long; then the impatient, then the right of way, then the longer wait, then the smaller id.
 fn goes_before(a: &Member, b: &Member, precedence: i8) -> bool {
+    // Unless the map tells that those who drive round wait.
+    let rounds =
+        |m: &Member, other: &Member, precedence: i8| m.rounds.is_some() && m.rounds == other.enters && precedence >= 0;
+    // The ego car does not hear of it.
+    let first =
+        |round: &Member, other: &Member| round.vehicle == EGO || goes_round_first(round.wait_ticks, other.wait_ticks);
+    if rounds(a, b, precedence) {
+        return first(a, b);
+    }
+    if rounds(b, a, -precedence) {
+        return !first(b, a);
+    }
     let impatient = |m: &Member| m.wait_ticks > PATIENCE_TICKS;
     match (impatient(a), impatient(b)) {
         (true, false) => true,
@@ -234,4 +253,49 @@ pub(super) fn has_room(
         }
     }
     plan.dead_end_m.unwrap_or(f32::MAX).min(stands_m) - end_m > needed_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two who ask one goes first, seen from either.
+    #[test]
+    fn the_order_of_those_who_ask_is_one() {
+        let mut members = vec![Member { vehicle: EGO, rounds: Some(1), ..Member::default() }];
+        let places = [(None, None), (Some(1), None), (None, Some(1)), (Some(2), None), (None, Some(2))];
+        for (rounds, enters) in places {
+            let waits = [0, 100, 400, 1300].into_iter().enumerate();
+            members.extend(waits.map(|(k, wait_ticks)| {
+                let id = 1 + k as u16 + 4 * places.iter().position(|p| *p == (rounds, enters)).map_or(0, |p| p as u16);
+                Member { vehicle: u32::from(id), id, rounds, enters, wait_ticks, ..Member::default() }
+            }));
+        }
+        for (i, a) in members.iter().enumerate() {
+            for b in &members[i + 1..] {
+                for precedence in -1..=1 {
+                    assert_ne!(
+                        goes_before(a, b, precedence),
+                        goes_before(b, a, -precedence),
+                        "{a:?} {b:?} {precedence}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn who_drives_round_goes_first_until_somebody_has_waited() {
+        let [mut round, mut enters] = [1, 2].map(|id| Member { vehicle: id, id: id as u16, ..Member::default() });
+        (round.rounds, enters.enters) = (Some(0), Some(0));
+        assert!(goes_before(&round, &enters, 0));
+        assert!(!goes_before(&round, &enters, -1), "the map tells otherwise");
+        enters.wait_ticks = 1300;
+        assert!(goes_before(&enters, &round, -1));
+        assert!(goes_before(&Member { vehicle: EGO, ..round }, &enters, 0), "the ego car does not hear of it");
+        round.wait_ticks = 400;
+        assert!(goes_before(&round, &enters, 0));
+        round.rounds = Some(1);
+        assert!(goes_before(&enters, &round, 0), "another roundabout");
+    }
 }

@@ -61,7 +61,7 @@ pub(super) struct LaneWay {
     pub forward: Vec<Vec3>,
     /// Where vehicles go on.
     pub onward: Vec<Onward>,
-    /// Where long vehicles do: no right turns, where there is another way.
+    /// Where long vehicles do: no turns to the kerb, where there is another way, but out of roundabouts.
     pub onward_wide: Vec<Onward>,
     /// Where it is wide enough no more, if it ends beside another lane, metres from its start.
     pub ends_m: Option<f32>,
@@ -73,6 +73,8 @@ pub(super) struct LaneWay {
     pub meets: Vec<Meet>,
     /// Its zone: junctions without room to wait between them are one.
     pub zone: Option<u32>,
+    /// Its roundabout, an index of [`Ways::roundabouts`](super::ways::Ways).
+    pub circle: Option<u32>,
     /// Crosswalks on it, in the direction of travel.
     pub crosswalks: Vec<CrosswalkSpan>,
 }
@@ -100,13 +102,19 @@ impl LaneWay {
     }
 }
 
-pub(super) fn lane_ways(places: &Places, kerb: i8) -> Vec<LaneWay> {
+/// `circle` tells for each lane the roundabout that it is part of.
+pub(super) fn lane_ways(places: &Places, kerb: i8, circle: Vec<Option<u32>>) -> Vec<LaneWay> {
     let map = &*places.map;
-    let onward = onward(places, kerb);
-    let (meets, zones) = (meets(places, &onward), zones(map));
-    let ways = onward.into_iter().zip(meets).zip(zones).enumerate();
-    ways.map(|(id, ((onward, meets), zone))| LaneWay { meets, zone, ..lane_way(places, id as LaneId, onward) })
-        .collect()
+    let onward = onward(places, kerb, &circle);
+    let (meets, zones) = (meets(places, &onward), zones(map, &circle));
+    let ways = onward.into_iter().zip(meets).zip(zones).zip(circle).enumerate();
+    let way = |(id, (((onward, meets), zone), circle))| LaneWay {
+        meets,
+        zone,
+        circle,
+        ..lane_way(places, id as LaneId, onward)
+    };
+    ways.map(way).collect()
 }
 
 fn lane_way(places: &Places, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) -> LaneWay {

@@ -22,8 +22,9 @@ pub(super) struct Onward {
 }
 
 /// For each lane where to go on, and where long vehicles do: these turn to the kerb only where there is no
-/// other way. Ways into a junction that never leave it again are left out.
-pub(super) fn onward(places: &Places, kerb: i8) -> Vec<[Vec<Onward>; 2]> {
+/// other way, or to leave a roundabout, which `circle` tells for each lane. Ways into a junction that never leave it again
+/// are left out.
+pub(super) fn onward(places: &Places, kerb: i8, circle: &[Option<u32>]) -> Vec<[Vec<Onward>; 2]> {
     let lanes = &places.map.lanes;
     let mut all: Vec<Vec<Onward>> = lanes.iter().map(|lane| successors(lanes, lane)).collect();
     for (id, lane) in lanes.iter().enumerate() {
@@ -32,7 +33,11 @@ pub(super) fn onward(places: &Places, kerb: i8) -> Vec<[Vec<Onward>; 2]> {
         }
     }
     leave_out_dead_ends(lanes, &mut all);
-    all.into_iter().map(|onward| [onward.clone(), wide(lanes, onward, kerb)]).collect()
+    let long = |onward: Vec<Onward>, circle: &Option<u32>| match circle {
+        Some(_) => onward,
+        None => wide(lanes, onward, kerb),
+    };
+    all.into_iter().zip(circle).map(|(onward, circle)| [onward.clone(), long(onward, circle)]).collect()
 }
 
 /// Whether a lane comes to an end beside another: it becomes too narrow, or leads on into the middle of that.

@@ -244,7 +244,7 @@ impl Sight {
         let zone = ways[vehicle.lane as usize].zone.or_else(|| behind.clone().find_map(|s| inside(&s)));
         let Some(zone) = zone else { return };
         let here = self.steps_of(&self.plans[i]).iter().copied().take_while(|s| inside(s) == Some(zone));
-        let member = self.member(actors, i, zone, true);
+        let member = Member { rounds: ways[vehicle.lane as usize].circle, ..self.member(actors, i, zone, true) };
         members.push(member, here.chain(behind.filter(|s| inside(s) == Some(zone))));
     }
 
@@ -255,18 +255,22 @@ impl Sight {
         let in_turn = vehicle.flags & (Vehicle::GRANTED | Vehicle::ASKING) != 0;
         let wants_room = !in_turn && vehicle.wants_room();
         if in_turn || wants_room {
-            let inside = &self.steps_of(plan)[line.inside.0..line.inside.1];
+            let steps = self.steps_of(plan);
+            let inside = &steps[line.inside.0..line.inside.1];
             let holds = vehicle.flags & Vehicle::GRANTED != 0;
-            let member = Member { wants_room, ..self.member(actors, i, line.zone, holds) };
+            let rounds = actors.ways.lanes[steps[line.approach].lane as usize].circle;
+            let enters = line.enters(&actors.ways, steps);
+            let member = Member { wants_room, rounds, enters, ..self.member(actors, i, line.zone, holds) };
             members.push(member, inside.iter().copied());
         }
     }
 
     fn member(&self, actors: &Actors, i: usize, zone: u32, holds: bool) -> Member {
         let vehicle = &actors.state.vehicles[i];
-        let half_m = swept_half_m(actors.drivers[i].size_m);
+        let size_m = actors.drivers[i].size_m;
+        let (half_m, swept_half_m) = (size_m.x * 0.5, swept_half_m(size_m));
         let wait_ticks = vehicle.waited_ticks(self.tick);
-        Member { zone, vehicle: i as u32, id: vehicle.id, holds, wants_room: false, half_m, wait_ticks, lanes: (0, 0) }
+        Member { zone, vehicle: i as u32, id: vehicle.id, holds, half_m, swept_half_m, wait_ticks, ..Member::default() }
     }
 
     /// The ego car counts as crossing where it is, and as asking for every way it may take: those that it indicates.
@@ -280,8 +284,9 @@ impl Sight {
         let Some(place) = place else { return };
         let lane = &map.lanes[place.lane as usize];
         let half_m = ego.size_m.x * 0.5;
-        let (id, wants_room, wait_ticks, lanes) = (0, false, 0, (0, 0));
-        let member = |zone, holds| Member { zone, vehicle: EGO, id, holds, wants_room, half_m, wait_ticks, lanes };
+        let rounds = actors.ways.lanes[place.lane as usize].circle;
+        let car = Member { vehicle: EGO, half_m, swept_half_m: half_m, rounds, ..Member::default() };
+        let member = |zone, holds| Member { zone, holds, ..car };
         if let (Some(junction), Some(zone)) = (lane.junction, actors.ways.lanes[place.lane as usize].zone) {
             let near = |id: &u32| map.project(*id, ego.position);
             let lanes = map.junctions[junction as usize].lanes.iter().map(near);

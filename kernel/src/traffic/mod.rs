@@ -52,6 +52,7 @@ mod poses;
 mod rates;
 mod reasons;
 mod riders;
+mod roundabout;
 mod routes;
 mod sideways;
 mod slack;

@@ -24,6 +24,9 @@ const ENTRY_MPS: f32 = 3.0;
 /// Free space before a vehicle that enters, metres, and beside it.
 const SPACE_M: f32 = 4.0;
 const ASIDE_M: f32 = 0.5;
+/// Nobody who passes somebody comes the other way within this, metres, nor within this time, s.
+const ONCOMING_M: f32 = 30.0;
+const ONCOMING_S: f32 = 5.0;
 /// Whoever comes from behind keeps at least this time, s.
 const COMES_S: f32 = 3.0;
 /// Vehicles farther away than this are not in the way, metres.
@@ -108,17 +111,19 @@ impl Actors {
     }
 }
 
-/// Whether another leaves room for one who enters, now and until it could come near from behind.
+/// Whether another leaves room for one who enters, now and until it could come near, from behind or the other way.
 fn keeps_off(me: &Body, other: &Body) -> bool {
     let forward = (me.rotation * Vec3::X).truncate();
     let to = (other.position - me.position).truncate();
     let axis = (other.rotation * Vec3::X).truncate();
     let turned = |v: glam::Vec2| glam::Vec2::new(v.dot(forward), forward.perp_dot(v));
     let comes_m = (other.velocity_mps.truncate().dot(forward) * COMES_S).max(0.0);
+    let against_mps = -other.velocity_mps.truncate().dot(forward);
+    let meets_m = if axis.dot(forward) < -0.5 { ONCOMING_M.max(against_mps * ONCOMING_S) } else { 0.0 };
     // From its tail to as far as it comes.
     let (half, reach) = (me.kind.size_m().truncate() * 0.5, other.kind.size_m().truncate() * 0.5);
-    let grown = half + glam::Vec2::new(SPACE_M + comes_m * 0.5, ASIDE_M);
-    let way = turned(to) + glam::Vec2::new(comes_m * 0.5, 0.0);
+    let grown = half + glam::Vec2::new(SPACE_M + (comes_m + meets_m) * 0.5, ASIDE_M);
+    let way = turned(to) + glam::Vec2::new((comes_m - meets_m) * 0.5, 0.0);
     let level = (other.position.z - me.position.z).abs() > 3.0;
     level || !rectangles_overlap(grown, way, turned(axis), reach)
 }

@@ -15,6 +15,8 @@ use super::zebra;
 const LOOK_BRAKE_MPS2: f32 = 2.0;
 /// Room beyond a junction that the plan covers, metres.
 const BEYOND_JUNCTION_M: f32 = 20.0;
+/// Long vehicles wait so far before the line of a roundabout, metres, so that others of them can leave it beside them.
+const BACK_M: f32 = 5.0;
 /// Most lanes of a plan.
 const MAX_STEPS: usize = 256;
 
@@ -25,7 +27,9 @@ pub(super) struct Line {
     pub zone: u32,
     /// From the vehicle's front to the line, metres; negative when it reaches over it.
     pub ahead_m: f32,
-    /// The same to where it waits: before a crosswalk where there is no room between that and the line.
+    /// It waits so far before the line, metres, because another needs the room to leave a roundabout.
+    pub back_m: f32,
+    /// From the front to where it waits: there, or before a crosswalk where there is no room between that and the line.
     pub hold_m: f32,
     /// Whether the front is over the marked line already; the vehicle may still stop where the
     /// junction begins.
@@ -34,6 +38,16 @@ pub(super) struct Line {
     pub approach: usize,
     /// The steps inside the junction: from, and one past the last, or as many as the plan has.
     pub inside: (usize, usize),
+}
+
+impl Line {
+    /// The roundabout that who is outside of one comes into beyond the line.
+    pub fn enters(&self, ways: &Ways, steps: &[Step]) -> Option<u32> {
+        let circle = |step: &Step| ways.lanes[step.lane as usize].circle;
+        let (first, last) = self.inside;
+        let beyond = || steps[first..].iter().take(last - first + 1).find_map(circle);
+        if circle(&steps[self.approach]).is_none() { beyond() } else { None }
+    }
 }
 
 /// The vehicle ahead on the planned way.
@@ -110,8 +124,11 @@ pub(super) fn plan(
     plan.line = plan.line.filter(|line| line.inside.0 < count);
     if let Some(line) = &mut plan.line {
         line.inside.1 = line.inside.1.min(count);
-        let hold_m = zebra::kept_clear(ways, &out[first..], driver, line.ahead_m - LINE_MARGIN_M);
-        line.hold_m = line.ahead_m.min(hold_m + LINE_MARGIN_M);
+        let steps = &out[first..];
+        line.back_m = if driver.is_long() && line.enters(ways, steps).is_some() { BACK_M } else { 0.0 };
+        let before_m = line.ahead_m - line.back_m;
+        let hold_m = zebra::kept_clear(ways, steps, driver, before_m - LINE_MARGIN_M);
+        line.hold_m = before_m.min(hold_m + LINE_MARGIN_M);
     }
     plan
 }
@@ -121,7 +138,7 @@ fn line(lane: &Lane, zone: u32, end_m: f32, driver: &Driver, k: usize) -> Line {
     let marked = lane.stop.map(|stop| end_m - lane.length_m + stop.s_m - front_m);
     let passed = marked.is_some_and(|m| m < -1.0);
     let ahead_m = marked.filter(|_| !passed).unwrap_or(end_m - front_m);
-    Line { zone, ahead_m, hold_m: ahead_m, passed, approach: k, inside: (k + 1, k + 2) }
+    Line { zone, ahead_m, back_m: 0.0, hold_m: ahead_m, passed, approach: k, inside: (k + 1, k + 2) }
 }
 
 /// The nearest vehicle ahead on the planned way, but for those that are `apart` from it.

@@ -30,7 +30,7 @@ const CYCLED_MPS: f32 = 28.5;
 pub(super) enum Class {
     /// Everywhere.
     Light = 0,
-    /// Does not turn right where there is another way.
+    /// Does not turn to the kerb where there is another way, but to leave a roundabout.
     Long = 1,
     /// Not on motorways.
     Bicycle = 2,

@@ -11,6 +11,8 @@ const EMERGENCY_MPS2: f32 = 8.0;
 
 use super::population::Population;
 
+/// Half of the length up to which a vehicle turns within its lane, metres.
+pub(super) const LONG_HALF_M: f32 = 2.5;
 /// What draws the kind of somebody on foot, its age and its haste, as keys of random numbers.
 const WALKER_KIND: u64 = 32;
 const WALKER_AGE: u64 = 33;
@@ -54,6 +56,11 @@ pub(super) struct Driver {
 }
 
 impl Driver {
+    /// Whether the vehicle needs more than its lane to turn.
+    pub fn is_long(&self) -> bool {
+        self.size_m.x * 0.5 > LONG_HALF_M
+    }
+
     /// The same in a weather.
     pub fn heeding(self, conditions: &Conditions) -> Self {
         Self {

@@ -8,6 +8,7 @@ use super::doors::{DoorSpot, door_spots};
 use super::lane_way::{CrosswalkSpan, LaneWay, directions, lane_ways};
 use super::links::LEAST_HALF_M;
 use super::reasons::{Draw, draws};
+use super::roundabout::{Roundabout, roundabouts};
 use super::routes::{Class, Routes};
 use super::walker::Walker;
 use crate::actor::ActorKind;
@@ -43,6 +44,7 @@ pub struct Ways {
     /// The map with its places.
     pub(super) places: Arc<Places>,
     pub(super) lanes: Vec<LaneWay>,
+    pub(super) roundabouts: Vec<Roundabout>,
     pub(super) routes: Routes,
     pub(super) edges: Vec<EdgeWay>,
     /// Light groups that must be red for each crosswalk; empty for one without.
@@ -64,8 +66,10 @@ impl Ways {
     pub(crate) fn new(places: &Arc<Places>) -> Self {
         let map = &*places.map;
         let kerb = kerb(places);
-        let lanes = lane_ways(places, kerb);
+        let (roundabouts, circle) = roundabouts(&map.lanes);
+        let lanes = lane_ways(places, kerb, circle);
         let mut ways = Self {
+            roundabouts,
             places: places.clone(),
             routes: Routes::new(&map.lanes, &lanes, kerb),
             lanes,

@@ -6,9 +6,11 @@ use crate::map_data::{LaneId, LaneKind, MapData, StopKind};
 const SHORT_M: f32 = 10.0;
 
 /// For each lane its zone: that of its junction, or of those that it connects; none outside.
-pub(super) fn zones(map: &MapData) -> Vec<Option<u32>> {
+/// Roundabouts stay apart, where everybody drives on: `circle` tells for each lane its own.
+pub(super) fn zones(map: &MapData, circle: &[Option<u32>]) -> Vec<Option<u32>> {
     let mut parent: Vec<u32> = (0..map.junctions.len() as u32).collect();
-    let bridges: Vec<Option<[u32; 2]>> = (0..map.lanes.len()).map(|id| bridge(map, id as LaneId)).collect();
+    let bridges: Vec<Option<[u32; 2]>> =
+        (0..map.lanes.len()).map(|id| bridge(map, id as LaneId).filter(|_| circle[id].is_none())).collect();
     for [a, b] in bridges.iter().flatten() {
         let (a, b) = (root(&parent, *a), root(&parent, *b));
         parent[a.max(b) as usize] = a.min(b);

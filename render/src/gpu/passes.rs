@@ -18,6 +18,8 @@ pub(crate) struct Draws<'a> {
     pub(crate) casters: Option<Vec<u32>>,
     /// Whether moving things are in the shadow map too.
     pub(crate) moving_casts: bool,
+    /// Number of the shadow map; a new one is the next in order.
+    pub(crate) shadow_map: usize,
     pub(crate) blobs: &'a [BlobVertex],
     /// Whether fog, water or rain is to be drawn.
     pub(crate) weather: bool,
@@ -34,12 +36,19 @@ pub(crate) struct Passes {
     weather: Option<Pipelines>,
     uniform: wgpu::Buffer,
     scene_group: wgpu::BindGroup,
-    shadow_view: wgpu::TextureView,
-    shadow_group: wgpu::BindGroup,
+    shadow_side: u32,
+    shadow_sampler: wgpu::Sampler,
+    shadow_maps: Vec<ShadowMap>,
     fixed: wgpu::Buffer,
     moving: GrowingBuffer,
     blobs: GrowingBuffer,
     indices: GrowingBuffer,
+}
+
+/// A shadow map, to draw to and to read.
+struct ShadowMap {
+    view: wgpu::TextureView,
+    group: wgpu::BindGroup,
 }
 
 fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
@@ -65,16 +74,16 @@ impl Passes {
         let vertices = buffer(size_of_val(fixed).max(size_of::<Vertex>()), U::VERTEX);
         gpu.queue.write_buffer(&vertices, 0, bytemuck::cast_slice(fixed));
         let (noise, noise_sampler) = (textures::noise_view(gpu), textures::noise_sampler(gpu));
-        let (shadow_view, shadow_sampler) = (textures::shadow_view(gpu, shadow_side), textures::shadow_sampler(gpu));
         let scene = [uniform.as_entire_binding(), R::TextureView(&noise), R::Sampler(&noise_sampler)];
         Self {
             dry: Pipelines::new(gpu, &layouts, shadow_taps, false),
             weather: None,
             shadow_taps,
             scene_group: bind(gpu, &layouts.scene, &scene),
-            shadow_group: bind(gpu, &layouts.shadow, &[R::TextureView(&shadow_view), R::Sampler(&shadow_sampler)]),
+            shadow_side,
+            shadow_sampler: textures::shadow_sampler(gpu),
+            shadow_maps: Vec::new(),
             uniform,
-            shadow_view,
             fixed: vertices,
             moving: GrowingBuffer::new(gpu, U::VERTEX),
             blobs: GrowingBuffer::new(gpu, U::VERTEX),
@@ -89,13 +98,16 @@ impl Passes {
         self.moving.write(gpu, draws.moving_vertices);
         self.blobs.write(gpu, draws.blobs);
         let ranges = self.write_indices(gpu, draws);
+        while self.shadow_maps.len() <= draws.shadow_map {
+            self.shadow_maps.push(self.new_shadow_map(gpu));
+        }
         if draws.weather && self.weather.is_none() {
             self.weather = Some(Pipelines::new(gpu, &self.layouts, self.shadow_taps, true));
         }
         let pipelines = self.weather.as_ref().filter(|_| draws.weather).unwrap_or(&self.dry);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if draws.casters.is_some() {
-            self.shadow_pass(&mut encoder, &ranges, draws.moving_casts);
+            self.shadow_pass(&mut encoder, &ranges, draws);
         }
         self.main_pass(&mut encoder, pipelines, &ranges, draws, targets);
         readback::record(&mut encoder, targets);
@@ -115,16 +127,23 @@ impl Passes {
         Ranges { moving: 0..draws.moving_indices.len() as u32, fixed, casters }
     }
 
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, moving_casts: bool) {
+    fn new_shadow_map(&self, gpu: &Gpu) -> ShadowMap {
+        use wgpu::BindingResource as R;
+        let view = textures::shadow_view(gpu, self.shadow_side);
+        let group = bind(gpu, &self.layouts.shadow, &[R::TextureView(&view), R::Sampler(&self.shadow_sampler)]);
+        ShadowMap { view, group }
+    }
+
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, draws: &Draws<'_>) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
-            depth_stencil_attachment: Some(depth_attachment(&self.shadow_view, 1.0)),
+            depth_stencil_attachment: Some(depth_attachment(&self.shadow_maps[draws.shadow_map].view, 1.0)),
             ..Default::default()
         });
         pass.set_pipeline(&self.dry.shadow);
         pass.set_bind_group(0, &self.scene_group, &[]);
         self.draw_mesh(&mut pass, &self.fixed, &ranges.casters);
-        if moving_casts {
+        if draws.moving_casts {
             self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
         }
     }
@@ -146,7 +165,7 @@ impl Passes {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scene_group, &[]);
-        pass.set_bind_group(1, &self.shadow_group, &[]);
+        pass.set_bind_group(1, &self.shadow_maps[draws.shadow_map].group, &[]);
         // Nearest and most covering first: hidden fragments are cheap.
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);

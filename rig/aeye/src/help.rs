@@ -8,14 +8,14 @@ use crate::cli::Cli;
 const GROUPS: [(&str, &[&str]); 6] = [
     ("Drive", &["drive", "campaign", "demo"]),
     ("Look at recordings", &["verify", "inspect", "statistics", "view", "export", "questionnaire"]),
-    ("Look at corner cases again", &["rerender", "compare", "redrive", "report"]),
+    ("Look at corner cases again", &["cases", "rerender", "compare", "redrive", "report"]),
     ("Learn", &["dataset", "train", "eval", "experiment"]),
     ("The machine", &["doctor", "wheel"]),
     ("The shell", &["completions", "man"]),
 ];
 
 /// A call of each command.
-const EXAMPLES: [&str; 26] = [
+const EXAMPLES: [&str; 27] = [
     "aeye drive --headless --map city --checkpoint early --max-time 2m --record drive.mcap",
     "aeye campaign --checkpoint early,full --km 5 --out runs",
     "aeye campaign --collect shards --out runs",
@@ -28,6 +28,7 @@ const EXAMPLES: [&str; 26] = [
     "aeye compare runs --checkpoint early,full --gate \"ped_iou>=0.5,fixed>=1\" --out compared",
     "aeye redrive runs --without-intervention --after 10s --out forks",
     "aeye export drive.mcap --checkpoint early --last 3s --out export.mcap",
+    "aeye cases runs --label walker --overlooked walker:200 --reviewed no --unique --limit 20",
     "aeye dataset natural --scenes 8 --maps city,rural --out natural",
     "aeye dataset cases runs --label walker,vehicle --out cases",
     "aeye dataset mix --natural natural --pool pool --corner-cases cases --out sets",

@@ -24,6 +24,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Rerender(args) => commands::rerender::run(args, json),
         Command::Compare(args) => commands::compare::run(args, json),
+        Command::Cases(args) => commands::cases::run(args, json),
         Command::Dataset(command) => match command {
             DatasetCommand::Natural(args) => commands::dataset::natural(args, json),
             DatasetCommand::Cases(args) => commands::dataset::cases(args, json),

@@ -20,6 +20,11 @@ pub fn count<N: Display + PartialEq + From<u8>>(number: N, thing: &str) -> Strin
     format!("{number} {thing}{ending}")
 }
 
+/// A speed along a car's direction, m/s, in whole km/h: negative backwards, and never `-0`, which a standing car comes to.
+pub fn kmh(speed_mps: f64) -> String {
+    format!("{:.0}", (3.6 * speed_mps).round() + 0.0)
+}
+
 /// What kind of road user it is.
 pub fn road_user(kind: ActorKind) -> &'static str {
     match kind {
@@ -89,7 +94,7 @@ pub fn event(event: &Event) -> String {
         _ => " at",
     };
     // Adding 0 makes a negative zero positive.
-    format!("{what}{at} {:.0} km/h", (3.6 * event.speed_mps).round() + 0.0)
+    format!("{what}{at} {} km/h", kmh(event.speed_mps.into()))
 }
 
 /// An event in words, with its time.
@@ -108,6 +113,11 @@ mod tests {
         assert_eq!(said(7), "collision with actor 7, after it at 18 km/h");
         assert_eq!(said(FIRST_PARKED_ID + 3), "collision with parked car 3, after it at 18 km/h");
         assert_eq!(said(FIRST_DOOR_ID + 3), "collision with a door of parked car 3, after it at 18 km/h");
+    }
+
+    #[test]
+    fn a_car_that_stands_goes_at_nothing() {
+        assert_eq!([-0.01, 0.1, 10.0, -2.0].map(kmh), ["0", "0", "36", "-7"]);
     }
 
     #[test]

@@ -6,10 +6,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use base::failure::Usage;
-use perception::BUNDLED;
+use perception::{BUNDLED, TRUTH};
 
-/// What ground truth is called among checkpoints.
-pub const TRUTH: &str = "truth";
+use crate::external::External;
 
 /// What the semantic driver looks at.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,6 +19,8 @@ pub enum CheckpointChoice {
     Bundled(&'static str),
     /// An ONNX file.
     File(PathBuf),
+    /// A function of whoever uses these libraries.
+    External(External),
 }
 
 impl CheckpointChoice {
@@ -29,6 +30,7 @@ impl CheckpointChoice {
             Self::Truth => TRUTH.into(),
             Self::Bundled(name) => (*name).into(),
             Self::File(path) => path.file_stem().unwrap_or_default().to_string_lossy(),
+            Self::External(external) => external.name().into(),
         }
     }
 }

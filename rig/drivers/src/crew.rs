@@ -1,19 +1,60 @@
-//! The two simulated drivers at their screens.
+//! The simulated drivers at their screens.
 
 use kernel::events::EventKind;
-use kernel::{TickInput, World};
+use kernel::{Seat, TickInput, World};
 use replay::{Label, MaskShown};
 
 use crate::safety::{SafetyBot, label_of};
 use crate::semantic::SemanticBot;
 use crate::vision::Vision;
-use crate::{Driver, SemanticView};
+use crate::{Driver, MaskView, SemanticView};
 
-/// Both seats taken by bots.
+/// Bots in both seats, or in the one that nobody else has.
+#[derive(Clone, Debug)]
+pub struct Bots {
+    semantic: Option<SemanticBot>,
+    safety: Option<SafetyBot>,
+}
+
+impl Bots {
+    /// In both seats, with this safety driver.
+    pub fn both(safety: SafetyBot) -> Self {
+        Self { semantic: Some(SemanticBot::default()), safety: Some(safety) }
+    }
+
+    /// Beside somebody else's seat.
+    pub fn beside(seat: Seat) -> Self {
+        match seat {
+            Seat::Semantic => Self { semantic: None, safety: Some(SafetyBot::default()) },
+            Seat::Safety => Self { semantic: Some(SemanticBot::default()), safety: None },
+        }
+    }
+
+    /// Whether one of them drives by the mask.
+    pub fn needs_mask(&self) -> bool {
+        self.semantic.is_some()
+    }
+
+    /// Puts the controls of their seats for the next tick in place. Without a mask the semantic one does nothing.
+    pub fn act(&mut self, world: &World, mask: Option<MaskView<'_>>, input: &mut TickInput) {
+        if let (Some(bot), Some(mask)) = (&mut self.semantic, mask) {
+            input.semantic = bot.controls(&SemanticView { mask, hud: world.hud() });
+        }
+        if let Some(bot) = &mut self.safety {
+            input.safety = bot.controls(world);
+        }
+    }
+
+    /// What the truth says about how the run went wrong: label and comment.
+    pub fn cause(&self, world: &World) -> Option<(Label, String)> {
+        self.safety.as_ref().map_or_else(|| collision(world), |safety| cause(safety, world))
+    }
+}
+
+/// Both seats taken by bots, and what the semantic one sees.
 pub struct Crew {
     vision: Vision,
-    semantic: SemanticBot,
-    safety: SafetyBot,
+    bots: Bots,
 }
 
 impl Crew {
@@ -24,21 +65,21 @@ impl Crew {
 
     /// Takes the seats, with this safety driver.
     pub fn with(vision: Vision, safety: SafetyBot) -> Self {
-        Self { vision, semantic: SemanticBot::default(), safety }
+        Self { vision, bots: Bots::both(safety) }
     }
 
     /// Both drivers' controls for the next tick, and what the semantic driver saw.
     pub fn act(&mut self, world: &World) -> anyhow::Result<(TickInput, MaskShown)> {
         let (mask, mut shown) = self.vision.look(world)?;
         shown.tick_shown += 1;
-        let semantic = self.semantic.controls(&SemanticView { mask, hud: world.hud() });
-        let safety = self.safety.controls(world);
-        Ok((TickInput { semantic, safety }, shown))
+        let mut input = TickInput::default();
+        self.bots.act(world, Some(mask), &mut input);
+        Ok((input, shown))
     }
 
     /// What the truth says about how the run went wrong: label and comment.
     pub fn cause(&self, world: &World) -> Option<(Label, String)> {
-        cause(&self.safety, world)
+        self.bots.cause(world)
     }
 
     /// Leaves the seats.
@@ -49,9 +90,14 @@ impl Crew {
 
 /// What the truth says about how a run went wrong: why the safety driver took over, or what was hit.
 pub fn cause(safety: &SafetyBot, world: &World) -> Option<(Label, String)> {
-    if let Some(hazard) = safety.reason() {
-        return Some((hazard.label, hazard.comment.clone()));
+    match safety.reason() {
+        Some(hazard) => Some((hazard.label, hazard.comment.clone())),
+        None => collision(world),
     }
+}
+
+/// What was hit in the last tick.
+fn collision(world: &World) -> Option<(Label, String)> {
     let hit = world.last_events().iter().find_map(|e| match e.kind {
         EventKind::CollisionActor => Some(e.actor),
         EventKind::CollisionScenery => Some(0),

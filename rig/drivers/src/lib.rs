@@ -2,7 +2,9 @@
 
 pub mod checkpoint;
 pub mod crew;
+pub mod episode;
 pub mod expert;
+pub mod external;
 pub mod film;
 pub mod footprint;
 mod indicate;

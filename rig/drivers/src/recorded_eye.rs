@@ -5,15 +5,18 @@ use perception::Compute;
 use replay::Provenance;
 
 use crate::checkpoint::CheckpointChoice;
-use crate::vision::{DEFAULT_SIZE, Eye};
+use crate::external;
+use crate::vision::{DEFAULT_SIZE, EXTERNAL, Eye};
 
 /// What a recording says about the eye behind its masks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordedEye {
     /// Name of the checkpoint; empty when nothing is said.
     pub name: String,
-    /// Its digest in hexadecimal digits, or `truth`; empty when nothing is said.
+    /// Its digest in hexadecimal digits, `truth`, or `external NAME@VERSION`; empty when nothing is said.
     pub digest: String,
+    /// The version of a function of somebody's own program, which no file holds.
+    pub external: Option<String>,
     /// Width and height of the pictures it looked at, pixels.
     pub size: (u32, u32),
     /// Adapter and driver that drew them; empty when nothing is said.
@@ -37,8 +40,9 @@ impl RecordedEye {
                 name.parse().map_err(|expected| anyhow!("provenance \"inference\" is {name:?}; {expected}"))?
             }
         };
-        let (name, digest, adapter) = (said("checkpoint"), said("checkpoint_digest"), said("adapter"));
-        Ok(Self { name, digest, size, adapter, compute })
+        let (name, adapter, external) = (said("checkpoint"), said("adapter"), provenance.get(EXTERNAL).cloned());
+        let digest = digest_of(provenance).unwrap_or_default();
+        Ok(Self { name, digest, external, size, adapter, compute })
     }
 
     /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest; the CPU computes
@@ -56,6 +60,22 @@ impl RecordedEye {
         Ok(Some(Eye::open_on(self.compute, &choice, Some(self.size)).unwrap_or(eye)))
     }
 
+    /// A sentence for where it is not found; `option` names the file on the command line.
+    pub fn not_found(&self, option: &str) -> String {
+        let name = &self.name;
+        match &self.external {
+            Some(version) => format!(
+                "was driven through {name:?}, version {version}, a function outside of this program, which cannot be opened \
+                 again; expected it to be handed over, which the Python package can"
+            ),
+            None if self.digest.is_empty() => "does not say through which checkpoint it was driven".into(),
+            None => format!(
+                "was driven through checkpoint {name} with digest {}; expected that file with {option}",
+                self.digest
+            ),
+        }
+    }
+
     fn choice(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<(CheckpointChoice, Eye)>> {
         let bundled = perception::BUNDLED.map(CheckpointChoice::Bundled);
         for choice in choices.iter().chain(&bundled).chain(&[CheckpointChoice::Truth]) {
@@ -66,6 +86,13 @@ impl RecordedEye {
         }
         Ok(None)
     }
+}
+
+/// What a recording's checkpoint is told from others by: its digest, or name and version of what no file holds.
+pub fn digest_of(provenance: &Provenance) -> Option<String> {
+    let name = || provenance.get("checkpoint").map(String::as_str).unwrap_or_default();
+    let external = provenance.get(EXTERNAL).map(|version| external::identity(name(), version));
+    external.or_else(|| provenance.get("checkpoint_digest").cloned())
 }
 
 /// `driver WxH`.
@@ -104,6 +131,7 @@ mod tests {
         let eye = |digest: &str| RecordedEye {
             name: "some".into(),
             digest: digest.into(),
+            external: None,
             size: (32, 16),
             adapter: String::new(),
             compute: Compute::Cpu,

@@ -17,6 +17,18 @@ pub enum SessionState {
     Done(Outcome),
 }
 
+impl SessionState {
+    /// That of the run of a world.
+    pub fn of(world: &World) -> Self {
+        let arbiter = world.arbiter();
+        match (arbiter.phase, arbiter.outcome, arbiter.intervention) {
+            (Phase::Done, Some(Outcome::Intervened), Some(intervention)) => Self::Labelling(intervention),
+            (Phase::Done, Some(outcome), _) => Self::Done(outcome),
+            _ => Self::Driving,
+        }
+    }
+}
+
 /// A world whose every tick is recorded.
 pub struct Session<W: Write> {
     world: World,
@@ -39,7 +51,7 @@ impl<W: Write> Session<W> {
     pub fn tick(&mut self, input: &TickInput) -> anyhow::Result<(SessionState, TickOutput)> {
         let output = self.world.step(input);
         self.recorder.tick(input, &output, &self.world.part_hashes())?;
-        Ok((state(&self.world), output))
+        Ok((SessionState::of(&self.world), output))
     }
 
     /// Records what was on the semantic driver's screen.
@@ -60,14 +72,5 @@ impl<W: Write> Session<W> {
     /// Ends the recording, whether the run has ended or not.
     pub fn finish(self) -> anyhow::Result<W> {
         Ok(self.recorder.finish(self.world.arbiter().outcome)?)
-    }
-}
-
-fn state(world: &World) -> SessionState {
-    let arbiter = world.arbiter();
-    match (arbiter.phase, arbiter.outcome, arbiter.intervention) {
-        (Phase::Done, Some(Outcome::Intervened), Some(intervention)) => SessionState::Labelling(intervention),
-        (Phase::Done, Some(outcome), _) => SessionState::Done(outcome),
-        _ => SessionState::Driving,
     }
 }

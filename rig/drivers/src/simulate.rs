@@ -24,9 +24,14 @@ pub const FORK_AFTER_TICKS: Tick = seconds(10);
 
 /// The manifest of a simulated run: bots in both seats, what the semantic one sees, and when.
 pub fn manifest(scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
+    manifest_with(["bot"; 2], scenario, map, eye)
+}
+
+/// As [`manifest`], with who sits in the seats, the semantic driver first.
+pub fn manifest_with([semantic, safety]: [&str; 2], scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
     let entries = [
-        ("semantic", "bot".to_owned()),
-        ("safety", "bot".to_owned()),
+        ("semantic", semantic.to_owned()),
+        ("safety", safety.to_owned()),
         ("frame_ticks", FRAME_TICKS.to_string()),
         ("latency_ticks", LATENCY_TICKS.to_string()),
     ];

@@ -1,8 +1,8 @@
 //! What the semantic driver sees in a simulated drive: in lockstep with the ticks, with a declared
 //! latency, so that the same run gives the same masks on a fast and on a slow machine.
 
-use std::io;
 use std::path::Path;
+use std::{io, mem};
 
 use anyhow::Context;
 use base::failure::Usage;
@@ -14,6 +14,7 @@ use replay::{MaskShown, Provenance};
 
 use crate::MaskView;
 use crate::checkpoint::CheckpointChoice;
+use crate::external::External;
 
 /// Ticks from one frame to the next: 10 frames a second.
 pub const FRAME_TICKS: Tick = CLIP_STRIDE_TICKS;
@@ -35,6 +36,8 @@ pub enum Eye {
         /// Itself, ready for its size.
         segmenter: Box<Segmenter>,
     },
+    /// A function of whoever uses these libraries.
+    External(External),
 }
 
 impl Eye {
@@ -54,6 +57,9 @@ impl Eye {
             CheckpointChoice::Truth => return Ok(Self::Truth),
             CheckpointChoice::Bundled(name) => perception::bundled(name).context("a bundled checkpoint")??,
             CheckpointChoice::File(path) => load(path)?,
+            CheckpointChoice::External(external) => {
+                return Ok(Self::External(external.at(size.unwrap_or(external.size()))));
+            }
         });
         let own = || checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
         let (width, height) = size.map_or_else(own, |(width, height)| (width as usize, height as usize));
@@ -61,26 +67,28 @@ impl Eye {
         Ok(Self::Network { checkpoint, segmenter })
     }
 
-    /// `truth`, or the checkpoint's name: that of its file without the ending.
+    /// `truth`, or the checkpoint's name: that of its file without the ending, or what its user calls it.
     pub fn name(&self) -> &str {
         match self {
             Self::Truth => "truth",
             Self::Network { checkpoint, .. } => checkpoint.name(),
+            Self::External(external) => external.name(),
         }
     }
 
-    /// `truth`, or the digest of the checkpoint in hexadecimal digits.
+    /// `truth`, or the digest of the checkpoint in hexadecimal digits; `external NAME@VERSION` of what no file holds.
     pub fn digest(&self) -> String {
         match self {
             Self::Truth => "truth".into(),
             Self::Network { checkpoint, .. } => checkpoint.digest().to_hex().to_string(),
+            Self::External(external) => external.identity(),
         }
     }
 
     /// What computes it.
     pub fn compute(&self) -> Compute {
         match self {
-            Self::Truth => Compute::default(),
+            Self::Truth | Self::External(_) => Compute::default(),
             Self::Network { segmenter, .. } => segmenter.compute(),
         }
     }
@@ -90,15 +98,22 @@ impl Eye {
         match self {
             Self::Truth => DEFAULT_SIZE,
             Self::Network { segmenter, .. } => (segmenter.size().0 as u32, segmenter.size().1 as u32),
+            Self::External(external) => external.size(),
         }
     }
 
     /// The mask of a frame, as tag ids.
-    pub fn see(&mut self, frame: Frame) -> anyhow::Result<Mask> {
+    pub fn see(&mut self, mut frame: Frame) -> anyhow::Result<Mask> {
+        self.take_in(&mut frame)
+    }
+
+    /// As [`Eye::see`] of a frame whose colours are needed afterwards; its class ids may be gone.
+    fn take_in(&mut self, frame: &mut Frame) -> anyhow::Result<Mask> {
         let (width, height) = (frame.width as usize, frame.height as usize);
         match self {
-            Self::Truth => Ok(Mask::new(width, height, frame.class_ids)?),
+            Self::Truth => Ok(Mask::new(width, height, mem::take(&mut frame.class_ids))?),
             Self::Network { segmenter, .. } => Ok(segmenter.run(RgbView::new(width, height, &frame.rgb)?)?),
+            Self::External(external) => external.see(RgbView::new(width, height, &frame.rgb)?),
         }
     }
 
@@ -110,6 +125,7 @@ impl Eye {
             Self::Network { segmenter, .. } => {
                 Ok(segmenter.run_with_confidence(RgbView::new(width, height, &frame.rgb)?)?)
             }
+            Self::External(external) => Ok((external.see(RgbView::new(width, height, &frame.rgb)?)?, None)),
         }
     }
 }
@@ -126,12 +142,21 @@ fn load(path: &Path) -> anyhow::Result<Checkpoint> {
     Err(Usage(sentence).into())
 }
 
+/// What recordings say about their eye alone.
+const OF_EYE: [&str; 4] = ["checkpoint", "checkpoint_digest", EXTERNAL, "inference"];
+/// The version of what looked where no file holds it.
+pub(crate) const EXTERNAL: &str = "external";
+
 /// What recordings say about how their masks came about: through which checkpoint, computed by what,
 /// from pictures of which size, drawn by which adapter with which driver.
 pub fn provenance(eye: &Eye, (width, height): (u32, u32)) -> Provenance {
+    let which = match eye {
+        Eye::External(external) => (EXTERNAL, external.version().to_owned()),
+        _ => ("checkpoint_digest", eye.digest()),
+    };
     let entries = [
         ("checkpoint", eye.name().to_owned()),
-        ("checkpoint_digest", eye.digest()),
+        which,
         ("camera", format!("driver {width}x{height}")),
         ("adapter", adapter()),
     ];
@@ -139,6 +164,12 @@ pub fn provenance(eye: &Eye, (width, height): (u32, u32)) -> Provenance {
     let elsewhere = Some(eye.compute()).filter(|compute| *compute != Compute::Cpu);
     let inference = elsewhere.map(|compute| ("inference", compute.name().to_owned()));
     entries.into_iter().chain(inference).map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// Says in a recording's provenance that from now on this eye looks, and no longer the one that did.
+pub fn replace_eye(provenance: &mut Provenance, eye: &Eye) {
+    provenance.retain(|name, _| !OF_EYE.contains(&name.as_str()));
+    provenance.extend(self::provenance(eye, eye.size()));
 }
 
 /// Name and driver of the adapter that draws for drivers; empty where there is none.
@@ -163,22 +194,18 @@ struct Picture {
     mask: Mask,
 }
 
-/// The driver's camera, the eye behind it, and the screen.
-pub struct Vision {
+/// The driver's camera and the eye behind it. It remembers nothing of a drive, so that drives on one map can take turns.
+pub struct Optics {
     renderer: Renderer,
     eye: Eye,
     camera: Camera,
-    on_screen: Option<Picture>,
-    coming: Option<Picture>,
 }
 
-const _: () = assert!(LATENCY_TICKS <= FRAME_TICKS, "only one mask may be on its way");
-
-impl Vision {
+impl Optics {
     /// Looks at the renderer's map through an eye.
     pub fn new(renderer: Renderer, eye: Eye) -> Self {
         let (width, height) = eye.size();
-        Self { renderer, eye, camera: Camera::driver(width, height), on_screen: None, coming: None }
+        Self { renderer, eye, camera: Camera::driver(width, height) }
     }
 
     /// What looks.
@@ -186,41 +213,96 @@ impl Vision {
         &self.eye
     }
 
-    /// The same renderer with another eye and a dark screen.
-    pub fn with_eye(self, eye: Eye) -> Self {
-        Self::new(self.renderer, eye)
+    /// What another camera sees.
+    pub fn draw(&mut self, world: &World, camera: &Camera) -> anyhow::Result<Frame> {
+        Ok(self.renderer.draw(&world.scene(), camera)?)
     }
 
-    /// Hands the renderer back.
-    pub fn into_renderer(self) -> Renderer {
-        self.renderer
+    /// The mask that comes to the screen at a tick, and the colours that it is of.
+    fn picture(&mut self, world: &World, tick_shown: Tick) -> anyhow::Result<(Picture, Vec<u8>)> {
+        let mut frame = self.renderer.draw(&world.scene(), &self.camera)?;
+        let mask = self.eye.take_in(&mut frame)?;
+        let digest = digest_of(&mask.ids);
+        // The controls of the next tick are the first that are given with this mask in view.
+        let shown = MaskShown { tick_shown, tick_of_frame: frame.tick, camera: 0, digest, times: None };
+        Ok((Picture { shown, mask }, frame.rgb))
     }
+}
 
-    /// The mask on the screen at the world's tick. The first one of a drive comes without delay, so
-    /// that the screen is never dark.
-    pub fn look(&mut self, world: &World) -> anyhow::Result<(MaskView<'_>, MaskShown)> {
-        let tick = world.tick();
-        if self.coming.as_ref().is_some_and(|c| c.shown.tick_shown <= tick) {
-            self.on_screen = self.coming.take();
-        }
-        if self.on_screen.is_none() {
-            self.on_screen = Some(self.picture(world, tick)?);
-        } else if tick.is_multiple_of(FRAME_TICKS) {
-            let coming = self.picture(world, tick + LATENCY_TICKS)?;
-            self.coming = Some(coming);
+const _: () = assert!(LATENCY_TICKS <= FRAME_TICKS, "only one mask may be on its way");
+
+/// The semantic driver's screen during one drive.
+#[derive(Default)]
+pub struct Screen {
+    on_screen: Option<Picture>,
+    coming: Option<Picture>,
+    looked_at: Option<Tick>,
+    drawn: Option<(Tick, Vec<u8>)>,
+}
+
+impl Screen {
+    /// The mask on the screen at the world's tick, to be asked for at every tick of a drive. The first one of a drive
+    /// comes without delay, so that the screen is never dark.
+    pub fn look(&mut self, optics: &mut Optics, world: &World) -> anyhow::Result<(MaskView<'_>, MaskShown)> {
+        if self.looked_at != Some(world.tick()) {
+            self.follow(optics, world)?;
+            self.looked_at = Some(world.tick());
         }
         let picture = self.on_screen.as_ref().context("a mask on the screen")?;
         let mask = MaskView { width: picture.mask.width, height: picture.mask.height, ids: &picture.mask.ids };
         Ok((mask, picture.shown))
     }
 
-    fn picture(&mut self, world: &World, tick_shown: Tick) -> anyhow::Result<Picture> {
-        let frame = self.renderer.draw(&world.scene(), &self.camera)?;
-        let tick_of_frame = frame.tick;
-        let mask = self.eye.see(frame)?;
-        let digest = digest_of(&mask.ids);
-        // The controls of the next tick are the first that are given with this mask in view.
-        let shown = MaskShown { tick_shown, tick_of_frame, camera: 0, digest, times: None };
-        Ok(Picture { shown, mask })
+    /// The colours of the frame of a tick, 3 bytes a pixel, if that is the one that was drawn last for a mask.
+    pub fn colours_of(&self, tick: Tick) -> Option<&[u8]> {
+        self.drawn.as_ref().filter(|(drawn, _)| *drawn == tick).map(|(_, rgb)| rgb.as_slice())
+    }
+
+    fn follow(&mut self, optics: &mut Optics, world: &World) -> anyhow::Result<()> {
+        let tick = world.tick();
+        if self.coming.as_ref().is_some_and(|c| c.shown.tick_shown <= tick) {
+            self.on_screen = self.coming.take();
+        }
+        let is_dark = self.on_screen.is_none();
+        if is_dark || tick.is_multiple_of(FRAME_TICKS) {
+            let latency = if is_dark { 0 } else { LATENCY_TICKS };
+            let (picture, rgb) = optics.picture(world, tick + latency)?;
+            self.drawn = Some((tick, rgb));
+            *(if is_dark { &mut self.on_screen } else { &mut self.coming }) = Some(picture);
+        }
+        Ok(())
+    }
+}
+
+/// What the semantic driver of one drive looks at, and with what.
+pub struct Vision {
+    optics: Optics,
+    screen: Screen,
+}
+
+impl Vision {
+    /// Looks at the renderer's map through an eye.
+    pub fn new(renderer: Renderer, eye: Eye) -> Self {
+        Self { optics: Optics::new(renderer, eye), screen: Screen::default() }
+    }
+
+    /// What looks.
+    pub fn eye(&self) -> &Eye {
+        &self.optics.eye
+    }
+
+    /// The same renderer with another eye and a dark screen.
+    pub fn with_eye(self, eye: Eye) -> Self {
+        Self::new(self.optics.renderer, eye)
+    }
+
+    /// Hands the renderer back.
+    pub fn into_renderer(self) -> Renderer {
+        self.optics.renderer
+    }
+
+    /// As [`Screen::look`].
+    pub fn look(&mut self, world: &World) -> anyhow::Result<(MaskView<'_>, MaskShown)> {
+        self.screen.look(&mut self.optics, world)
     }
 }

@@ -2,6 +2,7 @@
 //! from recordings. Options come as plain structs, results say themselves as JSON and as text.
 
 pub mod campaign;
+pub mod cases;
 pub mod cityscapes;
 pub mod compare;
 pub mod dataset;
@@ -12,11 +13,13 @@ pub mod export;
 pub mod figures;
 pub mod inspect;
 pub mod looks;
+pub mod machine;
 pub mod pipeline;
 pub mod plot;
 pub mod redrive;
 pub mod report;
 pub mod rerender;
+pub mod share;
 pub mod shots;
 pub mod store;
 pub mod train;

@@ -17,7 +17,7 @@ use replay::{Log, Recording};
 
 use super::looks::Size;
 
-/// Pictures whose scenes are simulated at once: a replay begins at a keyframe, up to 7 s before the first of them.
+/// Pictures whose scenes are simulated at once: a replay begins at a keyframe, up to 12 s before the first of them.
 const AT_ONCE: usize = 32;
 
 /// A file and what draws it; the map and the renderer are made when they are needed first.

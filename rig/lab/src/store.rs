@@ -7,11 +7,13 @@ use anyhow::{Context, bail};
 use base::files::{self, most};
 use base::library::Entry;
 use base::output::{self, OutputFolder};
-use drivers::vision::{self, Eye};
+use drivers::vision::Eye;
 use kernel::time::Tick;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
+
+use crate::machine::Machine;
 
 /// Everything that what is seen in pictures follows from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,8 +32,8 @@ pub struct Key {
     pub kernel: String,
     /// Version of the renderer.
     pub renderer: String,
-    /// The graphics adapter and its driver.
-    pub adapter: String,
+    /// What kind of machine it is.
+    pub machine: Machine,
     /// Digest of the checkpoint, if one looks.
     pub checkpoint: Option<String>,
 }
@@ -42,13 +44,13 @@ pub struct Settings {
     last_ticks: Tick,
     fps: u32,
     size: (u32, u32),
-    adapter: String,
+    machine: Machine,
 }
 
 impl Settings {
-    /// For windows of so many ticks at so many frames a second, drawn in one size on this machine's adapter.
+    /// For windows of so many ticks at so many frames a second, drawn in one size on this machine.
     pub fn new(last_ticks: Tick, fps: u32, size: (u32, u32)) -> Self {
-        Self { last_ticks, fps, size, adapter: vision::adapter() }
+        Self { last_ticks, fps, size, machine: Machine::this() }
     }
 
     /// The key of what is found out about a file, by an eye or without any.
@@ -61,7 +63,7 @@ impl Settings {
             program: env!("CARGO_PKG_VERSION").into(),
             kernel: kernel::identity(),
             renderer: render::identity(),
-            adapter: self.adapter.clone(),
+            machine: self.machine.clone(),
             checkpoint: eye.map(Eye::digest),
         }
     }
@@ -227,8 +229,9 @@ mod tests {
     use super::*;
 
     fn key(log: &str) -> Key {
-        let [log, program, kernel, renderer, adapter] = [log, "1", "1", "1", "cpu"].map(str::to_owned);
-        Key { log, last_ticks: 180, fps: 10, size: (64, 32), program, kernel, renderer, adapter, checkpoint: None }
+        let [log, program, kernel, renderer, arch, adapter] = [log, "1", "1", "1", "x86", "cpu"].map(str::to_owned);
+        let machine = Machine { arch, cpu_features: Vec::new(), adapter };
+        Key { log, last_ticks: 180, fps: 10, size: (64, 32), program, kernel, renderer, machine, checkpoint: None }
     }
 
     #[test]

@@ -9,7 +9,7 @@ pub(super) const BLIND: &str = "blind";
 /// The checkpoints that it was drawn from.
 pub(super) const CANDIDATES: &str = "blind_candidates";
 /// What a blind drive does not tell unless it is revealed.
-const HIDDEN: [&str; 4] = ["checkpoint", "checkpoint_digest", "inference", CANDIDATES];
+const HIDDEN: [&str; 5] = ["checkpoint", "checkpoint_digest", "external", "inference", CANDIDATES];
 
 /// Whether nobody was told which checkpoint drove.
 pub fn is_blind(provenance: &Provenance) -> bool {

@@ -9,9 +9,9 @@ use std::process::Command;
 const OUTSIDE: [&str; 11] =
     ["libudev", "gilrs", "evdev", "x11", "xkbcommon", "winit", "egui", "wayland", "cudarc", "tract-cuda", "tract-gpu"];
 
-/// Bindings, as `-sys` at the end of a name says, that need nothing installed: system calls, types alone, and a library
-/// that is compiled along.
-const SELF_CONTAINED: [&str; 3] = ["linux-raw-sys", "renderdoc-sys", "zstd-sys"];
+/// Bindings, as `-sys` at the end of a name says, that need nothing installed: system calls, types alone, and libraries
+/// that are compiled along.
+const SELF_CONTAINED: [&str; 4] = ["libsqlite3-sys", "linux-raw-sys", "renderdoc-sys", "zstd-sys"];
 
 /// Packages that are compiled for one of the workspace on this machine, by name.
 fn packages(package: &str, features: &[&str]) -> BTreeSet<String> {

@@ -22,6 +22,7 @@ fn rerender_args(file: &Path, out: PathBuf) -> RerenderArgs {
         fps: 10,
         size: Some((128, 64)),
         jobs: None,
+        shard: None,
         out,
     }
 }

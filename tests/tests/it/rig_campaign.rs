@@ -9,7 +9,8 @@ use base::maps::Map;
 use base::progress::Interrupt;
 use drivers::simulate;
 use drivers::vision::{Eye, Vision};
-use lab::campaign::{Plan, RunLine, Share, Task, Until, drive_all};
+use lab::campaign::{Plan, RunLine, Task, Until, drive_all};
+use lab::share::Share;
 use render::{RenderOptions, Renderer};
 use replay::Recording;
 

@@ -49,6 +49,7 @@ fn args(files: &[&Path], checkpoint: &[CheckpointChoice], out: &Path) -> Compare
         no_worse_than: None,
         size: Some(SIZE),
         jobs: Some(2),
+        shard: None,
         out: out.to_owned(),
     }
 }

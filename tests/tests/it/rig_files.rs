@@ -4,13 +4,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use aeye::cli::Cli;
-use aeye::exit;
 use base::failure::sentence;
 use base::progress::Interrupt;
-use clap::Parser;
 use lab::export;
 use replay::Recording;
+use tests::command::aeye;
 use tests::files::contents;
 use tests::recordings::recorded_in;
 use tests::scenes::{busy_city, country_road};
@@ -23,15 +21,6 @@ const COMMANDS: [(&str, &str); 5] = [
     ("report --checkpoint truth --size 64x32", "page.html"),
     ("redrive --without-intervention --after 1s", "forks"),
 ];
-
-/// Exit code and sentence of a command about files.
-fn aeye(command: &str, files: &[&Path], out: &Path) -> (u8, String) {
-    let files = files.iter().map(|file| file.to_str().unwrap());
-    let words = ["aeye", "--json"].into_iter().chain(command.split(' ')).chain(files);
-    let cli = Cli::try_parse_from(words.chain(["--out", out.to_str().unwrap()])).expect("a valid command line");
-    let result = aeye::run(&cli);
-    (exit::number(&result), result.err().map(|error| sentence(&error)).unwrap_or_default())
-}
 
 /// A case of a scene, said to be driven with true masks.
 fn case(scene: &tests::scenes::Scene, folder: &Path, name: &str) -> PathBuf {

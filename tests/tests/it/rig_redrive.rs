@@ -47,6 +47,7 @@ fn args(file: PathBuf, checkpoint: Option<CheckpointChoice>, out: PathBuf) -> Re
         vary: 1,
         seconds: 4,
         jobs: None,
+        shard: None,
         out,
     }
 }
@@ -132,7 +133,9 @@ fn what_cannot_be_driven_again_is_said_and_leaves_nothing() {
     let (calm, unknown) = (dir.path().join("calm.mcap"), dir.path().join("unknown.mcap"));
     fs::write(&calm, record(&busy_city(), 300, ALONE)).unwrap();
     fs::write(&unknown, record(&busy_city(), TAKEOVER + 60, WITH_TAKEOVER)).unwrap();
-    for (file, words) in [(calm, "calm.mcap: holds no intervention"), (unknown, "unknown.mcap: was driven through")] {
+    for (file, words) in
+        [(calm, "calm.mcap: holds no intervention"), (unknown, "unknown.mcap: does not say through which")]
+    {
         let out = dir.path().join("out");
         let said = format!("{:#}", redrive::run(&args(file, None, out.clone()), true).unwrap_err());
         assert!(said.starts_with(dir.path().to_str().unwrap()) && said.contains(words), "{said}");

@@ -29,7 +29,7 @@ fn library(folder: &Path) -> PathBuf {
 fn args(files: &[&Path], checkpoint: &[CheckpointChoice], jobs: u16, out: &Path) -> RerenderArgs {
     let files = files.iter().map(|file| file.to_path_buf()).collect();
     let (checkpoint, out) = (checkpoint.to_vec(), out.to_owned());
-    RerenderArgs { files, checkpoint, last: 60, fps: 10, size: Some((128, 64)), jobs: Some(jobs), out }
+    RerenderArgs { files, checkpoint, last: 60, fps: 10, size: Some((128, 64)), jobs: Some(jobs), shard: None, out }
 }
 
 fn rerendered(args: &RerenderArgs) -> BTreeMap<PathBuf, Vec<u8>> {

@@ -38,13 +38,14 @@ const ONLOOKERS: [&str; 2] = ["tests", "benches"];
 const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows/", "rig/live/src/view/windows/"];
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str]); 16] = [
+const NAMED_ONCE: [(&str, &[&str]); 17] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
     ("roxmltree::", &["kernel/src/baking/limits/"]),
     ("tract_onnx", &["perception/src/onnx/"]),
     ("tract_cuda", &["perception/src/onnx/"]),
     ("bincode::", &["replay/src/wire.rs"]),
+    ("rusqlite::", &["rig/lab/src/cases/"]),
     ("wgpu::", &["render/", WINDOWS[0], WINDOWS[1], WINDOWS[2]]),
     ("winit::", &WINDOWS),
     ("egui::", &WINDOWS),

@@ -6,8 +6,8 @@ use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
-use lab::campaign::Share;
 use lab::experiment::Preset;
+use lab::share::Share;
 
 use super::values::{CHECKPOINTS, MAPS, file, hazards, jobs, people, preset, seconds, weather};
 
@@ -134,6 +134,12 @@ pub struct ExperimentArgs {
     /// Drives at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Print the pieces that are not done yet in the folder and can be done now, and do nothing.
+    #[arg(long, conflicts_with_all = ["print_recipe", "piece"])]
+    pub pieces: bool,
+    /// Do one of these pieces alone; other processes may do others in the same folder.
+    #[arg(long, value_name = "NAME", conflicts_with = "print_recipe")]
+    pub piece: Option<String>,
     /// Folder of the results; an experiment that was interrupted goes on there.
     #[arg(long, value_name = "DIR", required_unless_present = "print_recipe")]
     pub out: Option<PathBuf>,

@@ -6,6 +6,7 @@ use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, Tick};
 use lab::compare::Gate;
+use lab::share::Share;
 
 use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, one_checkpoint, seconds, size};
 
@@ -32,6 +33,10 @@ pub struct RerenderArgs {
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Do one share of the files: of N, the I-th one. The folders of all shares, copied into one, are completed by the same
+    /// command without `--shard`.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Share>,
     /// Folder of the results. One that this command began with the same options is completed: what is whole and
     /// follows from the same files and checkpoints is kept.
     #[arg(long, value_name = "DIR")]
@@ -100,6 +105,10 @@ pub struct CompareArgs {
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Do one share of the files: of N, the I-th one. The folders of all shares, copied into one, are completed by the same
+    /// command without `--shard`, which alone looks at gates.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Share>,
     /// Folder of the results. One that this command began is completed: what follows from the same cases,
     /// checkpoints and size is kept.
     #[arg(long, value_name = "DIR")]
@@ -139,6 +148,10 @@ pub struct RedriveArgs {
     /// Files driven on at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Do one share of the files: of N, the I-th one. The folders of all shares, copied into one, are completed by the same
+    /// command without `--shard`.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Share>,
     /// Folder of the forks' recordings and of `redrive.jsonl`. One that this command began with the same options is
     /// completed: forks that are there and follow from the same file are kept.
     #[arg(long, value_name = "DIR")]

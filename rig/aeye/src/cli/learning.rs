@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use drivers::checkpoint::CheckpointChoice;
+use lab::share::Share;
 use replay::Label;
 
 use super::values::{CHECKPOINT, MAPS, file, jobs, one_checkpoint, people, rate, size};
@@ -120,6 +121,10 @@ pub struct NaturalArgs {
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Do one share of the scenes: of N, the I-th one. The folders of all shares, copied into one, are completed by the same
+    /// command without `--shard`.
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Share>,
     /// Folder of the dataset; one that was interrupted is completed.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

@@ -3,6 +3,7 @@
 mod campaign;
 mod lab;
 mod learning;
+mod library;
 mod live;
 mod recordings;
 mod shell;
@@ -13,6 +14,7 @@ use clap::{Parser, Subcommand};
 pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
 pub use lab::{CompareArgs, ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
 pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, RebuildArgs, TrainArgs};
+pub use library::{LibraryArgs, QueryArgs};
 pub use live::{
     DoctorArgs, DriveArgs, PictureArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs, WheelListArgs,
 };
@@ -59,6 +61,8 @@ pub enum Command {
     Redrive(RedriveArgs),
     /// Write recordings or cases with pictures and scene for Foxglove, Lichtblick or Rerun.
     Export(ExportArgs),
+    /// Find corner cases by what is known of them, and say what came of looking at them.
+    Cases(Box<LibraryArgs>),
     /// Make datasets.
     #[command(subcommand)]
     Dataset(DatasetCommand),

@@ -2,11 +2,13 @@
 
 use base::failure::Usage;
 use base::progress::Interrupt;
-use lab::campaign::{Collection, Goal, Options, Until, collect, drive, drive_shard, plan};
+use lab::campaign::{Collection, Goal, Options, collect, drive, drive_shard, plan};
 
 use crate::cli::CampaignArgs;
 use crate::exit::Verdict;
 use crate::print;
+
+const GOAL: &str = "expected --runs, or one of --km (more than 0), --cases and --pedestrian-cases";
 
 /// Runs `aeye campaign`.
 pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
@@ -38,7 +40,9 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
     if args.pedestrian_cases.is_some() && args.pedestrians == Some(0) {
         return Err(Usage("--pedestrian-cases without people on foot; expected --pedestrians above 0".into()).into());
     }
-    let goal = goal(args)?;
+    // Only the first run is printed.
+    let runs = args.runs.or(args.print_scenario.then_some(1));
+    let goal = Goal::of(runs, args.km, [args.cases, args.pedestrian_cases]).ok_or_else(|| Usage(GOAL.into()))?;
     let CampaignArgs {
         checkpoint,
         maps,
@@ -69,20 +73,4 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
         jobs,
         out,
     })
-}
-
-fn goal(args: &CampaignArgs) -> anyhow::Result<Goal> {
-    let until = match (args.km, args.cases, args.pedestrian_cases) {
-        (Some(km), None, None) if km > 0.0 && km.is_finite() => Some(Until::Km(km)),
-        (None, Some(cases), None) => Some(Until::Cases(cases)),
-        (None, None, Some(cases)) => Some(Until::PedestrianCases(cases)),
-        (None, None, None) => None,
-        _ => return Err(Usage("expected one of --km (more than 0), --cases and --pedestrian-cases".into()).into()),
-    };
-    match (until, args.runs) {
-        (Some(until), most) => Ok(Goal { until, most }),
-        (None, Some(runs)) => Ok(Until::Runs(runs).into()),
-        // Only the first one is printed.
-        (None, None) => Ok(Until::Runs(1).into()),
-    }
 }

@@ -9,8 +9,20 @@ use crate::print::{self, print};
 
 /// Runs `aeye dataset natural`.
 pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
-    let NaturalArgs { scenes, val_scenes, test_scenes, frames, test_frames, size, maps, pedestrians, seed, jobs, out } =
-        args.clone();
+    let NaturalArgs {
+        scenes,
+        val_scenes,
+        test_scenes,
+        frames,
+        test_frames,
+        size,
+        maps,
+        pedestrians,
+        seed,
+        jobs,
+        shard,
+        out,
+    } = args.clone();
     let options = natural::Options {
         scenes,
         val_scenes,
@@ -24,7 +36,11 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         jobs,
         out,
     };
-    let manifest = natural::make(&options, &Interrupt::listen())?;
+    let interrupt = Interrupt::listen();
+    if let Some(share) = shard {
+        return super::share(json, &natural::make_shard(&options, share, &interrupt)?);
+    }
+    let manifest = natural::make(&options, &interrupt)?;
     print(json, &manifest, || manifest.sentence(&options.out))?;
     Ok(Verdict::Ok)
 }

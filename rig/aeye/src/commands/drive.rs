@@ -9,13 +9,14 @@ use base::failure::Usage;
 use base::json::Typed;
 use base::library;
 use base::library::case_path;
-use base::maps::{self, Map, ScenarioFile};
+use base::maps::{self, Map};
 use base::progress::Interrupt;
 use base::room::NoRoom;
 use base::say::say;
+use base::setting::{Changes, Setting};
 use drivers::simulate;
 use drivers::vision::Vision;
-use kernel::scenario::{EgoStart, HazardLevel, driving_lanes};
+use kernel::scenario::{EgoStart, driving_lanes};
 use kernel::{Scenario, World};
 use measures::RunFigures;
 use perception::Compute;
@@ -67,26 +68,20 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
 
 /// What the run starts from, and where.
 fn scenario(args: &DriveArgs) -> anyhow::Result<(Scenario, Map)> {
-    let (mut scenario, map) = match &args.scenario {
-        Some(path) => {
-            let file = ScenarioFile::read(path)?;
-            file.check_start(&file.map)?;
-            (file.scenario, file.map)
-        }
-        None => {
-            let map = Map::find(args.map.as_deref().unwrap_or(DEFAULT_MAP))?;
-            (map.scenario(args.seed.unwrap_or(1)), map)
-        }
+    let setting = match &args.scenario {
+        Some(path) => Setting::of_scenario(path)?,
+        None => Setting::of_map(args.map.as_deref().unwrap_or(DEFAULT_MAP))?,
     };
-    let map = if args.embed_map { map.embedded() } else { map };
-    scenario.seed = args.seed.unwrap_or(scenario.seed);
-    scenario.hazards = args.hazards.map_or(scenario.hazards, HazardLevel::rates);
-    args.weather.iter().for_each(|preset| scenario.take_weather(preset));
-    let rules = &mut scenario.rules;
-    rules.max_seconds = args.seconds.unwrap_or(rules.max_seconds);
-    rules.brake_threshold = args.brake_threshold.unwrap_or(rules.brake_threshold);
-    rules.steer_threshold = args.steer_threshold.unwrap_or(rules.steer_threshold);
-    Ok((scenario, map))
+    let setting = if args.embed_map { setting.embedded() } else { setting };
+    let changes = Changes {
+        hazards: args.hazards,
+        weather: args.weather,
+        pedestrians: None,
+        max_seconds: args.seconds,
+        brake_threshold: args.brake_threshold,
+        steer_threshold: args.steer_threshold,
+    };
+    Ok((setting.scenario(args.seed, &changes), setting.map))
 }
 
 /// The text of a scenario with the place where its seed puts the car, and the lanes that there are to choose from.

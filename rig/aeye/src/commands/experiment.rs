@@ -19,7 +19,15 @@ pub fn run(args: &ExperimentArgs, json: bool) -> anyhow::Result<Verdict> {
         return Ok(Verdict::Ok);
     }
     let Some(out) = &args.out else { return Err(Usage("expected --out DIR or --print-recipe".into()).into()) };
-    print::result(json, &experiment::run(&recipe, out, args.jobs, &Interrupt::listen())?)?;
+    if args.pieces {
+        experiment::pieces(&recipe, out)?.iter().try_for_each(|piece| print::result(json, piece))?;
+        return Ok(Verdict::Ok);
+    }
+    let interrupt = Interrupt::listen();
+    match &args.piece {
+        Some(name) => print::result(json, &experiment::piece(&recipe, out, name, args.jobs, &interrupt)?)?,
+        None => print::result(json, &experiment::run(&recipe, out, args.jobs, &interrupt)?)?,
+    }
     Ok(Verdict::Ok)
 }
 

@@ -4,6 +4,7 @@
 //! says so.
 
 pub mod campaign;
+pub mod cases;
 pub mod compare;
 pub mod dataset;
 pub mod demo;
@@ -28,3 +29,16 @@ pub mod windowless;
 pub mod windows;
 #[cfg(not(feature = "live"))]
 pub use windowless as windows;
+
+use base::failure::Failed;
+use lab::share::ShareDone;
+
+use crate::exit::Verdict;
+use crate::print;
+
+/// Prints what came of a share.
+fn share(json: bool, done: &ShareDone) -> anyhow::Result<Verdict> {
+    print::result(json, done)?;
+    Failed::check(&done.failed, done.done)?;
+    Ok(Verdict::Ok)
+}

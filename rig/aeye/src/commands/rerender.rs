@@ -2,7 +2,7 @@
 
 use base::failure::Failed;
 use base::progress::Interrupt;
-use lab::rerender::{Options, rerender};
+use lab::rerender::{Options, rerender, rerender_shard};
 
 use crate::cli::RerenderArgs;
 use crate::exit::Verdict;
@@ -10,9 +10,13 @@ use crate::print;
 
 /// Runs `aeye rerender`.
 pub fn run(args: &RerenderArgs, json: bool) -> anyhow::Result<Verdict> {
-    let RerenderArgs { files, checkpoint, last, fps, size, jobs, out } = args.clone();
+    let RerenderArgs { files, checkpoint, last, fps, size, jobs, shard, out } = args.clone();
     let options = Options { files, checkpoint, last, fps, size, jobs, out };
-    let summary = rerender(&options, &Interrupt::listen())?;
+    let interrupt = Interrupt::listen();
+    if let Some(share) = shard {
+        return super::share(json, &rerender_shard(&options, share, &interrupt)?);
+    }
+    let summary = rerender(&options, &interrupt)?;
     print::result(json, &summary)?;
     Failed::check(&summary.failed, summary.files)?;
     Ok(Verdict::Ok)

@@ -5,8 +5,7 @@ use base::output;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, Command};
 use clap_complete::Shell;
-use drivers::checkpoint::TRUTH;
-use perception::BUNDLED;
+use perception::{BUNDLED, TRUTH};
 
 use crate::cli::{CompletionsArgs, ManArgs};
 use crate::exit::Verdict;

@@ -2,6 +2,7 @@
 //! for itself, and a folder for what the command reads anywhere below it.
 
 mod kind;
+mod listed;
 mod names;
 mod twins;
 
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow, bail};
 
 pub use self::kind::{Kind, case_path, fork_name, is_case_name, is_drive_name};
+pub use self::listed::expand;
 use self::names::{Way, tell_apart};
 use self::twins::{Opened, Place, Twins};
 use crate::failure::{Failed, Failure};
@@ -78,9 +80,11 @@ impl Found {
 /// Files as they are given and, of folders, those of a kind anywhere below, in the order of their paths and
 /// numbers (`drive-2` comes before `drive-10`), opened. A file that is reached twice comes once, and so do its
 /// copies and other cuts of a case, which are told. What is hidden, links to folders, and exports for viewers are
-/// passed over in folders.
+/// passed over in folders. `@FILE` stands for the paths in a file ([`expand`]).
 pub fn find(paths: &[PathBuf], kind: Kind) -> Found {
-    let (ways, mut failed) = list(paths, kind);
+    let (paths, unlisted) = expand(paths);
+    let (ways, mut failed) = list(&paths, kind);
+    failed.extend(unlisted);
     let (mut files, mut twins) = (Vec::new(), Twins::default());
     let opened = collect_in_order(jobs(None), ways.len(), |index| Opened::read(&ways[index].path));
     for (way, opened) in ways.into_iter().zip(opened) {
@@ -142,7 +146,7 @@ pub fn drives_in(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     collect(folder, Kind::Drives, false, &mut files)?;
     files.retain(|file| !is_export(file));
-    files.sort_by_cached_key(|path| turn(path));
+    files.sort_by_cached_key(|path| order(path));
     Ok(files)
 }
 
@@ -160,7 +164,7 @@ fn below(path: &Path, kind: Kind) -> anyhow::Result<Vec<PathBuf>> {
         let (what, ending) = kind.expected();
         bail!("{}: holds no {what}; expected at least one *{ending}", path.display());
     }
-    files.sort_by_cached_key(|path| turn(path));
+    files.sort_by_cached_key(|path| order(path));
     Ok(files)
 }
 
@@ -184,18 +188,34 @@ fn collect(folder: &Path, kind: Kind, deep: bool, files: &mut Vec<PathBuf>) -> a
     Ok(())
 }
 
-/// What files are sorted by: `drive.mcap`, `drive-2.mcap` ... `drive-10.mcap` were driven in this order.
-fn turn(path: &Path) -> (PathBuf, String, u64) {
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+/// What files are sorted by, folder by folder: `drive.mcap`, `drive-2.mcap` ... `drive-10.mcap` were driven in this order.
+/// The keys of all files below a folder begin with that of the folder ([`order_below`]).
+pub fn order(path: &Path) -> String {
+    let folder = path.parent().unwrap_or(Path::new(""));
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let (stem, ending) = name.split_once('.').unwrap_or((&name, ""));
-    let numbered = stem.rsplit_once('-').and_then(|(stem, number)| Some((stem, number.parse().ok()?)));
+    let numbered = stem.rsplit_once('-').and_then(|(stem, number)| Some((stem, number.parse::<u64>().ok()?)));
     let (stem, number) = numbered.unwrap_or((stem, 1));
-    (folder, format!("{stem}.{ending}"), number)
+    format!("{}{BETWEEN}{stem}.{ending}{BETWEEN}{number:020}", order_below(folder))
+}
+
+/// What the keys of all files below a folder begin with; nothing for no folder.
+pub fn order_below(folder: &Path) -> String {
+    folder.components().map(|part| format!("{}{BETWEEN}", part.as_os_str().to_string_lossy())).collect()
+}
+
+/// Comes before whatever a name may hold, so that a folder comes before others whose names begin as its own does.
+const BETWEEN: char = '\u{1}';
+
+/// What a folder holds of a kind anywhere below it, in no order, unopened: exports for viewers are among it.
+pub fn walk(folder: &Path, kind: Kind) -> anyhow::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    collect(folder, kind, true, &mut files)?;
+    Ok(files)
 }
 
 /// Whether a file is an export of aeye for viewers.
-fn is_export(file: &Path) -> bool {
+pub fn is_export(file: &Path) -> bool {
     // What is no regular file may never end to be read.
     file.is_file() && replay::exported(file).is_some()
 }
@@ -224,10 +244,26 @@ mod tests {
 
     #[test]
     fn runs_of_a_session_come_in_their_order() {
-        let order = ["drive.mcap", "drive-2.mcap", "drive-10.mcap", "early-0002.case.mcap", "early-0010.case.mcap"];
-        let mut paths: Vec<PathBuf> = order.iter().rev().map(PathBuf::from).collect();
-        paths.sort_by_cached_key(|path| turn(path));
-        assert_eq!(paths, order.map(PathBuf::from));
+        let driven = ["drive.mcap", "drive-2.mcap", "drive-10.mcap", "early-0002.case.mcap", "early-0010.case.mcap"];
+        let mut paths: Vec<PathBuf> = driven.iter().rev().map(PathBuf::from).collect();
+        paths.sort_by_cached_key(|path| order(path));
+        assert_eq!(paths, driven.map(PathBuf::from));
+    }
+
+    #[test]
+    fn what_lies_below_a_folder_stands_together() {
+        let order_of = |path: &str| super::order(Path::new(path));
+        let paths = ["x-2.mcap", "x-10.mcap", "a/z.mcap", "a/b/c.mcap", "a-b/c.mcap", "/a/b.mcap"];
+        let mut sorted = paths.map(order_of);
+        sorted.sort();
+        assert_eq!(
+            sorted,
+            ["x-2.mcap", "x-10.mcap", "/a/b.mcap", "a/z.mcap", "a/b/c.mcap", "a-b/c.mcap"].map(order_of)
+        );
+        let below = order_below(Path::new("a"));
+        let found: Vec<_> = paths.into_iter().filter(|path| order_of(path).starts_with(&below)).collect();
+        assert_eq!(found, ["a/z.mcap", "a/b/c.mcap"]);
+        assert_eq!(order_below(Path::new("")), "");
     }
 
     #[test]

@@ -7,8 +7,8 @@ use std::sync::{Mutex, PoisonError};
 use super::create_folder;
 use crate::failure::InUse;
 
-/// A folder of results while its command works there: no other process can have it. Dropped, folders that were made
-/// for it and hold nothing are gone.
+/// A folder of results while its command works there: no other process can have it, or only such as share it. Dropped,
+/// folders that were made for it and hold nothing are gone.
 #[derive(Debug)]
 pub struct OutputFolder {
     /// Outer ones first.
@@ -20,10 +20,19 @@ pub struct OutputFolder {
 impl OutputFolder {
     /// Takes a folder, which is made with those above it unless it is there.
     pub fn open(path: &Path) -> anyhow::Result<Self> {
+        Self::take(path, File::try_lock)
+    }
+
+    /// Takes it together with others who share it, and keeps out who wants it alone.
+    pub fn share(path: &Path) -> anyhow::Result<Self> {
+        Self::take(path, File::try_lock_shared)
+    }
+
+    fn take(path: &Path, lock: Lock) -> anyhow::Result<Self> {
         loop {
             let folder = Self { made: Mutex::default(), _claim: None };
             folder.make(path)?;
-            let claim = claim(path)?;
+            let claim = claim(path, lock)?;
             // One whose process just ended may be gone with it.
             if path.is_dir() {
                 return Ok(Self { made: Mutex::new(folder.take_made()), _claim: claim });
@@ -53,9 +62,11 @@ impl Drop for OutputFolder {
     }
 }
 
-fn claim(path: &Path) -> anyhow::Result<Option<File>> {
+type Lock = fn(&File) -> Result<(), TryLockError>;
+
+fn claim(path: &Path, lock: Lock) -> anyhow::Result<Option<File>> {
     let Ok(folder) = File::open(path) else { return Ok(None) };
-    match folder.try_lock() {
+    match lock(&folder) {
         Ok(()) => Ok(Some(folder)),
         Err(TryLockError::WouldBlock) => {
             let path = path.display();
@@ -90,5 +101,16 @@ mod tests {
         assert!(at("there/c/result").is_file() && !at("there/c/d").exists());
         drop(OutputFolder::open(&at("there")).expect("free again"));
         assert!(at("there").is_dir(), "is not ours to take away");
+    }
+
+    #[test]
+    fn who_shares_a_folder_keeps_out_who_wants_it_alone() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let (one, another) = (OutputFolder::share(dir.path()), OutputFolder::share(dir.path()));
+        drop(one.expect("free"));
+        OutputFolder::open(dir.path()).expect_err("the other is still there");
+        drop(another.expect("shared"));
+        let _alone = OutputFolder::open(dir.path()).expect("free again");
+        OutputFolder::share(dir.path()).expect_err("somebody has it alone");
     }
 }

@@ -87,7 +87,7 @@ fn remake(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<Digests> 
     if let Some(mask) = masks.iter().find(|mask| mask.camera != 0) {
         bail!("the mask of tick {} is of camera {}; expected 0, the driver's", mask.tick_shown, mask.camera);
     }
-    let mut eye = film.eye.find_as_it_was(choices)?.ok_or_else(|| stranger(film))?;
+    let mut eye = film.eye.find_as_it_was(choices)?.ok_or_else(|| anyhow!(film.eye.not_found("--checkpoint")))?;
     let rebuilt = rebuild(film, &mut eye)?;
     let logged = |mask: &&MaskShown| rebuilt.get(&mask.tick_of_frame).is_some_and(|digest| *digest == mask.digest);
     let found = |mask: &&MaskShown| rebuilt.contains_key(&mask.tick_of_frame);
@@ -119,15 +119,6 @@ fn remake(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<Digests> 
             rebuilt: hex(rebuilt[&mask.tick_of_frame]),
         }),
     })
-}
-
-/// The recording was driven through a checkpoint that is not at hand.
-fn stranger(film: &Film) -> anyhow::Error {
-    let (name, digest) = (&film.eye.name, &film.eye.digest);
-    if digest.is_empty() {
-        return anyhow!("does not say through which checkpoint it was driven");
-    }
-    anyhow!("was driven through checkpoint {name} with digest {digest}; expected that file with --checkpoint")
 }
 
 /// The digest of the mask of each frame that was shown, by tick; each is made once.

@@ -19,10 +19,10 @@ use super::options::{Options, plan};
 use super::plan::Plan;
 use super::run_line::RunLine;
 use super::shard::Shard;
-use super::share::Share;
 use super::sum::{Driven, sum_up};
 use super::task::Task;
 use super::workers::drive_all;
+use crate::share::Share;
 
 /// Drives a campaign, writes its files, and gives its figures.
 pub fn drive(options: &Options, interrupt: &Interrupt) -> anyhow::Result<CampaignFigures> {
@@ -46,7 +46,7 @@ pub fn drive_shard(options: &Options, share: Share, interrupt: &Interrupt) -> an
 }
 
 /// What is driven, and who looks.
-fn open(options: &Options) -> anyhow::Result<(Plan, Vec<Eye>)> {
+pub(super) fn open(options: &Options) -> anyhow::Result<(Plan, Vec<Eye>)> {
     check_names(&options.checkpoint)?;
     let plan = plan(options)?;
     let eyes = options.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;

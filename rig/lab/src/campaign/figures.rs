@@ -9,9 +9,9 @@ use base::output;
 use measures::statistics::{Comparison, Ride, Statistics, table};
 use serde::Serialize;
 
-use super::machine::Machine;
 use super::run_line::RunLine;
 use super::until::Until;
+use crate::machine::Machine;
 
 /// The figures of one checkpoint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -53,9 +53,12 @@ impl Typed for CampaignFigures {
 }
 
 impl CampaignFigures {
+    /// Name of the file, in the folder of the campaign.
+    pub const FILE: &str = "campaign.json";
+
     /// Writes `campaign.json` to a folder.
     pub fn write(&self, folder: &Path) -> anyhow::Result<()> {
-        output::write_file(&folder.join("campaign.json"), json::json_file(self)?.as_bytes())
+        output::write_file(&folder.join(Self::FILE), json::json_file(self)?.as_bytes())
     }
 }
 

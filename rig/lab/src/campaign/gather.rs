@@ -7,6 +7,7 @@ use anyhow::bail;
 use base::files::{self, most};
 use base::maps::Map;
 use base::spread::collect_in_order;
+use drivers::recorded_eye;
 use replay::{ForeignMap, Recording};
 
 use super::kept;
@@ -115,7 +116,7 @@ fn check_run(
     let manifest = &recording.log().manifest;
     let says = |name: &str| manifest.provenance.get(name);
     let is_its = manifest.scenario.seed == seed_of(shard.plan.seed, run)
-        && says("checkpoint_digest") == Some(&checkpoint.digest)
+        && recorded_eye::digest_of(&manifest.provenance).as_ref() == Some(&checkpoint.digest)
         && shard.machines.iter().any(|machine| says("adapter") == Some(&machine.adapter));
     if !is_its {
         bail!("{}: belongs to another campaign; expected run {run} of the shard's", places.recording.display());

@@ -12,10 +12,11 @@ use drivers::vision::Eye;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::machine::{Build, Machine};
+use super::figures::CampaignFigures;
 use super::plan::Plan;
-use super::share::Share;
 use super::until::{Goal, Until};
+use crate::machine::{Build, Machine};
+use crate::share::Share;
 
 /// The content of `shard.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,7 +69,7 @@ pub struct ShardPlan {
 pub struct Named {
     /// Its name.
     pub name: String,
-    /// Digest of its content; of ground truth `truth`.
+    /// Digest of its content; of ground truth `truth`, of what no file holds `external NAME@VERSION`.
     pub digest: String,
 }
 
@@ -113,12 +114,15 @@ impl Shard {
     /// Begins or goes on with a share of a campaign in its folder. Its goal may be another than it was.
     pub fn enter(plan: &Plan, eyes: &[Eye], share: Share) -> anyhow::Result<Self> {
         let mut shard =
-            Self { share, plan: ShardPlan::new(plan, eyes), build: Build::this()?, machines: vec![Machine::this()] };
+            Self { share, plan: ShardPlan::new(plan, eyes), build: Build::this(), machines: vec![Machine::this()] };
         let known = Self::read(&plan.out)?;
         if let Some(known) = &known {
             shard.check_goes_on(known, &plan.out)?;
             let other = known.machines.iter().filter(|machine| **machine != shard.machines[0]);
             shard.machines = other.cloned().chain([shard.machines[0].clone()]).collect();
+        }
+        if known.is_none() && plan.out.join(CampaignFigures::FILE).exists() {
+            bail!("{}: holds a whole campaign; expected a folder for each shard", plan.out.display());
         }
         if known.as_ref() != Some(&shard) {
             output::write_file(&path(&plan.out), json::json_file(&shard)?.as_bytes())?;

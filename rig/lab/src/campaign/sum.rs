@@ -6,8 +6,8 @@ use base::words;
 
 use super::figures::{CampaignFigures, figures};
 use super::run_line::RunLine;
-use super::share::Share;
 use super::until::Goal;
+use crate::share::Share;
 
 /// The runs of one checkpoint, in order.
 #[derive(Clone, Debug, PartialEq)]

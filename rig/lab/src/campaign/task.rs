@@ -4,7 +4,7 @@ use base::progress::Interrupt;
 
 use super::plan::Plan;
 use super::run_line::RunLine;
-use super::share::Share;
+use crate::share::Share;
 
 /// Runs that are to be driven, and how.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use measures::statistics::Ride;
 
 use super::figures;
 use super::run_line::RunLine;
-use super::until::{STALLED_RUNS, Until};
+use super::until::{Goal, STALLED_RUNS, Until};
 
 fn runs(each: impl IntoIterator<Item = (f64, bool)>) -> Vec<RunLine> {
     let figures = |km| RunFigures {
@@ -62,4 +62,25 @@ fn figures_know_what_ended_the_campaign() {
         (&by_cases["checkpoints"][0]["sampling"], &by_km["checkpoints"][0]["sampling"]),
         (&"cases".into(), &"length".into())
     );
+}
+
+#[test]
+fn a_goal_is_one_thing_and_something() {
+    let of = |runs, km, cases| Goal::of(runs, km, [cases, None]);
+    assert_eq!(of(Some(3), None, None), Some(Until::Runs(3).into()));
+    assert_eq!(of(Some(3), Some(0.5), None), Some(Goal { until: Until::Km(0.5), most: Some(3) }));
+    assert_eq!(of(None, None, Some(2)), Some(Until::Cases(2).into()));
+    assert_eq!(Goal::of(None, None, [None, Some(2)]), Some(Until::PedestrianCases(2).into()));
+    let none = [
+        (None, None, None),
+        (None, Some(1.0), Some(1)),
+        (None, Some(0.0), None),
+        (None, Some(f64::NAN), None),
+        (Some(0), None, None),
+        (None, None, Some(0)),
+        (Some(0), Some(1.0), None),
+    ];
+    assert!(none.into_iter().all(|(runs, km, cases)| of(runs, km, cases).is_none()));
+    assert!([None, Some(1)].into_iter().all(|cases| Goal::of(None, None, [cases, Some(0)]).is_none()));
+    assert!(Goal::of(None, None, [Some(1), Some(1)]).is_none());
 }

@@ -9,6 +9,8 @@ use super::run_line::RunLine;
 pub const STALLED_RUNS: usize = 200;
 /// Metres a run that a car creeps without getting anywhere, at most.
 const CREEP_M: u64 = 5;
+/// Nobody drives faster over a whole run, m/s: bots keep to 50 km/h.
+const FASTEST_MPS: u64 = 15;
 
 /// When a campaign is over; counted for each checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +36,23 @@ pub struct Goal {
 }
 
 impl Goal {
+    /// So many runs, or one of the other three within as many runs as are given. `None` where nothing is asked for, more than
+    /// one of the three, or what no run needs to be driven for.
+    pub fn of(runs: Option<u32>, km: Option<f64>, [cases, pedestrian_cases]: [Option<u32>; 2]) -> Option<Self> {
+        let until = match (km, cases, pedestrian_cases) {
+            (Some(km), None, None) => Until::Km(km),
+            (None, Some(cases), None) => Until::Cases(cases),
+            (None, None, Some(cases)) => Until::PedestrianCases(cases),
+            (None, None, None) => return runs.filter(|runs| *runs > 0).map(|runs| Until::Runs(runs).into()),
+            _ => return None,
+        };
+        let is_something = match until {
+            Until::Km(km) => km > 0.0 && km.is_finite(),
+            Until::Runs(count) | Until::Cases(count) | Until::PedestrianCases(count) => count > 0,
+        };
+        (is_something && runs != Some(0)).then_some(Self { until, most: runs })
+    }
+
     /// The number that no run reaches, if there is one.
     pub fn end(self) -> Option<u32> {
         match self.until {
@@ -84,6 +103,14 @@ impl Until {
             Self::Km(km) => ((1000.0 * runs.iter().map(|r| r.figures.km).sum::<f64>()) as u64, (1000.0 * km) as u64),
             Self::Cases(n) => (runs.iter().filter(|r| r.case.is_some()).count() as u64, n.into()),
             Self::PedestrianCases(n) => (runs.iter().filter(|r| r.is_pedestrian_case()).count() as u64, n.into()),
+        }
+    }
+
+    /// As much as a run of so many seconds can bring it further, in what its progress counts.
+    pub fn most_of_a_run(&self, run_seconds: u32) -> u64 {
+        match self {
+            Self::Km(_) => FASTEST_MPS * u64::from(run_seconds),
+            Self::Runs(_) | Self::Cases(_) | Self::PedestrianCases(_) => 1,
         }
     }
 

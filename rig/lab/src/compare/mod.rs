@@ -26,14 +26,17 @@ pub use self::gate::Passage;
 use self::gate::no_worse;
 use self::looking::{Looked, Looking};
 use self::metrics::CaseSums;
+pub use self::score::Hits;
 use self::summary::Speed;
 pub use self::summary::{Compared, Scoreboard};
+pub use self::witness::Witness;
 use super::looks::open_eyes;
 use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
-use base::failure::{Failed, Usage};
+use crate::share::{Share, ShareDone};
+use base::failure::{Failed, Failure, Usage};
 use base::json;
-use base::library::{self, Kind};
+use base::library::{self, Entry, Kind};
 use base::output;
 use base::progress::{self, Interrupt};
 use base::say::say;
@@ -68,30 +71,7 @@ pub struct Options {
 /// Draws every case, looks at it through each checkpoint, and writes `compare.json` and `report.html`.
 pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared> {
     let reference = reference(args)?;
-    AdapterChoice::default().find()?;
-    let store = Store::open(&args.out, "compare")?;
-    let library::Found { files: mut cases, mut failed } =
-        library::find(&args.files, Kind::Cases).only_cases().or_failed()?;
-    let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
-    let settings = Settings::new(CLIP_TICKS, CLIP_FPS, size);
-    let bar = progress::bar("frames", 0);
-    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings: settings.clone(), bar: &bar };
-    let left = work.left();
-    bar.set_length(left.len() as u64 * u64::from(CLIP_FRAMES));
-    let (jobs, studios) = (jobs(args.jobs), Studios::default());
-    let pipeline = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
-    let alone = pipeline.alone()?;
-    let (pace, unread) = pipeline.run()?;
-    let studios = pipeline.studios;
-    bar.finish_and_clear();
-    failed.extend(set_aside(&mut cases, unread));
-    if cases.is_empty() {
-        return Err(Failed::new(failed).into());
-    }
-    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings, bar: &bar };
-    let Some(looked) = work.all() else {
-        bail!("{}: interrupted; the same command goes on from there", args.out.display());
-    };
+    let Seen { cases, failed, eyes, size, looked, studios, speed, _store } = look(args, None, interrupt)?;
     for (case, looked) in cases.iter().zip(&looked) {
         if let Some(kernel) = &looked.facts.other_kernel {
             let path = case.path.display();
@@ -107,7 +87,60 @@ pub fn compare(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Compared
     let page = studios.with(size, render)?;
     output::write_file(&args.out.join("report.html"), page.as_bytes())?;
     output::write_file(&args.out.join("compare.json"), json::json_file(&summary)?.as_bytes())?;
-    Ok(Compared { summary, speed: Speed::of(pace, alone, eyes.len()) })
+    Ok(Compared { summary, speed })
+}
+
+/// Looks at a share of the cases, and writes neither table nor report: a later call finds in the folder what came of it.
+pub fn compare_shard(args: &Options, share: Share, interrupt: &Interrupt) -> anyhow::Result<ShareDone> {
+    reference(args)?;
+    let Seen { cases, failed, .. } = look(args, Some(share), interrupt)?;
+    Ok(ShareDone { share, out: args.out.display().to_string(), done: cases.len(), failed })
+}
+
+/// Cases that were looked at, and with what.
+struct Seen {
+    cases: Vec<Entry>,
+    failed: Vec<Failure>,
+    eyes: Vec<Eye>,
+    size: (u32, u32),
+    looked: Vec<Looked>,
+    studios: Studios,
+    speed: Option<Speed>,
+    /// Nobody else works in the folder for as long.
+    _store: Store,
+}
+
+/// Looks at what is missing of a share, or of all.
+fn look(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::Result<Seen> {
+    AdapterChoice::default().find()?;
+    let store = Store::open(&args.out, "compare")?;
+    let found = library::find(&args.files, Kind::Cases).only_cases().or_failed()?;
+    let library::Found { files: mut cases, mut failed } = match share {
+        Some(share) => share.pick(found),
+        None => found,
+    };
+    let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
+    let settings = Settings::new(CLIP_TICKS, CLIP_FPS, size);
+    let bar = progress::bar("frames", 0);
+    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings: settings.clone(), bar: &bar };
+    let left = work.left();
+    bar.set_length(left.len() as u64 * u64::from(CLIP_FRAMES));
+    let (jobs, studios) = (jobs(args.jobs), Studios::default());
+    let pipeline = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
+    let alone = if share.is_none() { pipeline.alone()? } else { None };
+    let (pace, unread) = pipeline.run()?;
+    let studios = pipeline.studios;
+    bar.finish_and_clear();
+    failed.extend(set_aside(&mut cases, unread));
+    if cases.is_empty() && !failed.is_empty() {
+        return Err(Failed::new(failed).into());
+    }
+    let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings, bar: &bar };
+    let Some(looked) = work.all() else {
+        bail!("{}: interrupted; the same command goes on from there", args.out.display());
+    };
+    let speed = Speed::of(pace, alone, eyes.len());
+    Ok(Seen { cases, failed, eyes, size, looked, studios, speed, _store: store })
 }
 
 /// Number of the checkpoint that none of the others may be worse than.

@@ -22,7 +22,8 @@ pub struct Hits {
 }
 
 impl Hits {
-    fn count(&mut self, is_right: bool) {
+    /// Counts a pixel.
+    pub fn count(&mut self, is_right: bool) {
         self.right += u64::from(is_right);
         self.of += 1;
     }
@@ -32,11 +33,13 @@ impl Hits {
         self.of += other.of;
     }
 
-    fn is_visible(self) -> bool {
+    /// Whether there are enough pixels to see it by.
+    pub fn is_visible(self) -> bool {
         self.of >= VISIBLE_PIXELS
     }
 
-    fn is_seen(self) -> bool {
+    /// Whether it is visible and seen as what it is.
+    pub fn is_seen(self) -> bool {
         self.is_visible() && self.right as f64 >= SEEN_SHARE * self.of as f64
     }
 

@@ -15,6 +15,7 @@ mod drive;
 mod manifest;
 pub mod mix;
 pub mod natural;
+mod parts;
 mod provenance;
 pub mod rebuild;
 pub(crate) mod recipe;

@@ -5,14 +5,12 @@
 //! recordings of the drives lie below `drives`. Each scene depends on the recipe and its number alone,
 //! so scenes run in parallel and an interrupted dataset is completed by the same command.
 
-use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use anyhow::{Context, bail};
 use base::failure::Usage;
-use base::files::{self, most};
 use base::maps::{self, Map};
 use base::output::{self, OutputFolder};
 use base::progress::{self, Bar, Interrupt};
@@ -24,13 +22,13 @@ use kernel::World;
 use perception::cityscapes::Place;
 use render::{Camera, RenderOptions, Renderer};
 
-use serde::{Deserialize, Serialize};
-
 use super::drive::ExpertDrive;
 use super::manifest::{Manifest, PARTS};
-use super::provenance::{self, Drive, FrameLine};
+use super::parts::Parts;
+use super::provenance::{Drive, FrameLine};
 use super::recipe::{MapUsed, NaturalRecipe, Recipe};
 use crate::cityscapes;
+use crate::share::{Share, ShareDone};
 use crate::store::remove_folder;
 
 /// What natural frames are asked for.
@@ -66,6 +64,17 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     build(&NaturalRecipe::new(args, &maps)?, &maps, &args.out, args.jobs, interrupt)
 }
 
+/// Makes a share of a dataset's scenes: a later call of [`make`] finds them in the folder.
+pub fn make_shard(args: &Options, share: Share, interrupt: &Interrupt) -> anyhow::Result<ShareDone> {
+    let maps = Map::find_all(&args.maps)?;
+    let recipe = NaturalRecipe::new(args, &maps)?;
+    if Manifest::of_finished(&args.out, &Recipe::Natural(recipe.clone()))?.is_none() {
+        shoot(&recipe, &maps, &args.out, (share, args.jobs), interrupt)?;
+    }
+    let done = share.count(recipe.scenes().len() as u32) as usize;
+    Ok(ShareDone { share, out: args.out.display().to_string(), done, failed: Vec::new() })
+}
+
 /// As [`make`], from a recipe and its maps.
 pub(super) fn build(
     recipe: &NaturalRecipe,
@@ -80,18 +89,37 @@ pub(super) fn build(
         remove_folder(&out.join(PARTS))?;
         return Ok(finished);
     }
+    let shot = shoot(recipe, maps, out, (Share::WHOLE, threads), interrupt)?;
+    finish(out, whole, &recipe.scenes(), shot.parts, shot.adapter)
+}
+
+/// An unfinished dataset.
+struct Shot {
+    parts: Parts,
+    adapter: String,
+    _folder: OutputFolder,
+}
+
+/// Makes the scenes of a share that are not there.
+fn shoot(
+    recipe: &NaturalRecipe,
+    maps: &[Map],
+    out: &Path,
+    (share, threads): (Share, Option<u16>),
+    interrupt: &Interrupt,
+) -> anyhow::Result<Shot> {
     let options = RenderOptions::default();
     let adapter = vision::find_adapter()?;
-    let _folder = OutputFolder::open(out)?;
-    let parts = prepare(out, recipe, &adapter)?;
-    let scenes = recipe.scenes();
+    let folder = OutputFolder::open(out)?;
+    let parts = Parts::open(out, recipe, &adapter)?;
+    let mut scenes = recipe.scenes();
+    share.keep(&mut scenes);
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
     let no_room = Mutex::default();
     let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
     on_threads(jobs(threads), scenes.len(), fresh, |renderers, index| {
         let scene = &scenes[index];
-        let part = parts.join(scene.part());
-        if part.is_file() {
+        if parts.find(out, scene.split, scene.number)?.is_some() {
             bar.inc(u64::from(scene.frames));
             return Ok(());
         }
@@ -101,78 +129,21 @@ pub(super) fn build(
             none => none.insert(Renderer::new(&map.network, &options)?),
         };
         let mut studio = Studio { recipe, out, adapter: &adapter, renderer, interrupt, bar: &bar, no_room: &no_room };
-        let lines = provenance::text(&studio.shoot(scene, map)?)?;
-        output::write_file(&part, lines.as_bytes())
+        parts.keep(scene.split, scene.number, &studio.shoot(scene, map)?)
     })?;
     bar.finish_and_clear();
-    finish(out, whole, &scenes, &parts, adapter)
-}
-
-/// What an unfinished dataset was begun with.
-#[derive(PartialEq, Serialize, Deserialize)]
-struct Begun {
-    recipe: NaturalRecipe,
-    kernel: String,
-    renderer: String,
-    adapter: String,
-}
-
-/// Whether a folder holds nothing but `parts` in which there is nothing with a name, as a kill at the very begin
-/// leaves it.
-fn only_parts(out: &Path) -> bool {
-    let names = |path: &Path| fs::read_dir(path).map(|entries| entries.flatten().map(|e| e.file_name()).collect());
-    let inside: Vec<_> = names(out).unwrap_or_default();
-    let is_hidden = |name: &OsString| name.to_string_lossy().starts_with('.');
-    inside == [PARTS] && names(&out.join(PARTS)).is_ok_and(|inside: Vec<_>| inside.iter().all(is_hidden))
-}
-
-/// The folder of finished scenes, once it is certain that they belong to this recipe.
-fn prepare(out: &Path, recipe: &NaturalRecipe, adapter: &str) -> anyhow::Result<PathBuf> {
-    let parts = out.join(PARTS);
-    let file = parts.join("begun.json");
-    let is_foreign = !file.exists() && fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
-    if is_foreign && !only_parts(out) {
-        bail!("{}: holds something else; expected a new or an empty folder, or this dataset", out.display());
-    }
-    output::create_folder(&parts)?;
-    let now = Begun {
-        recipe: recipe.clone(),
-        kernel: kernel::identity(),
-        renderer: render::identity(),
-        adapter: adapter.to_owned(),
-    };
-    if !file.exists() {
-        output::write_file(&file, serde_json::to_string_pretty(&now)?.as_bytes())?;
-        return Ok(parts);
-    }
-    let text = files::read_text(&file, most::TABLE)?;
-    let begun: Begun = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
-    if begun.recipe != now.recipe {
-        bail!("{}: was begun with other arguments; expected the same to complete it", out.display());
-    }
-    if begun != now {
-        let Begun { adapter: first, kernel, renderer, .. } = begun;
-        bail!(
-            "{}: was begun with kernel {kernel} and renderer {renderer} on {first}; expected the same to complete it, \
-             not {}, {} and {adapter}",
-            out.display(),
-            now.kernel,
-            now.renderer
-        );
-    }
-    Ok(parts)
+    Ok(Shot { parts, adapter, _folder: folder })
 }
 
 /// Joins the scenes' lines and writes the manifest, which makes the dataset complete.
-fn finish(out: &Path, recipe: Recipe, scenes: &[Scene], parts: &Path, adapter: String) -> anyhow::Result<Manifest> {
+fn finish(out: &Path, recipe: Recipe, scenes: &[Scene], parts: Parts, adapter: String) -> anyhow::Result<Manifest> {
     let mut frames = Vec::new();
     for scene in scenes {
-        let part = parts.join(scene.part());
-        let context = || part.display().to_string();
-        frames.extend(provenance::parse(&files::read_text(&part, most::TABLE)?).with_context(context)?);
+        let lines = parts.find(out, scene.split, scene.number)?;
+        frames.extend(lines.with_context(|| format!("{}: was changed meanwhile", out.display()))?);
     }
     let manifest = Manifest::complete(out, recipe, adapter, &frames)?;
-    remove_folder(parts)?;
+    parts.remove()?;
     Ok(manifest)
 }
 
@@ -186,10 +157,6 @@ struct Scene {
 }
 
 impl Scene {
-    fn part(&self) -> String {
-        format!("{}_{:06}.jsonl", self.split, self.number)
-    }
-
     /// Seed of a leg: the first 8 bytes of BLAKE3 over what names it, so that no two splits, scenes
     /// or datasets share a drive.
     fn seed(&self, recipe: &NaturalRecipe, leg: u32) -> u64 {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use base::failure::Failed;
 use base::output;
 use base::progress::Interrupt;
@@ -13,19 +13,21 @@ use perception::training::TrainOptions;
 
 use super::recipe::Recipe;
 use super::set::Set;
-use super::table_1::{Row, Scenes, test_scores};
 use super::tables::Tables;
 use crate::campaign;
 use crate::campaign::CampaignFigures;
 use crate::campaign::Until;
 use crate::dataset::{Manifest, cases, mix, natural};
-use crate::{eval, train};
+use crate::train;
 
 /// Where frames are measured at last, in all datasets.
-const TEST: &str = "test";
-/// Folders of the campaigns.
-const FIRST_CAMPAIGN: &str = "campaign-1";
-const SECOND_CAMPAIGN: &str = "campaign-2";
+pub const TEST: &str = "test";
+/// Folders of the networks and of the campaigns.
+pub const NETWORKS: &str = "networks";
+pub const FIRST_CAMPAIGN: &str = "campaign-1";
+pub const SECOND_CAMPAIGN: &str = "campaign-2";
+/// The network of the first campaign.
+pub const DRIVING: &str = "driving";
 /// What is added to the experiment's seed for drives that are to share no start.
 const POOL_SEED: u64 = 1000;
 const SECOND_CAMPAIGN_SEED: u64 = 2000;
@@ -66,21 +68,18 @@ impl Stages<'_> {
     /// All of them.
     pub fn run(&self) -> anyhow::Result<Results> {
         begin(1, "drawing the natural data and a pool of scenes with more pedestrians");
-        self.draw()?;
+        self.draw_natural()?;
+        self.draw_pool()?;
         begin(2, "training the network that drives, and stopping it early");
         let driving = self.train_driving()?;
-        begin(3, "driving with it until there are enough corner cases with pedestrians");
-        let first_campaign = self.first_campaign(&driving)?;
-        let (training_cases, test_cases) = self.share_out(&first_campaign)?;
-        begin(4, "making three training sets of equal size");
-        self.mix(&training_cases, &test_cases)?;
+        let (first_campaign, training_cases, test_cases) = self.make_sets()?;
         begin(5, "training on each of them");
         let networks = self.train_all()?;
         begin(6, "measuring every network on safety-critical and on natural frames");
         let table_1 = self.measure(&networks)?;
         begin(7, "driving with a network of each set");
         let firsts: Vec<PathBuf> = networks.iter().filter_map(|of_set| of_set.first().cloned()).collect();
-        let second_campaign = self.second_campaign(&firsts)?;
+        let second_campaign = campaign::drive(&self.second_campaign(firsts.clone()), &self.interrupt)?;
         let folder = self.out.join(SECOND_CAMPAIGN);
         let recordings: Vec<PathBuf> = second_campaign.runs.iter().map(|run| folder.join(&run.file)).collect();
         let choice = statistics::Choice { sampling: second_campaign.until.sampling(), ..Default::default() };
@@ -93,11 +92,28 @@ impl Stages<'_> {
         Ok(Results { tables, first_campaign, training_cases, test_cases, driving, networks, second_campaign, datasets })
     }
 
-    fn dataset(&self, name: &str) -> PathBuf {
+    /// Drives the first campaign to its end and makes the training sets of it; gives also the cases of both kinds.
+    pub fn make_sets(&self) -> anyhow::Result<(CampaignFigures, Vec<PathBuf>, Vec<PathBuf>)> {
+        begin(3, "driving with it until there are enough corner cases with pedestrians");
+        let first_campaign = campaign::drive(&self.first_campaign(), &self.interrupt)?;
+        let (training_cases, test_cases) = self.share_out(&first_campaign)?;
+        begin(4, "making three training sets of equal size");
+        self.mix(&training_cases, &test_cases)?;
+        Ok((first_campaign, training_cases, test_cases))
+    }
+
+    /// The folder of a dataset.
+    pub fn dataset(&self, name: &str) -> PathBuf {
         self.out.join("datasets").join(name)
     }
 
-    fn set(&self, set: Set) -> PathBuf {
+    /// The file of a network.
+    pub fn network(&self, name: &str) -> PathBuf {
+        self.out.join(NETWORKS).join(format!("{name}.onnx"))
+    }
+
+    /// The folder of a training set.
+    pub fn set(&self, set: Set) -> PathBuf {
         self.dataset("sets").join(set.name())
     }
 
@@ -107,9 +123,29 @@ impl Stages<'_> {
         names.map(|name| Ok((format!("datasets/{name}"), Manifest::read(&self.dataset(&name))?))).collect()
     }
 
-    fn draw(&self) -> anyhow::Result<()> {
-        let (n, pool) = (&self.recipe.natural, &self.recipe.pool);
-        let args = natural::Options {
+    /// Draws the natural data, unless it is there.
+    pub fn draw_natural(&self) -> anyhow::Result<()> {
+        natural::make(&self.natural(), &self.interrupt).map(drop)
+    }
+
+    /// Draws the pool, unless it is there.
+    pub fn draw_pool(&self) -> anyhow::Result<()> {
+        let pool = &self.recipe.pool;
+        let options = natural::Options {
+            scenes: pool.scenes,
+            val_scenes: 0,
+            test_scenes: 0,
+            pedestrians: Some(pool.pedestrians),
+            seed: self.recipe.seed + POOL_SEED,
+            out: self.dataset("pool"),
+            ..self.natural()
+        };
+        natural::make(&options, &self.interrupt).map(drop)
+    }
+
+    fn natural(&self) -> natural::Options {
+        let n = &self.recipe.natural;
+        natural::Options {
             scenes: n.scenes,
             val_scenes: n.val_scenes,
             test_scenes: n.test_scenes,
@@ -121,30 +157,24 @@ impl Stages<'_> {
             seed: self.recipe.seed,
             jobs: self.jobs,
             out: self.dataset("natural"),
-        };
-        natural::make(&args, &self.interrupt)?;
-        let pool = natural::Options {
-            scenes: pool.scenes,
-            val_scenes: 0,
-            test_scenes: 0,
-            pedestrians: Some(pool.pedestrians),
-            seed: self.recipe.seed + POOL_SEED,
-            out: self.dataset("pool"),
-            ..args
-        };
-        natural::make(&pool, &self.interrupt)?;
-        Ok(())
+        }
     }
 
-    fn train_driving(&self) -> anyhow::Result<PathBuf> {
+    /// Trains the network that drives, unless it is there.
+    pub fn train_driving(&self) -> anyhow::Result<PathBuf> {
         let driving = &self.recipe.driving;
-        self.train(&self.dataset("natural"), "driving", self.recipe.seed, driving.epochs, driving.horizon)
+        self.train(&self.dataset("natural"), DRIVING, self.recipe.seed, driving.epochs, driving.horizon)
+    }
+
+    /// Trains a set's network, numbered from 1 on, unless it is there.
+    pub fn train_set(&self, set: Set, number: u32) -> anyhow::Result<PathBuf> {
+        let (training, seed) = (&self.recipe.training, self.recipe.seed + u64::from(number));
+        self.train(&self.set(set), &network(set, number), seed, training.epochs, training.epochs)
     }
 
     fn train(&self, dataset: &Path, name: &str, seed: u64, epochs: u32, horizon: u32) -> anyhow::Result<PathBuf> {
-        let folder = self.out.join("networks");
-        output::create_folder(&folder)?;
-        let (out, standard) = (folder.join(format!("{name}.onnx")), TrainOptions::default());
+        let (out, standard) = (self.network(name), TrainOptions::default());
+        output::create_folder(&self.out.join(NETWORKS))?;
         let args = train::Options {
             dataset: dataset.to_owned(),
             out: out.clone(),
@@ -164,19 +194,18 @@ impl Stages<'_> {
         Ok(out)
     }
 
-    fn first_campaign(&self, driving: &Path) -> anyhow::Result<CampaignFigures> {
+    /// What the network that drives is driven through.
+    pub fn first_campaign(&self) -> campaign::Options {
         let c = &self.recipe.first_campaign;
         let until = Until::PedestrianCases(c.training_cases + c.test_cases);
-        let plan = self.campaign(vec![driving.to_owned()], until, FIRST_CAMPAIGN, (c.pedestrians, c.run_seconds));
-        campaign::drive(&plan, &self.interrupt)
+        self.campaign(vec![self.network(DRIVING)], until, FIRST_CAMPAIGN, (c.pedestrians, c.run_seconds))
     }
 
-    fn second_campaign(&self, networks: &[PathBuf]) -> anyhow::Result<CampaignFigures> {
+    /// What networks are compared by.
+    pub fn second_campaign(&self, networks: Vec<PathBuf>) -> campaign::Options {
         let c = &self.recipe.second_campaign;
-        let drives = (c.pedestrians, c.run_seconds);
-        let plan = self.campaign(networks.to_vec(), Until::Km(c.km), SECOND_CAMPAIGN, drives);
-        let plan = campaign::Options { seed: self.recipe.seed + SECOND_CAMPAIGN_SEED, ..plan };
-        campaign::drive(&plan, &self.interrupt)
+        let plan = self.campaign(networks, Until::Km(c.km), SECOND_CAMPAIGN, (c.pedestrians, c.run_seconds));
+        campaign::Options { seed: self.recipe.seed + SECOND_CAMPAIGN_SEED, ..plan }
     }
 
     fn campaign(
@@ -241,52 +270,20 @@ impl Stages<'_> {
 
     /// The networks of each set, in the order of their seeds.
     fn train_all(&self) -> anyhow::Result<Vec<Vec<PathBuf>>> {
-        let training = &self.recipe.training;
         // Seed by seed, so that an experiment that is looked at early has seen every set.
         let mut networks = vec![Vec::new(); Set::ALL.len()];
-        for number in 1..=training.seeds {
+        for number in 1..=self.recipe.training.seeds {
             for (set, trained) in Set::ALL.into_iter().zip(&mut networks) {
-                let name = format!("{}-{number}", set.name());
-                let seed = self.recipe.seed + u64::from(number);
-                trained.push(self.train(&self.set(set), &name, seed, training.epochs, training.epochs)?);
+                trained.push(self.train_set(set, number)?);
             }
         }
         Ok(networks)
     }
+}
 
-    fn measure(&self, networks: &[Vec<PathBuf>]) -> anyhow::Result<Vec<Row>> {
-        let tests = [self.dataset("critical"), self.dataset("natural")];
-        let of_test = |of_set: &Vec<PathBuf>, test: &Path| -> anyhow::Result<Vec<Scenes>> {
-            of_set.iter().map(|network| self.scenes(network, test)).collect()
-        };
-        let of_set = |of_set| anyhow::Ok([of_test(of_set, &tests[0])?, of_test(of_set, &tests[1])?]);
-        let scenes = networks.iter().map(of_set).collect::<anyhow::Result<Vec<[Vec<Scenes>; 2]>>>()?;
-        let row = |(set, of_set): (Set, &[Vec<Scenes>; 2])| -> anyhow::Result<Row> {
-            let is_natural = set == Set::Natural;
-            Ok(Row {
-                set,
-                pedestrian_pixels_per_frame: self.pedestrian_pixels(set)?,
-                safety_critical: test_scores(&scenes[0][0], &of_set[0], is_natural),
-                natural: test_scores(&scenes[0][1], &of_set[1], is_natural),
-            })
-        };
-        Set::ALL.into_iter().zip(&scenes).map(row).collect()
-    }
-
-    fn scenes(&self, network: &Path, dataset: &Path) -> anyhow::Result<Scenes> {
-        if self.interrupt.is_raised() {
-            bail!("interrupted; the same command goes on from there");
-        }
-        let network = CheckpointChoice::File(network.to_owned());
-        let evaluation = eval::evaluate(&network, dataset, TEST, self.jobs, &self.interrupt)?;
-        Ok(evaluation.scenes.into_iter().map(|scene| scene.matrix).collect())
-    }
-
-    fn pedestrian_pixels(&self, set: Set) -> anyhow::Result<f64> {
-        let folder = self.set(set);
-        let manifest = Manifest::read(&folder)?;
-        manifest.pedestrian_pixels.with_context(|| format!("{}: no training frames", folder.display()))
-    }
+/// The name of a set's network, numbered from 1 on.
+pub fn network(set: Set, number: u32) -> String {
+    format!("{}-{number}", set.name())
 }
 
 fn begin(stage: u32, what: &str) {

@@ -56,7 +56,7 @@ fn text(c: &Contents) -> String {
         line("answer", format!("{question} = {answer}"));
     }
     if let Some(i) = &c.intervention {
-        line("takeover", format!("{} at {:.1} km/h", at(i.tick), 3.6 * i.speed_mps));
+        line("takeover", format!("{} at {} km/h", at(i.tick), words::kmh(i.speed_mps.into())));
     }
     if let (Some(label), Some(comment)) = (c.figures.label, &c.figures.comment) {
         let by = match c.figures.perception_caused {

@@ -106,6 +106,12 @@ impl Counterfactual {
         known.filter(|known| known.key == Key::of(recording))
     }
 
+    /// As it is in a file, whatever program wrote it, if it is about the recording of this digest.
+    pub fn of_source(bytes: &[u8], source: &[u8; 32]) -> Option<Self> {
+        let digest = blake3::Hash::from_bytes(*source).to_hex();
+        serde_json::from_slice::<Self>(bytes).ok().filter(|known| known.key.recording == digest.as_str())
+    }
+
     /// As a file.
     pub fn encode(&self) -> anyhow::Result<Vec<u8>> {
         Ok(json::json_file(self)?.into_bytes())

@@ -7,7 +7,7 @@ use base::words;
 use drivers::crew::Crew;
 use drivers::safety::SafetyBot;
 use drivers::simulate::{fork_before_ticks, lasting};
-use drivers::vision::Vision;
+use drivers::vision::{self, Vision};
 use kernel::arbiter::Phase;
 use kernel::events::{Event, EventKind};
 use kernel::scene::Weather;
@@ -15,7 +15,7 @@ use kernel::time::{CLIP_TICKS, TICK_HZ, Tick};
 use kernel::{Controls, Keyframe, RoadNetwork, TickInput, World};
 use measures::Criticality;
 use measures::criticality::Extremes;
-use replay::{Case, Label, Log, Recorder, Recording, Replayer};
+use replay::{Case, Label, Log, PROGRAM, Recorder, Recording, Replayer, WRITTEN_BY};
 use serde::{Deserialize, Serialize};
 
 /// What is done otherwise than in the recording.
@@ -122,7 +122,9 @@ impl Fork {
         if let Some(weather) = self.weather {
             (manifest.scenario.weather, manifest.scenario.later) = (weather, None);
         }
-        manifest.provenance.extend(self.provenance(fork_tick, &vision));
+        manifest.provenance.extend(self.provenance(fork_tick));
+        manifest.provenance.insert(WRITTEN_BY.to_owned(), PROGRAM.to_owned());
+        vision::replace_eye(&mut manifest.provenance, vision.eye());
         let end = at + self.after_ticks;
         manifest.scenario = lasting(manifest.scenario, end);
         let mut world = World::fork(&manifest.scenario, network, start)?;
@@ -189,7 +191,7 @@ impl Fork {
         }
     }
 
-    fn provenance(&self, fork_tick: Tick, vision: &Vision) -> Vec<(String, String)> {
+    fn provenance(&self, fork_tick: Tick) -> Vec<(String, String)> {
         let said = match self.otherwise {
             Otherwise::NoIntervention { .. } => "without the intervention",
             Otherwise::OtherEye { .. } => "through another checkpoint",
@@ -202,7 +204,6 @@ impl Fork {
         if let Otherwise::OtherEye { person } = self.otherwise {
             entries.push(("safety_driver".to_owned(), format!("bot {person}")));
         }
-        entries.extend(drivers::vision::provenance(vision.eye(), vision.eye().size()));
         entries
     }
 }
@@ -276,7 +277,7 @@ impl Harm {
     /// What it was, how fast, and how long after a takeover.
     pub fn words(&self, after_s: f64) -> String {
         let with = self.with.as_ref().map(|with| format!(" with {with}")).unwrap_or_default();
-        format!("{}{with} at {:.0} km/h, {}", self.what.name(), self.speed_kmh, from_takeover(after_s))
+        format!("{}{with} at {} km/h, {}", self.what.name(), words::kmh(self.speed_kmh / 3.6), from_takeover(after_s))
     }
 
     /// Seconds from a tick; negative before it.

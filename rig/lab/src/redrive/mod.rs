@@ -25,8 +25,10 @@ use serde::{Deserialize, Serialize};
 
 pub use self::counterfactual::Counterfactual;
 use self::fork::{Course, Fork, Harm, Otherwise, from_takeover, takeover};
-use self::verdict::Need;
+pub use self::verdict::Need;
 use super::store::Store;
+use crate::machine::Machine;
+use crate::share::{Share, ShareDone};
 use base::failure::{Failed, Failure, Usage};
 use base::json::json_line;
 use base::library::{self, Entry, Kind};
@@ -35,7 +37,7 @@ use base::spread::{in_order, jobs};
 use base::{maps, output};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::recorded_eye::RecordedEye;
-use drivers::vision::{self, Eye, Vision};
+use drivers::vision::{Eye, Vision};
 use measures::criticality::{Extreme, Extremes};
 
 /// A variation lets the safety driver go so much earlier than the one before.
@@ -143,7 +145,7 @@ struct Key {
     kernel: String,
     program: String,
     renderer: String,
-    adapter: String,
+    machine: Machine,
 }
 
 /// What is kept of a fork: its line, and the digest of its recording.
@@ -151,26 +153,58 @@ type Kept = (Line, String);
 
 /// Drives every file on; forks that are there already are kept.
 pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Forks> {
+    let Driven { forks, files, failed, _store } = drive(args, None, interrupt)?;
+    let lines = forks.iter().map(json_line).collect::<anyhow::Result<Vec<_>>>()?;
+    output::write_file(&args.out.join(TABLE), (lines.join("\n") + "\n").as_bytes())?;
+    let mut verdicts = BTreeMap::new();
+    forks.iter().for_each(|line| *verdicts.entry(line.verdict.name()).or_insert(0) += 1);
+    Ok(Forks { out: args.out.display().to_string(), files, forks, verdicts, failed })
+}
+
+/// Drives a share of the files on and writes no table: a later call finds their forks in the folder.
+pub fn redrive_shard(args: &Options, share: Share, interrupt: &Interrupt) -> anyhow::Result<ShareDone> {
+    let Driven { files: done, failed, .. } = drive(args, Some(share), interrupt)?;
+    Ok(ShareDone { share, out: args.out.display().to_string(), done, failed })
+}
+
+/// Files that were driven on.
+struct Driven {
+    forks: Vec<Line>,
+    files: usize,
+    failed: Vec<Failure>,
+    /// Nobody else works in the folder for as long.
+    _store: Store,
+}
+
+/// Drives on what is missing of a share, or of all.
+fn drive(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::Result<Driven> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "redrive")?;
     store.hold(&options(args)?)?;
     let found = library::find(&args.files, Kind::Cases).apart_from(TABLE).or_failed()?;
-    let library::Found { files, mut failed } = found;
+    let mut stems = stems(&found.files);
+    if let Some(share) = share {
+        share.keep(&mut stems);
+    }
+    let library::Found { files: entries, mut failed } = match share {
+        Some(share) => share.pick(found),
+        None => found,
+    };
     // That of an earlier call would not be about these files.
     let table = args.out.join(TABLE);
-    if table.exists() {
+    if share.is_none() && table.exists() {
         fs::remove_file(&table).with_context(|| table.display().to_string())?;
     }
-    let bar = progress::bar("files", files.len() as u64);
-    let (mut forks, mut well) = (Vec::new(), 0);
-    let drive = |index: usize| forks_of(args, (&files[index], stem(&files, index)), (&store, interrupt));
-    in_order(jobs(args.jobs), files.len(), drive, |index, lines| {
-        let path = &files[index].path;
+    let bar = progress::bar("files", entries.len() as u64);
+    let (mut forks, mut files) = (Vec::new(), 0);
+    let fork = |index: usize| forks_of(args, (&entries[index], &stems[index]), (&store, interrupt));
+    in_order(jobs(args.jobs), entries.len(), fork, |index, lines| {
+        let path = &entries[index].path;
         let place = || path.display().to_string();
         match lines {
             Ok(lines) => {
                 forks.extend(lines);
-                well += 1;
+                files += 1;
             }
             Err(error) if interrupt.is_raised() || error.is::<Usage>() => return Err(error).with_context(place),
             Err(error) => failed.push(Failure::new(path, &error.context(place()))),
@@ -179,14 +213,10 @@ pub fn redrive(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Forks> {
         Ok(())
     })?;
     bar.finish_and_clear();
-    if forks.is_empty() {
+    if files == 0 && !failed.is_empty() {
         return Err(Failed::new(failed).into());
     }
-    let lines = forks.iter().map(json_line).collect::<anyhow::Result<Vec<_>>>()?;
-    output::write_file(&table, (lines.join("\n") + "\n").as_bytes())?;
-    let mut verdicts = BTreeMap::new();
-    forks.iter().for_each(|line| *verdicts.entry(line.verdict.name()).or_insert(0) += 1);
-    Ok(Forks { out: args.out.display().to_string(), files: well, forks, verdicts, failed })
+    Ok(Driven { forks, files, failed, _store: store })
 }
 
 /// The options that forks in a folder have in common, as they are given.
@@ -196,10 +226,16 @@ fn options(args: &Options) -> anyhow::Result<Vec<String>> {
         Some(choice) => {
             let eye = Eye::open(choice)?;
             let digest = eye.digest();
-            format!("--checkpoint {} ({})", eye.name(), digest.get(..8).unwrap_or(&digest))
+            let short = if matches!(eye, Eye::External(_)) { None } else { digest.get(..8) };
+            format!("--checkpoint {} ({})", eye.name(), short.unwrap_or(&digest))
         }
     };
     Ok(vec![course, format!("--vary {}", args.vary), format!("--after {}s", args.seconds)])
+}
+
+/// What the forks of each file are called.
+fn stems(files: &[Entry]) -> Vec<String> {
+    (0..files.len()).map(|index| stem(files, index).to_owned()).collect()
 }
 
 /// What the forks of a file are called: without `.case`, unless its recording is among the files.
@@ -275,7 +311,7 @@ fn key(args: &Options, log: &str, eye: &Eye, variation: u16) -> Key {
         kernel: kernel::identity(),
         program: env!("CARGO_PKG_VERSION").to_owned(),
         renderer: render::identity(),
-        adapter: vision::adapter(),
+        machine: Machine::this(),
     }
 }
 
@@ -321,8 +357,7 @@ fn eye_of(args: &Options, log: &Log) -> anyhow::Result<Eye> {
     }
     let recorded = RecordedEye::of(&log.manifest.provenance)?;
     let found = recorded.find(&args.recorded)?;
-    found
-        .with_context(|| format!("was driven through {:?}; expected that file as --recorded-checkpoint", recorded.name))
+    found.with_context(|| recorded.not_found("--recorded-checkpoint"))
 }
 
 /// What a variation does otherwise than the recording.

@@ -47,6 +47,9 @@ impl Need {
         }
     }
 
+    /// Those of forks without the intervention.
+    pub const WITHOUT_INTERVENTION: [Self; 4] = [Self::InVain, Self::Necessary, Self::Early, Self::Needless];
+
     /// As it is written.
     pub fn name(self) -> &'static str {
         match self {

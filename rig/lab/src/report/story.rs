@@ -80,7 +80,7 @@ fn facts(log: &Log, at: Tick, odometer_mm: Option<u64>) -> Vec<Fact> {
         (Some(taken), _) => {
             let by = [(taken.by_brake, "brake"), (taken.by_steering, "steering")];
             let by: Vec<&str> = by.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
-            add("Taken over by", format!("{} at {:.0} km/h", by.join(" and "), taken.speed_mps * 3.6));
+            add("Taken over by", format!("{} at {} km/h", by.join(" and "), base::words::kmh(taken.speed_mps.into())));
         }
         (None, Some(Outcome::Missed)) => add("Taken over by", "nobody: it ended in a collision".into()),
         (None, _) => {}

@@ -4,6 +4,7 @@
 use base::png;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use drivers::recorded_eye;
 use drivers::vision::Eye;
 use kernel::time::{CLIP_STRIDE_TICKS, TICK_HZ, Tick};
 use measures::footage::Footage;
@@ -82,11 +83,11 @@ impl Strip {
     pub fn new(eyes: &[Eye], footage: &Footage) -> Self {
         let last = footage.scenes.last().map_or(0, |scene| scene.tick);
         let end = if footage.log.intervention.is_some() { "takeover" } else { "collision" };
-        let driver = footage.log.manifest.provenance.get("checkpoint_digest");
+        let driver = recorded_eye::digest_of(&footage.log.manifest.provenance);
         let row = |name: &str, note, class| PictureRow { name: name.to_owned(), note, class, cells: Vec::new() };
         let mut rows = vec![row("camera", "", "rgb"), row("ground truth", "", "mask")];
         rows.extend(eyes.iter().map(|eye| {
-            let drove = driver.is_some_and(|digest| *digest == eye.digest());
+            let drove = driver.as_ref().is_some_and(|digest| *digest == eye.digest());
             row(eye.name(), if drove { "drove" } else { "looks on" }, "mask")
         }));
         Self { last, end, moments: Vec::new(), rows, matrices: vec![ConfusionMatrix::default(); eyes.len()] }

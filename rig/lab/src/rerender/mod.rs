@@ -15,7 +15,7 @@ use anyhow::{Context, bail};
 use base::failure::{Failed, Failure};
 use base::json::Typed;
 use base::json::json_line;
-use base::library::{self, Kind};
+use base::library::{self, Entry, Kind};
 use base::output;
 use base::progress::{self, Interrupt};
 use base::spread::jobs;
@@ -31,6 +31,7 @@ use super::figures::{Figures, table};
 use super::looks::open_eyes;
 use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
+use crate::share::{Share, ShareDone};
 
 /// The table of all metrics, in the folder of the results.
 const TABLE: &str = "metrics.jsonl";
@@ -100,15 +101,50 @@ impl fmt::Display for Rerendered {
 
 /// Draws the windows and looks at them; what an earlier call left whole is kept.
 pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rerendered> {
+    let Drawn { files, eyes, found, failed, _store } = draw(args, None, interrupt)?;
+    let (lines, overall) = lines(&files, &eyes, &found)?;
+    output::write_file(&args.out.join(TABLE), lines.as_bytes())?;
+    let frames = found.iter().filter_map(|file| file.first()).map(Vec::len).sum();
+    let seen = |(eye, matrix): (&Eye, &ConfusionMatrix)| Seen {
+        name: eye.name().to_owned(),
+        digest: eye.digest(),
+        figures: matrix.into(),
+    };
+    let checkpoints = eyes.iter().zip(&overall).map(seen).collect();
+    Ok(Rerendered { out: args.out.display().to_string(), files: files.len(), frames, checkpoints, failed })
+}
+
+/// Does so with a share of the files and writes no table: a later call finds their pictures in the folder.
+pub fn rerender_shard(args: &Options, share: Share, interrupt: &Interrupt) -> anyhow::Result<ShareDone> {
+    let Drawn { files, failed, .. } = draw(args, Some(share), interrupt)?;
+    Ok(ShareDone { share, out: args.out.display().to_string(), done: files.len(), failed })
+}
+
+/// Files whose pictures are there.
+struct Drawn {
+    files: Vec<Entry>,
+    eyes: Vec<Eye>,
+    /// By file and checkpoint.
+    found: Vec<Vec<Matrices>>,
+    failed: Vec<Failure>,
+    /// Nobody else works in the folder for as long.
+    _store: Store,
+}
+
+/// Draws what is missing of a share, or of all.
+fn draw(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::Result<Drawn> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "rerender")?;
     let found = library::find(&args.files, Kind::Cases).apart_from(TABLE).or_failed()?;
-    let library::Found { mut files, mut failed } = found;
+    let library::Found { mut files, mut failed } = match share {
+        Some(share) => share.pick(found),
+        None => found,
+    };
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
     store.hold(&options::of_pictures(args, size))?;
     let metrics = args.out.join(TABLE);
     // That of an earlier call would not be about these files.
-    if metrics.exists() {
+    if share.is_none() && metrics.exists() {
         fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;
     }
     let bar = progress::bar("frames", 0);
@@ -120,27 +156,18 @@ pub fn rerender(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Rerende
     let (_, unread) = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
     bar.finish_and_clear();
     failed.extend(set_aside(&mut files, unread));
-    if files.is_empty() {
+    if files.is_empty() && !failed.is_empty() {
         return Err(Failed::new(failed).into());
     }
     let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings };
     let Some(found) = work.found() else {
         bail!("{}: interrupted; the same command goes on from there", args.out.display());
     };
-    let (lines, overall) = lines(&work, &found)?;
-    output::write_file(&metrics, lines.as_bytes())?;
-    let frames = found.iter().filter_map(|file| file.first()).map(Vec::len).sum();
-    let seen = |(eye, matrix): (&Eye, &ConfusionMatrix)| Seen {
-        name: eye.name().to_owned(),
-        digest: eye.digest(),
-        figures: matrix.into(),
-    };
-    let checkpoints = eyes.iter().zip(&overall).map(seen).collect();
-    Ok(Rerendered { out: args.out.display().to_string(), files: files.len(), frames, checkpoints, failed })
+    Ok(Drawn { files, eyes, found, failed, _store: store })
 }
 
 /// The text of `metrics.jsonl`, and each checkpoint's matrix over all; `found` is by file and checkpoint.
-fn lines(work: &Pictures<'_>, found: &[Vec<Matrices>]) -> anyhow::Result<(String, Vec<ConfusionMatrix>)> {
+fn lines(files: &[Entry], eyes: &[Eye], found: &[Vec<Matrices>]) -> anyhow::Result<(String, Vec<ConfusionMatrix>)> {
     let mut text = String::new();
     let mut line = |over, file, tick, eye: &Eye, matrix: &ConfusionMatrix| -> anyhow::Result<()> {
         let line = Line { over, file, tick, checkpoint: eye.name(), figures: matrix.into() };
@@ -148,23 +175,23 @@ fn lines(work: &Pictures<'_>, found: &[Vec<Matrices>]) -> anyhow::Result<(String
         text.push('\n');
         Ok(())
     };
-    let mut overall = vec![ConfusionMatrix::default(); work.eyes.len()];
-    for (file, found) in work.files.iter().zip(found) {
+    let mut overall = vec![ConfusionMatrix::default(); eyes.len()];
+    for (file, found) in files.iter().zip(found) {
         let name = Some(file.name.as_str());
         for frame in 0..found.first().map_or(0, Vec::len) {
-            for (eye, matrices) in work.eyes.iter().zip(found) {
+            for (eye, matrices) in eyes.iter().zip(found) {
                 let (tick, matrix) = &matrices[frame];
                 line("frame", name, Some(*tick), eye, matrix)?;
             }
         }
-        for ((eye, matrices), overall) in work.eyes.iter().zip(found).zip(&mut overall) {
+        for ((eye, matrices), overall) in eyes.iter().zip(found).zip(&mut overall) {
             let mut sum = ConfusionMatrix::default();
             matrices.iter().for_each(|(_, matrix)| sum.merge(matrix));
             overall.merge(&sum);
             line("file", name, None, eye, &sum)?;
         }
     }
-    for (eye, matrix) in work.eyes.iter().zip(&overall) {
+    for (eye, matrix) in eyes.iter().zip(&overall) {
         line("overall", None, None, eye, matrix)?;
     }
     Ok((text, overall))

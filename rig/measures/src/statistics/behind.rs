@@ -23,8 +23,7 @@ impl Library {
     /// behind a file those in the folder that it lies in, and a recording that is given stands for itself: how often
     /// cases happen is seen from rides without one, too.
     pub fn of(places: &[PathBuf]) -> Self {
-        let mut places = places.to_vec();
-        let mut failed = Vec::new();
+        let (mut places, mut failed) = library::expand(places);
         for folder in folders_of_files(&places) {
             match library::drives_in(&folder) {
                 Ok(drives) => places.extend(drives),

@@ -7,6 +7,7 @@ use base::failure::{Failed, Failure, Usage};
 use base::json::Typed;
 use base::library::{self, Entry, Found, Kind};
 use base::spread::{collect_in_order, jobs};
+use drivers::{external, recorded_eye};
 use replay::Recording;
 use serde::Serialize;
 
@@ -134,18 +135,20 @@ fn read(path: &Path, reveal: bool) -> anyhow::Result<Known> {
     let untold = if study::is_blind(&manifest.provenance) { BLIND } else { UNKNOWN };
     Ok(Known {
         checkpoint: told.get("checkpoint").cloned().unwrap_or_else(|| untold.into()),
-        checkpoint_digest: told.get("checkpoint_digest").cloned(),
+        checkpoint_digest: recorded_eye::digest_of(&told),
         ride: Ride::of(&recording),
     })
 }
 
-/// Checkpoints of one name get the beginning of their digests.
+/// Checkpoints of one name get the beginning of their digests, or their versions where no file holds them.
 fn tell_apart(groups: &mut [Group]) {
     let names: Vec<String> = groups.iter().map(|g| g.checkpoint.clone()).collect();
     for group in groups {
         let twins = names.iter().filter(|name| **name == group.checkpoint).count();
         if let Some(digest) = group.digest.as_ref().filter(|_| twins > 1) {
-            group.checkpoint = format!("{}@{}", group.checkpoint, digest.get(..8).unwrap_or(digest));
+            let short = digest.get(..8).unwrap_or(digest);
+            let versioned = external::name_and_version(digest).map(str::to_owned);
+            group.checkpoint = versioned.unwrap_or_else(|| format!("{}@{short}", group.checkpoint));
         }
     }
 }

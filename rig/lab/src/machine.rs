@@ -2,10 +2,7 @@
 
 use std::env::consts::ARCH;
 use std::fmt;
-use std::fs::File;
-use std::path::PathBuf;
 
-use anyhow::Context;
 use drivers::vision;
 use serde::{Deserialize, Serialize};
 
@@ -17,8 +14,8 @@ const TOLD: usize = 12;
 pub struct Build {
     /// Version of the program.
     pub program: String,
-    /// BLAKE3 of its executable.
-    pub executable: String,
+    /// BLAKE3 of the sources that drive: every crate that a drive may depend on, and the versions of all libraries.
+    pub sources: String,
     /// Identity of the kernel.
     pub kernel: String,
     /// Exact versions of the libraries that its arithmetic rests on.
@@ -29,37 +26,27 @@ pub struct Build {
 
 impl Build {
     /// This one.
-    pub fn this() -> anyhow::Result<Self> {
-        Ok(Self {
+    pub fn this() -> Self {
+        Self {
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            executable: executable()?,
+            sources: env!("LAB_SOURCES").to_owned(),
             kernel: kernel::identity(),
             engines: kernel::ENGINES.to_owned(),
             renderer: render::identity(),
-        })
+        }
     }
 
     /// Whether what the other drove is what it would drive, and reads the same to it.
     pub fn reads(&self, other: &Self) -> bool {
-        *self == Self { executable: self.executable.clone(), ..other.clone() }
+        *self == Self { sources: self.sources.clone(), ..other.clone() }
     }
 }
 
 impl fmt::Display for Build {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let executable = self.executable.get(..TOLD).unwrap_or(&self.executable);
-        write!(f, "aeye {} (executable {executable}, kernel {}, renderer {})", self.program, self.kernel, self.renderer)
+        let sources = self.sources.get(..TOLD).unwrap_or(&self.sources);
+        write!(f, "aeye {} (sources {sources}, kernel {}, renderer {})", self.program, self.kernel, self.renderer)
     }
-}
-
-/// BLAKE3 of the file that this process runs.
-fn executable() -> anyhow::Result<String> {
-    // Of a file that was replaced meanwhile, this is still the one that runs.
-    let running = PathBuf::from("/proc/self/exe");
-    let path = if running.exists() { running } else { std::env::current_exe().context("the program's own file")? };
-    let mut digest = blake3::Hasher::new();
-    let file = File::open(&path).and_then(|file| digest.update_reader(file).map(|digest| digest.finalize()));
-    Ok(file.with_context(|| path.display().to_string())?.to_hex().to_string())
 }
 
 /// What predictions may depend on beyond the build.
@@ -117,10 +104,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_build_reads_what_another_executable_of_it_drove() {
-        let this = Build::this().expect("the test's own file");
-        assert_eq!(this.executable.len(), 64);
-        assert!(this.reads(&Build { executable: "another".into(), ..this.clone() }));
+    fn a_build_reads_what_other_sources_of_its_version_drove() {
+        let this = Build::this();
+        assert_eq!(this.sources.len(), 64);
+        assert!(this.reads(&Build { sources: "others".into(), ..this.clone() }));
         assert!(!this.reads(&Build { kernel: "another".into(), ..this.clone() }));
     }
 }

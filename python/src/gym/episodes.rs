@@ -1,0 +1,203 @@
+//! Drives that are stepped together.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use drivers::checkpoint::CheckpointChoice;
+use drivers::episode::{Archive, COLUMNS, Fleet, MOST_STEP_TICKS, Plan, STEP_TICKS, Start, hud};
+use drivers::film::Viewpoint;
+use drivers::vision::Eye;
+use kernel::{Controls, Seat};
+use numpy::{IntoPyArray, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use super::arrays::{Arrays, Sizes};
+use super::setting::Setting;
+use crate::errors::{input, raise};
+use crate::external::{Checkpoint, Raised};
+use crate::forked::{self, Owned};
+use crate::values::{jobs_at_once, picture_size};
+
+/// So many places for drives that are stepped together, `jobs` at the same time (None: one a core). An agent has the
+/// `seat` (`semantic` or `safety`) and holds its controls for `ticks` of a step, a bot has the other. `masks` and `images`
+/// say what is observed; images have a `size`, (width, height) (None: that of masks); `record` is a folder for recordings.
+///
+/// Raises FileError where a file is not there, InputError for a value that cannot be.
+#[pyclass(frozen, module = "aeye._aeye")]
+pub struct Episodes {
+    fleet: Owned<Mutex<Fleet>>,
+    sizes: Sizes,
+    mask_size: (u32, u32),
+    image_size: (u32, u32),
+    raised: Raised,
+}
+
+#[pymethods]
+impl Episodes {
+    /// Names of the columns of a HUD.
+    #[classattr]
+    const HUD: [&'static str; hud::NAMES.len()] = hud::NAMES;
+    /// Least and greatest value of each.
+    #[classattr]
+    const HUD_RANGES: [[f32; 2]; hud::NAMES.len()] = hud::RANGES;
+    /// Names of the columns of figures.
+    #[classattr]
+    const FIGURES: [&'static str; COLUMNS.len()] = COLUMNS;
+
+    #[new]
+    #[pyo3(
+        signature = (
+            places, *, seat = "semantic", checkpoint = None, ticks = STEP_TICKS, masks = true, images = false,
+            size = None, record = None, jobs = None
+        ),
+        text_signature = "(places, *, seat='semantic', checkpoint=None, ticks=6, masks=True, images=False, size=None, record=None, jobs=None)"
+    )]
+    #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
+    fn new(
+        py: Python<'_>,
+        places: usize,
+        seat: &str,
+        checkpoint: Option<Checkpoint<'_>>,
+        ticks: u64,
+        masks: bool,
+        images: bool,
+        size: Option<(u32, u32)>,
+        record: Option<PathBuf>,
+        jobs: Option<u16>,
+    ) -> PyResult<Self> {
+        if !(1..=1024).contains(&places) {
+            return Err(input(format!("{places} drives; expected 1 to 1024")));
+        }
+        if !(1..=MOST_STEP_TICKS).contains(&ticks) {
+            return Err(input(format!("ticks={ticks}; expected 1 to {MOST_STEP_TICKS}")));
+        }
+        let size = size.map(picture_size).transpose()?;
+        let seat = seat_of(seat)?;
+        let raised = Raised::default();
+        let choice = checkpoint.map_or(Ok(CheckpointChoice::Truth), |checkpoint| checkpoint.choice(&raised))?;
+        let jobs = base::spread::jobs(jobs.map(jobs_at_once).transpose()?).min(places);
+        let (fleet, images) = py
+            .detach(|| {
+                let eye = Eye::open(&choice)?;
+                let images = images.then(|| size.unwrap_or(eye.size()));
+                let archive = record.as_deref().map(Archive::open).transpose()?;
+                let plan = Plan { seat, ticks, masks, images, archive, jobs };
+                anyhow::Ok((Fleet::new(plan, eye, places), images))
+            })
+            .map_err(|error| raise(&error))?;
+        let mask_size = fleet.eye().size();
+        let sizes = Sizes { places, mask: masks.then(|| bytes(mask_size)), image: images.map(|size| 3 * bytes(size)) };
+        let image_size = images.unwrap_or(mask_size);
+        Ok(Self { fleet: Owned::new(Mutex::new(fleet)), sizes, mask_size, image_size, raised })
+    }
+
+    /// Width and height of masks, pixels: those that the checkpoint takes.
+    #[getter]
+    fn mask_size(&self) -> (u32, u32) {
+        self.mask_size
+    }
+
+    /// Width and height of images, pixels.
+    #[getter]
+    fn image_size(&self) -> (u32, u32) {
+        self.image_size
+    }
+
+    /// Starts drives at places, from a setting with a seed each, and writes what is to be seen into the rows of `arrays`.
+    /// Those that still go on there end.
+    ///
+    /// Raises EngineError where there is no graphics driver, FileError where a recording cannot be written.
+    fn reset(
+        &self,
+        py: Python<'_>,
+        places: Vec<usize>,
+        seeds: Vec<u64>,
+        setting: &Setting,
+        mut arrays: Arrays<'_>,
+    ) -> PyResult<()> {
+        forked::check()?;
+        if seeds.len() != places.len() {
+            return Err(input(format!("{} seeds for {} drives", seeds.len(), places.len())));
+        }
+        let rows = arrays.rows(&places, self.sizes)?;
+        let starts = || {
+            let start = |(place, seed): (&usize, u64)| {
+                let (scenario, map) = setting.of_seed(seed);
+                Start { place: *place, scenario, map }
+            };
+            places.iter().zip(seeds).map(start).collect()
+        };
+        self.raised.or(py.detach(|| self.fleet().start(starts(), rows)).map_err(|error| raise(&error)))
+    }
+
+    /// Steps the drives at places by `actions`, float32 of shape (n, 3): steering, throttle and brake of each.
+    ///
+    /// Raises InputError where no drive goes on, EngineError where it cannot be drawn or seen.
+    fn step(
+        &self,
+        py: Python<'_>,
+        places: Vec<usize>,
+        actions: PyReadonlyArray2<'_, f32>,
+        mut arrays: Arrays<'_>,
+    ) -> PyResult<()> {
+        forked::check()?;
+        let actions = actions.as_array();
+        let controls: Vec<Controls> = match actions.dim() {
+            (rows, 3) if rows == places.len() => {
+                actions.rows().into_iter().map(|row| Controls::from_fractions(row[0], row[1], row[2])).collect()
+            }
+            (rows, width) => {
+                let places = places.len();
+                return Err(input(format!("actions of shape ({rows}, {width}); expected ({places}, 3)")));
+            }
+        };
+        let rows = arrays.rows(&places, self.sizes)?;
+        self.raised.or(py.detach(|| self.fleet().step(&controls, rows)).map_err(|error| raise(&error)))
+    }
+
+    /// Ends the drives at places and tells where their recordings are: None of those that are not recorded, have not begun
+    /// or are over.
+    ///
+    /// Raises FileError where a recording cannot be written.
+    fn finish(&self, py: Python<'_>, places: Vec<usize>) -> PyResult<Vec<Option<PathBuf>>> {
+        self.raised.or(py.detach(|| self.fleet().finish(&places)).map_err(|error| raise(&error)))
+    }
+
+    /// A picture of the drive at a place from a `camera` (`driver`, `chase` or `top`), uint8 of shape (height, width, 3).
+    ///
+    /// Raises InputError where no drive goes on, EngineError where it cannot be drawn.
+    fn draw<'py>(
+        &self,
+        py: Python<'py>,
+        place: usize,
+        camera: &str,
+        size: (u32, u32),
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        forked::check()?;
+        let viewpoint: Viewpoint = camera.parse().map_err(|error| raise(&anyhow::Error::from(error)))?;
+        let frame = py.detach(|| self.fleet().draw(place, &viewpoint.camera(size))).map_err(|error| raise(&error))?;
+        frame.rgb.into_pyarray(py).reshape([frame.height as usize, frame.width as usize, 3])
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Episodes({})", self.sizes.places)
+    }
+}
+
+impl Episodes {
+    fn fleet(&self) -> MutexGuard<'_, Fleet> {
+        self.fleet.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn bytes((width, height): (u32, u32)) -> usize {
+    width as usize * height as usize
+}
+
+fn seat_of(name: &str) -> PyResult<Seat> {
+    match name {
+        "semantic" => Ok(Seat::Semantic),
+        "safety" => Ok(Seat::Safety),
+        _ => Err(input(format!("seat=\"{name}\"; expected semantic or safety"))),
+    }
+}
