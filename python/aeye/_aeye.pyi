@@ -554,6 +554,7 @@ def compare(
     no_worse_than: str | None = None,
     size: tuple[int, int] | None = None,
     jobs: int | None = None,
+    shard: tuple[int, int] | None = None,
 ) -> dict[str, Any]:
     """Which corner cases a checkpoint fixes and breaks against another.
 
@@ -565,6 +566,9 @@ def compare(
     `no_worse_than` names a checkpoint than which no other may be worse; `gates` of what is given says which were passed.
     Pictures have the `size`, (width, height) (None: that of the first network). `jobs` frames are looked at at the same
     time (None: one a core); the results do not depend on it.
+
+    With `shard`, (i, n), it looks at every n-th file alone and gives what `aeye compare --shard --json` prints; folders of all
+    shards, copied into one, are what the same call without `shard` finishes.
 
     Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where no case can be
     drawn.
@@ -580,6 +584,7 @@ def redrive(
     vary: int = 0,
     after: float = 10.0,
     jobs: int | None = None,
+    shard: tuple[int, int] | None = None,
 ) -> dict[str, Any]:
     """Drives recordings or cases on from before their intervention.
 
@@ -589,6 +594,9 @@ def redrive(
     Either `without_intervention`: what would have happened if the safety driver had done nothing? Or through a
     `checkpoint`: is there an intervention again? `recorded` are those among which checkpoints of the recordings may be found.
     Each file has `vary` further forks, 0 to 30, and a fork goes on for `after` seconds, 1 to 60.
+
+    With `shard`, (i, n), it drives every n-th file alone and gives what `aeye redrive --shard --json` prints; folders of all
+    shards, copied into one, are what the same call without `shard` finishes.
 
     Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where none of them can
     be driven on.

@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 
 use crate::errors::input;
 use crate::external::{Checkpoint, Raised};
-use crate::values::{OneOrMore, jobs_at_once, picture_size};
-use crate::work::{tabled, work};
+use crate::values::{OneOrMore, jobs_at_once, picture_size, share};
+use crate::work::{shared, tabled, work};
 
 /// Which corner cases a checkpoint fixes and breaks against another, as `aeye compare` does, and gives what that prints with
 /// `--json`; `cases` of it is a table. `compare.json` and `report.html` go to the folder `out`; the same call with more cases
@@ -22,9 +22,12 @@ use crate::work::{tabled, work};
 /// have the `size`, (width, height) (None: that of the first network). `jobs` frames are looked at at the same time
 /// (None: one a core); the results do not depend on it.
 ///
+/// With `shard`, (i, n), it looks at every n-th file alone and gives what `aeye compare --shard --json` prints; folders of all shards,
+/// copied into one, are what the same call without `shard` finishes.
+///
 /// Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where no case can be drawn.
 #[pyfunction]
-#[pyo3(signature = (cases, checkpoints, out, *, gates = None, no_worse_than = None, size = None, jobs = None))]
+#[pyo3(signature = (cases, checkpoints, out, *, gates = None, no_worse_than = None, size = None, jobs = None, shard = None))]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn compare<'py>(
     py: Python<'py>,
@@ -35,6 +38,7 @@ pub fn compare<'py>(
     no_worse_than: Option<String>,
     size: Option<(u32, u32)>,
     jobs: Option<u16>,
+    shard: Option<(u32, u32)>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let raised = Raised::default();
     let gate = |text: &String| text.parse::<Gate>().map_err(input);
@@ -47,6 +51,9 @@ pub fn compare<'py>(
         jobs: jobs.map(jobs_at_once).transpose()?,
         out,
     };
+    if let Some(share) = shard.map(share).transpose()? {
+        return shared(py, &raised, |interrupt| lab::compare::compare_shard(&options, share, interrupt));
+    }
     let line = raised.or(work(py, |interrupt| {
         let compared = lab::compare::compare(&options, interrupt)?;
         Failed::check(&compared.summary.failed, compared.summary.cases.len())?;

@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 
 use crate::errors::input;
 use crate::external::{Checkpoint, Raised};
-use crate::values::{OneOrMore, jobs_at_once, whole_seconds};
-use crate::work::{tabled, work};
+use crate::values::{OneOrMore, jobs_at_once, share, whole_seconds};
+use crate::work::{shared, tabled, work};
 
 /// Drives recordings or cases on from before their intervention, as `aeye redrive` does, and gives what that prints with
 /// `--json`; `forks` of it is a table. Their recordings go to the folder `out`. Ctrl-C ends it; what was driven stays.
@@ -20,11 +20,15 @@ use crate::work::{tabled, work};
 /// among which checkpoints of the recordings may be found. Each file has `vary` further forks, 0 to 30, and a fork goes on for `after`
 /// seconds, 1 to 60.
 ///
+/// With `shard`, (i, n), it drives every n-th file alone and gives what `aeye redrive --shard --json` prints; folders of all shards,
+/// copied into one, are what the same call without `shard` finishes.
+///
 /// Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where none of them can be
 /// driven on.
 #[pyfunction]
 #[pyo3(signature = (
-    files, out, *, without_intervention = false, checkpoint = None, recorded = None, vary = 0, after = 10.0, jobs = None
+    files, out, *, without_intervention = false, checkpoint = None, recorded = None, vary = 0, after = 10.0, jobs = None,
+    shard = None
 ))]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn redrive<'py>(
@@ -37,6 +41,7 @@ pub fn redrive<'py>(
     vary: u16,
     after: f64,
     jobs: Option<u16>,
+    shard: Option<(u32, u32)>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if without_intervention == checkpoint.is_some() {
         return Err(input("expected either without_intervention=True or a checkpoint".to_owned()));
@@ -58,6 +63,9 @@ pub fn redrive<'py>(
         jobs: jobs.map(jobs_at_once).transpose()?,
         out,
     };
+    if let Some(share) = shard.map(share).transpose()? {
+        return shared(py, &raised, |interrupt| forks::redrive_shard(&options, share, interrupt));
+    }
     let line = raised.or(work(py, |interrupt| {
         let done = forks::redrive(&options, interrupt)?;
         Failed::check(&done.failed, done.files)?;

@@ -1,7 +1,7 @@
 //! Recordings and corner cases.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use base::asked;
 use base::failure::Failed;
@@ -9,7 +9,7 @@ use base::json::json_line;
 use drivers::film::Viewpoint;
 use drivers::vision::DEFAULT_SIZE;
 use kernel::time::Tick;
-use lab::shots::{Shots, Stage};
+use lab::shots::{Props, Shots, Stage};
 use lab::{inspect, verify};
 use measures::footage::Asked;
 use numpy::{IntoPyArray, PyArray1};
@@ -40,7 +40,8 @@ pub struct Recording {
 /// Raises FileError where it cannot be read, InputError where it is damaged or no recording.
 #[pyfunction]
 pub fn open(py: Python<'_>, path: PathBuf) -> PyResult<Recording> {
-    let stage = py.detach(|| Stage::open(&path)).map_err(|error| raise(&error))?;
+    static PROPS: LazyLock<Arc<Props>> = LazyLock::new(Arc::default);
+    let stage = py.detach(|| Stage::open(&path, &PROPS)).map_err(|error| raise(&error))?;
     Ok(Recording { stage: Owned::new(Arc::new(stage)) })
 }
 

@@ -5,10 +5,14 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use base::failure::Failed;
+use base::json::json_line;
 use base::progress::Interrupt;
+use lab::share::ShareDone;
 use pyo3::prelude::*;
 
 use crate::errors::raise;
+use crate::external::Raised;
 
 /// How often it is asked whether Ctrl-C was pressed: only the interpreter's own thread is told.
 const ASK_EVERY: Duration = Duration::from_millis(50);
@@ -54,4 +58,18 @@ pub fn tabled<'py>(py: Python<'py>, line: &str, rows: &str) -> PyResult<Bound<'p
     let table = py.import("aeye._tables")?.call_method1("Table", (parsed.get_item(rows)?,))?;
     parsed.set_item(rows, table)?;
     Ok(parsed)
+}
+
+/// What a share of some work came to, as `--json` prints it.
+pub fn shared<'py>(
+    py: Python<'py>,
+    raised: &Raised,
+    share: impl FnOnce(&Interrupt) -> anyhow::Result<ShareDone> + Send,
+) -> PyResult<Bound<'py, PyAny>> {
+    let line = work(py, |interrupt| {
+        let done = share(interrupt)?;
+        Failed::check(&done.failed, done.done)?;
+        json_line(&done)
+    });
+    parsed(py, &raised.or(line)?)
 }

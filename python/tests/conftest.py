@@ -34,9 +34,9 @@ def said(program: Program) -> Callable[..., dict[str, Any]]:
 
 @pytest.fixture(scope="session")
 def drive(program: Program, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Nine seconds, with keyframes in between."""
+    """Thirteen seconds, with a keyframe in between."""
     path = tmp_path_factory.mktemp("drive") / "drive.mcap"
-    program("drive", "--headless", "--map", "city", "--max-time", "9s", "--record", path)
+    program("drive", "--headless", "--map", "city", "--max-time", "13s", "--record", path)
     return path
 
 

@@ -41,7 +41,7 @@ def test_samples_are_the_frames_of_the_files(files):
 def test_a_drive_is_taken_from_its_start_to_its_end(files):
     natural = Natural(files, size=(64, 32), fps=2, transform=lambda frame: frame.tick)
     assert [path.name for path in natural.paths] == ["drive.mcap"]
-    assert [natural[i] for i in range(len(natural))] == list(range(0, 541, 30))
+    assert [natural[i] for i in range(len(natural))] == list(range(0, 781, 30))
 
 
 def test_what_was_asked_for_last_is_kept(files):

@@ -13,26 +13,78 @@ use kernel::time::Tick;
 use kernel::{RoadNetwork, SceneSnapshot};
 use measures::footage::{Asked, Window, scenes};
 use render::{Camera, Frame, RenderOptions, Renderer};
-use replay::{Log, Recording};
+use replay::{Log, Manifest, Recording};
 
 use super::looks::Size;
 
 /// Pictures whose scenes are simulated at once: a replay begins at a keyframe, up to 12 s before the first of them.
 const AT_ONCE: usize = 32;
 
-/// A file and what draws it; the map and the renderer are made when they are needed first.
+/// Maps and renderers that are kept while nobody draws with them, at most.
+const KEPT: usize = 4;
+
+/// Maps and renderers for all files that a process draws: one takes as long to make as dozens of pictures. Those that were
+/// used last are kept; who draws at the same time as others has a renderer alone.
+#[derive(Default)]
+pub struct Props {
+    /// Beside their texts.
+    foreign_maps: Mutex<Vec<(Arc<str>, Arc<RoadNetwork>)>>,
+    /// Beside the digests of their maps.
+    renderers: Mutex<Vec<(u128, Renderer)>>,
+}
+
+impl Props {
+    fn network(&self, manifest: &Manifest) -> anyhow::Result<Arc<RoadNetwork>> {
+        // Bundled maps are kept by themselves.
+        let Some(text) = manifest.foreign_map.as_ref().and_then(|map| map.text.as_ref()) else {
+            return Ok(manifest.network()?);
+        };
+        let is_it = |map: &RoadNetwork| map.name == manifest.scenario.map && map.digest == manifest.map_digest;
+        let network = match take(&self.foreign_maps, |(known, map)| known == text && is_it(map)) {
+            Some((_, network)) => network,
+            None => manifest.network()?,
+        };
+        keep(&self.foreign_maps, (text.clone(), network.clone()));
+        Ok(network)
+    }
+
+    fn draw(&self, network: &RoadNetwork, scene: &SceneSnapshot, camera: &Camera) -> anyhow::Result<Frame> {
+        let mut renderer = match take(&self.renderers, |(map, _)| *map == network.digest) {
+            Some((_, renderer)) => renderer,
+            None => Renderer::new(network, &RenderOptions::default())?,
+        };
+        let frame = renderer.draw(scene, camera)?;
+        keep(&self.renderers, (network.digest, renderer));
+        Ok(frame)
+    }
+}
+
+fn take<T>(kept: &Mutex<Vec<T>>, is_it: impl Fn(&T) -> bool) -> Option<T> {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    kept.iter().position(is_it).map(|at| kept.remove(at))
+}
+
+fn keep<T>(kept: &Mutex<Vec<T>>, used: T) {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    kept.push(used);
+    let old = (kept.len() > KEPT).then(|| kept.remove(0));
+    drop(kept);
+    drop(old);
+}
+
+/// A file and what it is drawn with.
 pub struct Stage {
     path: PathBuf,
     recording: Recording,
     network: OnceLock<Arc<RoadNetwork>>,
-    renderer: Mutex<Option<Renderer>>,
+    props: Arc<Props>,
 }
 
 impl Stage {
     /// Reads a file; one whose writer was stopped is read as far as it goes.
-    pub fn open(path: &Path) -> anyhow::Result<Self> {
+    pub fn open(path: &Path, props: &Arc<Props>) -> anyhow::Result<Self> {
         let recording = Recording::open(path)?;
-        Ok(Self { path: path.to_owned(), recording, network: OnceLock::new(), renderer: Mutex::new(None) })
+        Ok(Self { path: path.to_owned(), recording, network: OnceLock::new(), props: props.clone() })
     }
 
     /// Where it was read.
@@ -53,19 +105,14 @@ impl Stage {
         match self.network.get() {
             Some(network) => Ok(network),
             None => {
-                let network = self.recording.network()?;
+                let network = self.props.network(&self.log().manifest)?;
                 Ok(self.network.get_or_init(|| network))
             }
         }
     }
 
     fn draw(&self, scene: &SceneSnapshot, camera: &Camera) -> anyhow::Result<Frame> {
-        let mut renderer = self.renderer.lock().unwrap_or_else(PoisonError::into_inner);
-        let renderer = match renderer.as_mut() {
-            Some(renderer) => renderer,
-            None => renderer.insert(Renderer::new(self.network()?, &RenderOptions::default())?),
-        };
-        Ok(renderer.draw(scene, camera)?)
+        self.props.draw(self.network()?, scene, camera)
     }
 }
 

@@ -66,6 +66,7 @@ impl Index {
     fn check(&mut self, access: Access) -> anyhow::Result<()> {
         let mut found = self.read(schema::look)?;
         if found == Found::Nothing && access == Access::Write {
+            self.read(schema::lay_out)?;
             // Another process may have made it meanwhile.
             self.write(|db| if schema::look(db)? == Found::Nothing { schema::create(db) } else { Ok(()) })?;
             found = self.read(schema::look)?;
