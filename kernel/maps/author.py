@@ -9,6 +9,7 @@ from pathlib import Path
 import network
 from city import city
 from opendrive import write
+from motorway import motorway
 from ring import ring
 from rural import rural
 from small import SMALL
@@ -18,7 +19,7 @@ HERE = Path(__file__).resolve().parent
 if __name__ == "__main__":
     for build in (city, rural):
         write(build(), HERE)
-    for build in (ring,):
+    for build in (motorway, ring):
         network.write(build(), HERE)
     for build in SMALL:
         write(build(), HERE.parent.parent / "tests" / "maps")

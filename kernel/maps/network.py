@@ -7,7 +7,20 @@ import math
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 
-from opendrive import Path2, beside, constant, eased, elevation, lane, link_text, mark, num, plan, wrap
+from opendrive import Path2, beside, constant, lane, link_text, mark, num, plan, wrap
+
+# --- geometry -------------------------------------------------------------------------------------
+
+
+class Path(Path2):
+    """A reference line whose arcs are told so exactly that they hold for a kilometre."""
+
+    def arc(self, radius, turn):
+        super().arc(radius, turn)
+        if abs(turn) >= 1e-9:
+            self.pieces[-1].curve = f'<arc curvature="{math.copysign(1 / radius, turn):.13f}"/>'
+        return self
+
 
 # --- what a road is made of -----------------------------------------------------------------------
 
@@ -37,7 +50,7 @@ class Section:
 @dataclass
 class Road:
     id: int
-    path: Path2
+    path: Path
     sections: list
     kmh: float
     kind: str = "town"
@@ -230,12 +243,28 @@ def aligned(into, a, out, b):
 def between(source, target, n_in, n_out):
     """The path along the inner edges of two lanes."""
     inward = wrap(source.heading + math.pi)
-    path = Path2(beside(source.point, inward, left_of(source.strips_in(), n_in)), inward)
+    path = Path(beside(source.point, inward, left_of(source.strips_in(), n_in)), inward)
     end = beside(target.point, target.heading, left_of(target.strips_out(), n_out))
     return path.to(end, target.heading)
 
 
 # --- writing ---------------------------------------------------------------------------------------
+
+
+def cubic(a, b, c, d):
+    """Coefficients with so many digits that they hold for a kilometre."""
+    return f'a="{num(a)}" b="{b:.10f}" c="{c:.13f}" d="{d:.16f}"'
+
+
+def eased(w0, w1, length):
+    """A width that does not change at its ends."""
+    rise = w1 - w0
+    return f'<width sOffset="0" {cubic(w0, 0.0, 3 * rise / length**2, -2 * rise / length**3)}/>'
+
+
+def elevation(records):
+    rows = "".join(f'<elevation s="{num(s)}" {cubic(a, b, c, d)}/>' for s, a, b, c, d in records)
+    return f"<elevationProfile>{rows}</elevationProfile>" if any(any(r[1:]) for r in records) else ""
 
 
 def lanes_text(road, k, side):

@@ -6,8 +6,8 @@ Streets lead from the ring to the middle of the town, and two roads run outside 
 import math
 
 from crossing import board, crossing, kerb
-from network import Arm, Network, Section, Strip
-from opendrive import Path2, wrap, zebra
+from network import Arm, Network, Path, Section, Strip
+from opendrive import wrap, zebra
 from roundabout import Roundabout
 from scenery import generator, over, row, tree, wall
 
@@ -93,7 +93,7 @@ class Node:
 def draw(net, a, way_a, b, way_b, strips, kmh, bump):
     """The road from a node to another."""
     (start, heading), (end, back) = a.mouth(way_a), b.mouth(way_b)
-    path = Path2(start, heading).hermite(end, wrap(back + math.pi))
+    path = Path(start, heading).hermite(end, wrap(back + math.pi))
     road = net.road(path, strips, strips, kmh)
     road.elevation = over(path.length, a.z, b.z, bump)
     a.arms.append(Arm(road, "start"))
@@ -206,7 +206,7 @@ def middle(net, nodes, rng):
         start, heading = node.mouth("middle")
         outward = wrap(node.headings["middle"] + math.pi)
         end = (MIDDLE[0] + BACK * math.cos(outward), MIDDLE[1] + BACK * math.sin(outward))
-        path = Path2(start, heading).to(end, heading)
+        path = Path(start, heading).to(end, heading)
         road = net.road(path, STREET, STREET, 50)
         road.elevation = over(path.length, node.z, MIDDLE_HEIGHT, 0.4)
         park(road)

@@ -6,8 +6,8 @@ Ways in and out are arcs that touch the circle and the middle of the arm, wide e
 import math
 
 from crossing import YIELD, signal
-from network import Arm, Row, Strip, aligned
-from opendrive import Path2, beside, unit, wrap
+from network import Arm, Path, Row, Strip, aligned
+from opendrive import unit, wrap
 
 LANE = 5.0  # width of the lane that goes round
 CORNER = 16.0  # radius of the ways in and out at their left edge; less where there is no room
@@ -38,12 +38,12 @@ class Roundabout:
         """The circle from an angle on, for another."""
         c, s = unit(angle)
         start = (self.middle[0] + self.edge * c, self.middle[1] + self.edge * s)
-        path = Path2(start, wrap(angle + math.pi / 2))
+        path = Path(start, wrap(angle + math.pi / 2))
         return path.arc(self.edge, by) if by else path
 
     def bend(self, point, heading):
         """A way in or out, which bends to the right."""
-        return Path2(point, heading).arc(self.corner, -(math.pi / 2 - self.opening))
+        return Path(point, heading).arc(self.corner, -(math.pi / 2 - self.opening))
 
     def join(self, net, arms, beyond, kmh=KMH):
         """Builds it; `beyond` are the strips to the right of its lane, outwards. Gives the roads from arm to arm."""
