@@ -191,7 +191,7 @@ class Network:
                 lid = side * (k + 1)
                 if row.before is not None:
                     road.lane_links["start"][lid] = row.before
-                    links.append((row.before, lid))
+                    links += [(row.before, lid)] if side < 0 else []
                 if row.after is not None:
                     road.lane_links["end"][lid] = row.after
         source.road.ends[source.contact] = target.road.ends[target.contact] = ("junction", j.id, None)
@@ -263,7 +263,9 @@ def eased(w0, w1, length):
 
 
 def elevation(records):
-    rows = "".join(f'<elevation s="{num(s)}" {cubic(a, b, c, d)}/>' for s, a, b, c, d in records)
+    # A level record that goes on where another ends tells nothing.
+    told = [r for k, r in enumerate(records) if k == 0 or any(r[2:]) or any(records[k - 1][2:])]
+    rows = "".join(f'<elevation s="{num(s)}" {cubic(a, b, c, d)}/>' for s, a, b, c, d in told)
     return f"<elevationProfile>{rows}</elevationProfile>" if any(any(r[1:]) for r in records) else ""
 
 
