@@ -44,6 +44,13 @@ PARTS = [(STRAIGHT, 0.0), *bend(600, 100), (WORKS, 0.0), *bend(700, -40), (200.0
 
 # Along a carriageway from the middle of an interchange: where lanes begin, part, join and end.
 SPLIT, EXIT, ENTRY, MERGE = (-730.0, -660.0), (-440.0, -420.0), (420.0, 440.0), (680.0, 750.0)
+TAPERED = False
+TAPERS = {
+    "split": [LANE, LANE, Strip("driving", 0.0, LANE.width), SHOULDER, *VERGE],
+    "merge": [LANE, LANE, Strip("driving", LANE.width, 0.0), SHOULDER, *VERGE],
+    "narrow": [LANE, Strip("driving", LANE.width, 0.0), Strip("roadWorks", 0.0, LANE.width), SHOULDER, *VERGE],
+    "widen": [LANE, Strip("driving", 0.0, LANE.width), Strip("roadWorks", LANE.width, 0.0), SHOULDER, *VERGE],
+}
 GORE = 65.0  # behind an exit there is room for the shoulder again
 APART = 125.0  # and for land between motorway and ramp
 TERMINAL = 108.0  # from a carriageway to where its ramps meet the country road
@@ -91,16 +98,33 @@ def build(net, way, rng, ends):
             (u + ENTRY[1], u + MERGE[0], [(0.0, THREE)], LIMIT, "entry"),
         ]
         stretches += open_road(way, u + MERGE[1], centres[k + 1 - len(centres)] + SPLIT[0], k)
+    if TAPERED:
+        stretches = with_tapers(way, stretches)
     roads = [(way.road(a, b, sections, kmh), a, b, how) for a, b, sections, kmh, how in stretches]
     for n, (road, start, _, how) in enumerate(roads):
         before, _, end, _ = roads[n - 1]
-        if how == "follow":
+        if how.startswith("follow"):
             net.follow(before, road)
         else:
             u = centres[0] if start < centres[0] + half and n < len(roads) // 2 else centres[1]
             join(net, way, how, end % way.line.length, start, before, road, ends, u)
         furnish(net, road, rng, how)
     signs(net, roads)
+
+
+def with_tapers(way, stretches):
+    out = []
+    for n, (a, b, sections, kmh, how) in enumerate(stretches):
+        if how in TAPERS:
+            start = stretches[n - 1][1]
+            while start > a:
+                start -= way.line.length
+            while start < a - 1000:
+                start += way.line.length
+            out.append((start, a, [(0.0, TAPERS[how])], kmh, "follow"))
+            how = "follow " + how
+        out.append((a, b, sections, kmh, how))
+    return out
 
 
 def open_road(way, start, end, k):
@@ -111,18 +135,13 @@ def open_road(way, start, end, k):
     if way.forward and k == 0:
         works = STRAIGHT + bend_length(600, 100) + 10.0
         return [
-            (start, 2000.0, [(0.0, TWO)], 120, "merge"),
-            (2000.0, 2320.0, [(0.0, TWO)], 100, "follow"),
-            (2320.0, works, [(0.0, TWO)], 80, "follow"),
-            (works + 90.0, works + 530.0, [(0.0, CLOSED)], 60, "narrow"),
-            (works + 600.0, end, [(0.0, TWO)], 120, "widen"),
+            (start, works - 540.0, [(0.0, TWO)], LIMIT, "merge"),
+            (works - 540.0, works - 250.0, [(0.0, TWO)], 100, "follow"),
+            (works - 250.0, works, [(0.0, TWO)], 80, "follow"),
+            (works + 50.0, works + 530.0, [(0.0, CLOSED)], 60, "narrow"),
+            (works + 590.0, end, [(0.0, TWO)], LIMIT, "widen"),
         ]
-    cut = [start + (end - start) * share for share in (0.3, 0.62)]
-    return [
-        (start, cut[0], [(0.0, TWO)], 120, "merge"),
-        (cut[0], cut[1], [(0.0, TWO)], 100, "follow"),
-        (cut[1], end, [(0.0, TWO)], 120, "follow"),
-    ]
+    return [(start, end, [(0.0, TWO)], LIMIT, "merge")]
 
 
 def bend_length(radius, degrees):

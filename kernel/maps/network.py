@@ -170,8 +170,9 @@ class Network:
         a.ends["end"], b.ends["start"] = ("road", b.id, "start"), ("road", a.id, "end")
         for side in (1, -1):
             before, after = a.strips("end", side), b.strips("start", side)
-            for k in same(before, after):
-                a.lane_links["end"][side * (k + 1)] = b.lane_links["start"][side * (k + 1)] = side * (k + 1)
+            for i, k in same(before, after):
+                a.lane_links["end"][side * (i + 1)] = side * (k + 1)
+                b.lane_links["start"][side * (k + 1)] = side * (i + 1)
 
     def junction(self):
         self.junctions.append(Junction(self.id()))
@@ -205,9 +206,9 @@ def strip(row):
 
 
 def same(before, after):
-    """Indices of strips that go on: those driven in only in others driven in."""
-    pairs = enumerate(zip(before, after))
-    return [k for k, (a, b) in pairs if (a.kind == "driving") == (b.kind == "driving") and a.end and b.width]
+    """Indices of strips that go on, before and behind: those driven in only in others driven in."""
+    those = [k for k, strip in enumerate(before) if strip.end], [k for k, strip in enumerate(after) if strip.width]
+    return [(i, k) for i, k in zip(*those) if (before[i].kind == "driving") == (after[k].kind == "driving")]
 
 
 def joined(source, target, n_in, n_out, kerbside):
@@ -299,8 +300,10 @@ def links(road, k, lid):
         if 0 <= other < len(road.sections):
             of = lambda section: section.left if lid > 0 else section.right
             pair = (k - 1, k) if end == "start" else (k, k + 1)
-            goes_on = abs(lid) - 1 in same(*(of(road.sections[i]) for i in pair))
-            to = lid if goes_on else None
+            found = dict(same(*(of(road.sections[i]) for i in pair)))
+            found = {b: a for a, b in found.items()} if end == "start" else found
+            to = found.get(abs(lid) - 1)
+            to = None if to is None else int(math.copysign(to + 1, lid))
         else:
             to = road.lane_links[end].get(lid)
         out += "" if to is None else f'<{name} id="{to}"/>'

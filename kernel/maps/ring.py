@@ -9,7 +9,7 @@ from crossing import board, crossing, kerb
 from network import Arm, Network, Path, Section, Strip
 from opendrive import wrap, zebra
 from roundabout import Roundabout
-from scenery import generator, over, row, tree, wall
+from scenery import block, generator, over, rail, row, tree, wall
 
 LANE, GRASS, WALK = 3.5, 2.5, 2.5
 VERGE = Strip("none", 3.0)
@@ -169,6 +169,16 @@ def furnish(net, road, rng, beside):
             row(net, road, rng, 40.0, road.length - 40.0, side * away, 9.0, 9.0, 2.2, 0.8, 4.0)
         else:
             row(net, road, rng, 30.0, road.length - 30.0, side * away, 8.0, 9.0, 2.5, 0.7, 7.0)
+            hedges(net, road, rng, side * behind)
+
+
+def hedges(net, road, rng, t):
+    """Hedges behind the pavement, with gaps."""
+    s = 45.0
+    while s < road.length - 50.0:
+        if rng() < 0.4:
+            block(net, road, "vegetation", "hedge", s, t, (5.6, 1.0, 1.3))
+        s += 6.0
 
 
 def island(net, rings, rng):
@@ -190,6 +200,9 @@ def ring():
     for (a, b), (kmh, bump) in OUTSIDE.items():
         road = draw(net, nodes[a], "outside", nodes[b], "outside", RING, kmh, bump)
         furnish(net, road, rng, "trees")
+        # On the outside of the bends at both ends, which are to the left.
+        for s in (55.0, road.length - 95.0):
+            rail(net, road, s, s + 40.0, -(road.width("sidewalk") + 2.2))
         cross(net, road, nodes[a], nodes[b])
         stops(net, road, road.length / 2)
     middle(net, nodes, rng)
