@@ -124,22 +124,27 @@ class Carriageway:
         return road
 
     def junction(self, u0, u1, before, after, ways, through):
-        """Where lanes begin, end or part; `ways` are (arm, arm, lane from, lane to, whether it waits)."""
+        """Where lanes begin, end or part; `ways` are (arm, arm, lane from, lane to, whether it waits).
+
+        Gives the road that leads straight on, and the others.
+        """
         j = self.net.junction()
         source, target = Arm(before, "end"), Arm(after, "start")
         path, records = self.span(u0, u1)
         into, out = source.strips_in(), target.strips_out()
         rows = [Row("driving", -n, -n, (into[n - 1].width, out[n - 1].width)) for n in range(1, through + 1)]
         left = [Row(s.kind, n, n, (s.width, s.width)) for n, s in enumerate(self.left, start=1)]
-        main = self.net.connect(j, source, target, path, rows, left, elevation=records)
+        main = self.net.connect(j, source, target, path, rows, left, elevation=records, is_lined=True)
+        others = []
         for a, b, n_in, n_out, waits in ways:
             a, b = a or source, b or target
             kerbside = joined(a, b, n_in - 1, n_out - 1, True)
             way = between(a, b, n_in - 1, n_out - 1)
-            aside = self.net.connect(j, a, b, way, kerbside, elevation=stretched(records, path.length, way.length))
+            along = stretched(records, path.length, way.length)
+            others.append(self.net.connect(j, a, b, way, kerbside, elevation=along, is_lined=True))
             if waits:
-                j.priorities.append((main.id, aside.id))
-        return j
+                j.priorities.append((main.id, others[-1].id))
+        return main, others
 
 
 def stretched(records, length, to):

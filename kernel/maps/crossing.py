@@ -9,12 +9,15 @@ LIGHT, STOP, YIELD = "1000001", "206", "205"
 ZEBRA_BEFORE = 3.6  # from the mouth of a junction to the middle of a crosswalk, metres
 
 
-def crossing(net, arms, control, major=(), z=0.0, zebras=True):
-    """Joins arms; `control` is "lights", "stop" or "yield" (for who is not on a `major` road), or "none"."""
+def crossing(net, arms, control, major=(), z=0.0, zebras=True, barred=()):
+    """Joins arms; `control` is "lights", "stop" or "yield" (for who is not on a `major` road), or "none".
+
+    From a road of `barred` no way leads to another of them.
+    """
     j = net.junction()
     arms = sorted(arms, key=lambda arm: wrap(arm.heading))
-    major = {road.id for road in major}
-    ways = [way for k in range(len(arms)) for way in movements(net, j, arms, k, z)]
+    major, barred = ({road.id for road in roads} for roads in (major, barred))
+    ways = [way for k in range(len(arms)) for way in movements(net, j, arms, k, z, barred)]
     if major:
         first = [road.id for source, road in ways if source.road.id in major]
         last = [road.id for source, road in ways if source.road.id not in major]
@@ -26,14 +29,14 @@ def crossing(net, arms, control, major=(), z=0.0, zebras=True):
     return j
 
 
-def movements(net, j, arms, k, z):
+def movements(net, j, arms, k, z, barred):
     """The ways from an arm to all others, beginning with the one to its right."""
     source, others = arms[k], arms[k + 1 :] + arms[:k]
     into = driven(source.strips_in())
     found = []
     for target in others:
         out = driven(target.strips_out())
-        if not into or not out:
+        if not into or not out or {source.road.id, target.road.id} <= barred:
             continue
         turn = wrap(target.heading - source.heading - math.pi)
         kerbside = target is others[0]

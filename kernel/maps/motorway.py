@@ -44,19 +44,13 @@ PARTS = [(STRAIGHT, 0.0), *bend(600, 100), (WORKS, 0.0), *bend(700, -40), (200.0
 
 # Along a carriageway from the middle of an interchange: where lanes begin, part, join and end.
 SPLIT, EXIT, ENTRY, MERGE = (-730.0, -660.0), (-440.0, -420.0), (420.0, 440.0), (680.0, 750.0)
-TAPERED = False
-TAPERS = {
-    "split": [LANE, LANE, Strip("driving", 0.0, LANE.width), SHOULDER, *VERGE],
-    "merge": [LANE, LANE, Strip("driving", LANE.width, 0.0), SHOULDER, *VERGE],
-    "narrow": [LANE, Strip("driving", LANE.width, 0.0), Strip("roadWorks", 0.0, LANE.width), SHOULDER, *VERGE],
-    "widen": [LANE, Strip("driving", 0.0, LANE.width), Strip("roadWorks", LANE.width, 0.0), SHOULDER, *VERGE],
-}
 GORE = 65.0  # behind an exit there is room for the shoulder again
 APART = 125.0  # and for land between motorway and ramp
 TERMINAL = 108.0  # from a carriageway to where its ramps meet the country road
 BACK = 18.0  # from there to the mouths of ramps and country road
-RISE, CREST = 7.6, 1.9  # of the country road at the ramps above the motorway, and on the bridge above that
-DECK = 3.9  # thickness of the bridge
+RISE, CREST = 8.7, 0.7  # of the country road at the ramps above the motorway, and on the bridge above that
+DECK, HANGS = 4.0, 4.4  # thickness of the bridge, and how far it reaches below the middle of its lanes
+MEDIAN_RAIL, VERGE_RAIL = 1.3, 0.8  # from the inner edge, and beyond the shoulder
 VILLAGE_LENGTH, VILLAGE_HEIGHT = 380.0, 6.0
 
 
@@ -98,33 +92,16 @@ def build(net, way, rng, ends):
             (u + ENTRY[1], u + MERGE[0], [(0.0, THREE)], LIMIT, "entry"),
         ]
         stretches += open_road(way, u + MERGE[1], centres[k + 1 - len(centres)] + SPLIT[0], k)
-    if TAPERED:
-        stretches = with_tapers(way, stretches)
     roads = [(way.road(a, b, sections, kmh), a, b, how) for a, b, sections, kmh, how in stretches]
     for n, (road, start, _, how) in enumerate(roads):
         before, _, end, _ = roads[n - 1]
-        if how.startswith("follow"):
+        if how == "follow":
             net.follow(before, road)
         else:
             u = centres[0] if start < centres[0] + half and n < len(roads) // 2 else centres[1]
-            join(net, way, how, end % way.line.length, start, before, road, ends, u)
+            join(net, way, how, end % way.line.length, start, before, road, ends, u, rng)
         furnish(net, road, rng, how)
     signs(net, roads)
-
-
-def with_tapers(way, stretches):
-    out = []
-    for n, (a, b, sections, kmh, how) in enumerate(stretches):
-        if how in TAPERS:
-            start = stretches[n - 1][1]
-            while start > a:
-                start -= way.line.length
-            while start < a - 1000:
-                start += way.line.length
-            out.append((start, a, [(0.0, TAPERS[how])], kmh, "follow"))
-            how = "follow " + how
-        out.append((a, b, sections, kmh, how))
-    return out
 
 
 def open_road(way, start, end, k):
@@ -148,20 +125,21 @@ def bend_length(radius, degrees):
     return sum(length for length, _ in bend(radius, degrees))
 
 
-def join(net, way, how, u0, u1, before, road, ends, centre):
+def join(net, way, how, u0, u1, before, road, ends, centre, rng):
     """The junction between two roads of a carriageway."""
     if u0 > u1:
         u0 -= way.line.length
     one = lambda n_in, n_out, waits, a=None, b=None: (a, b, n_in, n_out, waits)
     if how == "exit":
-        ramp = exit_ramp(net, way, centre, ends)
-        way.junction(u0, u1, before, road, [one(3, 1, False, b=Arm(ramp, "start"))], 2)
+        ramp = exit_ramp(net, way, centre, ends, rng)
+        ways = one(3, 1, False, b=Arm(ramp, "start"))
     elif how == "entry":
-        ramp = ends[which(way, centre)][-1].entry
-        way.junction(u0, u1, before, road, [one(1, 3, False, a=Arm(ramp, "end"))], 2)
+        ways = one(1, 3, False, a=Arm(ends[which(way, centre)][-1].entry, "end"))
     else:
-        ways = {"split": (2, 3, False), "merge": (3, 2, True), "narrow": (2, 1, True), "widen": (1, 2, False)}
-        way.junction(u0, u1, before, road, [one(*ways[how])], 1 if how in ("narrow", "widen") else 2)
+        ways = one(*{"split": (2, 3, False), "merge": (3, 2, True), "narrow": (2, 1, True), "widen": (1, 2, False)}[how])
+    main, (aside,) = way.junction(u0, u1, before, road, [ways], 1 if how in ("narrow", "widen") else 2)
+    rail(net, main, 0.0, main.length, MEDIAN_RAIL)
+    rail(net, aside, 0.0, aside.length, -(aside.width("shoulder") + VERGE_RAIL), -(aside.width("shoulder", "end") + VERGE_RAIL))
 
 
 def which(way, centre):
@@ -184,7 +162,7 @@ class Terminal:
         self.away = at(0.0, TERMINAL + BACK), wrap(heading - math.pi / 2)
 
 
-def exit_ramp(net, way, centre, ends):
+def exit_ramp(net, way, centre, ends, rng):
     """Both ramps of a carriageway at an interchange; gives the one that leaves it."""
     at, heading = frame(way, centre)
     base = way.height(centre)
@@ -202,7 +180,9 @@ def exit_ramp(net, way, centre, ends):
             fall = smooth(climb - 10.0, base + RISE, base)[0]
             road.elevation = [(0.0, base + RISE, 0, 0, 0), (10.0, *fall[1:]), (climb, base, 0, 0, 0)]
         ramps.append(road)
-        rail(net, road, 30.0, path.length - 30.0, -(RAMP_LANE + 1.5 + 0.7))
+        ends_at = (0.0, path.length - 25.0) if climbs else (25.0, path.length)
+        rail(net, road, *ends_at, -(RAMP_LANE + 1.5 + VERGE_RAIL))
+        row(net, road, rng, 40.0, path.length - 40.0, -13.0, 9.0, 9.0, 2.4, 0.6, 8.0)
     road = ramps[0]
     road.signals.append(board(net.id(), road, 20.0, True, "274", 60))
     ends[which(way, centre)].append(Terminal(way, centre, *ramps))
@@ -219,7 +199,8 @@ def country(net, line, ends, rng):
     roads = village(net, line, *inner, rng)
     for inside, (road, contact) in zip(inner, ((roads[0], "start"), (roads[-1], "end"))):
         arms = [Arm(inside.road, "end"), Arm(road, contact), Arm(inside.leave, "end"), Arm(inside.entry, "start")]
-        crossing(net, arms, "yield", [inside.road, road], z=inside.z, zebras=False)
+        ramps = [inside.leave, inside.entry]
+        crossing(net, arms, "yield", [inside.road, road], z=inside.z, zebras=False, barred=ramps)
 
 
 def bridge(net, outside, inside):
@@ -229,20 +210,19 @@ def bridge(net, outside, inside):
     road = net.road(path, BRIDGE, BRIDGE, 70, kind="rural")
     road.elevation = over(path.length, outside.z, inside.z, CREST)
     arms = [Arm(road, "start"), Arm(outside.leave, "end"), Arm(outside.entry, "start")]
-    crossing(net, arms, "yield", [road], z=outside.z, zebras=False)
-    deck(net, road, outside.base)
+    crossing(net, arms, "yield", [road], z=outside.z, zebras=False, barred=[outside.leave, outside.entry])
+    deck(net, road)
     return road
 
 
-def deck(net, road, base):
+def deck(net, road):
     """What carries the road over the motorway: its surface alone has no underside."""
     middle, crest = road.length / 2, RISE + CREST
     edge = 3.5 + 0.75
-    for k in range(-3, 4):
-        # It hangs 4 m below the lanes, so that it counts as below them, not on them.
-        block(net, road, "soundBarrier", "bridge wall", middle + 12.0 * k, 0.0, (12.0, 2 * edge - 0.2, DECK), z=-4.06)
+    # It begins more than 4 m below the lanes, so that it counts as below them, not on them.
+    block(net, road, "soundBarrier", "bridge wall", middle, 0.0, (84.0, 2 * edge - 0.2, DECK), z=-HANGS)
     for s, width in ((0.0, 0.9), (-15.5, 0.9), (15.5, 0.9)):
-        block(net, road, "soundBarrier", "pier wall", middle + s, 0.0, (width, 6.5, crest - 4.2), z=-crest + 0.05)
+        block(net, road, "soundBarrier", "pier wall", middle + s, 0.0, (width, 6.5, crest - HANGS + 0.2), z=-crest)
     for side in (-1, 1):
         rail(net, road, 12.0, road.length - 12.0, side * (edge + 0.2))
 
@@ -285,25 +265,24 @@ def village(net, line, first, last, rng):
 def furnish(net, road, rng, how):
     """Rails, trees, and what closes a lane."""
     length = road.length
-    rail(net, road, 0.0, length, 1.3)
-    if how == "exit":
-        for s0, s1 in ((APART + 5.0, length - APART - 5.0),):
-            rail(net, road, s0, s1, -(2 * LANE.width + SHOULDER.width + 0.8))
-        return
+    rail(net, road, 0.0, length, MEDIAN_RAIL)
     lanes = 3 if how in ("split", "entry") else 2
     edge = lanes * LANE.width + SHOULDER.width
-    rail(net, road, 0.0, length, -(edge + 0.8))
-    woods(net, road, rng, edge)
+    # Between the ramps of an interchange there is land beside the motorway only where they are away from it.
+    free = [(APART, length / 2 - 30.0), (length / 2 + 30.0, length - APART)] if how == "exit" else [(0.0, length)]
+    rail(net, road, free[0][0], free[-1][1], -(edge + VERGE_RAIL))
+    for s0, s1 in free:
+        woods(net, road, rng, edge, s0, s1)
     if how == "narrow":
         works(net, road)
     if how == "split":
         gantry(net, road, 20.0, edge)
 
 
-def woods(net, road, rng, edge):
+def woods(net, road, rng, edge, start, end):
     """Trees on the land beside the motorway, denser here and thinner there."""
-    s = 10.0
-    while s < road.length - 10.0:
+    s = start + 10.0
+    while s < end - 10.0:
         thick = 0.15 + 0.75 * (0.5 + 0.5 * math.sin(s / 97.0 + road.id))
         if rng() < thick:
             height = 7.0 + 6.0 * rng()
@@ -316,17 +295,17 @@ def works(net, road):
     wall(net, road, "barrier", "guardRail", 30.0, road.length - 30.0, -(LANE.width + 0.5), 0.8)
     s = 8.0
     while s < road.length - 8.0:
-        block(net, road, "obstacle", "board", s, -(LANE.width + 0.25), (0.1, 0.3, 1.1))
+        block(net, road, "obstacle", "board", s, -(LANE.width + 0.25), (0.2, 0.4, 1.1))
         s += 9.0
     for s in (120.0, 190.0, 260.0):
-        block(net, road, "obstacle", "heap", s, -(1.5 * LANE.width + 0.6), (6.0, 2.0, 1.2))
+        block(net, road, "obstacle", "container", s, -(1.5 * LANE.width + 0.6), (2.5, 1.8, 1.4))
 
 
 def gantry(net, road, s, edge):
     """A frame over the carriageway; what it carries counts as above the lanes, not on them."""
     for t in (1.0, -(edge + 0.5)):
         block(net, road, "pole", "gantry post", s, t, (0.35, 0.35, 6.4))
-    block(net, road, "soundBarrier", "gantry wall", s, -edge / 2 + 0.25, (0.3, edge + 1.4, 1.6), z=5.0)
+    block(net, road, "obstacle", "gantry", s, -edge / 2 + 0.25, (0.3, edge + 1.4, 1.6), z=5.0)
 
 
 def signs(net, roads):

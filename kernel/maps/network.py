@@ -55,6 +55,7 @@ class Road:
     kmh: float
     kind: str = "town"
     junction: int = -1
+    is_lined: bool = True  # whether its edges are painted
     ends: dict = field(default_factory=dict)  # "start"/"end" -> ("road"/"junction", id, contact)
     lane_links: dict = field(default_factory=lambda: {"start": {}, "end": {}})  # own lane -> lane of the road there
     elevation: list = field(default_factory=list)
@@ -178,9 +179,10 @@ class Network:
         self.junctions.append(Junction(self.id()))
         return self.junctions[-1]
 
-    def connect(self, j, source, target, path, rows, left=(), kmh=None, elevation=()):
+    def connect(self, j, source, target, path, rows, left=(), kmh=None, elevation=(), is_lined=False):
         """A road through a junction along `path`: `rows` to its right, `left` to its left, from the middle outwards."""
-        road = Road(self.id(), path, [], kmh or source.road.kmh, source.road.kind, j.id, elevation=list(elevation))
+        kmh, elevation = kmh or source.road.kmh, list(elevation)
+        road = Road(self.id(), path, [], kmh, source.road.kind, j.id, is_lined, elevation=elevation)
         road.sections = [Section(0.0, [strip(row) for row in left], [strip(row) for row in rows])]
         road.ends = {
             "start": ("road", source.road.id, source.contact),
@@ -280,17 +282,20 @@ def lanes_text(road, k, side):
         lid = side * (n + 1)
         beyond = strips[n + 1].kind if n + 1 < len(strips) else "none"
         widths = constant(one.width) if one.end == one.width else eased(one.width, one.end, until - section.s)
-        lanes.append(lane(lid, one.kind, widths, edge(one.kind, beyond, road.junction != -1), links(road, k, lid)))
+        lanes.append(lane(lid, one.kind, widths, edge(one.kind, beyond, road), links(road, k, lid)))
     return "".join(reversed(lanes) if side > 0 else lanes)
 
 
-def edge(kind, beyond, inside):
+def edge(kind, beyond, road):
     """The mark between two strips."""
     if beyond == "sidewalk" and kind != "curb":
         return mark("curb")
-    if kind != "driving" or (inside and beyond != "driving"):
+    if kind != "driving":
         return ""
-    return mark("broken", "both") if beyond == "driving" else mark("solid")
+    if beyond == "driving":
+        return mark("broken", "both")
+    # Inside a junction, others may drive beyond the last strip.
+    return mark("solid") if road.junction == -1 or road.is_lined and beyond != "none" else ""
 
 
 def links(road, k, lid):
@@ -312,9 +317,10 @@ def links(road, k, lid):
 
 def middle(road, section):
     """The mark along the middle."""
-    if road.junction != -1:
-        return mark("none")
-    return mark("broken", "both") if driven(section.left) else mark("solid")
+    if driven(section.left):
+        return mark("broken", "both") if road.junction == -1 else mark("none")
+    is_edge = road.junction == -1 or road.is_lined and section.left
+    return mark("solid") if is_edge else mark("none")
 
 
 def road_text(road):

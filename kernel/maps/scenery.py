@@ -45,19 +45,19 @@ def block(net, road, kind, name, s, t, size, hdg=0.0, z=0.0):
     )
 
 
-def wall(net, road, kind, name, s0, s1, t, height, width=0.25):
-    """What runs along a road: a rail, a wall."""
-    s, length, t, h, w = num(s0), num(s1 - s0), num(t), num(height), num(width)
+def wall(net, road, kind, name, s0, s1, t, height, width=0.25, to=None):
+    """What runs along a road, from `t` aside of its middle `to` another: a rail, a wall."""
+    s, length, end, t, h, w = num(s0), num(s1 - s0), num(t if to is None else to), num(t), num(height), num(width)
     road.objects.append(
         f'<object id="{net.id()}" type="{kind}" name="{name}" s="{s}" t="{t}" zOffset="0" hdg="0" orientation="none" '
         f'length="{length}" width="{w}" height="{h}"><repeat s="{s}" length="{length}" distance="0" tStart="{t}" '
-        f'tEnd="{t}" widthStart="{w}" widthEnd="{w}" heightStart="{h}" heightEnd="{h}" zOffsetStart="0" '
+        f'tEnd="{end}" widthStart="{w}" widthEnd="{w}" heightStart="{h}" heightEnd="{h}" zOffsetStart="0" '
         f'zOffsetEnd="0"/></object>'
     )
 
 
-def rail(net, road, s0, s1, t):
-    wall(net, road, "barrier", "guardRail", s0, s1, t, 0.8)
+def rail(net, road, s0, s1, t, to=None):
+    wall(net, road, "barrier", "guardRail", s0, s1, t, 0.8, to=to)
 
 
 def row(net, road, rng, s0, s1, t, pitch, height, crown, chance=1.0, stray=0.0):
