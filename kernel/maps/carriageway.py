@@ -6,9 +6,6 @@ from dataclasses import dataclass
 from network import Arm, Path, Row, Section, between, joined
 from opendrive import beside, unit, wrap
 
-STEP = 100.0  # records of elevation are at most this far apart, metres
-
-
 class Line:
     """A closed line of straights and arcs, from (length, curvature) of each."""
 
@@ -66,6 +63,12 @@ class Heights:
         p, rise, length = (s - a[0]) / (b[0] - a[0]), b[1] - a[1], b[0] - a[0]
         return a[1] + rise * p * p * (3 - 2 * p), rise * 6 * p * (1 - p) / length
 
+    def cut(self, s0, s1):
+        """Two places and the nodes between them, in order."""
+        rounds = [z * self.length for z in range(-3, 3)]
+        between = [s + turn for s, _ in self.nodes for turn in rounds if min(s0, s1) + 0.5 < s + turn < max(s0, s1) - 0.5]
+        return [s0, *sorted(between, reverse=s1 < s0), s1]
+
 
 class Carriageway:
     """One direction of a motorway; `u` is how far along the line one has come in it."""
@@ -104,16 +107,16 @@ class Carriageway:
         return path, records
 
     def _records(self, at, start, length, stretch):
+        """Heights along a piece: a cubic between two nodes, as the heights of the line are."""
         sign = 1 if self.forward else -1
-        count = math.ceil(length / STEP)
-        step, out = length / count, []
-        for k in range(count):
-            (z0, m0), (z1, m1) = (self.heights.at(start + sign * step * n) for n in (k, k + 1))
-            ds = step * stretch
+        places, out = self.heights.cut(start, start + sign * length), []
+        for s0, s1 in zip(places, places[1:]):
+            ds = abs(s1 - s0) * stretch
+            (z0, m0), (z1, m1) = self.heights.at(s0), self.heights.at(s1)
             m0, m1 = m0 * sign / stretch, m1 * sign / stretch
             c = 3 * (z1 - z0) / ds**2 - (2 * m0 + m1) / ds
             d = (m0 + m1) / ds**2 - 2 * (z1 - z0) / ds**3
-            out.append((at + k * ds, z0, m0, c, d))
+            out.append((at + abs(s0 - start) * stretch, z0, m0, c, d))
         return out
 
     def road(self, u0, u1, sections, kmh):

@@ -7,7 +7,7 @@ const DIGESTS: [(&str, u128); BUNDLED.len()] = [
     ("city", 0x30c7_c429_b283_9e31_836d_025e_ab1e_c922),
     ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c),
     ("ring", 0x8ec2_cadd_d7b8_fb87_c9a8_48d5_e91d_9bf6),
-    ("motorway", 0x7024_fd17_4d34_b057_43c6_10c5_9112_2710),
+    ("motorway", 0x1b37_06b7_5760_71fb_d847_111e_9da0_a342),
 ];
 
 #[test]
