@@ -90,11 +90,11 @@ def roadside(strips):
     return left_of(strips, walks[-1] + 1) + 0.8
 
 
-def board(sid, road, s, forward, kind, value=None, country="DE", contact="start", height=0.6):
+def board(sid, road, s, forward, kind, value=None, height=0.6):
     """A sign beside the road for one direction; one of a limit shows `value`."""
-    t = roadside(road.strips(contact, -1 if forward else 1)) * (-1 if forward else 1)
+    t = roadside(road.strips("start", -1 if forward else 1)) * (-1 if forward else 1)
     shown = 'subtype="-1" value="-1"' if value is None else f'subtype="{value}" value="{value}" unit="km/h"'
     return (
         f'<signal id="{sid}" name="" s="{num(s)}" t="{num(t)}" zOffset="2" orientation="{"+" if forward else "-"}" '
-        f'dynamic="no" country="{country}" type="{kind}" {shown} height="{num(height)}" width="{num(height)}"/>'
+        f'dynamic="no" country="DE" type="{kind}" {shown} height="{num(height)}" width="{num(height)}"/>'
     )

@@ -131,7 +131,7 @@ def join(net, way, how, u0, u1, before, road, ends, centre, rng):
         u0 -= way.line.length
     one = lambda n_in, n_out, waits, a=None, b=None: (a, b, n_in, n_out, waits)
     if how == "exit":
-        ramp = exit_ramp(net, way, centre, ends, rng)
+        ramp = ramps(net, way, centre, ends, rng)
         ways = one(3, 1, False, b=Arm(ramp, "start"))
     elif how == "entry":
         ways = one(1, 3, False, a=Arm(ends[which(way, centre)][-1].entry, "end"))
@@ -156,20 +156,19 @@ class Terminal:
     def __init__(self, way, centre, leave, entry):
         at, heading = frame(way, centre)
         self.outside, self.z, self.leave, self.entry = way.forward, way.height(centre) + RISE, leave, entry
-        self.base = way.height(centre)
         # Mouths of the country road towards the bridge and away from it.
         self.over = at(0.0, TERMINAL - BACK), wrap(heading + math.pi / 2)
         self.away = at(0.0, TERMINAL + BACK), wrap(heading - math.pi / 2)
 
 
-def exit_ramp(net, way, centre, ends, rng):
+def ramps(net, way, centre, ends, rng):
     """Both ramps of a carriageway at an interchange; gives the one that leaves it."""
     at, heading = frame(way, centre)
     base = way.height(centre)
     inner = 2 * LANE.width
     leave = Path(at(EXIT[1], inner), heading).to(at(-BACK, TERMINAL), heading)
     entry = Path(at(BACK, TERMINAL), heading).to(at(ENTRY[0], inner), heading)
-    ramps = []
+    both = []
     for path, climbs in ((leave, True), (entry, False)):
         road = net.road(path, [Strip("shoulder", 0.5)], RAMP, 60, kind="motorway")
         climb = path.length - APART - 8.0
@@ -179,14 +178,14 @@ def exit_ramp(net, way, centre, ends, rng):
         else:
             fall = smooth(climb - 10.0, base + RISE, base)[0]
             road.elevation = [(0.0, base + RISE, 0, 0, 0), (10.0, *fall[1:]), (climb, base, 0, 0, 0)]
-        ramps.append(road)
+        both.append(road)
         ends_at = (0.0, path.length - 25.0) if climbs else (25.0, path.length)
         rail(net, road, *ends_at, -(RAMP_LANE + 1.5 + VERGE_RAIL))
         row(net, road, rng, 40.0, path.length - 40.0, -13.0, 9.0, 9.0, 2.4, 0.6, 8.0)
-    road = ramps[0]
+    road = both[0]
     road.signals.append(board(net.id(), road, 20.0, True, "274", 60))
-    ends[which(way, centre)].append(Terminal(way, centre, *ramps))
-    return ramps[0]
+    ends[which(way, centre)].append(Terminal(way, centre, *both))
+    return road
 
 
 def country(net, line, ends, rng):
@@ -199,8 +198,8 @@ def country(net, line, ends, rng):
     roads = village(net, line, *inner, rng)
     for inside, (road, contact) in zip(inner, ((roads[0], "start"), (roads[-1], "end"))):
         arms = [Arm(inside.road, "end"), Arm(road, contact), Arm(inside.leave, "end"), Arm(inside.entry, "start")]
-        ramps = [inside.leave, inside.entry]
-        crossing(net, arms, "yield", [inside.road, road], z=inside.z, zebras=False, barred=ramps)
+        barred = [inside.leave, inside.entry]
+        crossing(net, arms, "yield", [inside.road, road], z=inside.z, zebras=False, barred=barred)
 
 
 def bridge(net, outside, inside):
@@ -246,10 +245,9 @@ def village(net, line, first, last, rng):
         if roads:
             net.follow(roads[-1], road)
         roads.append(road)
-        contact = "start"
         road.signals += [
-            board(net.id(), road, 3.0, True, "274", kmh, contact=contact),
-            board(net.id(), road, road.length - 3.0, False, "274", kmh, contact=contact),
+            board(net.id(), road, 3.0, True, "274", kmh),
+            board(net.id(), road, road.length - 3.0, False, "274", kmh),
         ]
         if kmh != 50:
             for side in (-1, 1):

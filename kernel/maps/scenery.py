@@ -1,7 +1,5 @@
 """Objects beside roads, and the heights of roads."""
 
-import math
-
 from opendrive import num
 
 
@@ -68,4 +66,3 @@ def row(net, road, rng, s0, s1, t, pitch, height, crown, chance=1.0, stray=0.0):
             grown = 0.8 + 0.4 * rng()
             tree(net, road, s, t + stray * (rng() - 0.5), height * grown, crown * min(grown, 1.0))
         s += pitch
-    return math.ceil((s1 - s0) / pitch)
