@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""Writes the bundled maps `city.xodr` and `rural.xodr` beside this file, and the small ones of the tests.
+"""Writes the bundled maps beside this file, and the small ones of the tests.
 
     python3 kernel/maps/author.py
 """
 
 from pathlib import Path
 
+import network
 from city import city
 from opendrive import write
+from motorway import motorway
+from ring import ring
 from rural import rural
 from small import SMALL
 
@@ -16,5 +19,7 @@ HERE = Path(__file__).resolve().parent
 if __name__ == "__main__":
     for build in (city, rural):
         write(build(), HERE)
+    for build in (motorway, ring):
+        network.write(build(), HERE)
     for build in SMALL:
         write(build(), HERE.parent.parent / "tests" / "maps")

@@ -3,8 +3,12 @@
 use super::*;
 
 /// What the bundled maps bake to; a change here changes every recording's map.
-const DIGESTS: [(&str, u128); BUNDLED.len()] =
-    [("city", 0x30c7_c429_b283_9e31_836d_025e_ab1e_c922), ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c)];
+const DIGESTS: [(&str, u128); BUNDLED.len()] = [
+    ("city", 0x30c7_c429_b283_9e31_836d_025e_ab1e_c922),
+    ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c),
+    ("ring", 0x8ec2_cadd_d7b8_fb87_c9a8_48d5_e91d_9bf6),
+    ("motorway", 0x1b37_06b7_5760_71fb_d847_111e_9da0_a342),
+];
 
 #[test]
 fn digests_are_golden() {
@@ -92,4 +96,30 @@ fn the_countryside_has_hills_bends_and_rails() {
     assert!(map.crosswalks.len() == 2 && map.light_groups.is_empty());
     let fastest = map.lanes.iter().map(|l| l.speed_limit_mps).fold(0.0, f32::max);
     assert!((fastest - 100.0 / 3.6).abs() < 0.01);
+}
+
+#[test]
+fn the_ring_has_roundabouts_lights_and_bus_stops() {
+    let map = bundled("ring").unwrap();
+    assert_eq!(crate::map_data::circles(&map.lanes).len(), 4);
+    assert_eq!(map.junctions.iter().filter(|j| !j.light_groups.is_empty()).count(), 2);
+    assert_eq!(map.bus_stops.len(), 16);
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::Building) > 100 && props(PropKind::Tree) > 300 && props(PropKind::Wall) > 20);
+    let limits: Vec<f32> = map.lanes.iter().map(|l| (l.speed_limit_mps * 3.6).round()).collect();
+    assert!([30.0, 50.0, 60.0, 70.0].iter().all(|kmh| limits.contains(kmh)));
+}
+
+#[test]
+fn the_motorway_is_long_and_crossed_above() {
+    let map = bundled("motorway").unwrap();
+    let driven = || map.lanes.iter().filter(|l| l.kind == LaneKind::Driving);
+    let limits: Vec<f32> = driven().map(|l| (l.speed_limit_mps * 3.6).round()).collect();
+    assert!([50.0, 60.0, 80.0, 100.0, 120.0].iter().all(|kmh| limits.contains(kmh)));
+    let fast = driven().filter(|l| l.speed_limit_mps > 110.0 / 3.6).map(|l| l.length_m).sum::<f32>();
+    assert!(fast > 36_000.0, "two lanes each way for some ten kilometres: {fast} m");
+    let points = || driven().flat_map(|l| &l.points).map(|p| p.position);
+    let above = |p: Vec3| points().any(|q| p.z - q.z > 5.0 && (p - q).truncate().length() < 1.0);
+    assert!(points().filter(|p| p.z > 13.0).any(above), "a bridge");
+    assert_eq!(map.crosswalks.len(), 2);
 }
