@@ -107,6 +107,7 @@ YIELDS = {"o1": ("o0", "o2"), "o8": ("o7", "o9"), "o4": ("o3", "o5"), "i3": ("i2
 ZEBRAS = [("i0", "i1"), ("i4", "i3"), ("i5", "i6"), ("o3", "i2"), ("o8", "i6"), ("m2", "i0")]
 TERMINI = [("o4", "o5"), ("o8", "o7")]  # the tracks end before these junctions, on the way to the other place
 STOP_SHORT = 26.0
+WALLED = [("o0", "o1"), ("o1", "o2"), ("o2", "o3"), ("o3", "o4")]  # along the outside of these the wall still stands
 
 
 def height(x, y):
@@ -172,13 +173,13 @@ def rails(town, s, length, middles):
 # --- what stands there ----------------------------------------------------------------------------
 
 
-def houses(site, road, right, inner):
+def houses(site, road, right, inner, front_garden=0.0):
     """Gable to gable, right behind the pavement; lower and with gaps outside the inner ring."""
     s = -2.0
     while s < road.length + 2.0:
         frontage = site.between(6.0, 10.5) if inner else site.between(8.0, 13.0)
         depth, floors = site.between(8.5, 12.0), round(site.between(1.6, 4.4) if inner else site.between(1.6, 3.6))
-        setback = site.between(0.5, 0.7) if inner else site.between(0.6, 1.6)
+        setback = front_garden + (site.between(0.5, 0.7) if inner else site.between(0.6, 1.6))
         at = s + frontage / 2
         if at > road.length:
             break
@@ -196,7 +197,7 @@ def market(site, plan):
     left = lambda road, beyond: out(road, 0.0, False, beyond)
     site.put(south, "building", "townHallBuilding", (15.0, left(south, 14.0)), (13.0, 18.0, 13.5), -math.pi / 2)
     site.put(south, "building", "churchBuilding", (34.5, left(south, 15.0)), (17.0, 10.0, 15.0), -math.pi / 2)
-    site.put(south, "building", "towerBuilding", (34.5, left(south, 26.0)), (5.0, 5.0, 32.0), -math.pi / 2)
+    site.put(south, "building", "towerBuilding", (34.5, left(south, 26.8)), (5.0, 5.0, 32.0), -math.pi / 2)
     site.put(south, "obstacle", "fountain", (24.5, left(south, 3.5)), (3.0, 3.0, 1.1))
     for road, beyond in ((south, 2.0), (north, 2.2), (north, 8.5)):
         s = 3.0
@@ -209,9 +210,11 @@ def market(site, plan):
 
 
 def town_wall(site, plan):
-    """What is left of the wall, along the outside of the ring in the north and east."""
-    for pair in (("o0", "o1"), ("o1", "o2"), ("o2", "o3"), ("o3", "o4")):
+    """What is left of the wall, with its towers."""
+    for pair in WALLED:
         road, s = plan.between(*pair), 4.0
+        middle = road.length / 2
+        site.put(road, "building", "towerBuilding", (middle, out(road, middle, True, 4.0)), (5.5, 5.5, 12.0))
         while s < road.length - 4.0:
             size = (3.8, 1.0, site.between(3.6, 4.4))
             site.put(road, "none", "cityWall", (s, out(road, s, True, 2.2)), size)
@@ -220,11 +223,12 @@ def town_wall(site, plan):
                 s += 9.0  # a breach
 
 
-def trees(site, road, right, pitch):
+def trees(site, road, right, pitch, beyond=1.5):
     s = 6.0
     while s < road.length - 4.0:
-        site.put(road, "tree", "tree", (s, out(road, s, right, site.between(1.4, 1.7))), (2.4, 2.4, site.between(5.5, 8.0)))
-        s += pitch
+        place = (s, out(road, s, right, beyond * site.between(0.9, 1.15)))
+        site.put(road, "tree", "tree", place, (2.4, 2.4, site.between(5.5, 8.0)))
+        s += pitch * site.between(0.8, 1.2)
 
 
 def signs(town, plan):
@@ -244,11 +248,14 @@ def furnish(town, plan):
         for right in (True, False):
             if is_square and not right:
                 continue
+            is_walled = (a, b) in WALLED and right
             lamps(site, road, right, 34.0 if inner else 28.0)
-            if is_boulevard and not right:
+            if is_boulevard:
                 trees(site, road, right, 9.0)
-            houses(site, road, right, inner)
-            trees(site, road, right, 12.0)
+            if not is_walled:
+                houses(site, road, right, inner, 3.0 if is_boulevard else 0.0)
+            trees(site, road, right, 12.0, site.between(5.0, 8.0) if is_walled else 1.5)
+            trees(site, road, right, 11.0, 22.0)
         parked(site, road, 0.6)
 
 

@@ -7,7 +7,8 @@ from opendrive import beside, unit
 from streets import thing, verge
 
 CELL = 0.25  # side of the squares that are free or taken, metres
-MARGIN = 0.12  # kept free beside lanes, metres
+MARGIN = 0.2  # kept free beside lanes, metres
+INSET = 0.2  # what touches another thing, or a lane's margin, by less still fits, metres
 
 
 def generator(seed):
@@ -71,6 +72,7 @@ class Site:
                 self.taken.add((int(x // CELL), int(y // CELL)))
 
     def _squares(self, point, heading, length, width):
+        length, width = (max(0.0, extent - 2 * INSET) for extent in (length, width))
         n, m = int(length / CELL) + 1, int(width / CELL) + 1
         c, s = unit(heading)
         for i in range(n + 1):
@@ -111,7 +113,7 @@ def to_street(right):
     return math.pi / 2 if right else -math.pi / 2
 
 
-def lamps(site, road, right, pitch=30.0, beyond=0.35):
+def lamps(site, road, right, pitch=30.0, beyond=0.6):
     s = pitch / 2
     while s < road.length - 4:
         site.put(road, "streetLamp", "lamp", (s, out(road, s, right, beyond)), (0.2, 0.2, 5.0), to_street(right))

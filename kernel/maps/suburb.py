@@ -54,7 +54,7 @@ WAYS = [
     Way("c4", "c5", COLLECTOR, "Hauptstrasse", bow=6),
     Way("c0", "n1", QUIET, "Ahornweg", via=((-362, 92), (-300, 160)), radius=38, bays="r"),
     Way("c1", "n1", QUIET, "Birkenweg", bow=-14, bays="l"),
-    Way("r", "n2", QUIET, "Lindenweg", bow=12, bays="r"),
+    Way("r", "n2", QUIET, "Lindenweg", bow=-12, bays="r"),
     Way("c3", "n3", QUIET, "Buchenweg", bow=-13, bays="rl"),
     Way("c4", "n4", QUIET, "Erlenweg", bow=11, bays="l"),
     Way("c5", "n4", QUIET, "Eschenweg", via=((364, 96), (306, 168)), radius=36, bays="l"),
@@ -138,9 +138,9 @@ def front(site, road, right, start, end, style):
     if end - start < 1.0 or style > 0.85:
         return
     if style < 0.5:
-        along(site, road, right, "vegetation", "hedge", start, end, 0.65, (0.7, site.between(0.9, 1.5)))
+        along(site, road, right, "vegetation", "hedge", start, end, 0.75, (0.7, site.between(0.9, 1.5)))
     else:
-        along(site, road, right, "none", "gardenFence", start, end, 0.35, (0.1, site.between(0.8, 1.1)))
+        along(site, road, right, "none", "gardenFence", start, end, 0.45, (0.1, site.between(0.8, 1.1)))
 
 
 def plots(site, road, right):
@@ -180,7 +180,7 @@ def garden(site, road, right, s, width):
     """A hedge to the neighbours', trees before and behind the house."""
     end = s + width
     site.put(road, "vegetation", "hedge", (end, out(road, end, right, 3.0)), (3.6, 0.6, 1.2), to_street(right))
-    for beyond, size in ((site.between(2.0, 3.4), 3.0), (site.between(19.0, 24.0), 4.0)):
+    for beyond, size in ((site.between(2.0, 3.4), 3.0), (site.between(19.0, 24.0), 4.0), (site.between(22.0, 34.0), 5.0)):
         at = s + site.between(2.0, width - 2.0)
         if site.rng() < 0.75:
             tall = site.between(1.4, 2.0) * size
@@ -210,8 +210,8 @@ def avenue(site, road, right):
 def playground(site, road, right, start, end, depth=20.0):
     """Behind a fence with one gate: swings, a slide, a frame to climb, a sand pit, benches and trees."""
     middle = (start + end) / 2
-    along(site, road, right, "none", "fence", start, middle - 1.5, 0.4, (0.1, 1.2))
-    along(site, road, right, "none", "fence", middle + 1.5, end, 0.4, (0.1, 1.2))
+    along(site, road, right, "none", "fence", start, middle - 1.5, 0.45, (0.1, 1.2))
+    along(site, road, right, "none", "fence", middle + 1.5, end, 0.45, (0.1, 1.2))
     along(site, road, right, "none", "fence", start, end, depth, (0.1, 1.2))
     for s in (start, end):
         place = (s, out(road, s, right, depth / 2 + 0.2))

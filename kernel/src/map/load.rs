@@ -6,10 +6,15 @@ use super::network::RoadNetwork;
 use crate::baking::{self, BakeError};
 
 /// Names of the bundled maps.
-pub const BUNDLED: [&str; 2] = ["city", "rural"];
+pub const BUNDLED: [&str; 4] = ["city", "rural", "old_town", "suburb"];
 
 /// What they are baked from; `kernel/maps/author.py` writes these.
-const TEXTS: [&str; BUNDLED.len()] = [include_str!("../../maps/city.xodr"), include_str!("../../maps/rural.xodr")];
+const TEXTS: [&str; BUNDLED.len()] = [
+    include_str!("../../maps/city.xodr"),
+    include_str!("../../maps/rural.xodr"),
+    include_str!("../../maps/old_town.xodr"),
+    include_str!("../../maps/suburb.xodr"),
+];
 
 /// Bakes the text of an OpenDRIVE file; `name` goes into [`MapData::name`](crate::map_data::MapData).
 ///

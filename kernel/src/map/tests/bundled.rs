@@ -3,8 +3,12 @@
 use super::*;
 
 /// What the bundled maps bake to; a change here changes every recording's map.
-const DIGESTS: [(&str, u128); BUNDLED.len()] =
-    [("city", 0x30c7_c429_b283_9e31_836d_025e_ab1e_c922), ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c)];
+const DIGESTS: [(&str, u128); BUNDLED.len()] = [
+    ("city", 0x30c7_c429_b283_9e31_836d_025e_ab1e_c922),
+    ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c),
+    ("old_town", 0),
+    ("suburb", 0),
+];
 
 #[test]
 fn digests_are_golden() {
@@ -92,4 +96,33 @@ fn the_countryside_has_hills_bends_and_rails() {
     assert!(map.crosswalks.len() == 2 && map.light_groups.is_empty());
     let fastest = map.lanes.iter().map(|l| l.speed_limit_mps).fold(0.0, f32::max);
     assert!((fastest - 100.0 / 3.6).abs() < 0.01);
+}
+
+#[test]
+fn the_old_town_is_narrow_and_cobbled() {
+    let map = bundled("old_town").unwrap();
+    let driving = || map.lanes.iter().filter(|l| l.kind == LaneKind::Driving && l.junction.is_none());
+    assert!(driving().all(|l| l.points.iter().all(|p| p.half_width_m <= 1.51)));
+    let setts = |l: &&Lane| map.ground(l.at(l.length_m / 2.0).position).unwrap().kind == SurfaceKind::Setts;
+    let (cobbled, all) = (driving().filter(setts).count(), driving().count());
+    assert!(2 * cobbled > all && cobbled < all, "{cobbled} of {all} lanes");
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::Building) > 400 && props(PropKind::Wall) > 80 && props(PropKind::ParkedCar) < 150);
+    assert!(map.surfaces.iter().any(|s| s.kind == SurfaceKind::Ground), "the bed of the tramway");
+    let lit = map.crosswalks.iter().filter(|c| c.junction.is_some()).count();
+    assert!(lit >= 12 && map.crosswalks.len() - lit >= 6);
+    assert!(map.lanes.iter().all(|l| l.speed_limit_mps < 31.0 / 3.6));
+}
+
+#[test]
+fn the_suburb_has_gardens_a_roundabout_and_loops_to_turn() {
+    let map = bundled("suburb").unwrap();
+    assert_eq!(crate::map_data::circles(&map.lanes).len(), 1);
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::Building) > 200 && props(PropKind::ParkedCar) > 200);
+    assert!(props(PropKind::Hedge) > 300 && props(PropKind::Fence) > 150 && props(PropKind::Tree) > 400);
+    assert!(map.lanes.iter().any(|l| l.kind == LaneKind::Biking) && map.lanes.iter().any(|l| l.kind == LaneKind::Parking));
+    assert_eq!(map.bus_stops.len(), 6);
+    let limits: Vec<f32> = map.lanes.iter().map(|l| (l.speed_limit_mps * 3.6).round()).collect();
+    assert!(limits.contains(&30.0) && limits.contains(&50.0));
 }
