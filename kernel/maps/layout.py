@@ -98,8 +98,10 @@ def sections(profile, length, bays):
     return [(0.0, profile), (BAYS_FROM, parked), (length - BAYS_FROM, profile)]
 
 
-def with_bay(strips, width=2.1):
-    return tuple(replace(strip, kind="parking", bay=width) if strip.kind == "shoulder" else strip for strip in strips)
+def with_bay(strips, width=2.3):
+    """A side with room for parked cars, behind a line at the edge of the lane."""
+    marked = lambda strip: replace(strip, mark="solid") if strip.kind == "driving" else strip
+    return tuple(replace(s, kind="parking", bay=width) if s.kind == "shoulder" else marked(s) for s in strips)
 
 
 def bend_through(path, points, radius):

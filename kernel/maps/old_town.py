@@ -14,7 +14,7 @@ from streets import Profile, Strip, Town, sign
 
 COBBLES = "cobblestone"
 GUTTER, PAVEMENT = Strip("shoulder", 0.4, mark="curb"), Strip("sidewalk", 1.8)
-STONES = Strip("driving", 2.75, COBBLES)
+STONES = Strip("driving", 2.85, COBBLES)
 ASPHALT = Strip("driving", 3.0)
 TRAM, ISLAND = Strip("tram", 2.8, mark="solid"), Strip("median", 2.8, mark="solid")
 TRACK_GAUGE = 1.435
@@ -261,7 +261,7 @@ def furnish(town, plan):
 
 def old_town():
     town = Town("old_town")
-    plan = lay_out(town, PLACES, WAYS, height, radius=5.0)
+    plan = lay_out(town, PLACES, WAYS, height, radius=6.5)
     tracks(town, plan)
     junctions(town, plan)
     signs(town, plan)

@@ -128,7 +128,7 @@ def parked(site, road, share, skip=()):
             bay = next((k for k, strip in enumerate(strips) if strip.kind == "parking"), None)
             if bay is None:
                 continue
-            t = sum(strip.width for strip in strips[:bay]) + strips[bay].bay / 2 + 0.05
+            t = sum(strip.width for strip in strips[:bay]) + strips[bay].bay / 2 + 0.15
             s = start + 8.0
             while s < end - 8.0:
                 is_gate = any(side == right and a - 2.6 < s < b + 2.6 for side, a, b in skip)
