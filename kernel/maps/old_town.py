@@ -7,9 +7,10 @@ middle. What lies inside the inner ring is paved with cobbles.
 import math
 from dataclasses import replace
 
+from city import generator
 from layout import Way, lay_out
 from opendrive import num
-from site_plan import Site, generator, lamps, out, parked, to_street
+from site_plan import Site, lamps, out, parked, to_street
 from streets import Profile, Strip, Town, sign
 
 COBBLES = "cobblestone"

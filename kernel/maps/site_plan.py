@@ -11,18 +11,6 @@ MARGIN = 0.2  # kept free beside lanes, metres
 INSET = 0.2  # what touches another thing, or a lane's margin, by less still fits, metres
 
 
-def generator(seed):
-    """A small linear congruential generator in [0, 1): the same map on every machine."""
-    state = seed
-
-    def draw():
-        nonlocal state
-        state = (state * 6364136223846793005 + 1442695040888963407) % 2**64
-        return (state >> 33) / 2**31
-
-    return draw
-
-
 def pose(path, s):
     """Place and heading `s` metres along a path."""
     for piece in path.pieces:

@@ -7,8 +7,9 @@ goes first. Dead ends have a loop to turn.
 import math
 from dataclasses import replace
 
+from city import generator
 from layout import Way, lay_out, ring
-from site_plan import Site, generator, lamps, out, parked, to_street
+from site_plan import Site, lamps, out, parked, to_street
 from streets import Profile, Strip, Town, sign
 
 GUTTER = Strip("shoulder", 0.4, mark="curb")
