@@ -515,20 +515,25 @@ def junction_text(j):
     return f'<junction id="{j.id}" name="" type="default">{out}</junction>\n'
 
 
-def write(m, folder):
+def document(m, roads, junctions):
+    """The whole file of a map, whose lights hang on controllers."""
     controllers = "".join(
         f'<controller id="{c}" name="" sequence="{n}"><control signalId="{s}" type="0"/></controller>\n'
         for j in m.junctions
         for c, s, n in j.controllers
     )
-    text = (
+    return (
         '<?xml version="1.0" encoding="UTF-8"?>\n<!-- Written by author.py; change that instead. -->\n'
         f'<OpenDRIVE><header revMajor="1" revMinor="6" name="{m.name}" version="1" north="0" south="0" east="0" west="0"/>\n'
-        + "".join(road_text(r) for r in m.roads)
-        + "".join(connection_text(c, j) for j in m.junctions for c in j.connections)
+        + "".join(roads)
         + controllers
-        + "".join(junction_text(j) for j in m.junctions)
+        + "".join(junctions)
         + "</OpenDRIVE>\n"
     )
+
+
+def write(m, folder):
+    roads = [road_text(r) for r in m.roads] + [connection_text(c, j) for j in m.junctions for c in j.connections]
+    text = document(m, roads, [junction_text(j) for j in m.junctions])
     (folder / f"{m.name}.xodr").write_text(text)
     print(f"{m.name}: {len(m.roads)} roads, {len(m.junctions)} junctions, {len(text)} bytes")

@@ -43,18 +43,16 @@ def test_shards_come_to_what_one_process_gives(tmp_path):
     [("compare", {"checkpoints": ["early", "truth"]}), ("redrive", {"without_intervention": True, "after": 1})],
 )
 def test_shards_of_files_are_finished_by_the_same_call(command, more, case, tmp_path):
-    files = [shutil.copy(case, tmp_path / f"{name}.case.mcap") for name in "abc"]
     call = getattr(aeye, command)
-    for i in (2, 1):
-        done = call(files, out=tmp_path / f"{i}", shard=(i, 2), **more)
-        assert (done["shard"], done["of"], done["done"]) == (i, 2, {1: 2, 2: 1}[i])
-        shutil.copytree(tmp_path / f"{i}", tmp_path / "together", dirs_exist_ok=True)
-    together = call(files, out=tmp_path / "together", **more)
-    alone = call(files, out=tmp_path / "alone", **more)
+    for i, done in ((2, 0), (1, 1)):
+        share = call(case, out=tmp_path / "together", shard=(i, 2), **more)
+        assert (share["shard"], share["of"], share["done"]) == (i, 2, done)
+    together = call(case, out=tmp_path / "together", **more)
+    alone = call(case, out=tmp_path / "alone", **more)
     different = {"speed", "out", "read", "kept"}
     assert {k: v for k, v in together.items() if k not in different} == {k: v for k, v in alone.items() if k not in different}
     with pytest.raises(aeye.InputError, match="expected \\(i, n\\)"):
-        call(files, out=tmp_path / "none", shard=(3, 2), **more)
+        call(case, out=tmp_path / "none", shard=(3, 2), **more)
 
 
 @pytest.mark.parametrize("shard", [(0, 2), (3, 2), (1, 0)])

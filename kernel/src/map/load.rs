@@ -6,12 +6,14 @@ use super::network::RoadNetwork;
 use crate::baking::{self, BakeError};
 
 /// Names of the bundled maps.
-pub const BUNDLED: [&str; 4] = ["city", "rural", "ring", "motorway"];
+pub const BUNDLED: [&str; 6] = ["city", "rural", "old_town", "suburb", "ring", "motorway"];
 
 /// What they are baked from; `kernel/maps/author.py` writes these.
 const TEXTS: [&str; BUNDLED.len()] = [
     include_str!("../../maps/city.xodr"),
     include_str!("../../maps/rural.xodr"),
+    include_str!("../../maps/old_town.xodr"),
+    include_str!("../../maps/suburb.xodr"),
     include_str!("../../maps/ring.xodr"),
     include_str!("../../maps/motorway.xodr"),
 ];

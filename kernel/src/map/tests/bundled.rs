@@ -6,6 +6,8 @@ use super::*;
 const DIGESTS: [(&str, u128); BUNDLED.len()] = [
     ("city", 0x30c7_c429_b283_9e31_836d_025e_ab1e_c922),
     ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c),
+    ("old_town", 0x96f5_c142_5447_ef86_edd3_75c3_0605_57b7),
+    ("suburb", 0xe5bf_312b_3f5e_4dca_5987_232a_063a_98f2),
     ("ring", 0x8ec2_cadd_d7b8_fb87_c9a8_48d5_e91d_9bf6),
     ("motorway", 0x1b37_06b7_5760_71fb_d847_111e_9da0_a342),
 ];
@@ -122,4 +124,35 @@ fn the_motorway_is_long_and_crossed_above() {
     let above = |p: Vec3| points().any(|q| p.z - q.z > 5.0 && (p - q).truncate().length() < 1.0);
     assert!(points().filter(|p| p.z > 13.0).any(above), "a bridge");
     assert_eq!(map.crosswalks.len(), 2);
+}
+
+#[test]
+fn the_old_town_is_narrow_and_cobbled() {
+    let map = bundled("old_town").unwrap();
+    let driving = || map.lanes.iter().filter(|l| l.kind == LaneKind::Driving && l.junction.is_none());
+    assert!(driving().all(|l| l.points.iter().all(|p| p.half_width_m <= 1.51)));
+    let setts = |l: &&Lane| map.ground(l.at(l.length_m / 2.0).position).unwrap().kind == SurfaceKind::Setts;
+    let (cobbled, all) = (driving().filter(setts).count(), driving().count());
+    assert!(4 * cobbled > all && cobbled < all, "{cobbled} of {all} lanes");
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::Building) > 400 && props(PropKind::Wall) > 80 && props(PropKind::ParkedCar) < 150);
+    assert!(map.surfaces.iter().any(|s| s.kind == SurfaceKind::Ground), "the bed of the tramway");
+    let lit = map.crosswalks.iter().filter(|c| c.junction.is_some()).count();
+    assert!(lit >= 12 && map.crosswalks.len() - lit >= 6);
+    assert!(map.lanes.iter().all(|l| l.speed_limit_mps < 31.0 / 3.6));
+}
+
+#[test]
+fn the_suburb_has_gardens_a_roundabout_and_loops_to_turn() {
+    let map = bundled("suburb").unwrap();
+    assert_eq!(crate::map_data::circles(&map.lanes).len(), 1);
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::Building) > 200 && props(PropKind::ParkedCar) > 200);
+    assert!(props(PropKind::Hedge) > 300 && props(PropKind::Fence) > 150 && props(PropKind::Tree) > 400);
+    assert!(
+        map.lanes.iter().any(|l| l.kind == LaneKind::Biking) && map.lanes.iter().any(|l| l.kind == LaneKind::Parking)
+    );
+    assert_eq!(map.bus_stops.len(), 6);
+    let limits: Vec<f32> = map.lanes.iter().map(|l| (l.speed_limit_mps * 3.6).round()).collect();
+    assert!(limits.contains(&30.0) && limits.contains(&50.0));
 }
