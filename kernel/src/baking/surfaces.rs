@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::{Vec2, Vec3};
 
 use super::mesh::Meshes;
+use super::notes::{Notes, Passed};
 use super::rounding::{snap, snap3};
 use super::shapes::point;
 use super::source::Source;
@@ -30,9 +31,15 @@ const STRAIGHT_M: f32 = 0.003;
 const STOP_LINE_M: f32 = 0.4;
 
 /// All surfaces but the land.
-pub(super) fn bake(source: &Source, lanes: &[Lane], junctions: &[Junction], crosswalks: &[Crosswalk]) -> Vec<Surface> {
+pub(super) fn bake(
+    source: &Source,
+    lanes: &[Lane],
+    junctions: &[Junction],
+    crosswalks: &[Crosswalk],
+    notes: &mut Notes,
+) -> Vec<Surface> {
     let mut meshes = Meshes::new();
-    pave(source, lanes, &mut meshes);
+    pave(source, lanes, &mut meshes, notes);
     for junction in junctions {
         let corners = floor(lanes, junction);
         meshes.of(SurfaceKind::Road).fan(&corners);
@@ -66,7 +73,12 @@ fn named(surface: &str) -> Option<SurfaceKind> {
 }
 
 /// The strip of a lane, cut where its material changes.
-fn stretches(source: &Source, lane: &xodr::Lane, ribs: Vec<[Vec3; 2]>) -> Vec<(SurfaceKind, Vec<[Vec3; 2]>)> {
+fn stretches(
+    source: &Source,
+    lane: &xodr::Lane,
+    ribs: Vec<[Vec3; 2]>,
+    notes: &mut Notes,
+) -> Vec<(SurfaceKind, Vec<[Vec3; 2]>)> {
     let usual = material(lane.kind);
     let told = source.materials(lane.id);
     if told.is_empty() || usual != SurfaceKind::Road {
@@ -77,7 +89,12 @@ fn stretches(source: &Source, lane: &xodr::Lane, ribs: Vec<[Vec3; 2]>) -> Vec<(S
     let mut from_m = 0.0;
     for stretch in told {
         stretches.push((usual, cut(&ribs, &places, from_m..stretch.from)));
-        stretches.push((named(&stretch.value.surface).unwrap_or(usual), cut(&ribs, &places, stretch.from..stretch.to)));
+        let kind = named(&stretch.value.surface).unwrap_or_else(|| {
+            let what = || format!("material {}", stretch.value.surface);
+            notes.pass(Passed::Surface, "counts as asphalt", what, || source.place_of_lane(lane.id));
+            usual
+        });
+        stretches.push((kind, cut(&ribs, &places, stretch.from..stretch.to)));
         from_m = stretch.to;
     }
     stretches.push((usual, cut(&ribs, &places, from_m..f32::MAX)));
@@ -116,7 +133,7 @@ fn cut(ribs: &[[Vec3; 2]], places: &[f32], between_m: Range<f32>) -> Vec<[Vec3; 
     part
 }
 
-fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes) {
+fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes, notes: &mut Notes) {
     let mesh = source.net.surface_mesh();
     for span in &mesh.lanes {
         let (Some(lane), Some(&id)) = (source.net.lane(span.lane), source.ids.get(&span.lane.0)) else { continue };
@@ -130,7 +147,7 @@ fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes) {
             .chunks_exact(2)
             .map(|rib| [snap3(point(rib[0]) + lift), snap3(point(rib[1]) + lift)])
             .collect();
-        for (kind, ribs) in stretches(source, lane, ribs) {
+        for (kind, ribs) in stretches(source, lane, ribs, notes) {
             let ribs = thinned(&ribs);
             let surface = meshes.of(kind);
             surface.strip(&ribs);
