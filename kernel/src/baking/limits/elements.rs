@@ -11,10 +11,7 @@ const READ: [(&str, &[&str]); 46] = [
     ("header", &["defaultRegulations"]),
     ("defaultRegulations", &["roadRegulations"]),
     ("roadRegulations", &["semantics"]),
-    (
-        "road",
-        &["link", "type", "planView", "elevationProfile", "lateralProfile", "lanes", "objects", "signals"],
-    ),
+    ("road", &["link", "type", "planView", "elevationProfile", "lateralProfile", "lanes", "objects", "signals"]),
     ("link", &["predecessor", "successor"]),
     // That of a road, and that of a road mark.
     ("type", &["speed", "line"]),
