@@ -10,6 +10,7 @@ mod ids;
 mod junctions;
 mod lanes;
 mod marks;
+mod missing;
 mod numbers;
 mod objects;
 mod origin;
@@ -60,6 +61,7 @@ pub fn check<'a>(text: &'a str, notes: &mut Notes) -> Result<Checked<'a>, BakeEr
     crowd.check()?;
     junctions::check(root, &references, &mut sums)?;
     elements::note(root, notes);
+    missing::note(root, notes);
     let origin_m = origin::of(roads);
     let text = if origin_m == [0.0; 2] { text.into() } else { origin::subtract(&document, origin_m).into() };
     Ok(Checked { text, origin_m, roads: count })
