@@ -168,9 +168,16 @@ fn link(source: &Source, lanes: &mut [Lane], notes: &mut Notes) {
         let mut next: Vec<LaneId> = from.successors.iter().filter_map(|l| source.ids.get(&l.0).copied()).collect();
         next.retain(|&to| {
             let follows = follows(&lanes[id], &lanes[to as usize]);
-            if !follows {
-                let what = || format!("{} lane after {} lane", said(&lanes[to as usize]), said(&lanes[id]));
-                let why = "does not follow: begins too far off, or is of another kind";
+            let [here, there] = [&lanes[id], &lanes[to as usize]];
+            let of_one_kind = here.kind == there.kind;
+            // A strip beside the road may well go on as another.
+            if !follows && (of_one_kind || here.kind == LaneKind::Driving) {
+                let what = || format!("{} lane after {} lane", said(there), said(here));
+                let why = if of_one_kind {
+                    "begins too far off to follow"
+                } else {
+                    "is of another kind, and does not follow"
+                };
                 notes.pass(Passed::Reference, why, what, || source.place_of_lane(from.id));
             }
             follows

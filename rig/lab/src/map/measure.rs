@@ -12,7 +12,8 @@ const STRETCH_M: f32 = 5.0;
 
 /// Kilometres, to the metre.
 pub(super) fn km(metres: f64) -> f64 {
-    metres.round() / 1000.0
+    // Adding 0 makes the negative zero of an empty sum positive.
+    metres.round() / 1000.0 + 0.0
 }
 
 /// What a kind of lane is called.

@@ -28,9 +28,13 @@ pub(super) fn of(map: &MapData) -> Reach {
     let dead_ends: Vec<LaneId> =
         (0..map.lanes.len() as LaneId).filter(|id| driving(*id) && leads_nowhere(map, *id)).collect();
     let named = |ids: &[LaneId]| {
-        let mut names: Vec<String> = ids.iter().map(|id| map.lanes[*id as usize].name.clone()).collect();
-        names.dedup();
-        names.truncate(NAMED);
+        let mut names: Vec<String> = Vec::new();
+        for id in ids {
+            let name = &map.lanes[*id as usize].name;
+            if names.len() < NAMED && !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
         names
     };
     Reach {

@@ -5,7 +5,7 @@ use std::fmt;
 use base::say::printable;
 use base::words;
 
-use super::figures::{Inspected, Junctions, NotUnderstood};
+use super::figures::{Inspected, Junctions, NotUnderstood, Props};
 use super::reach::NAMED;
 
 impl fmt::Display for Inspected {
@@ -59,8 +59,9 @@ impl Inspected {
             };
             lines.push(("lanes", format!("{:.3} km {what}, {}", lanes.km, words::count(lanes.count, "lane"))));
         }
-        let limits: Vec<String> = self.limits.iter().map(|limit| format!("{:.3} km {}", limit.km, limit.kmh)).collect();
-        lines.push(("limits", format!("{} km/h", limits.join(", "))));
+        let limits: Vec<String> =
+            self.limits.iter().map(|limit| format!("{:.3} km at {} km/h", limit.km, limit.kmh)).collect();
+        lines.push(("limits", limits.join(", ")));
         lines.push(("roads", format!("{}, {} of them in junctions", self.roads, self.roads_inside)));
         lines.push(("junctions", junctions(&self.junctions)));
         lines.push(("roundabouts", self.roundabouts.to_string()));
@@ -91,9 +92,11 @@ impl Inspected {
         lines.push(("bus stops", self.bus_stops.to_string()));
         let cars = words::count(self.parking.cars, "parked car");
         lines.push(("parking", format!("{:.3} km of lanes, {cars}", self.parking.lanes_km)));
-        let props = self.props.iter().map(|props| match props.made_up {
-            0 => words::count(props.named, props.kind),
-            made_up => format!("{} ({made_up} made up)", words::count(props.named + made_up, props.kind)),
+        let props = self.props.iter().map(|Props { kind, named, made_up }| {
+            let all = named + made_up;
+            // Furniture is not counted.
+            let many = if *kind == "furniture" { format!("{all} {kind}") } else { words::count(all, kind) };
+            if *made_up > 0 { format!("{many} ({made_up} made up)") } else { many }
         });
         let props: Vec<String> = props.collect();
         lines.push(("props", if props.is_empty() { "none".into() } else { props.join(", ") }));

@@ -17,7 +17,7 @@ const TITLE_PX: u32 = 58;
 const SCALE_PX: u32 = 40;
 const ROW_PX: u32 = 22;
 /// Width of an entry of the legend, pixels.
-const ENTRY_PX: u32 = 176;
+const ENTRY_PX: u32 = 190;
 /// The scale is at most this share of the width.
 const SCALE: f64 = 0.3;
 const INK: &str = "#1d2329";
@@ -71,7 +71,7 @@ pub fn around(sheet: &Sheet, baked: &Baked, keys: &[Key]) -> (String, String, [u
     );
     let mut foot = String::from("</svg>\n");
     let below = TITLE_PX + map_height;
-    north(&mut foot, left + map_width - 22, TITLE_PX + 8);
+    north(&mut foot, left + map_width - 32, TITLE_PX + 8);
     scale(&mut foot, sheet, left, below, f64::from(map_width));
     for (k, key) in (0..).zip(keys) {
         let (column, row) = (k % columns, k / columns);

@@ -12,6 +12,8 @@ use super::sheet::{Sheet, cm};
 
 /// Junctions whose mouths lie farther apart have no area that could be drawn, metres.
 const WIDEST_M: f32 = 160.0;
+/// As far apart those may lie that the world paves as a whole, metres.
+const PAVED_M: f32 = 60.0;
 
 /// A kind of lane in the picture: a class, a colour, what it is called, and which lanes are of it.
 struct Kind {
@@ -85,7 +87,7 @@ pub fn scenery(sheet: &Sheet, map: &MapData, out: &mut String, keys: &mut Vec<Ke
 pub fn lanes(sheet: &Sheet, baked: &Baked, out: &mut String, keys: &mut Vec<Key>) {
     let mut floors = Path::default();
     for junction in &baked.map.junctions {
-        floors.area(sheet, &hull(&baked.map, junction));
+        floors.area(sheet, &hull(&baked.map, junction, PAVED_M));
     }
     floors.put(out, "floor", "fill=\"#9a9ea4\"");
     for Kind { class, fill, name, is } in KINDS {
@@ -106,7 +108,7 @@ pub fn lanes(sheet: &Sheet, baked: &Baked, out: &mut String, keys: &mut Vec<Key>
 pub fn junctions(sheet: &Sheet, map: &MapData, out: &mut String, keys: &mut Vec<Key>) {
     let mut path = Path::default();
     for junction in &map.junctions {
-        path.area(sheet, &hull(map, junction));
+        path.area(sheet, &hull(map, junction, WIDEST_M));
     }
     let width = cm(sheet.metres(1.0, 0.15, 1.0));
     let style = "fill=\"#2f6fb5\" fill-opacity=\".12\" stroke=\"#2f6fb5\" stroke-opacity=\".6\"";
@@ -143,8 +145,8 @@ fn corners(prop: &Prop) -> [Vec2; 4] {
     [forward + left, left - forward, -forward - left, forward - left].map(|corner| prop.position.xy() + corner)
 }
 
-/// The convex hull of the mouths of a junction (Andrew's monotone chain); nothing of one that is wide apart.
-fn hull(map: &MapData, junction: &Junction) -> Vec<Vec2> {
+/// The convex hull of the mouths of a junction (Andrew's monotone chain); nothing of one that is so wide.
+fn hull(map: &MapData, junction: &Junction, widest_m: f32) -> Vec<Vec2> {
     let lanes = junction.lanes.iter().map(|&lane| &map.lanes[lane as usize]);
     let sides = |p: &LanePoint| {
         let left = direction(p.heading_rad).perp() * p.half_width_m;
@@ -153,7 +155,7 @@ fn hull(map: &MapData, junction: &Junction) -> Vec<Vec2> {
     let mut points: Vec<Vec2> = lanes.flat_map(|lane| [lane.start(), lane.end()]).flat_map(sides).collect();
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
-    let far = points.iter().any(|a| a.distance(points[0]) > WIDEST_M);
+    let far = points.iter().any(|a| points.iter().any(|b| a.distance(*b) > widest_m));
     if junction.lanes.len() < 2 || points.len() < 3 || far {
         return Vec::new();
     }

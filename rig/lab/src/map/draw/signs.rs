@@ -61,7 +61,7 @@ pub fn all(sheet: &Sheet, map: &MapData, out: &mut String, keys: &mut Vec<Key>) 
     let stops = map.bus_stops.iter().map(|stop| map.lane_point(stop.lane, stop.s_m).position.xy());
     placed.extend(stops.map(|place| (&BUS, place, None)));
     placed.extend(map.light_heads.iter().map(|head| (&LIGHT, head.position.xy(), None)));
-    let radius_m = sheet.metres(5.5, 0.7, 9.0);
+    let radius_m = sheet.metres(6.0, 0.7, 9.0);
     let scale = f64::from(radius_m) * 10.0;
     for symbol in [&LIMIT, &STOP, &YIELD, &BUS, &LIGHT] {
         if placed.iter().any(|(other, ..)| other.id == symbol.id) {
