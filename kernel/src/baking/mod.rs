@@ -10,6 +10,7 @@ mod lanes;
 mod lights;
 mod limits;
 mod marks;
+mod materials;
 mod mesh;
 mod notes;
 mod pace;

@@ -2,14 +2,16 @@
 
 use std::fmt::Write;
 
+use base::words;
 use kernel::map::{Baked, LaneKind};
 
 use super::sheet::Sheet;
 use crate::map::measure::{extent_m, km};
 use crate::plot::escape;
 
-/// Narrowest picture, pixels: the title must fit.
-const LEAST_WIDTH_PX: u32 = 480;
+/// Narrowest picture, pixels: what is said below the title must fit, and for the title so much for each letter.
+const LEAST_WIDTH_PX: u32 = 620;
+const LETTER_PX: u32 = 13;
 /// Room left and right of the map, and above it, pixels.
 const SIDE_PX: u32 = 16;
 const TITLE_PX: u32 = 58;
@@ -46,7 +48,8 @@ pub enum Swatch {
 /// What comes before the layers of the map and what comes after, and the size of the picture.
 pub fn around(sheet: &Sheet, baked: &Baked, keys: &[Key]) -> (String, String, [u32; 2]) {
     let [map_width, map_height] = sheet.size_px();
-    let width = (map_width + 2 * SIDE_PX).max(LEAST_WIDTH_PX);
+    let letters = baked.map.name.chars().count() as u32;
+    let width = (map_width.max(letters * LETTER_PX) + 2 * SIDE_PX).max(LEAST_WIDTH_PX);
     let columns = ((width - 2 * SIDE_PX) / ENTRY_PX).max(1);
     let rows = (keys.len() as u32).div_ceil(columns);
     let height = TITLE_PX + map_height + SCALE_PX + rows * ROW_PX + SIDE_PX;
@@ -98,8 +101,8 @@ fn about(baked: &Baked) -> String {
     };
     let digest = format!("{:032x}", baked.map.digest);
     format!(
-        "{version}, {east_m:.0} m x {north_m:.0} m, {driving_km:.1} km of driving lanes, {} junctions, digest {}",
-        baked.map.junctions.len(),
+        "{version}, {east_m:.0} m x {north_m:.0} m, {driving_km:.1} km of driving lanes, {}, digest {}",
+        words::count(baked.map.junctions.len(), "junction"),
         &digest[..8]
     )
 }

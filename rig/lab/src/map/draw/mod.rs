@@ -119,13 +119,14 @@ mod tests {
                 picture.text.is_ascii() && !picture.text.contains("NaN") && !picture.text.contains("inf"),
                 "{name}"
             );
-            for layer in ["driving", "sidewalk", "mark", "crosswalk", "arrow", "building"] {
+            let layers = ["driving", "mark", "arrow", "sidewalk", "crosswalk", "building", "junction", "parked"];
+            for layer in if name == "city" { &layers[..] } else { &layers[..3] } {
                 assert!(picture.text.contains(&format!("class=\"{layer}")), "{name} has no {layer}");
             }
             assert_eq!(picture.text.matches("<g").count(), picture.text.matches("</g>").count(), "{name}");
             assert_eq!(picture.text.matches("<svg").count(), picture.text.matches("</svg>").count(), "{name}");
             let quotes = picture.text.matches('"').count();
-            assert!(quotes % 2 == 0 && picture.size_px[0] >= 480, "{name}");
+            assert!(quotes % 2 == 0 && picture.size_px[0] >= 620, "{name}");
         }
     }
 
