@@ -23,8 +23,8 @@ struct Kind {
     is: fn(&Lane, &str) -> bool,
 }
 
-/// The kinds of lanes, in the order in which they are drawn.
-const KINDS: [Kind; 8] = [
+/// Strips of land, on which trees stand, in the order in which they are drawn.
+const STRIPS: [Kind; 2] = [
     Kind {
         class: "verge",
         fill: "#cfd8c0",
@@ -32,6 +32,10 @@ const KINDS: [Kind; 8] = [
         is: |l, t| l.kind == LaneKind::Other && is_green(t),
     },
     Kind { class: "other", fill: "#c6c3bd", name: "other lane", is: |l, t| l.kind == LaneKind::Other && !is_green(t) },
+];
+
+/// What has a surface, in the order in which it is drawn.
+const KINDS: [Kind; 6] = [
     Kind { class: "shoulder", fill: "#b3b1a8", name: "shoulder", is: |l, _| l.kind == LaneKind::Shoulder },
     Kind { class: "sidewalk", fill: "#ddd3c2", name: "sidewalk", is: |l, _| l.kind == LaneKind::Sidewalk },
     Kind { class: "parking", fill: "#a9a4c4", name: "parking", is: |l, _| l.kind == LaneKind::Parking },
@@ -83,14 +87,23 @@ pub fn scenery(sheet: &Sheet, map: &MapData, out: &mut String, keys: &mut Vec<Ke
     key(!fences.is_empty(), Swatch::Line("#a59f90"), "fence, wall, rail");
 }
 
-/// Every lane as an area; what is driven on lies on the rest.
+/// Medians, verges and other strips.
+pub fn strips(sheet: &Sheet, baked: &Baked, out: &mut String, keys: &mut Vec<Key>) {
+    areas(sheet, baked, &STRIPS, out, keys);
+}
+
+/// All other lanes; what is driven on lies on the rest.
 pub fn lanes(sheet: &Sheet, baked: &Baked, out: &mut String, keys: &mut Vec<Key>) {
     let mut floors = Path::default();
     for junction in &baked.map.junctions {
         floors.area(sheet, &hull(&baked.map, junction, PAVED_M));
     }
     floors.put(out, "floor", "fill=\"#9a9ea4\"");
-    for Kind { class, fill, name, is } in KINDS {
+    areas(sheet, baked, &KINDS, out, keys);
+}
+
+fn areas(sheet: &Sheet, baked: &Baked, kinds: &[Kind], out: &mut String, keys: &mut Vec<Key>) {
+    for &Kind { class, fill, name, is } in kinds {
         let mut path = Path::default();
         for (lane, lane_type) in baked.map.lanes.iter().zip(&baked.told.lane_types) {
             // Strips without a function lie across the lanes of a junction.

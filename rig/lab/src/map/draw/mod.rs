@@ -90,6 +90,7 @@ struct Picture {
 fn svg(baked: &Baked, sheet: &Sheet) -> Picture {
     let mut body = String::new();
     let mut keys: Vec<Key> = Vec::new();
+    ground::strips(sheet, baked, &mut body, &mut keys);
     ground::scenery(sheet, &baked.map, &mut body, &mut keys);
     ground::lanes(sheet, baked, &mut body, &mut keys);
     paint::marks(sheet, baked, &mut body, &mut keys);
