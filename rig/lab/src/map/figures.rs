@@ -13,7 +13,7 @@ pub struct Inspected {
     /// Digest of what it bakes to, as recordings hold it.
     pub digest: String,
     /// Version of OpenDRIVE that the file declares; empty without one.
-    pub version: String,
+    pub opendrive: String,
     /// What wrote the file, as it says.
     pub vendor: String,
     /// What was subtracted from the coordinates of the file, metres east and north.

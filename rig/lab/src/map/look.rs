@@ -25,7 +25,7 @@ fn figures(file: &str, baked: Baked) -> Inspected {
         file: file.to_owned(),
         name: map.name.clone(),
         digest: format!("{:032x}", map.digest),
-        version: told.version.clone(),
+        opendrive: told.version.clone(),
         vendor: told.vendor.clone(),
         origin_m: map.origin_m,
         countries: told.countries.clone(),

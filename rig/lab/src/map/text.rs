@@ -28,7 +28,7 @@ type Line = (&'static str, String);
 impl Inspected {
     fn about(&self) -> Vec<Line> {
         let by = if self.vendor.is_empty() { String::new() } else { format!(" by {}", self.vendor) };
-        let version = if self.version.is_empty() { "without a version" } else { &self.version };
+        let version = if self.opendrive.is_empty() { "without a version" } else { &self.opendrive };
         let countries = if self.countries.is_empty() { "none named".into() } else { self.countries.join(", ") };
         let [east_m, north_m] = self.extent_m;
         let relief = &self.relief;
