@@ -127,7 +127,7 @@ mod tests {
             assert_eq!(picture.text.matches("<g").count(), picture.text.matches("</g>").count(), "{name}");
             assert_eq!(picture.text.matches("<svg").count(), picture.text.matches("</svg>").count(), "{name}");
             let quotes = picture.text.matches('"').count();
-            assert!(quotes % 2 == 0 && picture.size_px[0] >= 620, "{name}");
+            assert!(quotes.is_multiple_of(2) && picture.size_px[0] >= 620, "{name}");
         }
     }
 
