@@ -9,7 +9,7 @@ mod mutate;
 mod roads;
 
 use kernel::RoadNetwork;
-use kernel::map::{LaneKind, bake};
+use kernel::map::{LaneKind, bake_with_notes};
 use mutate::{Mutation, mutated, mutations};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -48,8 +48,17 @@ fn check_sound(map: &RoadNetwork) {
 
 fn check(text: &str) -> TestCaseResult {
     hunt::trying(&[("mutated.xodr", text.as_bytes())]);
-    match bake("mutated", text) {
-        Ok(map) => check_sound(&map),
+    match bake_with_notes("mutated", text) {
+        Ok(baked) => {
+            for group in &baked.passed_over {
+                let is_line = |text: &str| text.len() < 1000 && !text.contains(char::is_control);
+                assert!(group.count > 0 && is_line(&group.what) && is_line(&group.first), "{group:?}");
+            }
+            assert!(baked.told.marks.iter().all(|mark| mark.points.iter().all(|p| p.is_finite())));
+            assert_eq!(baked.told.lane_types.len(), baked.map.lanes.len());
+            assert_eq!(baked.told.controls.len(), baked.map.junctions.len());
+            check_sound(&baked.map.into());
+        }
         Err(refusal) => {
             let said = refusal.to_string();
             prop_assert!(

@@ -1,6 +1,7 @@
 //! Bus stops, by their signs.
 
-use super::catalogue::{Meaning, meaning};
+use super::catalogue::{self, Meaning, meaning};
+use super::notes::{Notes, Passed};
 use super::rounding::snap;
 use super::shapes::point;
 use super::source::Source;
@@ -13,9 +14,10 @@ const CLEAR_M: [f32; 2] = [15.0, 20.0];
 const BESIDE_M: f32 = 15.0;
 
 /// The stops of the lanes at the kerb.
-pub(super) fn bake(source: &Source, lanes: &[Lane]) -> Vec<BusStop> {
+pub(super) fn bake(source: &Source, lanes: &[Lane], notes: &mut Notes) -> Vec<BusStop> {
     let mut found = Vec::new();
-    for signal in source.net.signals().iter().filter(|signal| meaning(signal) == Some(Meaning::BusStop)) {
+    let signals = source.net.signals().iter().enumerate();
+    for (index, signal) in signals.filter(|(_, signal)| meaning(signal) == Some(Meaning::BusStop)) {
         let at = point(signal.position);
         let signalled = signal.lanes.iter().filter_map(|l| source.ids.get(&l.0).copied());
         let beside = |&id: &LaneId| {
@@ -25,6 +27,10 @@ pub(super) fn bake(source: &Source, lanes: &[Lane]) -> Vec<BusStop> {
             (lane.kind == LaneKind::Driving && lane.junction.is_none() && clear).then_some((away_m, id, snap(s_m)))
         };
         let nearest = signalled.filter_map(|id| beside(&id)).min_by(|a, b| a.0.total_cmp(&b.0));
+        if nearest.is_none() {
+            let (said, place) = (|| catalogue::said(signal), || source.place_of_signal(index));
+            notes.pass(Passed::Signal, "no bus can halt there", said, place);
+        }
         found.extend(nearest.map(|(_, lane, s_m)| BusStop { lane, s_m }));
     }
     found.sort_by(|a, b| a.lane.cmp(&b.lane).then(a.s_m.total_cmp(&b.s_m)));

@@ -88,22 +88,41 @@ const NOT_FOR_CARS: [&str; 3] = ["1000002", "1000007", "1000013"];
 /// A mile an hour, m/s.
 const MPH_MPS: f32 = 0.44704;
 
-/// What a signal of the file means.
+/// What a signal of the file means; `None` where it means nothing here.
 pub(super) fn meaning(signal: &xodr::Signal) -> Option<Meaning> {
+    read(signal).ok()
+}
+
+/// What a signal of the file means, or why it means nothing here.
+pub(super) fn read(signal: &xodr::Signal) -> Result<Meaning, &'static str> {
     if signal.invalidated {
-        return None;
+        return Err("is struck out");
     }
     if let Some(turns) = light(signal) {
-        return Some(Meaning::Light(turns));
+        return Ok(Meaning::Light(turns));
     }
-    let (country, sign) = sign(&signal.country, &signal.kind, &signal.subtype)?;
+    if NOT_FOR_CARS.contains(&signal.kind.as_str()) {
+        return Err("holds no vehicles");
+    }
+    let known = sign(&signal.country, &signal.kind, &signal.subtype);
+    let (country, sign) = known.ok_or("is in none of the catalogues")?;
     match sign {
-        Sign::Stop => Some(Meaning::Stop),
-        Sign::Yield => Some(Meaning::Yield),
-        Sign::Priority => Some(Meaning::Priority),
-        Sign::BusStop => Some(Meaning::BusStop),
-        Sign::Limit => limit_mps(signal, country).map(Meaning::Limit),
+        Sign::Stop => Ok(Meaning::Stop),
+        Sign::Yield => Ok(Meaning::Yield),
+        Sign::Priority => Ok(Meaning::Priority),
+        Sign::BusStop => Ok(Meaning::BusStop),
+        Sign::Limit => limit_mps(signal, country).map(Meaning::Limit).ok_or("shows no speed"),
     }
+}
+
+/// A signal in a note, as the file writes it.
+pub(super) fn said(signal: &xodr::Signal) -> String {
+    let told = |name: &str, text: &str| match text.trim() {
+        "" => format!("no {name}"),
+        text => format!("{name} {text}"),
+    };
+    let [kind, subtype] = [told("type", &signal.kind), told("subtype", &signal.subtype)];
+    format!("{kind}, {subtype}, {}", told("country", &signal.country))
 }
 
 /// Whether a sign that a file writes so shows a speed limit.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
+use super::notes::{Notes, Passed};
 use super::rounding::{snap, snap3};
 use super::shapes::{least_rectangle, point};
 use super::signs::Governed;
@@ -29,12 +30,16 @@ pub(super) fn bake(
     roads: &Roads<'_>,
     junctions: &[Junction],
     governed: &[Governed],
+    notes: &mut Notes,
 ) -> Vec<Crosswalk> {
-    let objects = source.net.objects().iter().filter(|o| o.kind == xodr::ObjectType::Crosswalk);
-    let outlines = objects.filter_map(|o| footprint(&o.shape));
-    let axes = outlines.filter_map(|outline| axis(roads, &outline));
-    let mut found: Vec<Crosswalk> =
-        axes.filter_map(|(ends, half_width_m)| crosswalk(roads, ends, half_width_m)).collect();
+    let mut found: Vec<Crosswalk> = Vec::new();
+    let objects = source.net.objects().iter().enumerate();
+    for (index, object) in objects.filter(|(_, o)| o.kind == xodr::ObjectType::Crosswalk) {
+        match named(roads, &object.shape) {
+            Ok(crosswalk) => found.push(crosswalk),
+            Err(why) => notes.pass(Passed::Object, why, || "type crosswalk".into(), || source.place_of_object(index)),
+        }
+    }
     let lit: BTreeSet<u32> = governed.iter().filter(|g| g.is_light()).map(|g| g.junction).collect();
     let mut crossed: BTreeSet<u32> = found.iter().flat_map(|c| junctions_of(roads.lanes, c)).collect();
     for id in lit {
@@ -45,6 +50,13 @@ pub(super) fn bake(
         }
     }
     found
+}
+
+/// The crosswalk of an object, or why there is none.
+fn named(roads: &Roads<'_>, shape: &xodr::Shape) -> Result<Crosswalk, &'static str> {
+    let outline = footprint(shape).ok_or("has no area")?;
+    let (ends, half_width_m) = axis(roads, &outline).ok_or("lies at no driving lane")?;
+    crosswalk(roads, ends, half_width_m).ok_or("crosses no driving lane, or is of an odd size")
 }
 
 /// The junctions that the lanes of a crosswalk reach.

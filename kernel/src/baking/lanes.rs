@@ -2,6 +2,7 @@
 
 use super::error::BakeError;
 use super::limits::LANE_POINTS;
+use super::notes::{Notes, Passed};
 use super::pace;
 use super::rounding::{snap, snap3};
 use super::shapes::point;
@@ -19,12 +20,16 @@ const MIN_WIDTH_M: f32 = 0.1;
 const MAX_GAP_M: f32 = 1.5;
 
 /// The lanes of the file, each with its origin, which the source remembers.
-pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError> {
+pub(super) fn bake(mut source: Source, notes: &mut Notes) -> Result<(Source, Vec<Lane>), BakeError> {
     let mut lanes: Vec<Lane> = Vec::new();
     let mut origins: Vec<Origin> = Vec::new();
     let net = &source.net;
     let mut points_left = LANE_POINTS;
-    for lane in net.lanes().iter().filter(|l| l.layer == xodr::Layer::Permanent) {
+    for lane in net.lanes() {
+        if lane.layer != xodr::Layer::Permanent {
+            pass(notes, &source, lane, "is of a temporary layer");
+            continue;
+        }
         let Some(at) = net.road_lane(lane.id) else { continue };
         let forward = lane.direction != xodr::Direction::Backward;
         let road = net.road(at.road).map_or("", |r| r.od_id());
@@ -39,7 +44,11 @@ pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError>
         }
         let points = centre_line(lane, forward);
         if points.len() < 2 || points.iter().all(|p| p.half_width_m * 2.0 < MIN_WIDTH_M) {
+            pass(notes, &source, lane, "is a strip without width or length");
             continue;
+        }
+        if let Some(why) = lost(lane) {
+            pass(notes, &source, lane, why);
         }
         let Some(speed_limit_mps) = speed_limit_mps(net, lane) else {
             return Err(refused(
@@ -60,8 +69,26 @@ pub(super) fn bake(mut source: Source) -> Result<(Source, Vec<Lane>), BakeError>
     if !lanes.iter().any(|l| l.kind == LaneKind::Driving) {
         return Err(nowhere_to_drive(source.roads));
     }
-    link(&source, &mut lanes);
+    link(&source, &mut lanes, notes);
     Ok((source, lanes))
+}
+
+/// Notes a lane that is left out, or whose type says more than is made of it.
+fn pass(notes: &mut Notes, source: &Source, lane: &xodr::Lane, why: &'static str) {
+    notes.pass(Passed::Lane, why, || format!("type {}", lane.kind), || source.place_of_lane(lane.id));
+}
+
+/// What a lane's type or direction says that [`kind`] does not keep.
+fn lost(lane: &xodr::Lane) -> Option<&'static str> {
+    use xodr::LaneType as T;
+    match lane.kind {
+        T::Bus | T::Taxi | T::Hov => Some("everybody drives there"),
+        T::Shared => Some("is driven on, not walked on"),
+        k if k.is_drivable() && lane.direction == xodr::Direction::Both => Some("is driven in one direction"),
+        T::Tram | T::Rail => Some("nothing runs there"),
+        T::RoadWorks | T::Special1 | T::Special2 | T::Special3 | T::Unknown => Some("nobody uses it"),
+        _ => None,
+    }
 }
 
 fn kind(kind: xodr::LaneType) -> LaneKind {
@@ -135,11 +162,26 @@ fn speed_limit_mps(net: &xodr::RoadNetwork, lane: &xodr::Lane) -> Option<f32> {
 }
 
 /// Tells each lane what follows, precedes and borders it.
-fn link(source: &Source, lanes: &mut [Lane]) {
+fn link(source: &Source, lanes: &mut [Lane], notes: &mut Notes) {
     for id in 0..lanes.len() {
         let Some(from) = source.net.lane(source.origins[id].lane) else { continue };
         let mut next: Vec<LaneId> = from.successors.iter().filter_map(|l| source.ids.get(&l.0).copied()).collect();
-        next.retain(|&to| follows(&lanes[id], &lanes[to as usize]));
+        next.retain(|&to| {
+            let follows = follows(&lanes[id], &lanes[to as usize]);
+            let [here, there] = [&lanes[id], &lanes[to as usize]];
+            let of_one_kind = here.kind == there.kind;
+            // A strip beside the road may well go on as another.
+            if !follows && (of_one_kind || here.kind == LaneKind::Driving) {
+                let what = || format!("{} lane after {} lane", said(there), said(here));
+                let why = if of_one_kind {
+                    "begins too far off to follow"
+                } else {
+                    "is of another kind, and does not follow"
+                };
+                notes.pass(Passed::Reference, why, what, || source.place_of_lane(from.id));
+            }
+            follows
+        });
         next.sort_unstable();
         next.dedup();
         for &to in &next {
@@ -148,6 +190,18 @@ fn link(source: &Source, lanes: &mut [Lane]) {
         lanes[id].successors = next;
         lanes[id].left = beside(source, from, &source.origins[id], true);
         lanes[id].right = beside(source, from, &source.origins[id], false);
+    }
+}
+
+/// What a lane is for, in a note.
+fn said(lane: &Lane) -> &'static str {
+    match lane.kind {
+        LaneKind::Driving => "driving",
+        LaneKind::Biking => "biking",
+        LaneKind::Sidewalk => "sidewalk",
+        LaneKind::Shoulder => "shoulder",
+        LaneKind::Parking => "parking",
+        LaneKind::Other => "other",
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::catalogue::{Meaning, meaning};
+use super::notes::{Notes, Passed};
 use super::rounding::{snap, snap3};
 use super::shapes::{beside_lanes, footprint, least_rectangle, point};
 use super::source::Source;
@@ -14,7 +15,7 @@ use crate::places::Roads;
 const LARGEST_M: f32 = 500.0;
 
 /// What the file names, and the poles of the lights.
-pub(super) fn bake(source: &Source, roads: &Roads<'_>, light_heads: &[LightHead]) -> Vec<Prop> {
+pub(super) fn bake(source: &Source, roads: &Roads<'_>, light_heads: &[LightHead], notes: &mut Notes) -> Vec<Prop> {
     let mut props: Vec<Prop> = light_heads.iter().map(|h| pole(h.position, h.facing_rad, h.height_m)).collect();
     for signal in source.net.signals() {
         if let Some(variant) = sign(signal) {
@@ -23,10 +24,21 @@ pub(super) fn bake(source: &Source, roads: &Roads<'_>, light_heads: &[LightHead]
             props.push(Prop { kind: PropKind::Sign, position, heading_rad: snap(signal.heading), size, variant });
         }
     }
-    for object in source.net.objects() {
+    for (index, object) in source.net.objects().iter().enumerate() {
+        let mut pass = |why| notes.pass(Passed::Object, why, || said(object), || source.place_of_object(index));
         let variant = object.id.0 as u32;
-        if let Some(kind) = kind(object) {
-            props.extend(boxes(&object.shape, kind, variant).into_iter().filter(|p| !is_on_lane(roads, p)));
+        let Some(kind) = kind(object) else {
+            // Crosswalks are looked at elsewhere.
+            if object.kind != xodr::ObjectType::Crosswalk {
+                pass("stands for nothing here");
+            }
+            continue;
+        };
+        let (known, boxes) = (props.len(), boxes(&object.shape, kind, variant));
+        let has_shape = !boxes.is_empty();
+        props.extend(boxes.into_iter().filter(|p| !is_on_lane(roads, p)));
+        if props.len() == known {
+            pass(if has_shape { "would stand on a driving lane" } else { "has no footprint, or no height" });
         }
     }
     props
@@ -53,6 +65,17 @@ fn ground_of(source: &Source, signal: &xodr::Signal) -> Vec3 {
     let road = source.net.road_position(signal.applies_at.first().copied().unwrap_or(signal.position));
     let height = road.and_then(|at| source.net.road_point(at)).map_or(board.z, |p| snap(p.z));
     Vec3::new(board.x, board.y, height)
+}
+
+/// An object in a note: those that are told apart by a number in their names are one.
+fn said(object: &xodr::Object) -> String {
+    let name = object.name.trim_end_matches(|c: char| c.is_ascii_digit() || "_-. ".contains(c));
+    match object.kind {
+        xodr::ObjectType::None | xodr::ObjectType::Unknown if !name.is_empty() => {
+            format!("type {}, name {name}", object.kind)
+        }
+        kind => format!("type {kind}"),
+    }
 }
 
 /// What an object is to us, by its type, else by its name; `None` for what does not stand up.

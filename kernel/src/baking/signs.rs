@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::catalogue::{Meaning, meaning};
+use super::catalogue::{self, Meaning};
+use super::notes::{Notes, Passed};
 use super::source::{Approach, Source};
 use crate::map_data::{Lane, LaneId, LaneKind, Turn};
 
@@ -34,12 +35,21 @@ impl Governed {
     }
 }
 
-/// Which signals govern which lanes.
-pub(super) fn governed(source: &Source, lanes: &[Lane]) -> Vec<Governed> {
+/// Which signals govern which lanes; notes those that mean nothing, and those that are for nobody.
+pub(super) fn governed(source: &Source, lanes: &[Lane], notes: &mut Notes) -> Vec<Governed> {
     let mut found: Vec<Governed> = Vec::new();
     let mut known: BTreeMap<(usize, u32, LaneId), usize> = BTreeMap::new();
     for (signal, s) in source.net.signals().iter().enumerate() {
-        let Some(meaning) = meaning(s).filter(|m| !matches!(m, Meaning::Limit(_) | Meaning::BusStop)) else { continue };
+        let mut pass = |why| notes.pass(Passed::Signal, why, || catalogue::said(s), || source.place_of_signal(signal));
+        let meaning = match catalogue::read(s) {
+            Ok(Meaning::Limit(_) | Meaning::BusStop) => continue,
+            Ok(meaning) => meaning,
+            Err(why) => {
+                pass(why);
+                continue;
+            }
+        };
+        let known_before = known.len();
         let signalled = s.lanes.iter().filter_map(|l| source.ids.get(&l.0).copied());
         for lane in signalled.filter(|&l| lanes[l as usize].kind == LaneKind::Driving) {
             for (junction, before, inside) in before_junction(lanes, lane, meaning) {
@@ -51,6 +61,9 @@ pub(super) fn governed(source: &Source, lanes: &[Lane]) -> Vec<Governed> {
                 found[at].inside.extend(inside);
             }
         }
+        if known.len() == known_before {
+            pass("is for no lane before a junction");
+        }
     }
     for g in &mut found {
         g.inside.retain(|&lane| g.meaning.holds(lanes[lane as usize].turn));
@@ -58,6 +71,12 @@ pub(super) fn governed(source: &Source, lanes: &[Lane]) -> Vec<Governed> {
         g.inside.dedup();
     }
     found.retain(|g| !g.inside.is_empty());
+    let holding: BTreeSet<usize> = found.iter().map(|g| g.signal).collect();
+    let known: BTreeSet<usize> = known.into_keys().map(|(signal, ..)| signal).collect();
+    for &signal in known.difference(&holding) {
+        let said = || catalogue::said(&source.net.signals()[signal]);
+        notes.pass(Passed::Signal, "holds a turn that there is not", said, || source.place_of_signal(signal));
+    }
     found
 }
 

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use super::error::BakeError;
 use super::limits::{self, Checked};
+use super::notes::Notes;
+use super::warnings;
 use crate::map_data::LaneId;
 
 /// A parsed file, and where each baked lane came from.
@@ -51,9 +53,10 @@ const KERB_M: f32 = 0.125;
 
 impl Source {
     /// The file, before any lane is baked.
-    pub fn read(text: &str) -> Result<Self, BakeError> {
-        let Checked { text, origin_m, roads } = limits::check(text)?;
+    pub fn read(text: &str, notes: &mut Notes) -> Result<Self, BakeError> {
+        let Checked { text, origin_m, roads } = limits::check(text, notes)?;
         let (net, provenance) = xodr::load_str_with_provenance(&text).map_err(|error| explain(error, roads))?;
+        warnings::note(&provenance.warnings, notes);
         let (origins, ids, sections) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
         Ok(Self { net, provenance, origin_m, roads, origins, ids, sections })
     }
@@ -80,6 +83,31 @@ impl Source {
         if is_raised { 0.0 } else { KERB_M }
     }
 
+    /// Where a signal takes effect, by its index in the file.
+    pub fn place_of_signal(&self, signal: usize) -> String {
+        self.provenance.signals.get(signal).map_or_else(String::new, |p| along(&p.road_id, p.s))
+    }
+
+    /// Where an object stands, by its index in the file.
+    pub fn place_of_object(&self, object: usize) -> String {
+        self.provenance.objects.get(object).map_or_else(String::new, |p| match p.road_id.is_empty() {
+            true => format!("junction {}", p.junction_id),
+            false => along(&p.road_id, p.s),
+        })
+    }
+
+    /// Where a road mark begins, by its index in the file.
+    pub fn place_of_mark(&self, mark: usize) -> String {
+        self.provenance.road_marks.get(mark).map_or_else(String::new, |p| along(&p.road_id, p.s))
+    }
+
+    /// The road, section and number of a lane.
+    pub fn place_of_lane(&self, lane: xodr::LaneId) -> String {
+        let at = self.net.road_lane(lane);
+        let road = at.and_then(|at| self.net.road(at.road)).map_or("", |road| road.od_id());
+        at.map_or_else(String::new, |at| format!("road {road}, section {}, lane {}", at.section, at.od_id))
+    }
+
     /// What the file says that a lane is made of, along its centre line.
     pub fn materials(&self, lane: xodr::LaneId) -> &[xodr::Along<xodr::Material>] {
         let all = self.net.lane_materials();
@@ -93,6 +121,11 @@ impl Source {
         let at = lanes.binary_search_by_key(&lane.0, |p| p.lane.0).ok()?;
         Some(&lanes[at])
     }
+}
+
+/// A place along a road.
+fn along(road: &str, s_m: f64) -> String {
+    format!("road {road}, s {s_m:.1} m")
 }
 
 /// The refusal of a file with so many roads, where there is no lane to drive on.

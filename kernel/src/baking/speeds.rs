@@ -1,6 +1,7 @@
 //! Speed limits by signs, which go before those of roads and lanes (ASAM OpenDRIVE 1.8, "Speed limits").
 
-use super::catalogue::{Meaning, meaning};
+use super::catalogue::{self, Meaning, meaning};
+use super::notes::{Notes, Passed};
 use super::shapes::point;
 use super::source::Source;
 use crate::map_data::{Lane, LaneId, LaneKind};
@@ -12,14 +13,19 @@ const BESIDE_M: f32 = 30.0;
 
 /// Gives the lanes after signs their limits: up to the next junction or sign, or where the file tells of another road
 /// type or limit.
-pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>) -> Vec<Lane> {
+pub(super) fn bake(source: &Source, mut lanes: Vec<Lane>, notes: &mut Notes) -> Vec<Lane> {
     let told: Vec<f32> = lanes.iter().map(|lane| lane.speed_limit_mps).collect();
     let mut signs: Vec<Option<(f32, f32)>> = vec![None; lanes.len()];
-    for signal in source.net.signals() {
+    for (index, signal) in source.net.signals().iter().enumerate() {
         let Some(Meaning::Limit(mps)) = meaning(signal) else { continue };
         let at = point(signal.applies_at.first().copied().unwrap_or(signal.position));
         let signalled = signal.lanes.iter().filter_map(|l| source.ids.get(&l.0).copied());
-        for id in signalled.filter(|&id| lanes[id as usize].kind == LaneKind::Driving) {
+        let driven: Vec<LaneId> = signalled.filter(|&id| lanes[id as usize].kind == LaneKind::Driving).collect();
+        if driven.is_empty() {
+            let (said, place) = (|| catalogue::said(signal), || source.place_of_signal(index));
+            notes.pass(Passed::Signal, "is for no driving lane", said, place);
+        }
+        for id in driven {
             let (along_m, _, away_m) = lanes[id as usize].project(at);
             // Referred to from another road it is for all of that.
             let s_m = if away_m < BESIDE_M { along_m } else { 0.0 };

@@ -4,43 +4,82 @@ use glam::Vec3;
 
 use super::error::BakeError;
 use super::limits::{CROWD, EXTENT_M};
+use super::notes::{Notes, PassedOver};
 use super::programme::Programmes;
+use super::signs::Governed;
 use super::source::Source;
+use super::told::Told;
 use super::{
-    bus_stops, crosswalks, dressing, junctions, lanes, lights, priority, props, signs, speeds, stops, surfaces,
+    bus_stops, crosswalks, dressing, junctions, lanes, lights, marks, priority, props, signs, speeds, stops, surfaces,
     terrain, walkways,
 };
 use crate::map_data::{Lane, MapData};
 use crate::places::LaneGrid;
+
+/// A map, and what else its file says.
+#[derive(Clone, Debug)]
+pub struct Baked {
+    /// What [`bake`] gives.
+    pub map: MapData,
+    /// What the file says that the map does not keep, for those who show it to people.
+    pub told: Told,
+    /// What was passed over on the way, by kind, the largest groups first.
+    pub passed_over: Vec<PassedOver>,
+}
 
 /// Bakes the text of an OpenDRIVE file; `name` goes into [`MapData::name`].
 ///
 /// # Errors
 /// When the text is not well-formed XML, or holds no lane to drive on.
 pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
-    let source = Source::read(xodr)?;
-    let (source, lanes) = lanes::bake(source)?;
-    let lanes = speeds::bake(&source, lanes);
+    map(name, xodr, &mut Notes::unwanted()).map(|(map, _)| map)
+}
+
+/// As [`bake`], and tells what was passed over.
+///
+/// # Errors
+/// As [`bake`].
+pub fn bake_with_notes(name: &str, xodr: &str) -> Result<Baked, BakeError> {
+    let mut notes = Notes::wanted();
+    let (map, Rest { source, governed, named_props }) = map(name, xodr, &mut notes)?;
+    let told = Told::of(&source, &map, &governed, named_props);
+    Ok(Baked { map, told, passed_over: notes.finish() })
+}
+
+/// What is left of baking.
+struct Rest {
+    source: Source,
+    governed: Vec<Governed>,
+    /// Props that the file names: the first ones.
+    named_props: usize,
+}
+
+fn map(name: &str, xodr: &str, notes: &mut Notes) -> Result<(MapData, Rest), BakeError> {
+    let source = Source::read(xodr, notes)?;
+    let (source, lanes) = lanes::bake(source, notes)?;
+    let lanes = speeds::bake(&source, lanes, notes);
     let bounds = bounds(&lanes)?;
     let grid = LaneGrid::new(&lanes);
     sparse(&lanes, &grid)?;
     let (lanes, junctions) = junctions::bake(&source, lanes, &grid);
-    let governed = signs::governed(&source, &lanes);
-    let crosswalks = crosswalks::bake(&source, &grid.over(&lanes), &junctions, &governed);
+    let governed = signs::governed(&source, &lanes, notes);
+    let crosswalks = crosswalks::bake(&source, &grid.over(&lanes), &junctions, &governed, notes);
     let groups = lights::Groups::new(&source, &lanes, &junctions, &governed);
     let crossed = stops::Crossed::new(&crosswalks);
     let programmes = Programmes { lanes: &lanes, crosswalks: &crosswalks, crossed: &crossed, groups: &groups };
     let (junctions, light_groups) = programmes.bake(junctions);
     let lanes = stops::bake(lanes, &crossed, &governed, &groups);
-    let bus_stops = bus_stops::bake(&source, &lanes);
+    let bus_stops = bus_stops::bake(&source, &lanes, notes);
     let light_heads = lights::heads(&source, &grid.over(&lanes), &governed, &groups);
     let crosswalks = crosswalks::lit(crosswalks, &lanes, &junctions);
     let (walk_nodes, walk_edges) = walkways::bake(&source, &grid.over(&lanes), &crosswalks);
-    let mut surfaces = surfaces::bake(&source, &lanes, &junctions, &crosswalks);
+    let mut surfaces = surfaces::bake(&source, &lanes, &junctions, &crosswalks, notes);
+    marks::note(&source, notes);
     // After the paint: who waits without a sign has no line on the road.
     let lanes = priority::bake(&source, lanes, &crossed, &governed);
     surfaces.push(terrain::bake(&lanes, bounds));
-    let props = props::bake(&source, &grid.over(&lanes), &light_heads);
+    let props = props::bake(&source, &grid.over(&lanes), &light_heads, notes);
+    let named_props = props.len();
     let props = dressing::bake(&source, grid.over(&lanes), bounds, props);
     let (name, origin_m) = (name.to_owned(), source.origin_m);
     let mut map = MapData {
@@ -60,7 +99,7 @@ pub fn bake(name: &str, xodr: &str) -> Result<MapData, BakeError> {
         origin_m,
     };
     map.digest = map.content_digest();
-    Ok(map)
+    Ok((map, Rest { source, governed, named_props }))
 }
 
 /// Room around the lanes that belongs to the map, metres.

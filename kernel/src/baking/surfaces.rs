@@ -1,10 +1,10 @@
 //! The road surface: asphalt, pavements with kerbs, verges, and paint.
 
-use std::ops::Range;
-
 use glam::{Vec2, Vec3};
 
+use super::materials::{material, stretches};
 use super::mesh::Meshes;
+use super::notes::Notes;
 use super::rounding::{snap, snap3};
 use super::shapes::point;
 use super::source::Source;
@@ -30,9 +30,15 @@ const STRAIGHT_M: f32 = 0.003;
 const STOP_LINE_M: f32 = 0.4;
 
 /// All surfaces but the land.
-pub(super) fn bake(source: &Source, lanes: &[Lane], junctions: &[Junction], crosswalks: &[Crosswalk]) -> Vec<Surface> {
+pub(super) fn bake(
+    source: &Source,
+    lanes: &[Lane],
+    junctions: &[Junction],
+    crosswalks: &[Crosswalk],
+    notes: &mut Notes,
+) -> Vec<Surface> {
     let mut meshes = Meshes::new();
-    pave(source, lanes, &mut meshes);
+    pave(source, lanes, &mut meshes, notes);
     for junction in junctions {
         let corners = floor(lanes, junction);
         meshes.of(SurfaceKind::Road).fan(&corners);
@@ -41,82 +47,7 @@ pub(super) fn bake(source: &Source, lanes: &[Lane], junctions: &[Junction], cros
     meshes.finish().collect()
 }
 
-fn material(kind: xodr::LaneType) -> SurfaceKind {
-    use xodr::LaneType as T;
-    match kind {
-        T::Sidewalk | T::Curb => SurfaceKind::Sidewalk,
-        T::None | T::Median | T::Unknown => SurfaceKind::Terrain,
-        T::Rail | T::Tram => SurfaceKind::Ground,
-        _ => SurfaceKind::Road,
-    }
-}
-
-/// What a lane of a road is made of by the words of a file, whose codes OpenDRIVE leaves open; `None` where they say
-/// nothing that is known. Its friction is not used: of which tyre it would be, the file does not say.
-fn named(surface: &str) -> Option<SurfaceKind> {
-    use SurfaceKind as K;
-    const WORDS: [(SurfaceKind, &[&str]); 4] = [
-        (K::Gravel, &["gravel", "unpaved", "dirt"]),
-        (K::Setts, &["cobble", "setts", "paving"]),
-        (K::Terrain, &["grass", "soil", "mud"]),
-        (K::Road, &["asphalt", "concrete", "tarmac"]),
-    ];
-    let surface = surface.to_ascii_lowercase();
-    WORDS.iter().find(|(_, words)| words.iter().any(|word| surface.contains(word))).map(|(kind, _)| *kind)
-}
-
-/// The strip of a lane, cut where its material changes.
-fn stretches(source: &Source, lane: &xodr::Lane, ribs: Vec<[Vec3; 2]>) -> Vec<(SurfaceKind, Vec<[Vec3; 2]>)> {
-    let usual = material(lane.kind);
-    let told = source.materials(lane.id);
-    if told.is_empty() || usual != SurfaceKind::Road {
-        return vec![(usual, ribs)];
-    }
-    let places = measured(&ribs);
-    let mut stretches = Vec::new();
-    let mut from_m = 0.0;
-    for stretch in told {
-        stretches.push((usual, cut(&ribs, &places, from_m..stretch.from)));
-        stretches.push((named(&stretch.value.surface).unwrap_or(usual), cut(&ribs, &places, stretch.from..stretch.to)));
-        from_m = stretch.to;
-    }
-    stretches.push((usual, cut(&ribs, &places, from_m..f32::MAX)));
-    stretches
-}
-
-/// How far along the middle of a strip each of its ribs is, metres.
-fn measured(ribs: &[[Vec3; 2]]) -> Vec<f32> {
-    let middle = |rib: &[Vec3; 2]| 0.5 * (rib[0] + rib[1]);
-    let mut along_m = 0.0;
-    let steps = ribs.windows(2).map(|pair| {
-        along_m += middle(&pair[0]).distance(middle(&pair[1]));
-        along_m
-    });
-    std::iter::once(0.0).chain(steps).collect()
-}
-
-/// The part of a strip between two places along it, metres.
-fn cut(ribs: &[[Vec3; 2]], places: &[f32], between_m: Range<f32>) -> Vec<[Vec3; 2]> {
-    let mut part = Vec::new();
-    for (pair, place) in ribs.windows(2).zip(places.windows(2)) {
-        let (start, end) = (place[0].max(between_m.start), place[1].min(between_m.end));
-        if start >= end {
-            continue;
-        }
-        let at = |s_m: f32| {
-            let share = (s_m - place[0]) / (place[1] - place[0]);
-            [0, 1]
-                .map(|side| if share == 1.0 { pair[1][side] } else { snap3(pair[0][side].lerp(pair[1][side], share)) })
-        };
-        if part.is_empty() {
-            part.push(at(start));
-        }
-        part.push(at(end));
-    }
-    part
-}
-
-fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes) {
+fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes, notes: &mut Notes) {
     let mesh = source.net.surface_mesh();
     for span in &mesh.lanes {
         let (Some(lane), Some(&id)) = (source.net.lane(span.lane), source.ids.get(&span.lane.0)) else { continue };
@@ -130,7 +61,7 @@ fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes) {
             .chunks_exact(2)
             .map(|rib| [snap3(point(rib[0]) + lift), snap3(point(rib[1]) + lift)])
             .collect();
-        for (kind, ribs) in stretches(source, lane, ribs) {
+        for (kind, ribs) in stretches(source, lane, ribs, notes) {
             let ribs = thinned(&ribs);
             let surface = meshes.of(kind);
             surface.strip(&ribs);

@@ -26,6 +26,11 @@ pub fn bake(name: &str, xodr: &str) -> Result<RoadNetwork, BakeError> {
     baking::bake(name, xodr).map(RoadNetwork::from)
 }
 
+/// The OpenDRIVE text of a bundled map by name.
+pub fn bundled_text(name: &str) -> Option<&'static str> {
+    BUNDLED.iter().position(|known| *known == name).map(|k| TEXTS[k])
+}
+
 /// A bundled map by name, baked on first use.
 pub fn bundled(name: &str) -> Option<Arc<RoadNetwork>> {
     static MAPS: [OnceLock<Option<Arc<RoadNetwork>>>; BUNDLED.len()] = [const { OnceLock::new() }; BUNDLED.len()];

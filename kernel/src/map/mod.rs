@@ -3,10 +3,10 @@
 mod load;
 mod network;
 
-pub use crate::baking::BakeError;
+pub use crate::baking::{BakeError, Baked, Control, Mark, Passed, PassedOver, Told, bake_with_notes};
 pub use crate::map_data::*;
 pub use crate::places::Ground;
-pub use load::{BUNDLED, bake, bundled};
+pub use load::{BUNDLED, bake, bundled, bundled_text};
 pub use network::RoadNetwork;
 
 #[cfg(test)]

@@ -5,17 +5,18 @@ use clap::{Command, CommandFactory};
 use crate::cli::Cli;
 
 /// The commands by what they are for.
-const GROUPS: [(&str, &[&str]); 6] = [
+const GROUPS: [(&str, &[&str]); 7] = [
     ("Drive", &["drive", "campaign", "demo"]),
     ("Look at recordings", &["verify", "inspect", "statistics", "view", "export", "questionnaire"]),
     ("Look at corner cases again", &["cases", "rerender", "compare", "redrive", "report"]),
     ("Learn", &["dataset", "train", "eval", "experiment"]),
+    ("Maps", &["map"]),
     ("The machine", &["doctor", "wheel"]),
     ("The shell", &["completions", "man"]),
 ];
 
 /// A call of each command.
-const EXAMPLES: [&str; 27] = [
+const EXAMPLES: [&str; 29] = [
     "aeye drive --headless --map city --checkpoint early --max-time 2m --record drive.mcap",
     "aeye campaign --checkpoint early,full --km 5 --out runs",
     "aeye campaign --collect shards --out runs",
@@ -38,6 +39,8 @@ const EXAMPLES: [&str; 27] = [
     "aeye report runs --checkpoint early,full --out report.html",
     "aeye experiment --preset smoke --out experiment",
     "aeye demo --out demo",
+    "aeye map inspect city town.xodr",
+    "aeye map draw town.xodr --out town.svg",
     "aeye wheel list",
     "aeye wheel calibrate --out wheel.toml",
     "aeye wheel import wheel_config.ini --out wheel.toml",

@@ -38,6 +38,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::Report(args) => commands::report::run(args, json),
         Command::Experiment(args) => commands::experiment::run(args, json),
         Command::Demo(args) => commands::demo::run(args, json),
+        Command::Map(command) => commands::map::run(command, json),
         Command::Wheel(command) => commands::windows::wheels(command, json),
         Command::Doctor(args) => commands::doctor::run(args, json),
         Command::Completions(args) => commands::shell::completions(args),

@@ -1,10 +1,11 @@
 //! Maps and scenarios by the names that people give on the command line.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, anyhow};
-use kernel::map::{BUNDLED, bake, bundled};
+use kernel::map::{BUNDLED, bake, bundled, bundled_text};
 use kernel::{RoadNetwork, Scenario};
 use replay::ForeignMap;
 
@@ -27,13 +28,7 @@ impl Map {
         if let Some(network) = bundled(name) {
             return Ok(Self { network, foreign: None });
         }
-        if !Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("xodr")) {
-            let known = BUNDLED.join(", ");
-            return Err(Usage(format!("unknown map {name:?}: expected one of {known}, or an .xodr file")).into());
-        }
-        let text = files::read_text(Path::new(name), most::MAP)?;
-        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-        check_name(&stem).map_err(|reason| anyhow!("{name}: {reason}"))?;
+        let (stem, text) = foreign(name)?;
         let network = bake(&stem, &text).with_context(|| name.to_owned())?;
         Ok(Self { network: Arc::new(network), foreign: Some(ForeignMap::new(text, false)) })
     }
@@ -55,6 +50,26 @@ impl Map {
     pub fn scenario(&self, seed: u64) -> Scenario {
         Scenario::default_for(&self.network.name, seed)
     }
+}
+
+/// What a map is called, and its OpenDRIVE text: of a bundled map by name, or of a file by its path.
+pub fn text_of(name: &str) -> anyhow::Result<(String, Cow<'static, str>)> {
+    match bundled_text(name) {
+        Some(text) => Ok((name.to_owned(), text.into())),
+        None => foreign(name).map(|(stem, text)| (stem, text.into())),
+    }
+}
+
+/// The stem and the text of an OpenDRIVE file.
+fn foreign(name: &str) -> anyhow::Result<(String, String)> {
+    if !Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("xodr")) {
+        let known = BUNDLED.join(", ");
+        return Err(Usage(format!("unknown map {name:?}: expected one of {known}, or an .xodr file")).into());
+    }
+    let text = files::read_text(Path::new(name), most::MAP)?;
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    check_name(&stem).map_err(|reason| anyhow!("{name}: {reason}"))?;
+    Ok((stem.into_owned(), text))
 }
 
 /// Writes the file of a foreign map beside a recording, unless it is there, or in the recording itself.

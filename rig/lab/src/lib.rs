@@ -14,6 +14,7 @@ pub mod figures;
 pub mod inspect;
 pub mod looks;
 pub mod machine;
+pub mod map;
 pub mod pipeline;
 pub mod plot;
 pub mod redrive;

@@ -161,7 +161,8 @@ fn text(out: &mut String, (x, y): (f64, f64), anchor: &str, colour: &str, conten
     let _ = write!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"{colour}\">{content}</text>");
 }
 
-fn escape(text: &str) -> String {
+/// A text as the content of an element.
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

@@ -1,7 +1,11 @@
 //! The pages of `docs` say what the program does.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
 use aeye::help;
 use kernel::Scenario;
+use lab::map;
 
 const SCENARIO: &str = include_str!("../../../docs/scenario.md");
 const COMMAND_LINE: &str = include_str!("../../../docs/command-line.md");
@@ -45,6 +49,34 @@ fn keys(text: &str) -> Vec<String> {
         }
     }
     keys
+}
+
+/// The map on the page on maps, as a program that stands in the root of the workspace names it.
+const CROSS: &str = "tests/maps/cross_lights.xodr";
+
+/// `AEYE_BLESS=1` writes both anew.
+#[test]
+fn the_page_on_maps_says_and_shows_what_the_program_does() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");
+    let file = root.join(CROSS).to_str().expect("UTF-8").to_owned();
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("map.svg");
+    map::draw(&map::Options { file: file.clone(), size_px: 600, out: out.clone() }).expect("drawn");
+    let said = map::inspect(&file).expect("a map").to_string().replace(&file, CROSS);
+    let page = fs::read_to_string(root.join("docs/maps.md")).expect("the page");
+    let (before, rest) = page.split_once("```text\n").expect("a block of text");
+    let (_, after) = rest.split_once("```").expect("its end");
+    same(root.join("docs/maps.md"), &format!("{before}```text\n{said}\n```{after}"));
+    same(root.join("docs/map.svg"), &fs::read_to_string(out).expect("a picture"));
+}
+
+/// Expects a file to hold this, or makes it.
+fn same(path: PathBuf, expected: &str) {
+    if std::env::var_os("AEYE_BLESS").is_some() {
+        fs::write(&path, expected).expect("writable");
+    }
+    let there = fs::read_to_string(&path).unwrap_or_default();
+    assert!(there == expected, "{} is stale; AEYE_BLESS=1 makes it anew", path.display());
 }
 
 #[test]

@@ -5,10 +5,12 @@ mod constants;
 mod crowd;
 mod cubic;
 mod document;
+mod elements;
 mod ids;
 mod junctions;
 mod lanes;
 mod marks;
+mod missing;
 mod numbers;
 mod objects;
 mod origin;
@@ -27,6 +29,7 @@ use self::constants::ROADS;
 use self::crowd::Crowd;
 use self::sums::{Sums, at_most};
 use super::error::BakeError;
+use super::notes::Notes;
 
 /// A text that may be interpreted.
 pub struct Checked<'a> {
@@ -38,8 +41,8 @@ pub struct Checked<'a> {
     pub roads: usize,
 }
 
-/// Refuses a text that holds more than any map does.
-pub fn check(text: &str) -> Result<Checked<'_>, BakeError> {
+/// Refuses a text that holds more than any map does; notes what is not read of it.
+pub fn check<'a>(text: &'a str, notes: &mut Notes) -> Result<Checked<'a>, BakeError> {
     let body = document::body(text)?;
     let document = document::parse(&body)?;
     let root = document.root_element();
@@ -57,6 +60,8 @@ pub fn check(text: &str) -> Result<Checked<'_>, BakeError> {
     }
     crowd.check()?;
     junctions::check(root, &references, &mut sums)?;
+    elements::note(root, notes);
+    missing::note(root, notes);
     let origin_m = origin::of(roads);
     let text = if origin_m == [0.0; 2] { text.into() } else { origin::subtract(&document, origin_m).into() };
     Ok(Checked { text, origin_m, roads: count })

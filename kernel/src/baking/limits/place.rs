@@ -15,7 +15,7 @@ pub fn refused(node: Node<'_, '_>, reason: String) -> BakeError {
 }
 
 /// The road, section and lane that hold a node, or the junction; else its line. Of those inside each other the inmost.
-fn place(node: Node<'_, '_>) -> String {
+pub fn place(node: Node<'_, '_>) -> String {
     let mut kinds = BTreeSet::new();
     let mut around: Vec<_> = node.ancestors().filter(|n| kinds.insert(n.tag_name().name())).filter_map(name).collect();
     around.reverse();

@@ -4,6 +4,7 @@ mod broken;
 mod bundled;
 mod far;
 mod features;
+mod notes;
 mod places;
 mod signals;
 

@@ -5,6 +5,7 @@ mod lab;
 mod learning;
 mod library;
 mod live;
+mod maps;
 mod recordings;
 mod shell;
 mod values;
@@ -18,6 +19,7 @@ pub use library::{LibraryArgs, QueryArgs};
 pub use live::{
     DoctorArgs, DriveArgs, PictureArgs, ViewArgs, WheelCalibrateArgs, WheelCommand, WheelImportArgs, WheelListArgs,
 };
+pub use maps::{MapCommand, MapDrawArgs, MapInspectArgs};
 pub use recordings::{InspectArgs, QuestionnaireArgs, StatisticsArgs, VerifyArgs};
 pub use shell::{CompletionsArgs, ManArgs};
 
@@ -76,6 +78,9 @@ pub enum Command {
     Experiment(ExperimentArgs),
     /// Drive until three corner cases, verify, render them again, and write a report.
     Demo(DemoArgs),
+    /// Say what is in maps and what was not understood of their files, or draw one.
+    #[command(subcommand)]
+    Map(MapCommand),
     /// List and calibrate wheels and gamepads.
     #[command(subcommand)]
     #[cfg_attr(not(feature = "live"), command(hide = true))]

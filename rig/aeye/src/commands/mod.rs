@@ -14,6 +14,7 @@ pub mod eval;
 pub mod experiment;
 pub mod export;
 pub mod inspect;
+pub mod map;
 pub mod questionnaire;
 pub mod redrive;
 pub mod report;

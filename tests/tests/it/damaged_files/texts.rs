@@ -5,6 +5,7 @@ use std::fs;
 use base::maps::ScenarioFile;
 use lab::dataset::Manifest;
 use lab::experiment::{Preset, Recipe};
+use lab::map;
 use live::units::{calibration, carla};
 use perception::{Checkpoint, Metadata};
 use proptest::prelude::*;
@@ -66,6 +67,25 @@ fn scenarios() {
             // What is read can be written, and says the same.
             let again = kernel::Scenario::from_toml(&file.scenario.to_toml()).expect("its own text");
             assert_eq!(again, file.scenario);
+            Ok(())
+        })
+    });
+}
+
+#[test]
+fn maps() {
+    let valid = include_str!("../../../maps/cross_lights.xodr");
+    hunt::hunt("drawn", 60, changes(), |changes| {
+        let damaged = changed(valid.as_bytes(), &changes);
+        check("damaged.xodr", &damaged, |path| {
+            let file = path.to_str().expect("UTF-8").to_owned();
+            let told = map::inspect(&file)?;
+            assert!(told.reach.outside_km <= told.reach.km && told.not_understood.iter().all(|group| group.count > 0));
+            let folder = tempfile::tempdir().expect("a folder");
+            let out = folder.path().join("damaged.svg");
+            map::draw(&map::Options { file, size_px: 300, out: out.clone() })?;
+            let picture = fs::read_to_string(&out).expect("a text");
+            assert!(!picture.contains("NaN") && !picture.contains("inf "), "{picture}");
             Ok(())
         })
     });
