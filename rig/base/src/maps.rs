@@ -143,7 +143,7 @@ mod tests {
         let path = dir.path().join("run.toml");
         fs::write(dir.path().join("empty.xodr"), "").expect("writable");
         for (map, is_usage, said) in [
-            ("atlantis", true, "unknown map \"atlantis\": expected one of city, rural, or an .xodr file"),
+            ("atlantis", true, "unknown map \"atlantis\": expected one of city, rural, old_town, "),
             ("nowhere.xodr", false, "nowhere.xodr: "),
             ("empty.xodr", false, "empty.xodr: "),
         ] {

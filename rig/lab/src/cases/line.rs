@@ -122,22 +122,27 @@ const COLUMNS: &str = "c.path, c.identity, c.digest, c.label, c.comment, c.perce
 
 /// The cases that a query asks for, in its order.
 pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlite::Result<Vec<CaseLine>> {
-    let mut statement = db.prepare(&sql.select(COLUMNS))?;
+    // Rows are long: only their numbers are sorted, and of those that are not wanted nothing else is read.
+    let mut order = db.prepare(&sql.select("c.id, c.situation"))?;
+    let mut case = db.prepare(&format!(
+        "SELECT {COLUMNS} FROM cases c LEFT JOIN measured m ON m.digest = c.digest WHERE c.id = ?"
+    ))?;
     let mut more = More {
         tags: db.prepare("SELECT tag FROM tags WHERE identity = ? ORDER BY tag")?,
         overlooked: db.prepare(
             "SELECT actor, kind, frames, pixels FROM overlooked WHERE digest = ? ORDER BY pixels DESC, actor",
         )?,
     };
-    let mut rows = statement.query(rusqlite::params_from_iter(sql.values()))?;
+    let mut rows = order.query(rusqlite::params_from_iter(sql.values()))?;
     let (mut lines, mut groups) = (Vec::new(), HashSet::new());
     let most = query.limit.map_or(usize::MAX, |limit| limit as usize);
     while lines.len() < most {
         let Some(row) = rows.next()? else { break };
-        let group: i64 = row.get("situation")?;
+        let (id, group): (i64, i64) = (row.get("id")?, row.get("situation")?);
         // Where a scan was interrupted, new cases have no group yet.
         if !query.unique || group == 0 || groups.insert(group) {
-            lines.push(more.line(row, reveal)?);
+            let distance_m = row.get::<_, Option<f64>>("distance2")?.map(f64::sqrt);
+            lines.push(CaseLine { distance_m, ..case.query_row([id], |row| more.line(row, reveal))? });
         }
     }
     Ok(lines)
@@ -210,7 +215,7 @@ impl More<'_> {
             review: row.get("review")?,
             tags,
             situation: row.get("situation")?,
-            distance_m: row.get::<_, Option<f64>>("distance2")?.map(f64::sqrt),
+            distance_m: None,
         })
     }
 

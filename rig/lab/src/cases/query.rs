@@ -342,17 +342,22 @@ impl Sql {
 
     /// The query for these columns of `c`, the case, and `m`, what was measured of it, in order.
     pub fn select(&self, columns: &str) -> String {
-        format!("SELECT {columns}, {} AS distance2 {} ORDER BY {}", self.distance2, self.from(), self.order)
+        let from = self.from(&[columns, &self.order]);
+        format!("SELECT {columns}, {} AS distance2 {from} ORDER BY {}", self.distance2, self.order)
     }
 
     /// The query for how many there are.
     pub fn count(&self, unique: bool) -> String {
         let what = if unique { "COUNT(DISTINCT c.situation)" } else { "COUNT(*)" };
-        format!("SELECT {what} {}", self.from())
+        format!("SELECT {what} {}", self.from(&[]))
     }
 
-    fn from(&self) -> String {
-        format!("FROM cases c LEFT JOIN measured m ON m.digest = c.digest WHERE {}", self.conditions.join(" AND "))
+    /// What was measured is looked up only where it is asked for, by a condition or by these.
+    fn from(&self, asked: &[&str]) -> String {
+        let conditions = self.conditions.join(" AND ");
+        let is_measured = asked.iter().any(|text| text.contains("m.")) || conditions.contains("m.");
+        let join = if is_measured { "LEFT JOIN measured m ON m.digest = c.digest " } else { "" };
+        format!("FROM cases c {join}WHERE {conditions}")
     }
 
     /// Its values.
