@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::{on_ring, ring, script};
 use glam::Vec3;
 use kernel::map::bundled;
-use kernel::time::{Tick, seconds};
+use kernel::time::{KEYFRAME_TICKS, Tick, seconds};
 use kernel::traffic::{Obstacle, Population, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::{Conditions, Weather, WeatherChange, WeatherPreset};
 use kernel::{RoadNetwork, Scenario, World};
@@ -147,7 +147,7 @@ fn a_world_resumed_while_the_weather_changes_stays_identical() {
     let mut original = World::new(&scenario, &network).expect("it fits");
     let mut resumed: Option<World> = None;
     let mut keyframes = 0;
-    for _ in 0..seconds(60) {
+    for _ in 0..6 * KEYFRAME_TICKS {
         let input = script::input(&original);
         let output = original.step(&input);
         if let Some(other) = &mut resumed {
