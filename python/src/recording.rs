@@ -9,7 +9,7 @@ use base::json::json_line;
 use drivers::film::Viewpoint;
 use drivers::vision::DEFAULT_SIZE;
 use kernel::time::Tick;
-use lab::shots::{Props, Shots, Stage};
+use lab::shots::{Shots, Stage, Workshop};
 use lab::{inspect, verify};
 use measures::footage::Asked;
 use numpy::{IntoPyArray, PyArray1};
@@ -40,8 +40,8 @@ pub struct Recording {
 /// Raises FileError where it cannot be read, InputError where it is damaged or no recording.
 #[pyfunction]
 pub fn open(py: Python<'_>, path: PathBuf) -> PyResult<Recording> {
-    static PROPS: LazyLock<Arc<Props>> = LazyLock::new(Arc::default);
-    let stage = py.detach(|| Stage::open(&path, &PROPS)).map_err(|error| raise(&error))?;
+    static WORKSHOP: LazyLock<Arc<Workshop>> = LazyLock::new(Arc::default);
+    let stage = py.detach(|| Stage::open(&path, &WORKSHOP)).map_err(|error| raise(&error))?;
     Ok(Recording { stage: Owned::new(Arc::new(stage)) })
 }
 

@@ -26,14 +26,14 @@ const KEPT: usize = 4;
 /// Maps and renderers for all files that a process draws: one takes as long to make as dozens of pictures. Those that were
 /// used last are kept; who draws at the same time as others has a renderer alone.
 #[derive(Default)]
-pub struct Props {
+pub struct Workshop {
     /// Beside their texts.
     foreign_maps: Mutex<Vec<(Arc<str>, Arc<RoadNetwork>)>>,
     /// Beside the digests of their maps.
     renderers: Mutex<Vec<(u128, Renderer)>>,
 }
 
-impl Props {
+impl Workshop {
     fn network(&self, manifest: &Manifest) -> anyhow::Result<Arc<RoadNetwork>> {
         // Bundled maps are kept by themselves.
         let Some(text) = manifest.foreign_map.as_ref().and_then(|map| map.text.as_ref()) else {
@@ -77,14 +77,14 @@ pub struct Stage {
     path: PathBuf,
     recording: Recording,
     network: OnceLock<Arc<RoadNetwork>>,
-    props: Arc<Props>,
+    workshop: Arc<Workshop>,
 }
 
 impl Stage {
     /// Reads a file; one whose writer was stopped is read as far as it goes.
-    pub fn open(path: &Path, props: &Arc<Props>) -> anyhow::Result<Self> {
+    pub fn open(path: &Path, workshop: &Arc<Workshop>) -> anyhow::Result<Self> {
         let recording = Recording::open(path)?;
-        Ok(Self { path: path.to_owned(), recording, network: OnceLock::new(), props: props.clone() })
+        Ok(Self { path: path.to_owned(), recording, network: OnceLock::new(), workshop: workshop.clone() })
     }
 
     /// Where it was read.
@@ -105,14 +105,14 @@ impl Stage {
         match self.network.get() {
             Some(network) => Ok(network),
             None => {
-                let network = self.props.network(&self.log().manifest)?;
+                let network = self.workshop.network(&self.log().manifest)?;
                 Ok(self.network.get_or_init(|| network))
             }
         }
     }
 
     fn draw(&self, scene: &SceneSnapshot, camera: &Camera) -> anyhow::Result<Frame> {
-        self.props.draw(self.network()?, scene, camera)
+        self.workshop.draw(self.network()?, scene, camera)
     }
 }
 
