@@ -52,7 +52,7 @@ def replayed(recording: aeye.Recording, seat: str, **options: Any) -> dict[str, 
 @pytest.mark.parametrize("seat", ["semantic", "safety"])
 def test_the_controls_of_a_headless_drive_give_that_drive(seat, drive, tmp_path):
     recording = aeye.open(drive)
-    info = replayed(recording, seat, map="city", max_time=9, record=tmp_path)
+    info = replayed(recording, seat, map="city", max_time=13, record=tmp_path)
     assert info["outcome"] == recording.inspect()["outcome"] == "censored"
     again = aeye.open(info["recording"])
     assert again.path.name == f"episode-000001-seed-{recording.seed}.mcap"
