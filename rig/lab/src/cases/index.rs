@@ -58,6 +58,9 @@ impl Index {
         let home = fs::canonicalize(home).with_context(|| home.display().to_string())?;
         let mut index = Self { db, path: path.to_owned(), home };
         index.db.busy_timeout(WAIT).and_then(|()| schema::distrust(&index.db)).map_err(|error| told(path, error))?;
+        if access == Access::Write {
+            index.read(schema::keep_pages)?;
+        }
         index.check(access)?;
         Ok(index)
     }
@@ -170,7 +173,7 @@ mod tests {
         let change = |sql: &str| Connection::open(&path).and_then(|db| db.execute_batch(sql)).expect("changed");
         change("PRAGMA user_version = 9");
         assert!(said(&path, Access::Write).contains("is an index of version 9"));
-        change("PRAGMA user_version = 1; CREATE TABLE more (a)");
+        change("PRAGMA user_version = 2; CREATE TABLE more (a)");
         assert!(said(&path, Access::Read).contains("is no index of aeye cases"));
     }
 

@@ -123,7 +123,7 @@ const COLUMNS: &str = "c.path, c.identity, c.digest, c.label, c.comment, c.perce
 /// The cases that a query asks for, in its order.
 pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlite::Result<Vec<CaseLine>> {
     // Rows are long: only their numbers are sorted, and of those that are not wanted nothing else is read.
-    let mut order = db.prepare(&sql.select("c.id, c.situation"))?;
+    let mut order = db.prepare(&sql.select("c.id, c.situation", query.limit.filter(|_| !query.unique)))?;
     let mut case = db.prepare(&format!(
         "SELECT {COLUMNS} FROM cases c LEFT JOIN measured m ON m.digest = c.digest WHERE c.id = ?"
     ))?;
@@ -134,13 +134,12 @@ pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlit
         )?,
     };
     let mut rows = order.query(rusqlite::params_from_iter(sql.values()))?;
-    let (mut lines, mut groups) = (Vec::new(), HashSet::new());
+    let (mut lines, mut groups) = (Vec::new(), Groups::default());
     let most = query.limit.map_or(usize::MAX, |limit| limit as usize);
     while lines.len() < most {
         let Some(row) = rows.next()? else { break };
         let (id, group): (i64, i64) = (row.get("id")?, row.get("situation")?);
-        // Where a scan was interrupted, new cases have no group yet.
-        if !query.unique || group == 0 || groups.insert(group) {
+        if !query.unique || groups.is_new(group) {
             let distance_m = row.get::<_, Option<f64>>("distance2")?.map(f64::sqrt);
             lines.push(CaseLine { distance_m, ..case.query_row([id], |row| more.line(row, reveal))? });
         }
@@ -151,8 +150,29 @@ pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlit
 /// How many cases a query asks for.
 pub fn count(db: &Connection, query: &Query, sql: &Sql) -> rusqlite::Result<u64> {
     let values = rusqlite::params_from_iter(sql.values());
-    let count: i64 = db.query_row(&sql.count(query.unique), values, |row| row.get(0))?;
-    Ok(query.limit.map_or(count, |limit| count.min(limit.into())) as u64)
+    let count = if query.unique {
+        let (mut statement, mut groups) = (db.prepare(&sql.groups())?, Groups::default());
+        let mut rows = statement.query(values)?;
+        let mut count = 0;
+        while let Some(row) = rows.next()? {
+            count += u64::from(groups.is_new(row.get(0)?));
+        }
+        count
+    } else {
+        db.query_row(&sql.count(), values, |row| row.get::<_, i64>(0))? as u64
+    };
+    Ok(query.limit.map_or(count, |limit| count.min(limit.into())))
+}
+
+/// Groups of cases that have been seen.
+#[derive(Default)]
+struct Groups(HashSet<i64>);
+
+impl Groups {
+    /// Whether a case is the first of its group. Where a scan was interrupted, new cases have no group yet: it is 0.
+    fn is_new(&mut self, group: i64) -> bool {
+        group == 0 || self.0.insert(group)
+    }
 }
 
 /// Lays down the places of the only cases that are meant, instead of the last; gives those that are not there.

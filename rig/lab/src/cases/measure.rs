@@ -34,7 +34,7 @@ pub struct Due {
 
 /// Of the cases that are asked for, way and digest of those that these programs have not measured.
 pub fn due(db: &Connection, sql: &Sql, engine: &str) -> rusqlite::Result<Vec<(String, [u8; 32])>> {
-    let mut statement = db.prepare(&sql.select("c.path, c.digest, m.engine"))?;
+    let mut statement = db.prepare(&sql.select("c.path, c.digest, m.engine", None))?;
     let mut rows = statement.query(rusqlite::params_from_iter(sql.values()))?;
     let mut due = Vec::new();
     while let Some(row) = rows.next()? {

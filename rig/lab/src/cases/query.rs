@@ -275,7 +275,9 @@ impl Sql {
         }
         let place_of = |table: &str| meant.replace("place", &format!("{table}.place"));
         self.with(&place_of("c"), values.clone());
-        let before = "SELECT 1 FROM cases d WHERE d.identity = c.identity AND d.place < c.place";
+        // By its number, which every index holds.
+        let before = "SELECT 1 FROM cases own JOIN cases d ON d.identity = own.identity \
+                      WHERE own.id = c.id AND d.place < c.place";
         self.with(&format!("(c.copy = 0 OR NOT EXISTS ({before} AND {}))", place_of("d")), values);
     }
 
@@ -340,16 +342,21 @@ impl Sql {
         }
     }
 
-    /// The query for these columns of `c`, the case, and `m`, what was measured of it, in order.
-    pub fn select(&self, columns: &str) -> String {
+    /// The query for these columns of `c`, the case, and `m`, what was measured of it, in order; for the first so many.
+    pub fn select(&self, columns: &str, limit: Option<u32>) -> String {
         let from = self.from(&[columns, &self.order]);
-        format!("SELECT {columns}, {} AS distance2 {from} ORDER BY {}", self.distance2, self.order)
+        let limit = limit.map_or(String::new(), |limit| format!(" LIMIT {limit}"));
+        format!("SELECT {columns}, {} AS distance2 {from} ORDER BY {}{limit}", self.distance2, self.order)
     }
 
     /// The query for how many there are.
-    pub fn count(&self, unique: bool) -> String {
-        let what = if unique { "COUNT(DISTINCT c.situation)" } else { "COUNT(*)" };
-        format!("SELECT {what} {}", self.from(&[]))
+    pub fn count(&self) -> String {
+        format!("SELECT COUNT(*) {}", self.from(&[]))
+    }
+
+    /// The query for the group of each, in any order.
+    pub fn groups(&self) -> String {
+        format!("SELECT c.situation {}", self.from(&[]))
     }
 
     /// What was measured is looked up only where it is asked for, by a condition or by these.

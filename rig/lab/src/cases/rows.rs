@@ -49,8 +49,8 @@ impl Within {
     /// A condition on `place`, and its values.
     pub fn condition(&self) -> (&'static str, Vec<String>) {
         match self {
-            // A slash is followed by a zero among characters.
-            Self::Home => ("(place < '/' OR place >= '0')", Vec::new()),
+            // A slash is followed by a zero among characters. Said so that no search by index is made of what most rows are.
+            Self::Home => ("NOT (place >= '/' AND place < '0')", Vec::new()),
             // No character of a name stands between both.
             Self::Folder(begin) => {
                 let end = begin.trim_end_matches('\u{1}').to_owned() + "\u{2}";

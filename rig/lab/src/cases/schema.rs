@@ -6,11 +6,11 @@ use rusqlite::{Connection, OptionalExtension, Transaction};
 /// What SQLite's header says of whose file it is: `AEYE`.
 const APPLICATION: i32 = 0x4145_5945;
 /// Raised with every change of the tables.
-const VERSION: i32 = 1;
+const VERSION: i32 = 2;
 
 /// A case is a row of `cases` for each file that holds it, of which the first counts and the others are copies. What was
 /// measured belongs to the bytes of a file (`digest`), what people said to the case (`identity`), wherever its file is.
-const TABLES: [&str; 17] = [
+const TABLES: [&str; 14] = [
     "CREATE TABLE cases (\
      id INTEGER PRIMARY KEY, place TEXT NOT NULL UNIQUE, path TEXT NOT NULL, stamp TEXT NOT NULL, \
      copy INTEGER NOT NULL, situation INTEGER NOT NULL, \
@@ -19,10 +19,10 @@ const TABLES: [&str; 17] = [
      fork_min_ttc_s REAL, x_m REAL, y_m REAL, ahead_x REAL, ahead_y REAL, nearest TEXT, nearest_m REAL, \
      map_digest BLOB NOT NULL, digest BLOB NOT NULL, identity TEXT NOT NULL, checkpoint_digest TEXT, \
      seed INTEGER NOT NULL, kernel TEXT NOT NULL, comment TEXT) STRICT",
-    "CREATE INDEX cases_by_label ON cases (label)",
-    "CREATE INDEX cases_by_verdict ON cases (verdict)",
-    "CREATE INDEX cases_by_map ON cases (map)",
-    "CREATE INDEX cases_by_checkpoint ON cases (checkpoint)",
+    // What most queries read, in the order in which they give it: a seventh of the table.
+    "CREATE INDEX cases_in_order ON cases (\
+     place, copy, situation, label, perception_caused, verdict, map, weather, conditions, hazards, checkpoint, blind, \
+     speed_mps, fork_min_ttc_s)",
     "CREATE INDEX cases_by_spot ON cases (map_digest, x_m)",
     "CREATE INDEX cases_by_situation ON cases (situation)",
     "CREATE INDEX cases_by_digest ON cases (digest)",
@@ -64,7 +64,13 @@ pub fn distrust(db: &Connection) -> rusqlite::Result<()> {
     db.set_db_config(DbConfig::SQLITE_DBCONFIG_TRUSTED_SCHEMA, false)?;
     db.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_TRIGGER, false)?;
     db.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_VIEW, false)?;
-    db.execute_batch("PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY; PRAGMA cache_size = -65536")
+    db.execute_batch("PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY")
+}
+
+/// Keeps many pages of a file that is being written. Who only reads sees most of them once, and fresh memory for each
+/// costs more than the reading.
+pub fn keep_pages(db: &Connection) -> rusqlite::Result<()> {
+    db.pragma_update(None, "cache_size", -65_536)
 }
 
 /// What is in a database.
