@@ -44,6 +44,7 @@ pub fn compare<'py>(
     let gate = |text: &String| text.parse::<Gate>().map_err(input);
     let options = Options {
         files: cases.list(),
+        verdict: Vec::new(),
         checkpoint: checkpoints.iter().map(|checkpoint| checkpoint.choice(&raised)).collect::<PyResult<_>>()?,
         gate: gates.iter().flatten().map(gate).collect::<PyResult<_>>()?,
         no_worse_than,

@@ -9,8 +9,11 @@ use aeye::commands::eval;
 use aeye::exit::Verdict;
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::vision::{Eye, Vision};
 use lab::dataset::{FrameLine, Manifest, Part, cases, mix, natural, rebuild};
+use lab::redrive::{Counterfactual, Need};
 use perception::training::Split;
+use render::{RenderOptions, Renderer};
 use replay::{Annotation, Case, Label, Recording};
 use tests::files::contents;
 use tests::recordings::{TAKEOVER, recorded, recorded_in};
@@ -34,7 +37,15 @@ fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
 
 fn cases_args(files: &[&Path], out: PathBuf) -> cases::Options {
     let files = files.iter().map(|file| file.to_path_buf()).collect();
-    cases::Options { files, label: Vec::new(), split: "train".into(), size: (64, 32), jobs: None, out }
+    cases::Options {
+        files,
+        label: Vec::new(),
+        verdict: Vec::new(),
+        split: "train".into(),
+        size: (64, 32),
+        jobs: None,
+        out,
+    }
 }
 
 fn lines(folder: &Path) -> Vec<FrameLine> {
@@ -154,6 +165,29 @@ fn cases_become_a_dataset_whose_labels_are_the_truth() {
     let said = cases::make(&walkers, &Interrupt::default()).unwrap_err().to_string();
     assert_eq!(said, "none of the corner cases is labelled walker");
     assert!(make(&[&case, &copy], "first").is_err() && contents(&out("first")) == first);
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn cases_are_taken_by_the_verdict_on_their_takeover() {
+    let dir = tempfile::tempdir().unwrap();
+    let cases =
+        [("a", busy_city()), ("b", country_road())].map(|(name, scene)| (recorded_in(&scene, dir.path(), name), scene));
+    let files: Vec<&Path> = cases.iter().map(|((_, case), _)| case.as_path()).collect();
+    let make = |verdict: Need, out: &str| {
+        let options = cases::Options { verdict: vec![verdict], ..cases_args(&files, dir.path().join(out)) };
+        cases::make(&options, &Interrupt::default())
+    };
+    let said = make(Need::Needless, "none").unwrap_err().to_string();
+    assert_eq!(said, "on none of the corner cases the verdict is needless");
+    let ((recording, case), scene) = &cases[0];
+    let recording = Recording::open(recording).unwrap();
+    let vision = Vision::new(Renderer::new(&scene.network, &RenderOptions::default()).unwrap(), Eye::Truth);
+    let (found, _) = Counterfactual::of(&recording, &scene.network, vision).unwrap();
+    fs::write(case.with_file_name("a.counterfactual.json"), found.encode().unwrap()).unwrap();
+    assert_eq!(make(found.verdict, "one").unwrap().train_frames, 30);
+    let other = if found.verdict == Need::Necessary { Need::Needless } else { Need::Necessary };
+    assert!(make(other, "none").is_err() && !dir.path().join("none").exists());
 }
 
 #[test]

@@ -33,6 +33,7 @@ mod rig_pipeline;
 mod rig_redrive;
 mod rig_rerender;
 mod rig_shards;
+mod rig_sight;
 mod rig_statistics;
 mod rig_study;
 mod rig_units;

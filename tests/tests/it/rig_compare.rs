@@ -43,6 +43,7 @@ fn collision(seed: u64) -> Option<Vec<u8>> {
 
 fn args(files: &[&Path], checkpoint: &[CheckpointChoice], out: &Path) -> CompareArgs {
     CompareArgs {
+        verdict: Vec::new(),
         files: files.iter().map(|file| file.to_path_buf()).collect(),
         checkpoint: checkpoint.to_vec(),
         gate: vec![],

@@ -6,8 +6,10 @@ use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, Tick};
 use lab::compare::Gate;
+use lab::redrive::Need;
 use lab::share::Share;
 
+use super::library::verdict;
 use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, one_checkpoint, seconds, size};
 
 /// Arguments of `rerender`.
@@ -86,6 +88,9 @@ pub struct CompareArgs {
     /// Corner cases, or folders with cases anywhere below.
     #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
+    /// Take only cases on whose takeover a campaign came to one of these verdicts, which stands beside its recording.
+    #[arg(long, value_delimiter = ',', value_parser = verdict(), value_name = "VERDICT,...")]
+    pub verdict: Vec<Need>,
     /// Two or more checkpoints; the first is the baseline.
     #[arg(long, required = true, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,

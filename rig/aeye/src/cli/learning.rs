@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use drivers::checkpoint::CheckpointChoice;
+use lab::redrive::Need;
 use lab::share::Share;
 use replay::Label;
 
+use super::library::verdict;
 use super::values::{CHECKPOINT, MAPS, file, jobs, one_checkpoint, people, rate, size};
 
 /// The datasets that can be made.
@@ -31,6 +33,9 @@ pub struct CasesArgs {
     /// Take only cases with these labels: walker, vehicle, rules, boredom.
     #[arg(long, value_delimiter = ',', value_name = "LABEL,...")]
     pub label: Vec<Label>,
+    /// Take only cases on whose takeover a campaign came to one of these verdicts, which stands beside its recording.
+    #[arg(long, value_delimiter = ',', value_parser = verdict(), value_name = "VERDICT,...")]
+    pub verdict: Vec<Need>,
     /// Which split they become.
     #[arg(long, default_value = "train", value_parser = ["train", "val", "test"])]
     pub split: String,

@@ -70,7 +70,7 @@ pub struct QueryArgs {
     /// With these labels: walker, vehicle, rules or boredom.
     #[arg(long, value_delimiter = ',', value_name = "LABEL,...")]
     pub label: Vec<Label>,
-    /// With these verdicts on the takeover: necessary, early, needless or in-vain.
+    /// With these verdicts on the takeover: necessary, near-miss, early, needless or in-vain.
     #[arg(long, value_delimiter = ',', value_parser = verdict(), value_name = "VERDICT,...")]
     pub verdict: Vec<Need>,
     /// On these maps.
@@ -120,9 +120,9 @@ pub struct QueryArgs {
     pub limit: Option<u32>,
 }
 
-fn verdict() -> impl TypedValueParser<Value = Need> {
+pub(super) fn verdict() -> impl TypedValueParser<Value = Need> {
     let named = |name: String| Need::WITHOUT_INTERVENTION.into_iter().find(|need| dashed(need.name()) == name);
-    PossibleValuesParser::new(["necessary", "early", "needless", "in-vain"])
+    PossibleValuesParser::new(["necessary", "near-miss", "early", "needless", "in-vain"])
         .try_map(move |name| named(name).ok_or("no such verdict"))
 }
 
@@ -133,4 +133,19 @@ fn sort() -> impl TypedValueParser<Value = Sort> {
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse::<f64>().ok().filter(|seconds| *seconds > 0.0 && seconds.is_finite());
     seconds.ok_or_else(|| "expected seconds, more than 0, as in 1.5".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_verdict_on_a_takeover_can_be_asked_for() {
+        let parser = verdict();
+        for need in Need::WITHOUT_INTERVENTION {
+            let name = std::ffi::OsString::from(dashed(need.name()));
+            let parsed = parser.parse_ref(&clap::Command::new("cases"), None, &name);
+            assert_eq!(parsed.expect("one of the possible values"), need);
+        }
+    }
 }

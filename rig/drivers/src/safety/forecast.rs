@@ -34,6 +34,16 @@ impl EgoWay {
         Self { points, left_m, speed_mps: car.speed_mps.max(0.0), acceleration_mps2: acceleration_mps2.min(0.0) }
     }
 
+    /// The same from the present with this braking, m/s^2.
+    pub fn braking(&self, mps2: f32) -> Self {
+        Self { acceleration_mps2: self.acceleration_mps2.min(-mps2), points: self.points.clone(), ..*self }
+    }
+
+    /// Speed in `t_s` seconds, m/s.
+    pub fn speed_mps_at(&self, t_s: f32) -> f32 {
+        (self.speed_mps + self.acceleration_mps2 * t_s).max(0.0)
+    }
+
     /// Metres driven in `t_s` seconds.
     pub fn driven_m(&self, t_s: f32) -> f32 {
         driven_m(self.speed_mps, self.acceleration_mps2, t_s)

@@ -1,166 +1,122 @@
-//! What the safety driver fears, and why.
+//! What the safety driver fears, and how pressing it is.
 
-use base::words;
 use glam::Vec2;
 use kernel::car::GRAVITY_MPS2;
 use kernel::events::Hud;
-use kernel::map::PropKind;
-use kernel::scene::{ActorKind, ActorScene, FIRST_PARKED_ID, SceneSnapshot};
+use kernel::scene::{EgoScene, SceneSnapshot};
 use kernel::signals::LightPhase;
 use kernel::{World, ego, ops};
 use replay::Label;
 
-use super::forecast::{EgoWay, actor_after, driven_m};
+use super::encounter::{Encroachment, Others, Touched};
+use super::eyes::Eyes;
+use super::forecast::EgoWay;
 use super::looks::Looks;
-use crate::footprint::{Footprint, forward, middle};
+use crate::footprint::{forward, middle};
 
-/// An encroachment predicted within this time is critical (Westhofen et al. 2022), seconds.
-pub const CRITICAL_S: f32 = 2.0;
-/// Step of the prediction, seconds.
-const STEP_S: f32 = 0.1;
-/// How far around the car others matter, metres.
-const NEAR_M: f32 = 60.0;
+/// Contacts are looked for so long after somebody began to brake, seconds.
+const BRAKING_S: f32 = 4.0;
+/// Braking that is tried out, as shares of what the road allows.
+const TRIED: u32 = 20;
+/// Nothing but the full brake helps, or something else than braking.
+const PRESSING: f32 = 1.0;
 /// Time over which the wheels' angle is taken to stay as it is, seconds.
 const STEERING_S: f32 = 0.7;
 /// Distance from the middle of the lane that is too far, metres; more inside junctions, whose lanes
 /// are only ideas.
 const OFF_LANE_M: f32 = 1.6;
 const OFF_LANE_IN_JUNCTION_M: f32 = 2.3;
-/// Deceleration before a red light that is too hard to be meant, m/s^2, and as a share of what the road allows.
-const RED_LIGHT_MPS2: f32 = 5.0;
-const RED_LIGHT_SHARE: f32 = 0.6;
 /// Angle against the route from which the car drives the wrong way (cosine).
 const WRONG_WAY_COS: f32 = 0.3;
 
-/// Something that makes the safety driver take over unless it passes.
+/// What a hazard is about; a driver reacts to each in a time of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Somebody will be touched.
+    Contact(Touched),
+    /// A red light will be run.
+    RedLight,
+    /// The car drives against its route.
+    WrongWay,
+    /// The car leaves its lane or the road.
+    LaneLeft,
+    /// Nothing moves.
+    Standstill,
+}
+
+/// Something that makes the safety driver take over when it presses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hazard {
+    /// What it is about.
+    pub source: Source,
     /// What the semantic driver did wrong.
     pub label: Label,
     /// What is to be seen, for the case's comment.
     pub comment: String,
-    /// Steering helps, not braking alone.
-    pub steer: bool,
-    /// Who is predicted to be touched, if somebody is.
-    pub whom: Option<Touched>,
+    /// The least braking from now on that averts it, as a share of what the road allows; 1 where none does, or where
+    /// steering is what helps.
+    pub urgency: f32,
 }
 
-/// The most pressing hazard, by the present look and the ones before.
-pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Hazard> {
-    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
-    encroachment(world, scene, &way, looks)
-        .or_else(|| red_light(&world.hud(), &way, world.friction()))
-        .or_else(|| leaving_lane(world, scene))
-}
-
-/// The actor or parked car that the ego car is predicted to touch first, within 2 s.
-pub fn predicted_encroachment(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Hazard> {
-    encroachment(world, scene, &EgoWay::new(world, &scene.ego, looks.ego_mps2()), looks)
-}
-
-fn encroachment(world: &World, scene: &SceneSnapshot, way: &EgoWay, looks: &Looks) -> Option<Hazard> {
-    let others = Others::near(world, scene, looks)?;
-    steps().find_map(|t_s| {
-        let touched = others.touched(&way.at(t_s)?, t_s).next()?;
-        let (label, name) = match touched {
-            Touched::Actor(id, kind) => (label_of(kind), format!("{} {id}", words::road_user(kind))),
-            Touched::Parked(_) => (Label::Vehicle, "parked car".into()),
-        };
-        Some(Hazard { whom: Some(touched), ..hazard(label, format!("{name}, {t_s:.1} s before contact")) })
-    })
-}
-
-/// Everyone whom the ego car is predicted to touch within 2 s, first contact first.
-pub fn encroachers(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Vec<Touched> {
-    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
-    let mut found: Vec<Touched> = Vec::new();
-    let Some(others) = Others::near(world, scene, looks) else { return found };
-    for t_s in steps() {
-        let Some(ego) = way.at(t_s) else { continue };
-        for touched in others.touched(&ego, t_s) {
-            if !found.contains(&touched) {
-                found.push(touched);
-            }
-        }
+impl Hazard {
+    fn new(source: Source, urgency: f32, comment: String) -> Self {
+        Self { source, label: Label::Rules, comment, urgency }
     }
+
+    /// Steering helps, not braking alone.
+    pub fn steers(&self) -> bool {
+        matches!(self.source, Source::WrongWay | Source::LaneLeft)
+    }
+}
+
+/// All hazards, by the present look and the ones before: contacts with those who were seen, first contact first, then
+/// breaches of rules.
+pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks, eyes: &Eyes) -> Vec<Hazard> {
+    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
+    let grip_mps2 = world.friction() * GRAVITY_MPS2;
+    let mut found = contacts(world, scene, looks, eyes, (&way, grip_mps2));
+    found.extend(red_light(&world.hud(), &way, grip_mps2));
+    found.extend(leaving_lane(world, scene));
     found
 }
 
-/// Who is predicted to be touched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Touched {
-    /// A road user, by id and kind.
-    Actor(u32, ActorKind),
-    /// A parked car, by its number among the map's.
-    Parked(usize),
-}
-
-/// Seconds ahead at which the prediction looks.
-fn steps() -> impl Iterator<Item = f32> {
-    (1..=(CRITICAL_S / STEP_S) as u32).map(|step| step as f32 * STEP_S)
-}
-
-/// Who is around the ego car and matters.
-struct Others<'a> {
-    world: &'a World,
-    looks: &'a Looks,
-    actors: Vec<&'a ActorScene>,
-    parked: Vec<(usize, Footprint)>,
-}
-
-impl<'a> Others<'a> {
-    /// `None` while the ego car stands, which touches nobody.
-    fn near(world: &'a World, scene: &'a SceneSnapshot, looks: &'a Looks) -> Option<Self> {
-        if scene.ego.speed_mps < 0.5 {
-            return None;
+fn contacts(
+    world: &World,
+    scene: &SceneSnapshot,
+    looks: &Looks,
+    eyes: &Eyes,
+    (way, grip_mps2): (&EgoWay, f32),
+) -> Vec<Hazard> {
+    let Some(others) = Others::near(world, scene, looks) else { return Vec::new() };
+    let others = others.seen(|actor| eyes.know(actor.id));
+    let mut first: Vec<Encroachment> = Vec::new();
+    for encroachment in others.encroachments(way) {
+        if first.iter().all(|known| known.whom != encroachment.whom) {
+            first.push(encroachment);
         }
-        let near = |p: glam::Vec3| (p.truncate() - middle(&scene.ego)).length() < NEAR_M;
-        let actors = scene.actors.iter().filter(|a| near(a.position) && matters(world, scene, a)).collect();
-        let parked = world.network().props.iter().filter(|p| p.kind == PropKind::ParkedCar).enumerate();
-        // Those that were pushed are among the actors.
-        let gone = |n: usize| scene.actors.iter().any(|a| a.id == FIRST_PARKED_ID + n as u32);
-        let parked =
-            parked.filter(|(n, p)| near(p.position) && !gone(*n)).map(|(n, p)| (n, Footprint::of_prop(p))).collect();
-        Some(Self { world, looks, actors, parked })
     }
-
-    /// Who shares ground with the ego car in `t_s` seconds: actors, then parked cars.
-    fn touched(&self, ego: &Footprint, t_s: f32) -> impl Iterator<Item = Touched> {
-        let actor_at = move |actor: &ActorScene| {
-            let driven_m = driven_m(actor.speed_mps, self.looks.actor_mps2(actor), t_s);
-            actor_after(self.world.network(), actor, driven_m)
-        };
-        let actors = self.actors.iter().filter(move |a| actor_at(a).overlaps(ego));
-        let parked = self.parked.iter().filter(move |(_, p)| p.overlaps(ego));
-        actors.map(|a| Touched::Actor(a.id, a.kind)).chain(parked.map(|(n, _)| Touched::Parked(*n)))
-    }
+    let hazard = |encroachment: &Encroachment| Hazard {
+        source: Source::Contact(encroachment.whom),
+        label: encroachment.label(),
+        comment: encroachment.comment(),
+        urgency: braking_share(&others, encroachment.whom, way, grip_mps2),
+    };
+    first.iter().map(hazard).collect()
 }
 
-fn hazard(label: Label, comment: String) -> Hazard {
-    Hazard { label, comment, steer: false, whom: None }
+/// The least braking from now on by which somebody is not touched, as a share of what the road allows.
+fn braking_share(others: &Others<'_>, whom: Touched, way: &EgoWay, grip_mps2: f32) -> f32 {
+    let shares = (1..TRIED).map(|step| step as f32 / TRIED as f32);
+    let helps = |share: &f32| !others.touches(whom, &way.braking(share * grip_mps2), BRAKING_S);
+    shares.into_iter().find(helps).unwrap_or(PRESSING)
 }
 
-/// What it is called to overlook an actor.
-pub fn label_of(kind: ActorKind) -> Label {
-    if kind.is_on_foot() { Label::Walker } else { Label::Vehicle }
-}
-
-/// Whether braking for an actor makes sense: people must be on the road, and vehicles not follow.
-fn matters(world: &World, scene: &SceneSnapshot, actor: &ActorScene) -> bool {
-    if actor.kind.is_on_foot() {
-        return world.network().on_road(actor.position);
-    }
-    let ahead_m = (actor.position.truncate() - middle(&scene.ego)).dot(forward(&scene.ego));
-    let same_way = Footprint::of_actor(actor).forward.dot(forward(&scene.ego)) > 0.5;
-    ahead_m > 0.0 || !same_way
-}
-
-fn red_light(hud: &Hud, way: &EgoWay, friction: f32) -> Option<Hazard> {
+fn red_light(hud: &Hud, way: &EgoWay, grip_mps2: f32) -> Option<Hazard> {
     let to_line_m = f32::from(hud.light_distance_m).max(0.5);
-    let hardest_mps2 = RED_LIGHT_MPS2.min(RED_LIGHT_SHARE * friction * GRAVITY_MPS2);
-    let too_fast = hud.speed_mps * hud.speed_mps / (2.0 * to_line_m) > hardest_mps2;
-    let runs_it = hud.light == Some(LightPhase::Red) && too_fast && way.driven_m(10.0) > to_line_m + 1.0;
-    runs_it.then(|| hazard(Label::Rules, format!("red light in {to_line_m:.0} m")))
+    let runs_it = hud.light == Some(LightPhase::Red) && way.driven_m(10.0) > to_line_m + 1.0;
+    let needed_mps2 = hud.speed_mps * hud.speed_mps / (2.0 * to_line_m);
+    let urgency = (needed_mps2 / grip_mps2).min(PRESSING);
+    runs_it.then(|| Hazard::new(Source::RedLight, urgency, format!("red light in {to_line_m:.0} m")))
 }
 
 /// Leaving the lane or the road, or driving against the route.
@@ -172,7 +128,7 @@ fn leaving_lane(world: &World, scene: &SceneSnapshot) -> Option<Hazard> {
     let route: Vec<Vec2> = world.route_ahead(20.0).iter().map(|p| p.truncate()).collect();
     let [first, second, ..] = route[..] else { return None };
     if forward(car).dot((second - first).normalize_or(Vec2::X)) < WRONG_WAY_COS {
-        return Some(Hazard { steer: true, ..hazard(Label::Rules, "driving against the route".into()) });
+        return Some(Hazard::new(Source::WrongWay, PRESSING, "driving against the route".into()));
     }
     let soon = soon(car);
     let off_m = route.windows(2).map(|w| distance_m(soon, w[0], w[1])).fold(f32::INFINITY, f32::min);
@@ -181,12 +137,12 @@ fn leaving_lane(world: &World, scene: &SceneSnapshot) -> Option<Hazard> {
     (off_m > allowed_m).then(|| {
         let on_road = world.network().on_road(soon.extend(car.position.z));
         let what = if on_road { "lane" } else { "road" };
-        Hazard { steer: true, ..hazard(Label::Rules, format!("leaving the {what}, {off_m:.1} m off")) }
+        Hazard::new(Source::LaneLeft, PRESSING, format!("leaving the {what}, {off_m:.1} m off"))
     })
 }
 
 /// The middle of the car a moment ahead, when the wheels stay as they are.
-fn soon(car: &kernel::scene::EgoScene) -> Vec2 {
+fn soon(car: &EgoScene) -> Vec2 {
     let way_m = car.speed_mps * STEERING_S;
     let turned = -way_m * ops::tan(car.wheel_angle_rad) / ego::WHEELBASE_M;
     let (sin, cos) = (ops::sin(0.5 * turned), ops::cos(0.5 * turned));

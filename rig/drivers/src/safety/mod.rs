@@ -1,5 +1,8 @@
-//! The simulated safety driver: sees the truth and reacts with a human delay.
+//! The simulated safety driver: sees what a person would see, leaves the semantic driver time to act, and reacts with a
+//! human delay.
 
+mod encounter;
+mod eyes;
 mod forecast;
 mod hazard;
 mod looks;
@@ -8,10 +11,15 @@ use kernel::rng::{self, Stream};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Controls, World, ops};
 
+use eyes::Eyes;
+use replay::Label;
+
 use super::Driver;
 use crate::footprint;
 use crate::single_track;
-pub use hazard::{CRITICAL_S, Hazard, Touched, encroachers, label_of, predicted_encroachment};
+pub use encounter::{CRITICAL_S, Encroachment, Touched, encroachers, label_of, predicted_encroachment};
+pub use eyes::in_sight;
+pub use hazard::{Hazard, Source};
 pub use looks::{LOOK_TICKS, Looks};
 
 /// Reaction times are log-normal with this mean (Dixit et al. 2016), seconds, and spread.
@@ -21,6 +29,8 @@ const REACTION_SIGMA: f32 = 0.35;
 const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
 /// A hazard that is gone for this long is over.
 pub const FORGET_TICKS: Tick = 12;
+/// Share of the road's braking that has to be needed before it is no longer the semantic driver's turn.
+pub const URGENT: f32 = 0.5;
 /// Standing without a red light ahead gets boring after this time.
 pub const BORING_TICKS: Tick = seconds(60);
 /// Deceleration of the full brake is asked for at once.
@@ -28,30 +38,54 @@ const BRAKE: f32 = 1.0;
 /// How far ahead on the route the car is steered to, metres.
 const STEER_TO_M: usize = 8;
 
-/// Sees the truth, and takes over when it gets dangerous.
-#[derive(Clone, Debug, Default)]
+/// Sees what can be seen from the seat, and takes over when it gets dangerous.
+#[derive(Clone, Debug)]
 pub struct SafetyBot {
     /// Number of the person, who has reaction times of their own.
     person: u64,
+    /// From here on the semantic driver is not trusted to act: see [`Hazard::urgency`].
+    urgent: f32,
+    eyes: Eyes,
     looks: Looks,
-    /// When the present hazard was first and last seen.
-    feared: Option<Feared>,
+    /// The hazards of the moment.
+    feared: Vec<Feared>,
     /// Why it took over.
     reason: Option<Hazard>,
     /// Since when the car stands with nothing to wait for.
     stands_since: Option<Tick>,
 }
 
-#[derive(Clone, Debug)]
+/// A hazard, and when it was first and last seen.
+#[derive(Clone, Copy, Debug)]
 struct Feared {
+    source: Source,
     since: Tick,
     last: Tick,
+}
+
+impl Default for SafetyBot {
+    fn default() -> Self {
+        Self::of_person(0)
+    }
 }
 
 impl SafetyBot {
     /// One of many, of whom [`SafetyBot::default`] is number 0: they differ in their reaction times.
     pub fn of_person(person: u64) -> Self {
-        Self { person, ..Self::default() }
+        Self {
+            person,
+            urgent: URGENT,
+            eyes: Eyes::default(),
+            looks: Looks::default(),
+            feared: Vec::new(),
+            reason: None,
+            stands_since: None,
+        }
+    }
+
+    /// The same person with another threshold than [`URGENT`].
+    pub fn with_urgent(self, urgent: f32) -> Self {
+        Self { urgent, ..self }
     }
 
     /// Why it took over, once it has.
@@ -62,29 +96,29 @@ impl SafetyBot {
     fn look(&mut self, world: &World) {
         let scene = world.scene();
         self.looks.look(&scene);
-        match hazard::find(world, &scene, &self.looks) {
-            Some(hazard) => self.fear(hazard, world),
-            None => self.calm(world.tick()),
+        self.eyes.look(world.network(), &scene);
+        for hazard in hazard::find(world, &scene, &self.looks, &self.eyes) {
+            self.fear(hazard, world);
         }
+        self.feared.retain(|feared| world.tick() < feared.last + FORGET_TICKS);
         if self.is_bored(world) && self.reason.is_none() {
             let comment = "nothing moves".into();
-            self.reason = Some(Hazard { label: replay::Label::Boredom, comment, steer: false, whom: None });
+            self.reason = Some(Hazard { label: Label::Boredom, comment, source: Source::Standstill, urgency: 0.0 });
         }
     }
 
-    /// Acts once a hazard has lasted for the reaction time.
+    /// Acts once a hazard has lasted for the reaction time, and presses. The foot is ready by then.
     fn fear(&mut self, hazard: Hazard, world: &World) {
         let tick = world.tick();
-        let since = self.feared.as_ref().map_or(tick, |f| f.since);
-        if tick >= since + reaction_ticks(world.scenario().seed, self.person, since) {
+        let feared = match self.feared.iter_mut().find(|feared| feared.source == hazard.source) {
+            Some(feared) => feared,
+            None => self.feared.push_mut(Feared { source: hazard.source, since: tick, last: tick }),
+        };
+        feared.last = tick;
+        let is_ready = tick >= feared.since + reaction_ticks(world.scenario().seed, self.person, feared.since);
+        let is_worse = self.reason.as_ref().is_none_or(|reason| hazard.urgency > reason.urgency);
+        if is_ready && hazard.urgency >= self.urgent && is_worse {
             self.reason = Some(hazard);
-        }
-        self.feared = Some(Feared { since, last: tick });
-    }
-
-    fn calm(&mut self, tick: Tick) {
-        if self.feared.as_ref().is_some_and(|f| tick >= f.last + FORGET_TICKS) {
-            self.feared = None;
         }
     }
 
@@ -107,7 +141,7 @@ impl Driver<World> for SafetyBot {
         match &self.reason {
             None => Controls::default(),
             Some(hazard) => {
-                let steer = if hazard.steer { steer_back(world) } else { 0.0 };
+                let steer = if hazard.steers() { steer_back(world) } else { 0.0 };
                 Controls::from_fractions(steer, 0.0, BRAKE)
             }
         }

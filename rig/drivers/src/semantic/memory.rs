@@ -84,7 +84,7 @@ impl Trail {
     }
 }
 
-/// A vehicle that was seen more than once.
+/// Somebody who was seen more than once.
 #[derive(Clone, Copy, Debug)]
 pub struct Track {
     /// Its nearest point.
@@ -101,7 +101,7 @@ impl Track {
     }
 }
 
-/// The vehicles in sight.
+/// The vehicles in sight, or the people.
 #[derive(Clone, Debug, Default)]
 pub struct Tracks {
     tracks: Vec<Track>,
@@ -118,8 +118,8 @@ impl Tracks {
         }
     }
 
-    /// Matches a new mask's contacts with what is known.
-    pub fn look(&mut self, contacts: &[Contact]) {
+    /// Matches a new mask's contacts of vehicles, or of people, with what is known.
+    pub fn look<'a>(&mut self, contacts: impl IntoIterator<Item = &'a Contact>) {
         let dt_s = self.since_look_s.max(TICK_S);
         self.since_look_s = 0.0;
         let known = std::mem::take(&mut self.tracks);
@@ -138,7 +138,7 @@ impl Tracks {
         }
     }
 
-    /// The vehicles whose movement is known and faster than `least_mps`.
+    /// Those whose movement is known and faster than `least_mps`.
     pub fn moving(&self, least_mps: f32) -> impl Iterator<Item = &Track> {
         let speed = |t: &Track| ops::hypot(t.velocity_mps.0, t.velocity_mps.1);
         self.tracks.iter().filter(move |t| t.looks >= BELIEVED_AFTER && speed(t) > least_mps)
@@ -198,10 +198,10 @@ impl Room {
     }
 }
 
-/// One place for each vehicle: its nearest distance, the middle of its width.
-fn blobs(contacts: &[Contact]) -> Vec<Point> {
+/// One place for each vehicle or group of people: its nearest distance, the middle of its width.
+fn blobs<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Vec<Point> {
     let mut blobs: Vec<(Point, Contact, f32)> = Vec::new();
-    for contact in contacts.iter().filter(|c| !c.is_person) {
+    for contact in contacts {
         let gap_m = GAP_M + GAP_PER_M * contact.x_m;
         let of =
             |last: &Contact| (last.x_m - contact.x_m).abs() < 2.0 * gap_m && (last.y_m - contact.y_m).abs() < gap_m;

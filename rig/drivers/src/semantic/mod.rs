@@ -33,6 +33,7 @@ pub struct SemanticBot {
     steer: f32,
     trail: Trail,
     tracks: Tracks,
+    people: Tracks,
     patience: Patience,
     room: Room,
     has_lights: bool,
@@ -58,16 +59,20 @@ impl SemanticBot {
         let moved = Moved::along(Arc { curvature: single_track::curvature(self.steer) }, view.hud.speed_mps);
         self.trail.extend(moved, path::arrow_point(&view.hud.arrow));
         self.tracks.carry(moved);
+        self.people.carry(moved);
         self.room.carry(moved);
         let arc = path::choose(sight, &view.hud, &self.trail);
         if self.ids != view.mask.ids {
             self.ids.clear();
             self.ids.extend_from_slice(view.mask.ids);
             self.contacts = sight.contacts();
-            self.tracks.look(&self.contacts);
+            self.tracks.look(self.contacts.iter().filter(|contact| !contact.is_person));
+            self.people.look(self.contacts.iter().filter(|contact| contact.is_person));
             // The picture of a new mask is that old.
             let driven_m = view.hud.speed_mps * LATENCY_TICKS as f32 * TICK_S;
-            self.room.look(speed::obstacle_m(&self.contacts, arc).map(|seen_m| seen_m - driven_m));
+            let stands_m = speed::obstacle_m(&self.contacts, arc).map(|seen_m| seen_m - driven_m);
+            let walks_m = speed::crossing_m(&self.people, arc, view.hud.speed_mps);
+            self.room.look(stands_m.into_iter().chain(walks_m).reduce(f32::min));
         }
         // A light leaves the HUD once its line is passed, but the junction still has it.
         self.has_lights = view.hud.light.is_some() || (self.has_lights && view.hud.arrow.distance_m < 10);

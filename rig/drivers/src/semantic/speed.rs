@@ -48,6 +48,14 @@ const BESIDE_VEHICLE_M: f32 = 0.5;
 const BESIDE_WALKER_M: f32 = 0.6;
 const BESIDE_CROSSING_M: f32 = 3.6;
 
+/// People who move faster than this walk, m/s.
+const WALKING_MPS: f32 = 0.5;
+/// How far ahead people are believed to keep their way, and how well it is known when they are somewhere, seconds.
+const FORESEEN_S: f32 = 3.5;
+const MOMENT_S: f32 = 0.7;
+/// Speed with which the car is taken to come by, at least, m/s.
+const CREEPING_MPS: f32 = 2.0;
+
 /// The speed from which the car can slow to `end_mps` within `distance_m`.
 fn braking_from(end_mps: f32, distance_m: f32) -> f32 {
     (end_mps * end_mps + 2.0 * COMFORT_MPS2 * distance_m.max(0.0)).sqrt()
@@ -98,6 +106,24 @@ pub fn obstacle_m(contacts: &[Contact], arc: Arc) -> Option<f32> {
         in_the_way.then_some(s_m - FRONT_M - STANDOFF_M)
     });
     distances.reduce(f32::min)
+}
+
+/// Metres from the front of the car to where it must stand because of people who walk into its way: those who will be
+/// there, give or take a moment, when the car comes by at its speed.
+pub fn crossing_m(tracks: &Tracks, arc: Arc, speed_mps: f32) -> Option<f32> {
+    let meets = |track: &Track| {
+        let (s_m, _) = arc.project(track.at.0, track.at.1);
+        let to_m = s_m - FRONT_M;
+        let there_s = to_m / speed_mps.max(CREEPING_MPS);
+        let is_in_the_way = |t_s: f32| {
+            let (x_m, y_m) = track.after(t_s.max(0.0));
+            arc.project(x_m, y_m).1.abs() < HALF_WIDTH_M + BESIDE_WALKER_M
+        };
+        let times_s = [there_s - MOMENT_S, there_s, there_s + MOMENT_S];
+        let is_ahead = to_m > 0.0 && s_m < IN_THE_WAY_M && there_s < FORESEEN_S;
+        (is_ahead && times_s.into_iter().any(is_in_the_way)).then_some(to_m - STANDOFF_M)
+    };
+    tracks.moving(WALKING_MPS).filter_map(meets).reduce(f32::min)
 }
 
 fn clearance_m(contact: &Contact) -> f32 {
@@ -161,4 +187,36 @@ fn junction_mps(hud: &Hud, has_lights: bool) -> f32 {
         Turn::Straight => return f32::INFINITY,
     };
     braking_from(there_mps, f32::from(hud.arrow.distance_m) - 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::semantic::memory::Moved;
+
+    /// A person who goes on like this for a second, as they are seen by a car that stands still.
+    fn walker(from: (f32, f32), velocity_mps: (f32, f32)) -> Tracks {
+        let mut tracks = Tracks::default();
+        for look in 0..10 {
+            let t_s = 0.1 * look as f32;
+            let (x_m, y_m) = (from.0 + t_s * velocity_mps.0, from.1 + t_s * velocity_mps.1);
+            tracks.look(&[Contact { x_m, y_m, is_person: true, on_road: false }]);
+            (0..6).for_each(|_| tracks.carry(Moved { forward_m: 0.0, turned_rad: 0.0 }));
+        }
+        tracks
+    }
+
+    #[test]
+    fn who_walks_into_the_way_is_expected_there_and_who_walks_along_it_is_not() {
+        let ahead = Arc { curvature: 0.0 };
+        let at_8_mps = |tracks: &Tracks| crossing_m(tracks, ahead, 8.0);
+        let enters = at_8_mps(&walker((20.0, -5.5), (0.0, 1.4))).expect("it is in the way");
+        assert!((enters - (20.0 - FRONT_M - STANDOFF_M)).abs() < 0.5, "{enters}");
+        assert_eq!(at_8_mps(&walker((20.0, -4.5), (1.4, 0.0))), None, "along the road");
+        assert_eq!(at_8_mps(&walker((20.0, -3.0), (0.0, -1.4))), None, "away from it");
+        assert_eq!(at_8_mps(&walker((20.0, -12.0), (0.0, 1.4))), None, "long after the car");
+        assert_eq!(at_8_mps(&walker((20.0, -3.0), (0.0, 0.0))), None, "waits");
+        // Who will have crossed before a slow car comes is not waited for.
+        assert_eq!(crossing_m(&walker((20.0, 1.0), (0.0, 1.4)), ahead, 4.0), None);
+    }
 }

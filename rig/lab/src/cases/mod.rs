@@ -39,6 +39,7 @@ use self::line::{CaseLine, lines};
 use self::query::{Query, Scope, Sort, Sql};
 use self::review::Change;
 use self::rows::Within;
+use crate::redrive::Need;
 
 /// What the index of a folder is called in it.
 pub const FILE: &str = "cases.sqlite";
@@ -220,6 +221,24 @@ fn scope(
     let is_missing = wanted.iter().filter(|(_, place)| missing.contains(place));
     failed.extend(is_missing.map(|(file, _)| Failure::new(file, &absent())));
     Ok((scope, failed))
+}
+
+/// Of some cases those on whose takeover a campaign came to one of these verdicts; all, where none is asked for.
+pub fn keep_judged<T>(cases: Vec<T>, path: impl Fn(&T) -> &Path, verdicts: &[Need]) -> anyhow::Result<Vec<T>> {
+    if verdicts.is_empty() {
+        return Ok(cases);
+    }
+    let mut kept = Vec::new();
+    for case in cases {
+        if Facts::read(path(&case))?.verdict.is_some_and(|verdict| verdicts.contains(&verdict)) {
+            kept.push(case);
+        }
+    }
+    if kept.is_empty() {
+        let names: Vec<&str> = verdicts.iter().map(|verdict| verdict.name()).collect();
+        anyhow::bail!("on none of the corner cases the verdict is {}", names.join(" or "));
+    }
+    Ok(kept)
 }
 
 /// The situation of a case, and which case it is.

@@ -33,6 +33,8 @@ pub use self::witness::Witness;
 use super::looks::open_eyes;
 use super::pipeline::{Pipeline, Studios, set_aside};
 use super::store::{Settings, Store};
+use crate::cases::keep_judged;
+use crate::redrive::Need;
 use crate::share::{Share, ShareDone};
 use base::failure::{Failed, Failure, Usage};
 use base::json;
@@ -50,6 +52,8 @@ pub use gate::Gate;
 pub struct Options {
     /// Corner cases, or folders with cases anywhere below.
     pub files: Vec<PathBuf>,
+    /// Only cases on whose takeover a campaign came to one of these verdicts.
+    pub verdict: Vec<Need>,
     /// Two or more checkpoints; the first is the baseline.
     pub checkpoint: Vec<CheckpointChoice>,
     /// A condition on every checkpoint but the baseline, as in `ped_iou>=0.5`. Metrics: ped_iou, miou,
@@ -114,7 +118,8 @@ struct Seen {
 fn look(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::Result<Seen> {
     AdapterChoice::default().find()?;
     let store = Store::open(&args.out, "compare")?;
-    let found = library::find(&args.files, Kind::Cases).only_cases().or_failed()?;
+    let mut found = library::find(&args.files, Kind::Cases).only_cases().or_failed()?;
+    found.files = keep_judged(found.files, |entry| &entry.path, &args.verdict)?;
     let library::Found { files: mut cases, mut failed } = match share {
         Some(share) => share.pick(found),
         None => found,

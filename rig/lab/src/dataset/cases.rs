@@ -18,9 +18,11 @@ use replay::{Label, Recording};
 use super::manifest::Manifest;
 use super::provenance::{Drive, FrameLine};
 use super::recipe::{CaseUsed, CasesRecipe, Recipe, city};
+use crate::cases::keep_judged;
 use crate::cityscapes;
 use crate::looks::Studio;
 use crate::pipeline::Studios;
+use crate::redrive::Need;
 
 /// Which corner cases become a dataset.
 #[derive(Clone, Debug)]
@@ -29,6 +31,8 @@ pub struct Options {
     pub files: Vec<PathBuf>,
     /// Take only cases with this label: walker, vehicle, rules or boredom; may be given again.
     pub label: Vec<Label>,
+    /// Take only cases on whose takeover a campaign came to one of these verdicts.
+    pub verdict: Vec<Need>,
     /// Which split they become.
     pub split: String,
     /// Size of the pictures.
@@ -45,11 +49,12 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     if !args.label.is_empty() {
         let wanted = |case: &CaseUsed| args.label.iter().any(|label| case.label.as_deref() == Some(label.name()));
         found.retain(|(_, case)| wanted(case));
+        if found.is_empty() {
+            let labels: Vec<&str> = args.label.iter().map(|label| label.name()).collect();
+            bail!("none of the corner cases is labelled {}", labels.join(" or "));
+        }
     }
-    if found.is_empty() {
-        let labels: Vec<&str> = args.label.iter().map(|label| label.name()).collect();
-        bail!("none of the corner cases is labelled {}", labels.join(" or "));
-    }
+    let found = keep_judged(found, |(path, _)| path, &args.verdict)?;
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     build(&CasesRecipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, args.jobs, interrupt)
 }

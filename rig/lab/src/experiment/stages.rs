@@ -249,6 +249,7 @@ impl Stages<'_> {
             let args = cases::Options {
                 files: files.to_vec(),
                 label: Vec::new(),
+                verdict: Vec::new(),
                 split: split.into(),
                 size: self.recipe.size,
                 jobs: self.jobs,

@@ -18,12 +18,12 @@ use super::fork::{Fork, Harm, Otherwise};
 use super::verdict::Need;
 
 /// Raised when verdicts are given otherwise.
-const VERDICTS: u32 = 2;
+const VERDICTS: u32 = 3;
 
 /// What would have happened without an intervention.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Counterfactual {
-    /// Whether the intervention was necessary, early, needless, or in vain.
+    /// Whether the intervention was necessary, a near miss, early, needless, or in vain.
     pub verdict: Need,
     /// The first thing that goes wrong without it.
     pub harm: Option<Harm>,

@@ -18,6 +18,8 @@ use measures::criticality::Extremes;
 use replay::{Case, Label, Log, PROGRAM, Recorder, Recording, Replayer, WRITTEN_BY};
 use serde::{Deserialize, Serialize};
 
+use super::verdict::{EARLY_TICKS, is_near_miss};
+
 /// What is done otherwise than in the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Otherwise {
@@ -61,6 +63,8 @@ pub struct Course {
     pub recorded_harm: Option<Harm>,
     /// Tick of an intervention, which there is only with a safety bot.
     pub intervention: Option<Tick>,
+    /// Somebody came close within 3 s of the takeover.
+    pub near_miss: bool,
     /// How critical it was from then on.
     pub closest: Extremes,
 }
@@ -156,8 +160,11 @@ impl Fork {
         let recording = recorder.finish(world.arbiter().outcome)?;
         let recorded_harm = recorded_harm(log, network, at)?;
         let driven = Recording::from_bytes(&recording)?.into_log();
-        let closest = Criticality::of(&driven, network, fork_tick..=driven.last_tick())?.extremes;
-        Ok((Course { recording, fork_tick, harm, collision, recorded_harm, intervention, closest }, crew.into_vision()))
+        let Criticality { extremes: closest, samples } =
+            Criticality::of(&driven, network, fork_tick..=driven.last_tick())?;
+        let near_miss = is_near_miss(samples.iter().filter(|sample| sample.tick <= at + EARLY_TICKS));
+        let course = Course { recording, fork_tick, harm, collision, recorded_harm, intervention, near_miss, closest };
+        Ok((course, crew.into_vision()))
     }
 
     fn start_of<'a>(&self, log: &'a Log, at: Tick) -> anyhow::Result<&'a Keyframe> {

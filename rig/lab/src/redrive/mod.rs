@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::counterfactual::Counterfactual;
 use self::fork::{Course, Fork, Harm, Otherwise, from_takeover, takeover};
-pub use self::verdict::Need;
+pub use self::verdict::{EARLY_TICKS, Need, is_near_miss};
 use super::store::Store;
 use crate::machine::Machine;
 use crate::share::{Share, ShareDone};
@@ -401,7 +401,7 @@ impl Line {
 
     /// How close it came where nothing went wrong and nobody had to take over.
     fn near_miss(&self) -> Option<String> {
-        if !matches!(self.verdict, Need::Needless | Need::Avoided) {
+        if !matches!(self.verdict, Need::NearMiss | Need::Needless | Need::Avoided) {
             return None;
         }
         let Extreme { value, tick, with } = self.closest.min_ttc_s.as_ref()?;

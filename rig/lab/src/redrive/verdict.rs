@@ -1,12 +1,16 @@
 //! What a fork says about the intervention.
 
 use kernel::time::{Tick, seconds};
+use measures::criticality::Sample;
 use serde::{Deserialize, Serialize};
 
 use super::fork::{Course, Otherwise};
 
 /// An intervention is early when harm would have come later than this after it.
-const EARLY_TICKS: Tick = seconds(3);
+pub const EARLY_TICKS: Tick = seconds(3);
+/// It comes close where the time to collision falls below this, seconds, or more braking than this is required, m/s^2.
+const NEAR_MISS_TTC_S: f64 = 1.0;
+const NEAR_MISS_MPS2: f64 = 6.0;
 
 /// Whether an intervention was needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -17,6 +21,10 @@ pub enum Need {
     InVain,
     /// Without it, harm comes within 3 s: a collision, a red light, the wrong way, or off the road.
     Necessary,
+    /// Without it, no harm comes within 3 s, but somebody comes close: less than 1 s from a collision, or so that more
+    /// than 6 m/s^2 are needed to prevent one.
+    #[serde(rename = "near miss")]
+    NearMiss,
     /// Without it, harm comes later.
     Early,
     /// Without it, no harm comes as long as the fork goes on.
@@ -34,6 +42,7 @@ impl Need {
             Otherwise::NoIntervention { .. } => match &course.harm {
                 Some(harm) if course.recorded_harm.as_ref().is_some_and(|came| came.what == harm.what) => Self::InVain,
                 Some(harm) if harm.tick <= at + EARLY_TICKS => Self::Necessary,
+                _ if course.near_miss => Self::NearMiss,
                 Some(_) => Self::Early,
                 None => Self::Needless,
             },
@@ -48,13 +57,15 @@ impl Need {
     }
 
     /// Those of forks without the intervention.
-    pub const WITHOUT_INTERVENTION: [Self; 4] = [Self::InVain, Self::Necessary, Self::Early, Self::Needless];
+    pub const WITHOUT_INTERVENTION: [Self; 5] =
+        [Self::InVain, Self::Necessary, Self::NearMiss, Self::Early, Self::Needless];
 
     /// As it is written.
     pub fn name(self) -> &'static str {
         match self {
             Self::InVain => "in vain",
             Self::Necessary => "necessary",
+            Self::NearMiss => "near miss",
             Self::Early => "early",
             Self::Needless => "needless",
             Self::Again => "again",
@@ -63,17 +74,41 @@ impl Need {
     }
 }
 
+/// Whether somebody came close in a time of which these are the samples.
+pub fn is_near_miss<'a>(samples: impl IntoIterator<Item = &'a Sample>) -> bool {
+    samples.into_iter().any(|sample| {
+        sample.ttc_s.as_ref().is_some_and(|ttc| ttc.value < NEAR_MISS_TTC_S)
+            || sample.required_deceleration_mps2.as_ref().is_some_and(|needed| needed.value > NEAR_MISS_MPS2)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::redrive::fork::{Harm, HarmKind};
-    use measures::criticality::Extremes;
+    use measures::criticality::{Extremes, Worst};
 
     fn course(harm: Option<(Tick, HarmKind)>, intervention: Option<Tick>) -> Course {
         let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
         let collision = harm.clone().filter(|harm| harm.what == HarmKind::Collision);
         let closest = Extremes { min_ttc_s: None, min_pret_s: None, max_required_deceleration_mps2: None, pet_s: None };
-        Course { recording: Vec::new(), fork_tick: 1, harm, collision, recorded_harm: None, intervention, closest }
+        let (recording, recorded_harm, near_miss) = (Vec::new(), None, false);
+        Course { recording, fork_tick: 1, harm, collision, recorded_harm, intervention, near_miss, closest }
+    }
+
+    #[test]
+    fn who_comes_close_without_it_is_a_near_miss() {
+        let otherwise = Otherwise::NoIntervention { earlier_ticks: 0 };
+        let verdict = |harm| Need::of(&Course { near_miss: true, ..course(harm, None) }, otherwise, 1000);
+        assert_eq!(verdict(None), Need::NearMiss);
+        assert_eq!(verdict(Some((1181, HarmKind::Collision))), Need::NearMiss);
+        assert_eq!(verdict(Some((1180, HarmKind::Collision))), Need::Necessary);
+        let worst = |value| Some(Worst { value, with: "car 1".into() });
+        let sample = |ttc_s, required_deceleration_mps2| {
+            [Sample { tick: 1, ttc_s, pret_s: None, required_deceleration_mps2, encroachment: None }]
+        };
+        assert!(is_near_miss(&sample(worst(0.9), None)) && is_near_miss(&sample(worst(3.0), worst(6.1))));
+        assert!(!is_near_miss(&sample(worst(1.0), worst(6.0))) && !is_near_miss(&sample(None, None)));
     }
 
     #[test]

@@ -146,7 +146,7 @@ impl Sampler {
     /// The sample of a world whose scene is this.
     pub fn look(&mut self, world: &World, scene: &SceneSnapshot) -> Sample {
         self.0.look(scene);
-        Sample::of(scene, predicted_encroachment(world, scene, &self.0).map(|hazard| hazard.comment))
+        Sample::of(scene, predicted_encroachment(world, scene, &self.0).map(|encroachment| encroachment.comment()))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use drivers::safety::{FORGET_TICKS, Hazard, LOOK_TICKS, Looks, Touched, predicted_encroachment};
+use drivers::safety::{Encroachment, FORGET_TICKS, LOOK_TICKS, Looks, Touched, predicted_encroachment};
 use kernel::RoadNetwork;
 use kernel::time::Tick;
 use replay::{Error, Log, Replayer};
@@ -87,13 +87,13 @@ impl Episodes {
     }
 
     /// What is predicted at a tick, and the mistake behind touching somebody; ticks come in order.
-    fn see(&mut self, tick: Tick, hazard: Option<Hazard>, mistake: impl Fn(Touched) -> Option<Mistake>) {
+    fn see(&mut self, tick: Tick, hazard: Option<Encroachment>, mistake: impl Fn(Touched) -> Option<Mistake>) {
         let Some(hazard) = hazard else { return };
         match self.found.last_mut().filter(|e| tick < e.end + FORGET_TICKS) {
             Some(episode) => episode.end = tick,
             None => {
-                let (label, what) = (hazard.label.name(), hazard.comment);
-                let mistake = hazard.whom.and_then(mistake);
+                let (label, what) = (hazard.label().name(), hazard.comment());
+                let mistake = mistake(hazard.whom);
                 self.found.push(Episode { onset: tick, end: tick, label, what, mistake });
             }
         }
@@ -107,13 +107,13 @@ impl Episodes {
 
 #[cfg(test)]
 mod tests {
+    use kernel::scene::ActorKind;
     use proptest::prelude::*;
-    use replay::Label;
 
     use super::*;
 
-    fn hazard() -> Hazard {
-        Hazard { label: Label::Walker, comment: "pedestrian 3".into(), steer: false, whom: None }
+    fn hazard() -> Encroachment {
+        Encroachment { whom: Touched::Actor(3, ActorKind::Pedestrian), after_s: 1.0 }
     }
 
     /// Onsets and ends, told tick by tick.
