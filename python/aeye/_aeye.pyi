@@ -163,7 +163,8 @@ class Frame:
         """The other road users, a row each.
 
         `instance_id` is that of `instance_ids`; `position_m`, shape (n, 3), the middle of the footprint;
-        `rotation_xyzw` has the shape (n, 4); `size_m`, shape (n, 3), is length, width and height.
+        `rotation_xyzw` has the shape (n, 4); `size_m`, shape (n, 3), is length, width and height. Parked cars are among
+        them only where they were hit; their open doors (`Door`) are, with the instance of the car.
         """
 
 @final
@@ -267,9 +268,10 @@ class Recording:
     ) -> Frames:
         """The frames of a window.
 
-        Those are the last seconds before the takeover (or the end), as `aeye rerender` draws them, or, with `from_` or
-        `to` or with `last=None`, those between two times of the run (seconds; None: its start, its end). `size` is
-        (width, height) in pixels, `fps` a divisor of 60.
+        Those are the last seconds before the takeover (or the collision that nobody prevented, else the end), as `aeye
+        rerender` draws them, or, with `from_` or `to` or with `last=None`, those between two times of the run (seconds;
+        None: its start, its end), cut to what the file holds: a case begins at `first_tick`. `size` is (width, height)
+        in pixels, `fps` a divisor of 60.
 
         Raises InputError where there is nothing in the window, or a value cannot be.
         """
@@ -636,8 +638,8 @@ def cases(
 
     As `aeye cases` does, and gives a `Table` with a dictionary for each, as that prints with `--json`; `file` of it
     is the path. The index of the `folders`, in the file `index` (None: `cases.sqlite` in the one folder), is
-    brought up to date first, unless `scan` is False; files that cannot be read are left out with a warning. With
-    files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
+    brought up to date first, unless `scan` is False; files in folders that cannot be read are left out with a warning.
+    With files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
 
     Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom.
     `verdict`: necessary, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a

@@ -127,8 +127,8 @@ class CornerCases(_Windows):
     A list is taken in its order: `CornerCases([row["file"] for row in aeye.cases("runs", label="walker")])`.
 
     A sample is `transform(frame)`, or else `(rgb, class_ids)`: uint8 of shape (height, width, 3) and (height, width),
-    classes being keys of `aeye.CLASSES`. `last` are seconds before the takeover, `size` is (width, height). With
-    workers, `transform` has to be picklable.
+    classes being keys of `aeye.CLASSES` (PyTorch's losses want them as int64). `last` are seconds before the takeover,
+    `size` is (width, height). Workers that are spawned need a `transform` that can be pickled: no lambda.
 
     `keep` pieces of 32 samples stay in memory in each process, those that were asked for last: 100 MB at 256x128.
 
@@ -149,7 +149,9 @@ class CornerCases(_Windows):
 
 
 class Natural(_Windows):
-    """Frames of whole drives, at equal times, of all recordings (`*.mcap`) in a folder and those below it; cases do not count.
+    """Frames of whole drives, at equal times, of all recordings (`*.mcap`) in a folder and those below it.
+
+    Cases do not count; forks of `aeye.redrive` and episodes of `aeye.gym` do.
 
     A sample is what one of `CornerCases` is; `fps` frames a second of simulated time are taken, a divisor of 60.
 

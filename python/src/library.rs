@@ -23,8 +23,8 @@ type Words = Option<OneOrMore<String>>;
 
 /// Finds corner cases by what is known of them, as `aeye cases` does, and gives a `Table` with a dictionary for each, as that prints
 /// with `--json`; `file` of it is the path. The index of the `folders`, in the file `index` (None: `cases.sqlite` in the one
-/// folder), is brought up to date first, unless `scan` is False; files that cannot be read are left out with a warning. With files among
-/// `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
+/// folder), is brought up to date first, unless `scan` is False; files in folders that cannot be read are left out with a warning. With
+/// files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
 ///
 /// Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom. `verdict`: necessary,
 /// early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a checkpoint's digest begins with). `weather`: rain,

@@ -181,8 +181,9 @@ impl Recording {
         if is_equal { parsed(py, &line) } else { Err(diverged(text)) }
     }
 
-    /// The frames of a window: the last seconds before the takeover (or the end), as `aeye rerender` draws them, or,
-    /// with `from_` or `to` or with `last=None`, those between two times of the run (seconds; None: its start, its end).
+    /// The frames of a window: the last seconds before the takeover (or the collision that nobody prevented, else the
+    /// end), as `aeye rerender` draws them, or, with `from_` or `to` or with `last=None`, those between two times of the
+    /// run (seconds; None: its start, its end), cut to what the file holds: a case begins at `first_tick`.
     ///
     /// `size` is (width, height) in pixels, `fps` a divisor of 60, `camera` one of `driver`, `chase` and `top`.
     ///
