@@ -122,7 +122,7 @@ class _Windows:
 
 
 class CornerCases(_Windows):
-    """The frames before each takeover, of all cases (`*.mcap`) in a folder and those below it, or of a list of cases and folders.
+    """The frames before each takeover, of all cases (`*.mcap`) in a folder and those below it, of a case, or of a list of both.
 
     A list is taken in its order: `CornerCases([row["file"] for row in aeye.cases("runs", label="walker")])`.
 
@@ -173,10 +173,7 @@ class Natural(_Windows):
 def _found(places: _Places, kind: str, window: dict[str, Any]) -> list[tuple[Path, int]]:
     """The files of a kind and how many frames their window has."""
     if isinstance(places, (str, PathLike)):
-        folder = Path(places)
-        if not folder.is_dir():
-            raise FileError(f"{folder}: no such folder")
-        found = _below(folder, kind)
+        found = _named(Path(places), kind)
     else:
         found = [file for place in map(Path, places) for file in _named(place, kind)]
         if not found:
@@ -189,14 +186,17 @@ def _below(folder: Path, kind: str) -> list[Recording]:
     opened = [open_file(path) for path in sorted(folder.rglob("*.mcap"))]
     found = [file for file in opened if file.kind == kind]
     if not found:
-        raise InputError(f"{folder}: holds no {kind} (*.mcap)")
+        where = f"no {kind} among its files" if opened else "no file"
+        raise InputError(f"{folder}: has {where} (*.mcap); expected at least one {kind}")
     return found
 
 
 def _named(place: Path, kind: str) -> list[Recording]:
-    """What stands in a list: a folder, or a file, which is to be of the kind."""
+    """What a place stands for: a folder, or a file, which is to be of the kind."""
     if place.is_dir():
         return _below(place, kind)
+    if not place.exists():
+        raise FileError(f"{place}: no such file or folder")
     file = open_file(place)
     if file.kind != kind:
         raise InputError(f"{place}: a {file.kind}; expected a {kind}")
