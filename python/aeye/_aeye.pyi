@@ -642,7 +642,7 @@ def cases(
     With files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
 
     Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom.
-    `verdict`: necessary, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a
+    `verdict`: necessary, near-miss, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a
     checkpoint's digest begins with). `weather`: rain, wet, dry, fog, night, day, or a name of CARLA's. `hazards`:
     none, natural, raised, own. `perception_caused`: yes, no, unknown, True, False. `overlooked`: any, walker, vehicle or a kind
     of road user, as in `child:200` with so many pixels of them. `ttc_below` and `fork_ttc_below`: seconds to

@@ -44,7 +44,7 @@ impl<'py> Argument<'py> for Whether {
 /// files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
 ///
 /// Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom. `verdict`: necessary,
-/// early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a checkpoint's digest begins with). `weather`: rain,
+/// near-miss, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a checkpoint's digest begins with). `weather`: rain,
 /// wet, dry, fog, night, day, or a name of CARLA's. `hazards`: none, natural, raised, own. `perception_caused`: yes, no, unknown, True, False.
 /// `overlooked`: any, walker, vehicle or a kind of road user, as in `child:200` with so many pixels of them. `ttc_below` and
 /// `fork_ttc_below`: seconds to collision, measured, and without the takeover. `reviewed`: yes, no, accepted, rejected,
@@ -152,7 +152,8 @@ fn read<T: FromStr<Err: Display>>(name: &str, words: Words) -> PyResult<Vec<T>> 
 
 fn need(name: &str) -> PyResult<Need> {
     let found = Need::WITHOUT_INTERVENTION.into_iter().find(|need| dashed(need.name()) == name);
-    found.ok_or_else(|| input(format!("verdict={name:?}; expected necessary, early, needless or in-vain")))
+    let names = || Need::WITHOUT_INTERVENTION.map(|need| dashed(need.name())).join(", ");
+    found.ok_or_else(|| input(format!("verdict={name:?}; expected one of {}", names())))
 }
 
 fn hazard_level(name: String) -> PyResult<String> {

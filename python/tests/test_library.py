@@ -58,7 +58,7 @@ def test_a_file_that_cannot_be_read_is_a_warning(library):
     ("wrong", "sentence"),
     [
         ({"label": "dog"}, "label"),
-        ({"verdict": "late"}, "expected necessary"),
+        ({"verdict": "late"}, "expected one of in-vain, necessary, near-miss"),
         ({"weather": "snow"}, "expected rain, wet"),
         ({"hazards": "many"}, "expected one of"),
         ({"overlooked": "dog"}, "no road user"),
