@@ -163,7 +163,8 @@ class Frame:
         """The other road users, a row each.
 
         `instance_id` is that of `instance_ids`; `position_m`, shape (n, 3), the middle of the footprint;
-        `rotation_xyzw` has the shape (n, 4); `size_m`, shape (n, 3), is length, width and height.
+        `rotation_xyzw` has the shape (n, 4); `size_m`, shape (n, 3), is length, width and height. Parked cars are among
+        them only where they were hit; their open doors (`Door`) are, with the instance of the car.
         """
 
 @final
@@ -267,9 +268,10 @@ class Recording:
     ) -> Frames:
         """The frames of a window.
 
-        Those are the last seconds before the takeover (or the end), as `aeye rerender` draws them, or, with `from_` or
-        `to` or with `last=None`, those between two times of the run (seconds; None: its start, its end). `size` is
-        (width, height) in pixels, `fps` a divisor of 60.
+        Those are the last seconds before the takeover (or the collision that nobody prevented, else the end), as `aeye
+        rerender` draws them, or, with `from_` or `to` or with `last=None`, those between two times of the run (seconds;
+        None: its start, its end), cut to what the file holds: a case begins at `first_tick`. `size` is (width, height)
+        in pixels, `fps` a divisor of 60.
 
         Raises InputError where there is nothing in the window, or a value cannot be.
         """
@@ -396,7 +398,7 @@ class Episodes:
 
     `jobs` of them at the same time (None: one a core). An agent has the `seat` and holds its controls for `ticks` of a step, a
     bot has the other. `masks` and `images` say what is observed; images have a `size`, (width, height) (None: that of masks);
-    `record` is a folder for recordings.
+    `record` is a folder for recordings. `draw` takes pictures of `render_size` from a `camera` (`driver`, `chase` or `top`).
 
     Raises FileError where a file is not there, InputError for a value that cannot be.
     """
@@ -416,6 +418,8 @@ class Episodes:
         images: bool = False,
         size: tuple[int, int] | None = None,
         record: str | PathLike[str] | None = None,
+        camera: str = "chase",
+        render_size: tuple[int, int] = (512, 256),
         jobs: int | None = None,
     ) -> Episodes: ...
     @property
@@ -448,10 +452,8 @@ class Episodes:
         Raises FileError where a recording cannot be written.
         """
 
-    def draw(self, place: int, camera: str, size: tuple[int, int]) -> NDArray[np.uint8]:
-        """A picture of the drive at a place from a `camera` (`driver`, `chase` or `top`).
-
-        uint8 of shape (height, width, 3).
+    def draw(self, place: int) -> NDArray[np.uint8]:
+        """A picture of the drive at a place from the camera, uint8 of shape (height, width, 3).
 
         Raises InputError where no drive goes on, EngineError where it cannot be drawn.
         """
@@ -613,7 +615,7 @@ def cases(
     weather: str | list[str] | None = None,
     hazards: str | list[str] | None = None,
     checkpoint: str | list[str] | None = None,
-    perception_caused: str | list[str] | None = None,
+    perception_caused: str | bool | list[str | bool] | None = None,
     overlooked: str | list[str] | None = None,
     ttc_below: float | None = None,
     fork_ttc_below: float | None = None,
@@ -636,13 +638,13 @@ def cases(
 
     As `aeye cases` does, and gives a `Table` with a dictionary for each, as that prints with `--json`; `file` of it
     is the path. The index of the `folders`, in the file `index` (None: `cases.sqlite` in the one folder), is
-    brought up to date first, unless `scan` is False; files that cannot be read are left out with a warning. With
-    files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
+    brought up to date first, unless `scan` is False; files in folders that cannot be read are left out with a warning.
+    With files among `folders` only these cases are meant. Ctrl-C ends it; what was read or measured stays.
 
     Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom.
-    `verdict`: necessary, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a
+    `verdict`: necessary, near-miss, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a
     checkpoint's digest begins with). `weather`: rain, wet, dry, fog, night, day, or a name of CARLA's. `hazards`:
-    none, natural, raised, own. `perception_caused`: yes, no, unknown. `overlooked`: any, walker, vehicle or a kind
+    none, natural, raised, own. `perception_caused`: yes, no, unknown, True, False. `overlooked`: any, walker, vehicle or a kind
     of road user, as in `child:200` with so many pixels of them. `ttc_below` and `fork_ttc_below`: seconds to
     collision, measured, and without the takeover. `reviewed`: yes, no, accepted, rejected, unclear. `tag`: tags.
     `near`: cases whose situation is nearly that of this file; `unique`: one of each group that are nearly the same.
@@ -669,5 +671,6 @@ def evaluate(
     confusion matrix, recall of pedestrians. `jobs` frames are looked at at the same time (None: one a core); the result
     does not depend on it. Ctrl-C ends it.
 
-    Raises FileError where something is missing, InputError where it is not what it should be.
+    Raises FileError where checkpoint or dataset is not there, InputError for a checkpoint that cannot be, EngineError
+    where the dataset has no such split, or is not whole.
     """

@@ -122,13 +122,13 @@ class _Windows:
 
 
 class CornerCases(_Windows):
-    """The frames before each takeover, of all cases (`*.mcap`) in a folder and those below it, or of a list of cases and folders.
+    """The frames before each takeover, of all cases (`*.mcap`) in a folder and those below it, of a case, or of a list of both.
 
     A list is taken in its order: `CornerCases([row["file"] for row in aeye.cases("runs", label="walker")])`.
 
     A sample is `transform(frame)`, or else `(rgb, class_ids)`: uint8 of shape (height, width, 3) and (height, width),
-    classes being keys of `aeye.CLASSES`. `last` are seconds before the takeover, `size` is (width, height). With
-    workers, `transform` has to be picklable.
+    classes being keys of `aeye.CLASSES` (PyTorch's losses want them as int64). `last` are seconds before the takeover,
+    `size` is (width, height). Workers that are spawned need a `transform` that can be pickled: no lambda.
 
     `keep` pieces of 32 samples stay in memory in each process, those that were asked for last: 100 MB at 256x128.
 
@@ -149,7 +149,9 @@ class CornerCases(_Windows):
 
 
 class Natural(_Windows):
-    """Frames of whole drives, at equal times, of all recordings (`*.mcap`) in a folder and those below it; cases do not count.
+    """Frames of whole drives, at equal times, of all recordings (`*.mcap`) in a folder and those below it.
+
+    Cases do not count; forks of `aeye.redrive` and episodes of `aeye.gym` do.
 
     A sample is what one of `CornerCases` is; `fps` frames a second of simulated time are taken, a divisor of 60.
 
@@ -171,10 +173,7 @@ class Natural(_Windows):
 def _found(places: _Places, kind: str, window: dict[str, Any]) -> list[tuple[Path, int]]:
     """The files of a kind and how many frames their window has."""
     if isinstance(places, (str, PathLike)):
-        folder = Path(places)
-        if not folder.is_dir():
-            raise FileError(f"{folder}: no such folder")
-        found = _below(folder, kind)
+        found = _named(Path(places), kind)
     else:
         found = [file for place in map(Path, places) for file in _named(place, kind)]
         if not found:
@@ -187,14 +186,17 @@ def _below(folder: Path, kind: str) -> list[Recording]:
     opened = [open_file(path) for path in sorted(folder.rglob("*.mcap"))]
     found = [file for file in opened if file.kind == kind]
     if not found:
-        raise InputError(f"{folder}: holds no {kind} (*.mcap)")
+        where = f"no {kind} among its files" if opened else "no file"
+        raise InputError(f"{folder}: has {where} (*.mcap); expected at least one {kind}")
     return found
 
 
 def _named(place: Path, kind: str) -> list[Recording]:
-    """What stands in a list: a folder, or a file, which is to be of the kind."""
+    """What a place stands for: a folder, or a file, which is to be of the kind."""
     if place.is_dir():
         return _below(place, kind)
+    if not place.exists():
+        raise FileError(f"{place}: no such file or folder")
     file = open_file(place)
     if file.kind != kind:
         raise InputError(f"{place}: a {file.kind}; expected a {kind}")

@@ -1,6 +1,6 @@
 """Looks at a corner case: what happened, what the network saw, and where it was wrong.
 
-Usage: python look_at_a_case.py CASE.mcap PICTURE.png
+Usage: python look_at_a_case.py CASE.mcap PICTURE.png (needs Pillow)
 """
 
 import sys
@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image
 
 case = aeye.open(sys.argv[1])
-print(f"{case.kind} on {case.map}, seed {case.seed}, {len(case.ticks) / 60:.1f} s")
+print(f"{case.kind} on {case.map}, seed {case.seed}, {case.first_tick / 60:.1f} s to {case.ticks[-1] / 60:.1f} s of its run")
 for tick, kind, actor in zip(*(case.events[name] for name in ("tick", "kind", "actor")), strict=True):
     print(f"  {tick / 60:7.2f} s  {kind}" + (f" (actor {actor})" if actor else ""))
 

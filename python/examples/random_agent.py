@@ -1,6 +1,6 @@
 """Lets a random agent drive, alone and in eight drives at once, and keeps the recordings.
 
-Usage: python random_agent.py FOLDER
+Usage: python random_agent.py FOLDER (needs Gymnasium)
 """
 
 import sys

@@ -1,6 +1,6 @@
 """Trains a small network on corner cases with a plain loop of PyTorch.
 
-Usage: python train_torch.py FOLDER_OF_CASES
+Usage: python train_torch.py FOLDER_OF_CASES (needs PyTorch)
 """
 
 import sys

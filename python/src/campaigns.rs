@@ -7,8 +7,9 @@ use lab::campaign::{Collection, Goal, Options, drive, drive_shard};
 use pyo3::prelude::*;
 
 use crate::errors::input;
-use crate::external::{Checkpoint, Raised};
-use crate::values::{OneOrMore, jobs_at_once, level, people, preset, share, whole_seconds};
+use crate::external::{Checkpoint, Raised, choices};
+use crate::given::{Given, OneOrMore, Pair, Whole, named, within};
+use crate::values::{jobs_at_once, level, people, preset, share, whole_seconds};
 use crate::work::{parsed, tabled, work};
 
 const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, more than 0";
@@ -28,51 +29,60 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 /// Raises InputError for a value that cannot be, FileError where a file is not there or cannot be written,
 /// MissingRunsError where `runs` do not come to the goal.
 #[pyfunction]
-#[pyo3(signature = (
-    checkpoint, out, *, runs = None, km = None, cases = None, pedestrian_cases = None, maps = None, scenario = None,
-    pedestrians = None, hazards = None, weather = None, max_time = 240.0, seed = 1, jobs = None, shard = None
-))]
+#[pyo3(
+    signature = (
+        checkpoint, out, *, runs = None, km = None, cases = None, pedestrian_cases = None, maps = None, scenario = None,
+        pedestrians = None, hazards = None, weather = None, max_time = Given::of(240.0), seed = Given::of(Whole(1)),
+        jobs = None, shard = None
+    ),
+    text_signature = "(checkpoint, out, *, runs=None, km=None, cases=None, pedestrian_cases=None, maps=None, \
+                      scenario=None, pedestrians=None, hazards=None, weather=None, max_time=240.0, seed=1, jobs=None, \
+                      shard=None)"
+)]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn campaign<'py>(
     py: Python<'py>,
-    checkpoint: OneOrMore<Checkpoint<'py>>,
+    checkpoint: Given<OneOrMore<Checkpoint<'py>>>,
     out: PathBuf,
-    runs: Option<u32>,
-    km: Option<f64>,
-    cases: Option<u32>,
-    pedestrian_cases: Option<u32>,
-    maps: Option<OneOrMore<PathBuf>>,
+    runs: Option<Given<Whole>>,
+    km: Option<Given<f64>>,
+    cases: Option<Given<Whole>>,
+    pedestrian_cases: Option<Given<Whole>>,
+    maps: Option<Given<OneOrMore<PathBuf>>>,
     scenario: Option<PathBuf>,
-    pedestrians: Option<u16>,
-    hazards: Option<&str>,
-    weather: Option<&str>,
-    max_time: f64,
-    seed: u64,
-    jobs: Option<u16>,
-    shard: Option<(u32, u32)>,
+    pedestrians: Option<Given<Whole>>,
+    hazards: Option<Given<String>>,
+    weather: Option<Given<String>>,
+    max_time: Given<f64>,
+    seed: Given<Whole>,
+    jobs: Option<Given<Whole>>,
+    shard: Option<Given<Pair>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let count = |given, name| within(given, name, 1..=u32::MAX);
+    let (runs, km, pedestrians) = (count(runs, "runs")?, named(km, "km")?, people(pedestrians)?);
+    let (cases, pedestrian_cases) = (count(cases, "cases")?, count(pedestrian_cases, "pedestrian_cases")?);
     if pedestrian_cases.is_some() && pedestrians == Some(0) {
         return Err(input("pedestrian_cases with pedestrians=0; expected more than 0".to_owned()));
     }
     let raised = Raised::default();
     let options = Options {
-        checkpoint: checkpoint.list().iter().map(|checkpoint| checkpoint.choice(&raised)).collect::<PyResult<_>>()?,
-        maps: maps.map(|maps| maps.list().iter().map(|path| text(path)).collect()).unwrap_or_default(),
+        checkpoint: choices(Some(checkpoint.named("checkpoint")?), &raised)?,
+        maps: named(maps, "maps")?.map_or_else(Vec::new, OneOrMore::list).iter().map(|path| text(path)).collect(),
         embed_map: false,
         scenario,
         goal: Goal::of(runs, km, [cases, pedestrian_cases]).ok_or_else(|| input(GOAL.to_owned()))?,
-        pedestrians: pedestrians.map(people).transpose()?,
-        hazards: hazards.map(level).transpose()?,
-        weather: weather.map(preset).transpose()?,
+        pedestrians,
+        hazards: level(hazards)?,
+        weather: preset(weather)?,
         run_seconds: whole_seconds(max_time, "max_time", 10..=86_400)?,
-        seed,
-        jobs: jobs.map(jobs_at_once).transpose()?,
+        seed: seed.within("seed", 0..=u64::MAX)?,
+        jobs: jobs_at_once(jobs)?,
         out,
     };
     if shard.is_some() && runs.is_none() {
         return Err(input("a shard without runs; expected the number up to which all shards drive".to_owned()));
     }
-    match shard.map(share).transpose()? {
+    match share(shard)? {
         Some(share) => {
             let line = work(py, |interrupt| json_line(&drive_shard(&options, share, interrupt)?));
             parsed(py, &raised.or(line)?)
@@ -95,11 +105,11 @@ pub fn campaign<'py>(
 #[pyo3(signature = (folders, out, *, jobs = None))]
 pub fn collect(
     py: Python<'_>,
-    folders: OneOrMore<PathBuf>,
+    folders: Given<OneOrMore<PathBuf>>,
     out: PathBuf,
-    jobs: Option<u16>,
+    jobs: Option<Given<Whole>>,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let options = Collection { folders: folders.list(), jobs: jobs.map(jobs_at_once).transpose()?, out };
+    let options = Collection { folders: folders.named("folders")?.list(), jobs: jobs_at_once(jobs)?, out };
     tabled(py, &work(py, |_| json_line(&lab::campaign::collect(&options)?))?, "runs")
 }
 

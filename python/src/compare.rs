@@ -8,8 +8,9 @@ use lab::compare::{Gate, Options};
 use pyo3::prelude::*;
 
 use crate::errors::input;
-use crate::external::{Checkpoint, Raised};
-use crate::values::{OneOrMore, jobs_at_once, picture_size, share};
+use crate::external::{Checkpoint, Raised, choices};
+use crate::given::{Given, OneOrMore, Pair, Whole, named};
+use crate::values::{check_there, jobs_at_once, picture_size, share};
 use crate::work::{shared, tabled, work};
 
 /// Which corner cases a checkpoint fixes and breaks against another, as `aeye compare` does, and gives what that prints with
@@ -31,28 +32,31 @@ use crate::work::{shared, tabled, work};
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn compare<'py>(
     py: Python<'py>,
-    cases: OneOrMore<PathBuf>,
-    checkpoints: Vec<Checkpoint<'py>>,
+    cases: Given<OneOrMore<PathBuf>>,
+    checkpoints: Given<OneOrMore<Checkpoint<'py>>>,
     out: PathBuf,
-    gates: Option<Vec<String>>,
-    no_worse_than: Option<String>,
-    size: Option<(u32, u32)>,
-    jobs: Option<u16>,
-    shard: Option<(u32, u32)>,
+    gates: Option<Given<OneOrMore<String>>>,
+    no_worse_than: Option<Given<String>>,
+    size: Option<Given<Pair>>,
+    jobs: Option<Given<Whole>>,
+    shard: Option<Given<Pair>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let raised = Raised::default();
     let gate = |text: &String| text.parse::<Gate>().map_err(input);
+    let gates = named(gates, "gates")?.map_or_else(Vec::new, OneOrMore::list);
     let options = Options {
-        files: cases.list(),
+        files: cases.named("cases")?.list(),
         verdict: Vec::new(),
-        checkpoint: checkpoints.iter().map(|checkpoint| checkpoint.choice(&raised)).collect::<PyResult<_>>()?,
-        gate: gates.iter().flatten().map(gate).collect::<PyResult<_>>()?,
-        no_worse_than,
-        size: size.map(picture_size).transpose()?,
-        jobs: jobs.map(jobs_at_once).transpose()?,
+        checkpoint: choices(Some(checkpoints.named("checkpoints")?), &raised)?,
+        gate: gates.iter().map(gate).collect::<PyResult<_>>()?,
+        no_worse_than: named(no_worse_than, "no_worse_than")?,
+        size: size.map(|size| picture_size(size, "size")).transpose()?,
+        jobs: jobs_at_once(jobs)?,
         out,
     };
-    if let Some(share) = shard.map(share).transpose()? {
+    let share = share(shard)?;
+    check_there(&options.files)?;
+    if let Some(share) = share {
         return shared(py, &raised, |interrupt| lab::compare::compare_shard(&options, share, interrupt));
     }
     let line = raised.or(work(py, |interrupt| {

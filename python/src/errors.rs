@@ -21,6 +21,11 @@ pub fn raise(error: &Error) -> PyErr {
     exception(kind(error), sentence(error))
 }
 
+/// A file or folder is not there.
+pub fn file(sentence: String) -> PyErr {
+    exception(FILE, sentence)
+}
+
 /// What was handed over is not what is expected.
 pub fn input(sentence: String) -> PyErr {
     exception(INPUT, sentence)

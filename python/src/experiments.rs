@@ -8,7 +8,8 @@ use base::json::json_line;
 use lab::experiment::{self as stages, Preset, Recipe};
 use pyo3::prelude::*;
 
-use crate::errors::{input, raise};
+use crate::errors::{file, input, raise};
+use crate::given::{Given, Whole, named};
 use crate::values::jobs_at_once;
 use crate::work::{parsed, work};
 
@@ -29,10 +30,10 @@ pub fn experiment(
     py: Python<'_>,
     recipe: PathBuf,
     out: PathBuf,
-    jobs: Option<u16>,
-    piece: Option<String>,
+    jobs: Option<Given<Whole>>,
+    piece: Option<Given<String>>,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let (recipe, jobs) = (chosen(&recipe)?, jobs.map(jobs_at_once).transpose()?);
+    let (recipe, jobs, piece) = (chosen(&recipe)?, jobs_at_once(jobs)?, named(piece, "piece")?);
     let line = work(py, |interrupt| match &piece {
         Some(name) => json_line(&stages::piece(&recipe, &out, name, jobs, interrupt)?),
         None => json_line(&stages::run(&recipe, &out, jobs, interrupt)?),
@@ -54,6 +55,10 @@ pub fn pieces(py: Python<'_>, recipe: PathBuf, out: PathBuf) -> PyResult<Vec<Bou
 /// A name is a preset's, whatever else a file's.
 fn chosen(recipe: &Path) -> PyResult<Recipe> {
     let preset = Preset::ALL.into_iter().find(|preset| Path::new(preset.name()) == recipe);
+    if preset.is_none() && !recipe.exists() {
+        let (path, names) = (recipe.display(), Preset::ALL.map(Preset::name).join(", "));
+        return Err(file(format!("{path}: no such file; expected a recipe, or one of the presets {names}")));
+    }
     preset.map_or_else(|| Recipe::read(recipe), Preset::recipe).map_err(|error| {
         match error.chain().any(|cause| cause.is::<io::Error>()) {
             true => raise(&error),

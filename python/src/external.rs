@@ -1,22 +1,20 @@
 //! Functions of Python in the place of checkpoints.
 
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{anyhow, bail};
 use base::failure::Usage;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::external::{self, Sight};
-use drivers::vision::DEFAULT_SIZE;
 use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use perception::{Mask, RgbView};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::errors::input;
-use crate::values::{described, picture_size};
-
-// Signatures that Python shows say it in numbers.
-const _: () = assert!(DEFAULT_SIZE.0 == 256 && DEFAULT_SIZE.1 == 128);
+use crate::given::{Argument, Given, OneOrMore, Pair};
+use crate::values::{DEFAULT_PAIR, described, picture_size};
 
 /// A function in the place of a checkpoint, for `campaign`, `compare`, `redrive`, `evaluate` and `aeye.gym`: a network of
 /// PyTorch, JAX or TensorRT drives without an ONNX file.
@@ -41,14 +39,20 @@ pub struct External {
 impl External {
     #[new]
     #[pyo3(
-        signature = (function, *, name, version, size = DEFAULT_SIZE),
+        signature = (function, *, name, version, size = DEFAULT_PAIR),
         text_signature = "(function, *, name, version, size=(256, 128))"
     )]
-    fn new(function: Bound<'_, PyAny>, name: String, version: String, size: (u32, u32)) -> PyResult<Self> {
+    fn new(
+        function: Bound<'_, PyAny>,
+        name: Given<String>,
+        version: Given<String>,
+        size: Given<Pair>,
+    ) -> PyResult<Self> {
         if !function.is_callable() {
             return Err(input(format!("function={}; expected something to call", function.get_type().name()?)));
         }
-        let external = Self { function: function.unbind(), name, version, size: picture_size(size)? };
+        let (name, version) = (name.named("name")?, version.named("version")?);
+        let external = Self { function: function.unbind(), name, version, size: picture_size(size, "size")? };
         external.choice(&Raised::default())?;
         Ok(external)
     }
@@ -159,12 +163,28 @@ impl Called {
 }
 
 /// A checkpoint: `early`, `full`, `truth`, an ONNX file, or a function.
-#[derive(FromPyObject)]
 pub enum Checkpoint<'py> {
-    /// Tried first: its type is that alone.
     External(PyRef<'py, External>),
     /// A name or a file.
-    Named(std::path::PathBuf),
+    Named(PathBuf),
+}
+
+impl<'py> Argument<'py> for Checkpoint<'py> {
+    fn expected() -> String {
+        "a name, a file or an aeye.External".to_owned()
+    }
+
+    fn of(value: &Bound<'py, PyAny>) -> Result<Self, Bound<'py, PyAny>> {
+        match value.extract() {
+            Ok(external) => Ok(Self::External(external)),
+            Err(_) => PathBuf::of(value).map(Self::Named),
+        }
+    }
+}
+
+/// What the crates below take for checkpoints, if there are any.
+pub fn choices(given: Option<OneOrMore<Checkpoint<'_>>>, raised: &Raised) -> PyResult<Vec<CheckpointChoice>> {
+    given.map_or_else(Vec::new, OneOrMore::list).iter().map(|checkpoint| checkpoint.choice(raised)).collect()
 }
 
 impl Checkpoint<'_> {

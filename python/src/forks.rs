@@ -8,8 +8,9 @@ use lab::redrive as forks;
 use pyo3::prelude::*;
 
 use crate::errors::input;
-use crate::external::{Checkpoint, Raised};
-use crate::values::{OneOrMore, jobs_at_once, share, whole_seconds};
+use crate::external::{Checkpoint, Raised, choices};
+use crate::given::{Given, OneOrMore, Pair, Whole, named};
+use crate::values::{check_there, jobs_at_once, share, whole_seconds};
 use crate::work::{shared, tabled, work};
 
 /// Drives recordings or cases on from before their intervention, as `aeye redrive` does, and gives what that prints with
@@ -26,44 +27,45 @@ use crate::work::{shared, tabled, work};
 /// Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where none of them can be
 /// driven on.
 #[pyfunction]
-#[pyo3(signature = (
-    files, out, *, without_intervention = false, checkpoint = None, recorded = None, vary = 0, after = 10.0, jobs = None,
-    shard = None
-))]
+#[pyo3(
+    signature = (
+        files, out, *, without_intervention = false, checkpoint = None, recorded = None, vary = Given::of(Whole(0)),
+        after = Given::of(10.0), jobs = None, shard = None
+    ),
+    text_signature = "(files, out, *, without_intervention=False, checkpoint=None, recorded=None, vary=0, after=10.0, \
+                      jobs=None, shard=None)"
+)]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn redrive<'py>(
     py: Python<'py>,
-    files: OneOrMore<PathBuf>,
+    files: Given<OneOrMore<PathBuf>>,
     out: PathBuf,
     without_intervention: bool,
-    checkpoint: Option<Checkpoint<'py>>,
-    recorded: Option<OneOrMore<Checkpoint<'py>>>,
-    vary: u16,
-    after: f64,
-    jobs: Option<u16>,
-    shard: Option<(u32, u32)>,
+    checkpoint: Option<Given<Checkpoint<'py>>>,
+    recorded: Option<Given<OneOrMore<Checkpoint<'py>>>>,
+    vary: Given<Whole>,
+    after: Given<f64>,
+    jobs: Option<Given<Whole>>,
+    shard: Option<Given<Pair>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if without_intervention == checkpoint.is_some() {
         return Err(input("expected either without_intervention=True or a checkpoint".to_owned()));
     }
-    if vary > 30 {
-        return Err(input(format!("vary={vary}; expected 0 to 30")));
-    }
     let raised = Raised::default();
-    let choice = |checkpoint: &Checkpoint<'_>| checkpoint.choice(&raised);
-    let recorded = recorded.map(|recorded| recorded.list().iter().map(choice).collect()).transpose()?;
     let options = forks::Options {
-        files: files.list(),
+        files: files.named("files")?.list(),
         without_intervention,
-        checkpoint: checkpoint.as_ref().map(choice).transpose()?,
-        recorded: recorded.unwrap_or_default(),
+        checkpoint: named(checkpoint, "checkpoint")?.map(|checkpoint| checkpoint.choice(&raised)).transpose()?,
+        recorded: choices(named(recorded, "recorded")?, &raised)?,
         reveal: false,
-        vary,
+        vary: vary.within("vary", 0..=30)?,
         seconds: whole_seconds(after, "after", 1..=60)?,
-        jobs: jobs.map(jobs_at_once).transpose()?,
+        jobs: jobs_at_once(jobs)?,
         out,
     };
-    if let Some(share) = shard.map(share).transpose()? {
+    let share = share(shard)?;
+    check_there(&options.files)?;
+    if let Some(share) = share {
         return shared(py, &raised, |interrupt| forks::redrive_shard(&options, share, interrupt));
     }
     let line = raised.or(work(py, |interrupt| {

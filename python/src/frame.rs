@@ -82,7 +82,8 @@ impl Frame {
 
     /// The other road users, a row each: `id` (uint32), `instance_id` (uint16, as in `instance_ids`), `kind` (names),
     /// `position_m` (float32 of shape (n, 3), the middle of the footprint), `rotation_xyzw` (float32 of shape (n, 4)),
-    /// `size_m` (float32 of shape (n, 3): length, width, height), `speed_mps` (float32).
+    /// `size_m` (float32 of shape (n, 3): length, width, height), `speed_mps` (float32). Parked cars are among them only
+    /// where they were hit; their open doors (`Door`) are, with the instance of the car.
     #[getter]
     fn actors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = self.scene.actors.iter();

@@ -12,6 +12,7 @@ mod forked;
 mod forks;
 mod frame;
 mod frames;
+mod given;
 mod gym;
 mod library;
 mod log;

@@ -6,8 +6,6 @@ use std::sync::{Arc, LazyLock};
 use base::asked;
 use base::failure::Failed;
 use base::json::json_line;
-use drivers::film::Viewpoint;
-use drivers::vision::DEFAULT_SIZE;
 use kernel::time::Tick;
 use lab::shots::{Shots, Stage, Workshop};
 use lab::{inspect, verify};
@@ -21,11 +19,10 @@ use crate::errors::{diverged, input, raise};
 use crate::forked::Owned;
 use crate::frame::Frame;
 use crate::frames::Frames;
+use crate::given::{Argument, Given, Pair, Whole, named, within};
 use crate::log;
+use crate::values::{DEFAULT_PAIR, picture_size, viewpoint};
 use crate::work::{parsed, work};
-
-// Signatures that Python shows say it in numbers.
-const _: () = assert!(DEFAULT_SIZE.0 == 256 && DEFAULT_SIZE.1 == 128);
 
 /// A recording or corner case. Nothing of it can be changed.
 #[pyclass(frozen, module = "aeye")]
@@ -166,8 +163,8 @@ impl Recording {
     /// Raises DivergedError where a tick differs (which one and how it says), EngineError where another version of the
     /// simulation made the file.
     #[pyo3(signature = (*, rewind = None))]
-    fn verify<'py>(&self, py: Python<'py>, rewind: Option<u16>) -> PyResult<Bound<'py, PyAny>> {
-        let files = vec![self.path()];
+    fn verify<'py>(&self, py: Python<'py>, rewind: Option<Given<Whole>>) -> PyResult<Bound<'py, PyAny>> {
+        let (files, rewind) = (vec![self.path()], within(rewind, "rewind", 1..=600)?);
         let options = verify::Options { files, rewind, against: None, jobs: Some(1) };
         let (line, text, is_equal) = work(py, move |_| {
             let (mut line, mut text) = (String::new(), String::new());
@@ -181,33 +178,42 @@ impl Recording {
         if is_equal { parsed(py, &line) } else { Err(diverged(text)) }
     }
 
-    /// The frames of a window: the last seconds before the takeover (or the end), as `aeye rerender` draws them, or,
-    /// with `from_` or `to` or with `last=None`, those between two times of the run (seconds; None: its start, its end).
+    /// The frames of a window: the last seconds before the takeover (or the collision that nobody prevented, else the
+    /// end), as `aeye rerender` draws them, or, with `from_` or `to` or with `last=None`, those between two times of the
+    /// run (seconds; None: its start, its end), cut to what the file holds: a case begins at `first_tick`.
     ///
     /// `size` is (width, height) in pixels, `fps` a divisor of 60, `camera` one of `driver`, `chase` and `top`.
     ///
     /// Raises InputError where there is nothing in the window, or a value cannot be.
     #[pyo3(
-        signature = (*, last = Some(3.0), from_ = None, to = None, fps = 10, size = DEFAULT_SIZE, camera = "driver"),
+        signature = (
+            *, last = Given::of(Last::Default), from_ = None, to = None, fps = Given::of(Whole(10)), size = DEFAULT_PAIR,
+            camera = driver()
+        ),
         text_signature = "($self, *, last=3.0, from_=None, to=None, fps=10, size=(256, 128), camera='driver')"
     )]
     fn frames(
         &self,
-        last: Option<f64>,
-        from_: Option<f64>,
-        to: Option<f64>,
-        fps: u32,
-        size: (u32, u32),
-        camera: &str,
+        last: Given<Last>,
+        from_: Option<Given<f64>>,
+        to: Option<Given<f64>>,
+        fps: Given<Whole>,
+        size: Given<Pair>,
+        camera: Given<String>,
     ) -> PyResult<Frames> {
         let is_between = from_.is_some() || to.is_some();
-        let asked = Asked {
-            last: last.filter(|_| !is_between).map(ticks).transpose()?,
-            from: from_.map(ticks).transpose()?,
-            to: to.map(ticks).transpose()?,
-            fps,
+        let last = match last.named("last")? {
+            Last::Seconds(_) if is_between => {
+                return Err(input("last with from_ or to; expected either".to_owned()));
+            }
+            Last::Seconds(seconds) => Some(ticks(seconds, "last")?),
+            Last::Default if !is_between => Some(ticks(LAST_S, "last")?),
+            Last::Default | Last::All => None,
         };
-        let shots = Shots::of_window(&self.stage, &asked, viewpoint(camera)?, size);
+        let time = |given, name| named(given, name)?.map(|seconds| ticks(seconds, name)).transpose();
+        let asked = Asked { last, from: time(from_, "from_")?, to: time(to, "to")?, fps: frame_rate(fps)? };
+        let (viewpoint, size) = (viewpoint(camera)?, picture_size(size, "size")?);
+        let shots = Shots::of_window(&self.stage, &asked, viewpoint, size);
         Ok(shots.map_err(|error| raise(&error))?.into())
     }
 
@@ -216,11 +222,13 @@ impl Recording {
     /// Raises InputError where the file has no such tick, EngineError where another version of the simulation made it
     /// (of its cases, the ticks with a stored scene can be drawn) or no graphics driver is there.
     #[pyo3(
-        signature = (tick, *, size = DEFAULT_SIZE, camera = "driver"),
+        signature = (tick, *, size = DEFAULT_PAIR, camera = driver()),
         text_signature = "($self, tick, *, size=(256, 128), camera='driver')"
     )]
-    fn frame(&self, py: Python<'_>, tick: Tick, size: (u32, u32), camera: &str) -> PyResult<Frame> {
-        let shots = Shots::of_tick(&self.stage, tick, viewpoint(camera)?, size).map_err(|error| raise(&error))?;
+    fn frame(&self, py: Python<'_>, tick: Given<Whole>, size: Given<Pair>, camera: Given<String>) -> PyResult<Frame> {
+        let tick = tick.within("tick", self.first_tick()..=self.log().last_tick())?;
+        let (viewpoint, size) = (viewpoint(camera)?, picture_size(size, "size")?);
+        let shots = Shots::of_tick(&self.stage, tick, viewpoint, size).map_err(|error| raise(&error))?;
         Frames::from(shots).draw(py, 0)
     }
 
@@ -230,10 +238,41 @@ impl Recording {
     }
 }
 
-fn viewpoint(name: &str) -> PyResult<Viewpoint> {
-    name.parse().map_err(|error| raise(&anyhow::Error::from(error)))
+/// How long a window is unless asked otherwise, seconds.
+const LAST_S: f64 = 3.0;
+
+/// How much of a run is asked for.
+enum Last {
+    /// What nobody asked otherwise for: the last seconds, or what lies between two times.
+    Default,
+    /// The last seconds.
+    Seconds(f64),
+    /// All of it.
+    All,
 }
 
-fn ticks(seconds: f64) -> PyResult<Tick> {
-    asked::ticks(seconds).ok_or_else(|| input(format!("{seconds} s; expected a time of the run in seconds, 0 or more")))
+impl<'py> Argument<'py> for Last {
+    fn expected() -> String {
+        "a number or None".to_owned()
+    }
+
+    fn of(value: &Bound<'py, PyAny>) -> Result<Self, Bound<'py, PyAny>> {
+        if value.is_none() { Ok(Self::All) } else { f64::of(value).map(Self::Seconds) }
+    }
+}
+
+/// The camera that pictures are taken by unless asked otherwise.
+fn driver() -> Given<String> {
+    Given::of("driver".to_owned())
+}
+
+fn frame_rate(fps: Given<Whole>) -> PyResult<u32> {
+    let Whole(fps) = fps.named("fps")?;
+    let refused = || input(format!("fps={fps}; expected {}", asked::frame_rates()));
+    u32::try_from(fps).ok().filter(|fps| asked::is_frame_rate(*fps)).ok_or_else(refused)
+}
+
+fn ticks(seconds: f64, name: &str) -> PyResult<Tick> {
+    let refused = || input(format!("{name}={seconds}; expected a time of the run in seconds, 0 or more"));
+    asked::ticks(seconds).ok_or_else(refused)
 }

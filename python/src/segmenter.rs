@@ -1,5 +1,6 @@
 //! Networks.
 
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use drivers::checkpoint::CheckpointChoice;
@@ -11,6 +12,7 @@ use pyo3::types::PyDict;
 use render::Frame;
 
 use crate::errors::{input, raise};
+use crate::given::Given;
 use crate::values::described;
 
 /// A segmentation network: `early` or `full`, which come with the package, or an ONNX file that takes one image.
@@ -28,8 +30,8 @@ pub struct Segmenter {
 #[pymethods]
 impl Segmenter {
     #[new]
-    fn new(py: Python<'_>, checkpoint: std::path::PathBuf) -> PyResult<Self> {
-        let choice: CheckpointChoice = checkpoint.to_string_lossy().parse().map_err(input)?;
+    fn new(py: Python<'_>, checkpoint: Given<PathBuf>) -> PyResult<Self> {
+        let choice: CheckpointChoice = checkpoint.named("checkpoint")?.to_string_lossy().parse().map_err(input)?;
         let eye = py.detach(|| Eye::open(&choice)).map_err(|error| raise(&error))?;
         let Eye::Network { checkpoint, .. } = &eye else {
             return Err(input("truth is no network; expected early, full or an ONNX file".into()));

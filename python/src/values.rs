@@ -1,40 +1,40 @@
 //! Values as Python hands them over; the same are refused as by the command.
 
+use std::fs;
+use std::io::ErrorKind;
 use std::ops::RangeInclusive;
+use std::path::PathBuf;
 
+use anyhow::Error;
+use base::asked;
+use drivers::film::Viewpoint;
+use drivers::vision::DEFAULT_SIZE;
 use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::weather::WeatherPreset;
 use lab::share::Share;
 use numpy::PyUntypedArray;
 use pyo3::prelude::*;
 
-use crate::errors::input;
+use crate::errors::{file, input, raise};
+use crate::given::{Given, Pair, Whole, named, within};
 
-/// One of something, or several.
-#[derive(FromPyObject)]
-pub enum OneOrMore<T> {
-    /// Tried first: a path is no list.
-    One(T),
-    More(Vec<T>),
-}
+/// Width and height of pictures that nobody asked otherwise for.
+pub const DEFAULT_PAIR: Given<Pair> = Given::of(Pair(DEFAULT_SIZE.0 as i128, DEFAULT_SIZE.1 as i128));
 
-impl<T> OneOrMore<T> {
-    /// All of them.
-    pub fn list(self) -> Vec<T> {
-        match self {
-            Self::One(one) => vec![one],
-            Self::More(more) => more,
-        }
-    }
-}
+// Signatures that Python shows say it in numbers.
+const _: () = assert!(DEFAULT_SIZE.0 == 256 && DEFAULT_SIZE.1 == 128);
 
 /// Width and height of pictures.
-pub fn picture_size((width, height): (u32, u32)) -> PyResult<(u32, u32)> {
-    let is_side = |side| (8..=8192).contains(&side);
-    if is_side(width) && is_side(height) {
-        return Ok((width, height));
-    }
-    Err(input(format!("size {width}x{height}; expected sides of 8 to 8192")))
+pub fn picture_size(size: Given<Pair>, name: &str) -> PyResult<(u32, u32)> {
+    let Pair(width, height) = size.named(name)?;
+    let sides = u32::try_from(width).ok().zip(u32::try_from(height).ok());
+    let refused = || input(format!("{name} {width}x{height}; expected {}", asked::sizes()));
+    sides.filter(|size| asked::is_size(*size)).ok_or_else(refused)
+}
+
+/// A camera by its name.
+pub fn viewpoint(name: Given<String>) -> PyResult<Viewpoint> {
+    name.named("camera")?.parse().map_err(|error| raise(&Error::from(error)))
 }
 
 /// What somebody handed over in the place of an array: kind and shape, or the type of what is none.
@@ -47,31 +47,37 @@ pub fn described(value: &Bound<'_, PyAny>) -> String {
 }
 
 /// How much is done at the same time.
-pub fn jobs_at_once(jobs: u16) -> PyResult<u16> {
-    if (1..=256).contains(&jobs) { Ok(jobs) } else { Err(input(format!("jobs={jobs}; expected 1 to 256"))) }
+pub fn jobs_at_once(jobs: Option<Given<Whole>>) -> PyResult<Option<u16>> {
+    within(jobs, "jobs", 1..=256)
 }
 
 /// How many people are on foot.
-pub fn people(count: u16) -> PyResult<u16> {
-    let refused = || input(format!("pedestrians={count}; expected 0 to {MOST_OF_A_KIND}"));
-    if count <= MOST_OF_A_KIND { Ok(count) } else { Err(refused()) }
+pub fn people(count: Option<Given<Whole>>) -> PyResult<Option<u16>> {
+    within(count, "pedestrians", 0..=MOST_OF_A_KIND)
 }
 
 /// A level of hazards by its name.
-pub fn level(name: &str) -> PyResult<HazardLevel> {
+pub fn level(name: Option<Given<String>>) -> PyResult<Option<HazardLevel>> {
+    named(name, "hazards")?.map(|name| level_named(&name)).transpose()
+}
+
+/// The level of hazards of a name.
+pub fn level_named(name: &str) -> PyResult<HazardLevel> {
     let names = || HazardLevel::ALL.map(HazardLevel::name).join(", ");
     HazardLevel::named(name).ok_or_else(|| input(format!("hazards=\"{name}\"; expected one of {}", names())))
 }
 
 /// A weather by CARLA's name.
-pub fn preset(name: &str) -> PyResult<WeatherPreset> {
+pub fn preset(name: Option<Given<String>>) -> PyResult<Option<WeatherPreset>> {
+    let Some(name) = named(name, "weather")? else { return Ok(None) };
     let names = || WeatherPreset::names().collect::<Vec<_>>().join(", ");
-    let found = WeatherPreset::find(name).copied();
+    let found = WeatherPreset::find(&name).copied().map(Some);
     found.ok_or_else(|| input(format!("weather=\"{name}\"; expected one of {}", names())))
 }
 
 /// A time in whole seconds.
-pub fn whole_seconds(seconds: f64, name: &str, within: RangeInclusive<u32>) -> PyResult<u32> {
+pub fn whole_seconds(seconds: Given<f64>, name: &str, within: RangeInclusive<u32>) -> PyResult<u32> {
+    let seconds = seconds.named(name)?;
     let whole = (seconds.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&seconds)).then_some(seconds as u32);
     whole.filter(|seconds| within.contains(seconds)).ok_or_else(|| {
         let (least, most) = (within.start(), within.end());
@@ -80,7 +86,22 @@ pub fn whole_seconds(seconds: f64, name: &str, within: RangeInclusive<u32>) -> P
 }
 
 /// A share of a campaign: which one, from 1 on, and of how many.
-pub fn share((shard, of): (u32, u32)) -> PyResult<Share> {
+pub fn share(share: Option<Given<Pair>>) -> PyResult<Option<Share>> {
+    let Some(Pair(shard, of)) = named(share, "shard")? else { return Ok(None) };
     let refused = |_| input(format!("shard=({shard}, {of}); expected (i, n) with i from 1 to n"));
-    format!("{shard}/{of}").parse().map_err(refused)
+    format!("{shard}/{of}").parse().map(Some).map_err(refused)
+}
+
+/// Refuses what is not there. Lists (`@FILE`) are left to those who read them.
+pub fn check_there(paths: &[PathBuf]) -> PyResult<()> {
+    for path in paths.iter().filter(|path| !path.to_string_lossy().starts_with('@')) {
+        match fs::metadata(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                return Err(file(format!("{}: no such file or folder", path.display())));
+            }
+            Err(error) => return Err(raise(&Error::from(error).context(path.display().to_string()))),
+            Ok(_) => {}
+        }
+    }
+    Ok(())
 }

@@ -41,6 +41,9 @@ def test_rows_are_a_table(tmp_path):
     [
         {},
         {"runs": 0},
+        {"runs": -1},
+        {"runs": 1, "seed": -1},
+        {"runs": 1, "shard": (1, -2)},
         {"km": 0.0},
         {"km": 1.0, "cases": 2},
         {"runs": 1, "hazards": "some"},
@@ -57,6 +60,37 @@ def test_what_cannot_be_is_refused(asked, tmp_path):
     with pytest.raises((aeye.InputError, aeye.FileError)):
         aeye.campaign("early", tmp_path / "out", **asked)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("checkpoint", "asked", "words"),
+    [
+        (["early", 3], {}, "checkpoint: expected a name, a file or an aeye.External, or a list of such, got int"),
+        ("early", {"maps": 3}, "maps: expected a string or a path, or a list of such, got int"),
+        ("early", {"max_time": "10s"}, "max_time: expected a number, got str"),
+        ("early", {"runs": "1"}, "runs: expected a whole number, got str"),
+        ("early", {"hazards": 3}, "hazards: expected a string, got int"),
+        ("early", {"shard": 3}, "shard: expected two whole numbers, got int"),
+    ],
+)
+def test_arguments_of_another_type_are_named(checkpoint, asked, words, tmp_path):
+    with pytest.raises(TypeError) as caught:
+        aeye.campaign(checkpoint, tmp_path / "out", **{"runs": 1, **asked})
+    assert str(caught.value) == words and not (tmp_path / "out").exists()
+
+
+def test_files_that_are_not_there_are_said_at_once(case, tmp_path):
+    gone = tmp_path / "gone"
+    for call in (
+        lambda: aeye.redrive([case, gone], tmp_path / "out", without_intervention=True),
+        lambda: aeye.compare(gone, ["early", "truth"], tmp_path / "out"),
+        lambda: aeye.compare([gone, case], ["early", "truth"], tmp_path / "out", shard=(1, 2)),
+    ):
+        with pytest.raises(aeye.FileError, match="gone: no such file or folder"):
+            call()
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(aeye.InputError, match="two or more checkpoints"):
+        aeye.compare(case, "early", tmp_path / "out")
 
 
 def test_a_drive_on_needs_a_question(case, tmp_path):

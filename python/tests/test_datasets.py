@@ -63,6 +63,16 @@ def test_who_goes_on_draws_what_is_asked_for_alone(files):
     assert len(drawn) == len(cases) and in_between.isdisjoint(every_other), "none twice"
 
 
+def test_a_file_stands_for_itself_and_other_files_are_told(files):
+    assert [path.name for path in CornerCases(files / "below" / "a.case.mcap").paths] == ["a.case.mcap"]
+    with pytest.raises(aeye.InputError, match="drive.mcap: a recording; expected a case"):
+        CornerCases(files / "drive.mcap")
+    with pytest.raises(aeye.InputError, match="has no recording among its files"):
+        Natural(files / "below")
+    with pytest.raises(aeye.InputError, match="size 3x3; expected sides of 8 to 8192"):
+        CornerCases(files, size=(3, 3))
+
+
 @pytest.mark.parametrize(("folder", "error"), [("gone", aeye.FileError), (".", aeye.InputError)])
 def test_a_folder_without_cases_is_refused(folder, error, tmp_path):
     with pytest.raises(error, match="no "):

@@ -19,7 +19,7 @@ def test_what_can_be_done_first_needs_nothing(tmp_path):
 
 
 def test_nonsense_is_refused(tmp_path):
-    with pytest.raises(aeye.FileError, match="huge: No such file"):
+    with pytest.raises(aeye.FileError, match="huge: no such file; .* presets smoke, small, desk, paper"):
         aeye.experiment("huge", tmp_path / "out")
     with pytest.raises(aeye.InputError, match="networks/natural-3: is no piece of this experiment"):
         aeye.experiment("smoke", tmp_path / "out", piece="networks/natural-3")

@@ -224,6 +224,12 @@ def test_pictures_of_drives():
         ({"weights": {"speed": 1}}, "expected some of progress, "),
         ({"size": (4, 4)}, "expected sides of 8 to 8192"),
         ({"render_mode": "human"}, "expected rgb_array or None"),
+        ({"camera": "back"}, "expected driver, chase or top"),
+        ({"render_size": (4, 4)}, "render_size 4x4; expected sides of 8 to 8192"),
+        ({"reward": 3}, "reward=3; expected something to call"),
+        ({"termination": True}, "termination=True; expected something to call"),
+        ({"pedestrians": -1}, "pedestrians=-1; expected 0 to 500"),
+        ({"ticks": -1}, "ticks=-1; expected 1 to 60"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_sentence(options, said):
@@ -231,6 +237,27 @@ def test_what_cannot_be_is_refused_in_one_sentence(options, said):
         with pytest.raises(aeye.InputError) as caught:
             make(**options)
         assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_arguments_of_another_type_are_named():
+    for options, said in (
+        ({"checkpoint": 3}, "checkpoint: expected a name, a file or an aeye.External, got int"),
+        ({"max_time": "10s"}, "max_time: expected a number, got str"),
+        ({"size": 64}, "size: expected two whole numbers, got int"),
+    ):
+        with pytest.raises(TypeError, match=f"^{said}$"):
+            aeye.gym.DriveEnv(**options)
+    with pytest.raises(aeye.InputError, match="num_envs=0; expected 1 to 1024"):
+        aeye.gym.DriveVectorEnv(0)
+
+
+def test_controls_beyond_their_range_count_as_its_end():
+    def hashes(action) -> list[int]:
+        env = aeye.gym.DriveEnv(max_time=10)
+        env.reset(seed=1)
+        return [env.step(np.array(action, np.float32))[4]["hash"] for _ in range(10)]
+
+    assert hashes([-3.0, 7.0, -1.0]) == hashes([-1.0, 1.0, 0.0])
 
 
 def test_wrong_steps_and_resets_are_refused():

@@ -58,7 +58,7 @@ def test_a_file_that_cannot_be_read_is_a_warning(library):
     ("wrong", "sentence"),
     [
         ({"label": "dog"}, "label"),
-        ({"verdict": "late"}, "expected necessary"),
+        ({"verdict": "late"}, "expected one of in-vain, necessary, near-miss"),
         ({"weather": "snow"}, "expected rain, wet"),
         ({"hazards": "many"}, "expected one of"),
         ({"overlooked": "dog"}, "no road user"),
@@ -66,6 +66,8 @@ def test_a_file_that_cannot_be_read_is_a_warning(library):
         ({"sort": "size"}, "expected one of file"),
         ({"sort": "distance"}, "expected --near"),
         ({"limit": 0}, "1 or more"),
+        ({"limit": -1}, "limit=-1; expected 1 or more"),
+        ({"perception_caused": "perhaps"}, "perception_caused"),
         ({"set_review": "accepted"}, "every case"),
         ({"add_tag": "a b", "label": "walker"}, "without blanks"),
     ],
@@ -73,6 +75,31 @@ def test_a_file_that_cannot_be_read_is_a_warning(library):
 def test_what_cannot_be_is_refused(library, wrong, sentence):
     with pytest.raises(aeye.InputError, match=sentence):
         aeye.cases(library, **wrong)
+
+
+def test_whether_perception_caused_it_may_be_a_bool(library):
+    by_word = [aeye.cases(library, perception_caused=word) for word in ("yes", "no", ["yes", "no"])]
+    assert [aeye.cases(library, perception_caused=caused) for caused in (True, False, [True, "no"])] == by_word
+
+
+def test_arguments_of_another_type_are_named(library):
+    for asked, words in (
+        ({"label": 3}, "label: expected a string, or a list of such, got int"),
+        ({"tag": ["odd", 3]}, "tag: expected a string, or a list of such, got int"),
+        ({"perception_caused": 3}, "perception_caused: expected a string or a bool, or a list of such, got int"),
+        ({"ttc_below": "1"}, "ttc_below: expected a number, got str"),
+        ({"limit": "3"}, "limit: expected a whole number, got str"),
+    ):
+        with pytest.raises(TypeError) as caught:
+            aeye.cases(library, **asked)
+        assert str(caught.value) == words
+
+
+def test_places_that_are_not_there_are_no_empty_answer(library, tmp_path):
+    gone = library / "gone.case.mcap"
+    for places, index in ((gone, None), ([gone], None), ([library, gone], tmp_path / "index.sqlite")):
+        with pytest.raises(aeye.FileError, match="gone.case.mcap: no such file or folder"):
+            aeye.cases(places, index=index)
 
 
 def test_a_dataset_takes_what_was_found(library):

@@ -38,6 +38,8 @@ def test_what_is_no_picture_or_no_network_is_refused(tmp_path):
         network.predict(np.zeros((0, 0, 3), np.uint8))
     with pytest.raises(aeye.InputError, match="truth is no network"):
         aeye.Segmenter("truth")
+    with pytest.raises(TypeError, match="^checkpoint: expected a string or a path, got int$"):
+        aeye.Segmenter(3)
     with pytest.raises(aeye.FileError, match="no such checkpoint"):
         aeye.Segmenter(tmp_path / "gone.onnx")
     (tmp_path / "text.onnx").write_text("not a network")
@@ -55,8 +57,10 @@ def test_evaluate_says_what_eval_says(checkpoint, dataset, said):
 def test_what_cannot_be_evaluated_is_told(dataset, tmp_path):
     with pytest.raises(aeye.Error, match="has no split test"):
         aeye.evaluate("early", dataset, split="test")
-    with pytest.raises(aeye.Error):
+    with pytest.raises(aeye.FileError, match="gone: no such file or folder"):
         aeye.evaluate("early", tmp_path / "gone")
+    with pytest.raises(TypeError, match="^checkpoint: expected a name, a file or an aeye.External, got Segmenter$"):
+        aeye.evaluate(aeye.Segmenter("early"), dataset)
 
 
 def test_ctrl_c_ends_long_work_and_the_next_goes_on(dataset):

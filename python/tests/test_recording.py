@@ -70,13 +70,22 @@ def test_errors_are_one_sentence_of_the_kind_that_fits(drive, tmp_path):
     refused = [
         (aeye.FileError, OSError, lambda: aeye.open(gone), "gone.mcap: "),
         (aeye.InputError, ValueError, lambda: aeye.open(damaged), "damaged.mcap: damaged at "),
-        (aeye.InputError, ValueError, lambda: recording.frames(fps=7), "7 frames a second; expected a divisor of 60"),
-        (aeye.InputError, ValueError, lambda: recording.frames(fps=0), "expected a divisor of 60"),
-        (aeye.InputError, ValueError, lambda: recording.frames(size=(4, 4)), "4x4; expected sides of 8 to 8192"),
+        (aeye.InputError, ValueError, lambda: recording.frames(fps=7), "fps=7; expected a divisor of 60"),
+        (aeye.InputError, ValueError, lambda: recording.frames(fps=0), "fps=0; expected a divisor of 60"),
+        (aeye.InputError, ValueError, lambda: recording.frames(fps=-1), "fps=-1; expected a divisor of 60"),
+        (aeye.InputError, ValueError, lambda: recording.frames(size=(4, 4)), "size 4x4; expected sides of 8 to 8192"),
+        (aeye.InputError, ValueError, lambda: recording.frames(size=(-5, 10)), "size -5x10; expected sides of 8"),
+        (aeye.InputError, ValueError, lambda: recording.frames(size=(8192, 8192)), "at most 16777216 pixels"),
+        (aeye.InputError, ValueError, lambda: recording.frames(size=(10**40, 8)), "expected sides of 8 to 8192"),
         (aeye.InputError, ValueError, lambda: recording.frames(last=float("nan")), "expected a time of the run"),
         (aeye.InputError, ValueError, lambda: recording.frames(from_=500.0), "nothing of that window"),
         (aeye.InputError, ValueError, lambda: recording.frames(camera="side"), "expected driver, chase or top"),
-        (aeye.InputError, ValueError, lambda: recording.frame(10**6), "holds ticks 0 to "),
+        (aeye.InputError, ValueError, lambda: recording.frames(last=1.0, from_=2.0), "last with from_ or to"),
+        (aeye.InputError, ValueError, lambda: recording.frames(from_=-1), "from_=-1; expected a time of the run"),
+        (aeye.InputError, ValueError, lambda: recording.frame(10**6), "tick=1000000; expected 0 to "),
+        (aeye.InputError, ValueError, lambda: recording.frame(-1), "tick=-1; expected 0 to "),
+        (aeye.InputError, ValueError, lambda: recording.frame(60, camera="side"), "expected driver, chase or top"),
+        (aeye.InputError, ValueError, lambda: recording.verify(rewind=0), "rewind=0; expected 1 to 600"),
     ]
     for kind, builtin, call, words in refused:
         with pytest.raises(kind) as caught:
@@ -84,3 +93,30 @@ def test_errors_are_one_sentence_of_the_kind_that_fits(drive, tmp_path):
         said = str(caught.value)
         assert words in said and "\n" not in said
         assert isinstance(caught.value, builtin) and isinstance(caught.value, aeye.Error)
+
+
+def test_arguments_of_another_type_are_named(drive):
+    recording = aeye.open(drive)
+    refused = [
+        ({"fps": 10.0}, "fps: expected a whole number, got float"),
+        ({"size": 512}, "size: expected two whole numbers, got int"),
+        ({"size": (512.0, 256)}, "size: expected two whole numbers, got float"),
+        ({"size": (1, 2, 3)}, "size: expected two whole numbers, got tuple"),
+        ({"last": "3"}, "last: expected a number or None, got str"),
+        ({"from_": "3"}, "from_: expected a number, got str"),
+        ({"camera": 3}, "camera: expected a string, got int"),
+    ]
+    for asked, words in refused:
+        with pytest.raises(TypeError) as caught:
+            recording.frames(**asked)
+        assert str(caught.value) == words
+    assert len(recording.frames(fps=np.int64(1), size=np.array([64, 32]), last=np.float64(2))) == 2
+
+
+def test_a_window_is_cut_to_what_the_file_holds(case):
+    recording = aeye.open(case)
+    first, last = recording.first_tick, int(recording.ticks[-1])
+    everything = recording.frames(last=None, fps=60).ticks
+    assert (everything[0], everything[-1]) == (first, last)
+    assert np.array_equal(recording.frames(from_=0.0, to=1e4, fps=60).ticks, everything)
+    assert np.array_equal(recording.frames(last=1e4, fps=60).ticks, everything[everything <= recording.frames().ticks[-1]])

@@ -65,6 +65,9 @@ class Drives:
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise InputError(f"render_mode={render_mode!r}; expected rgb_array or None")
+        for name, function in (("reward", reward), ("termination", termination), ("truncation", truncation)):
+            if function is not None and not callable(function):
+                raise InputError(f"{name}={function!r}; expected something to call, or None")
         observed = _observed(seat if observe is None else None, observe)
         self.episodes = Episodes(
             places,
@@ -75,6 +78,8 @@ class Drives:
             images="rgb" in observed,
             size=size,
             record=record,
+            camera=camera,
+            render_size=render_size,
             jobs=jobs,
         )
         self.observation_space = _space(self.episodes, observed)
@@ -86,7 +91,6 @@ class Drives:
         self._setting = setting
         self._settings: dict[tuple[tuple[str, str], ...], Setting] = {(): Setting(**setting)}
         self.render_mode = render_mode
-        self._camera = (camera, render_size)
         self._pictures: list[NDArray[np.uint8] | None] = [None] * places
         self._seeds = [0] * places
         self.arrays = self.blank()
@@ -159,7 +163,7 @@ class Drives:
     def draw(self, place: int) -> NDArray[np.uint8]:
         """A picture of a drive, or the last one of a drive that is over."""
         picture = self._pictures[place]
-        return self.episodes.draw(place, *self._camera) if picture is None else picture.copy()
+        return self.episodes.draw(place) if picture is None else picture.copy()
 
     def close(self) -> None:
         """Ends all drives."""

@@ -29,11 +29,11 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     and `bearing_deg` of the route 12 m ahead, positive to the right.
 
     Actions are float32 of shape (3,): steering in [-1, 1], positive to the right, throttle and brake in [0, 1]. They are held
-    for `ticks` ticks of 1/60 s, 1 to 60. The semantic driver's indicators are set by themselves.
+    for `ticks` ticks of 1/60 s, 1 to 60; beyond its range each counts as its end. The semantic driver's indicators are set by themselves.
 
     `checkpoint` is `early`, `full`, `truth`, an ONNX file or an `External`; `map` a bundled map or an OpenDRIVE file, or `scenario` a
     scenario file; `hazards` is `none`, `natural` or `raised`, `weather` one of CARLA's names; a run takes at most `max_time`
-    seconds, 4 to 86,400. `observe` is `mask`, `rgb` or `both` (None: what the seat's driver sees), `size` (width, height) of
+    seconds, 4 to 86,400 (None: the scenario's, 600 unless it says otherwise). `observe` is `mask`, `rgb` or `both` (None: what the seat's driver sees), `size` (width, height) of
     images (None: that of masks). With `record`, each episode is kept in that folder as a recording that `aeye verify` and all
     other commands take.
 
@@ -43,9 +43,9 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     agent is taken over; never). The end of the run ends it in any case: terminated after a takeover or collision, truncated
     when its time is over.
 
-    `info` has `tick`, `hash` and `seed`, `facts`, and after a step `reward_terms`; at the end of an episode also
-    `outcome` (`intervened`, `missed`: a collision that nobody prevented, `censored`: the time was over, or empty where it
-    ended before the run), and `recording`, the path, where it is kept.
+    `info` has `tick`, `hash` and `seed`, `facts` (`aeye.gym.Facts` without `tick`, `hash` and the columns of the HUD), and after
+    a step `reward_terms`; at the end of an episode also `outcome` (`intervened`, `missed`: a collision that nobody
+    prevented, `censored`: the time was over, or empty where it ended before the run), and `recording`, the path, where it is kept.
 
     Raises FileError where a file is not there, InputError for a value that cannot be.
     """

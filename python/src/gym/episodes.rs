@@ -5,22 +5,27 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use drivers::checkpoint::CheckpointChoice;
 use drivers::episode::{Archive, COLUMNS, Fleet, MOST_STEP_TICKS, Plan, STEP_TICKS, Start, hud};
-use drivers::film::Viewpoint;
 use drivers::vision::Eye;
 use kernel::{Controls, Seat};
 use numpy::{IntoPyArray, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
+use render::Camera;
 
 use super::arrays::{Arrays, Sizes};
 use super::setting::Setting;
 use crate::errors::{input, raise};
 use crate::external::{Checkpoint, Raised};
 use crate::forked::{self, Owned};
-use crate::values::{jobs_at_once, picture_size};
+use crate::given::{Given, Pair, Whole, named};
+use crate::values::{jobs_at_once, picture_size, viewpoint};
+
+/// Most drives that are stepped together.
+const MOST_PLACES: u16 = 1024;
 
 /// So many places for drives that are stepped together, `jobs` at the same time (None: one a core). An agent has the
 /// `seat` (`semantic` or `safety`) and holds its controls for `ticks` of a step, a bot has the other. `masks` and `images`
 /// say what is observed; images have a `size`, (width, height) (None: that of masks); `record` is a folder for recordings.
+/// `draw` takes pictures of `render_size` from a `camera` (`driver`, `chase` or `top`).
 ///
 /// Raises FileError where a file is not there, InputError for a value that cannot be.
 #[pyclass(frozen, module = "aeye._aeye")]
@@ -29,6 +34,7 @@ pub struct Episodes {
     sizes: Sizes,
     mask_size: (u32, u32),
     image_size: (u32, u32),
+    camera: Camera,
     raised: Raised,
 }
 
@@ -47,35 +53,37 @@ impl Episodes {
     #[new]
     #[pyo3(
         signature = (
-            places, *, seat = "semantic", checkpoint = None, ticks = STEP_TICKS, masks = true, images = false,
-            size = None, record = None, jobs = None
+            places, *, seat = Given::of("semantic".to_owned()), checkpoint = None,
+            ticks = Given::of(Whole(STEP_TICKS as i128)), masks = true, images = false, size = None, record = None,
+            camera = Given::of("chase".to_owned()), render_size = Given::of(Pair(512, 256)), jobs = None
         ),
-        text_signature = "(places, *, seat='semantic', checkpoint=None, ticks=6, masks=True, images=False, size=None, record=None, jobs=None)"
+        text_signature = "(places, *, seat='semantic', checkpoint=None, ticks=6, masks=True, images=False, size=None, \
+                          record=None, camera='chase', render_size=(512, 256), jobs=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
     fn new(
         py: Python<'_>,
-        places: usize,
-        seat: &str,
-        checkpoint: Option<Checkpoint<'_>>,
-        ticks: u64,
+        places: Given<Whole>,
+        seat: Given<String>,
+        checkpoint: Option<Given<Checkpoint<'_>>>,
+        ticks: Given<Whole>,
         masks: bool,
         images: bool,
-        size: Option<(u32, u32)>,
+        size: Option<Given<Pair>>,
         record: Option<PathBuf>,
-        jobs: Option<u16>,
+        camera: Given<String>,
+        render_size: Given<Pair>,
+        jobs: Option<Given<Whole>>,
     ) -> PyResult<Self> {
-        if !(1..=1024).contains(&places) {
-            return Err(input(format!("{places} drives; expected 1 to 1024")));
-        }
-        if !(1..=MOST_STEP_TICKS).contains(&ticks) {
-            return Err(input(format!("ticks={ticks}; expected 1 to {MOST_STEP_TICKS}")));
-        }
-        let size = size.map(picture_size).transpose()?;
-        let seat = seat_of(seat)?;
+        let places = usize::from(places.within("num_envs", 1..=MOST_PLACES)?);
+        let ticks = ticks.within("ticks", 1..=MOST_STEP_TICKS)?;
+        let size = size.map(|size| picture_size(size, "size")).transpose()?;
+        let camera = viewpoint(camera)?.camera(picture_size(render_size, "render_size")?);
+        let seat = seat_of(&seat.named("seat")?)?;
         let raised = Raised::default();
+        let checkpoint = named(checkpoint, "checkpoint")?;
         let choice = checkpoint.map_or(Ok(CheckpointChoice::Truth), |checkpoint| checkpoint.choice(&raised))?;
-        let jobs = base::spread::jobs(jobs.map(jobs_at_once).transpose()?).min(places);
+        let jobs = base::spread::jobs(jobs_at_once(jobs)?).min(places);
         let (fleet, images) = py
             .detach(|| {
                 let eye = Eye::open(&choice)?;
@@ -88,7 +96,7 @@ impl Episodes {
         let mask_size = fleet.eye().size();
         let sizes = Sizes { places, mask: masks.then(|| bytes(mask_size)), image: images.map(|size| 3 * bytes(size)) };
         let image_size = images.unwrap_or(mask_size);
-        Ok(Self { fleet: Owned::new(Mutex::new(fleet)), sizes, mask_size, image_size, raised })
+        Ok(Self { fleet: Owned::new(Mutex::new(fleet)), sizes, mask_size, image_size, camera, raised })
     }
 
     /// Width and height of masks, pixels: those that the checkpoint takes.
@@ -163,19 +171,12 @@ impl Episodes {
         self.raised.or(py.detach(|| self.fleet().finish(&places)).map_err(|error| raise(&error)))
     }
 
-    /// A picture of the drive at a place from a `camera` (`driver`, `chase` or `top`), uint8 of shape (height, width, 3).
+    /// A picture of the drive at a place from the camera, uint8 of shape (height, width, 3).
     ///
     /// Raises InputError where no drive goes on, EngineError where it cannot be drawn.
-    fn draw<'py>(
-        &self,
-        py: Python<'py>,
-        place: usize,
-        camera: &str,
-        size: (u32, u32),
-    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+    fn draw<'py>(&self, py: Python<'py>, place: usize) -> PyResult<Bound<'py, PyArray3<u8>>> {
         forked::check()?;
-        let viewpoint: Viewpoint = camera.parse().map_err(|error| raise(&anyhow::Error::from(error)))?;
-        let frame = py.detach(|| self.fleet().draw(place, &viewpoint.camera(size))).map_err(|error| raise(&error))?;
+        let frame = py.detach(|| self.fleet().draw(place, &self.camera)).map_err(|error| raise(&error))?;
         frame.rgb.into_pyarray(py).reshape([frame.height as usize, frame.width as usize, 3])
     }
 

@@ -7,6 +7,7 @@ use kernel::Scenario;
 use pyo3::prelude::*;
 
 use crate::errors::{input, raise};
+use crate::given::{Given, Whole};
 use crate::values::{level, people, preset, whole_seconds};
 
 /// The map of drives for which nothing is named.
@@ -41,17 +42,17 @@ impl Setting {
         py: Python<'_>,
         map: Option<PathBuf>,
         scenario: Option<PathBuf>,
-        hazards: Option<&str>,
-        weather: Option<&str>,
-        pedestrians: Option<u16>,
-        max_time: Option<f64>,
-        brake_threshold: Option<f32>,
-        steer_threshold: Option<f32>,
+        hazards: Option<Given<String>>,
+        weather: Option<Given<String>>,
+        pedestrians: Option<Given<Whole>>,
+        max_time: Option<Given<f64>>,
+        brake_threshold: Option<Given<f64>>,
+        steer_threshold: Option<Given<f64>>,
     ) -> PyResult<Self> {
         let changes = Changes {
-            hazards: hazards.map(level).transpose()?,
-            weather: weather.map(preset).transpose()?,
-            pedestrians: pedestrians.map(people).transpose()?,
+            hazards: level(hazards)?,
+            weather: preset(weather)?,
+            pedestrians: people(pedestrians)?,
             max_seconds: max_time.map(|time| whole_seconds(time, "max_time", 4..=86_400)).transpose()?,
             brake_threshold: brake_threshold.map(|value| threshold(value, "brake_threshold")).transpose()?,
             steer_threshold: steer_threshold.map(|value| threshold(value, "steer_threshold")).transpose()?,
@@ -72,7 +73,8 @@ fn open(map: Option<&Path>, scenario: Option<&Path>) -> anyhow::Result<setting::
 }
 
 /// As the command takes it: a hundredth and more below the whole.
-fn threshold(value: f32, name: &str) -> PyResult<f32> {
+fn threshold(value: Given<f64>, name: &str) -> PyResult<f32> {
+    let value = value.named(name)? as f32;
     if (0.01..=0.99).contains(&value) {
         Ok(value)
     } else {
