@@ -552,6 +552,7 @@ def compare(
     checkpoints: list[_Checkpoint],
     out: str | PathLike[str],
     *,
+    verdict: str | list[str] | None = None,
     gates: list[str] | None = None,
     no_worse_than: str | None = None,
     size: tuple[int, int] | None = None,
@@ -564,7 +565,8 @@ def compare(
     `report.html` go to the folder `out`; the same call with more cases or checkpoints looks only at those. Ctrl-C ends it.
 
     `cases` are files, or folders with cases anywhere below; `checkpoints` two or more, the first of which is the baseline:
-    `early`, `full`, `truth`, ONNX files or `External`. `gates` are conditions on all others, as in `ped_iou>=0.5`, and
+    `early`, `full`, `truth`, ONNX files or `External`. Only those cases count on whose takeover a campaign came to one of the
+    verdicts `verdict`, where it is given. `gates` are conditions on all others, as in `ped_iou>=0.5`, and
     `no_worse_than` names a checkpoint than which no other may be worse; `gates` of what is given says which were passed.
     Pictures have the `size`, (width, height) (None: that of the first network). `jobs` frames are looked at at the same
     time (None: one a core); the results do not depend on it.

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::errors::input;
 use crate::external::{Checkpoint, Raised, choices};
 use crate::given::{Given, OneOrMore, Pair, Whole, named};
+use crate::library::{Words, verdicts};
 use crate::values::{check_there, jobs_at_once, picture_size, share};
 use crate::work::{shared, tabled, work};
 
@@ -18,23 +19,25 @@ use crate::work::{shared, tabled, work};
 /// or checkpoints looks only at those. Ctrl-C ends it.
 ///
 /// `cases` are files, or folders with cases anywhere below; `checkpoints` two or more, the first of which is the baseline:
-/// `early`, `full`, `truth`, ONNX files or `External`. `gates` are conditions on all others, as in `ped_iou>=0.5`, and
-/// `no_worse_than` names a checkpoint than which no other may be worse; `gates` of what is given says which were passed. Pictures
-/// have the `size`, (width, height) (None: that of the first network). `jobs` frames are looked at at the same time
-/// (None: one a core); the results do not depend on it.
+/// `early`, `full`, `truth`, ONNX files or `External`. Only those cases count on whose takeover a campaign came to one of the
+/// verdicts `verdict`, where it is given. `gates` are conditions on all others, as in `ped_iou>=0.5`, and `no_worse_than`
+/// names a checkpoint than which no other may be worse; `gates` of what is given says which were passed. Pictures have the
+/// `size`, (width, height) (None: that of the first network). `jobs` frames are looked at at the same time (None: one a
+/// core); the results do not depend on it.
 ///
 /// With `shard`, (i, n), it looks at every n-th file alone and gives what `aeye compare --shard --json` prints; folders of all shards,
 /// copied into one, are what the same call without `shard` finishes.
 ///
 /// Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where no case can be drawn.
 #[pyfunction]
-#[pyo3(signature = (cases, checkpoints, out, *, gates = None, no_worse_than = None, size = None, jobs = None, shard = None))]
+#[pyo3(signature = (cases, checkpoints, out, *, verdict = None, gates = None, no_worse_than = None, size = None, jobs = None, shard = None))]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn compare<'py>(
     py: Python<'py>,
     cases: Given<OneOrMore<PathBuf>>,
     checkpoints: Given<OneOrMore<Checkpoint<'py>>>,
     out: PathBuf,
+    verdict: Words,
     gates: Option<Given<OneOrMore<String>>>,
     no_worse_than: Option<Given<String>>,
     size: Option<Given<Pair>>,
@@ -46,7 +49,7 @@ pub fn compare<'py>(
     let gates = named(gates, "gates")?.map_or_else(Vec::new, OneOrMore::list);
     let options = Options {
         files: cases.named("cases")?.list(),
-        verdict: Vec::new(),
+        verdict: verdicts(verdict)?,
         checkpoint: choices(Some(checkpoints.named("checkpoints")?), &raised)?,
         gate: gates.iter().map(gate).collect::<PyResult<_>>()?,
         no_worse_than: named(no_worse_than, "no_worse_than")?,

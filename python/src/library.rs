@@ -20,7 +20,7 @@ use crate::values::{check_there, jobs_at_once, level_named};
 use crate::work::{parsed, work};
 
 /// Some words, or none.
-type Words = Option<Given<OneOrMore<String>>>;
+pub type Words = Option<Given<OneOrMore<String>>>;
 
 /// `yes`, `no` or `unknown`, the first two also as a bool.
 pub struct Whether(String);
@@ -97,7 +97,7 @@ pub fn cases<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let query = Query {
         label: read("label", label)?,
-        verdict: listed("verdict", verdict)?.iter().map(|name| need(name)).collect::<PyResult<_>>()?,
+        verdict: verdicts(verdict)?,
         map: listed("map", map)?,
         weather: read("weather", weather)?,
         hazards: listed("hazards", hazards)?.into_iter().map(hazard_level).collect::<PyResult<_>>()?,
@@ -148,6 +148,11 @@ fn one<T: FromStr<Err: Display>>(name: &str, word: &str) -> PyResult<T> {
 
 fn read<T: FromStr<Err: Display>>(name: &str, words: Words) -> PyResult<Vec<T>> {
     listed(name, words)?.iter().map(|word| one(name, word)).collect()
+}
+
+/// Verdicts on takeovers, by their names.
+pub fn verdicts(names: Words) -> PyResult<Vec<Need>> {
+    listed("verdict", names)?.iter().map(|name| need(name)).collect()
 }
 
 fn need(name: &str) -> PyResult<Need> {
