@@ -91,6 +91,8 @@ def test_files_that_are_not_there_are_said_at_once(case, tmp_path):
     assert not (tmp_path / "out").exists()
     with pytest.raises(aeye.InputError, match="two or more checkpoints"):
         aeye.compare(case, "early", tmp_path / "out")
+    with pytest.raises(aeye.EngineError, match="on none of the corner cases the verdict is near miss"):
+        aeye.compare(case, ["early", "truth"], tmp_path / "judged", verdict="near-miss")
 
 
 def test_a_drive_on_needs_a_question(case, tmp_path):
