@@ -115,7 +115,9 @@ class Map:
             return [] if link is None else [(rid, k + 1 if end == "end" else k - 1, int(link.get("id")), "start" if end == "end" else "end")]
         to = road.find(f"link/{'successor' if end == 'end' else 'predecessor'}")
         if to is None:
-            self.errors.append(f"road {rid} ends at its {end}")
+            # Tracks may end.
+            if kind not in ("rail", "none"):
+                self.errors.append(f"road {rid} ends at its {end}")
             return []
         if to.get("elementType") == "road":
             return [] if link is None else [self.at(to.get("elementId"), to.get("contactPoint"), int(link.get("id")))]

@@ -10,7 +10,7 @@ from carriageway import Carriageway, Heights, Line, frame
 from crossing import board, crossing
 from network import Arm, Network, Path, Strip
 from opendrive import wrap, zebra
-from scenery import block, generator, over, rail, row, smooth, tree, wall
+from scenery import block, bridge, generator, over, rail, row, smooth, tree, wall
 
 LANE, SHOULDER = Strip("driving", 3.75), Strip("shoulder", 2.5)
 # Land as high as the road, from which that around falls or rises: cells of land on a map of this size are longer
@@ -49,7 +49,7 @@ APART = 125.0  # and for land between motorway and ramp
 TERMINAL = 108.0  # from a carriageway to where its ramps meet the country road
 BACK = 18.0  # from there to the mouths of ramps and country road
 RISE, CREST = 8.7, 0.7  # of the country road at the ramps above the motorway, and on the bridge above that
-DECK, HANGS = 4.0, 4.4  # thickness of the bridge, and how far it reaches below the middle of its lanes
+SPAN = 84.0  # of the bridge
 MEDIAN_RAIL, VERGE_RAIL = 1.3, 0.8  # from the inner edge, and beyond the shoulder
 VILLAGE_LENGTH, VILLAGE_HEIGHT = 380.0, 6.0
 
@@ -194,7 +194,7 @@ def country(net, line, ends, rng):
     for terminals in ends:
         outside, inside = sorted(terminals, key=lambda t: not t.outside)
         inner.append(inside)
-        inside.road = bridge(net, outside, inside)
+        inside.road = crossover(net, outside, inside)
     roads = village(net, line, *inner, rng)
     for inside, (road, contact) in zip(inner, ((roads[0], "start"), (roads[-1], "end"))):
         arms = [Arm(inside.road, "end"), Arm(road, contact), Arm(inside.leave, "end"), Arm(inside.entry, "start")]
@@ -202,7 +202,7 @@ def country(net, line, ends, rng):
         crossing(net, arms, "yield", [inside.road, road], z=inside.z, zebras=False, barred=barred)
 
 
-def bridge(net, outside, inside):
+def crossover(net, outside, inside):
     """The country road over the motorway, and the ramps where it begins."""
     (start, heading), (end, _) = outside.over, inside.over
     path = Path(start, heading).to(end, heading)
@@ -210,20 +210,13 @@ def bridge(net, outside, inside):
     road.elevation = over(path.length, outside.z, inside.z, CREST)
     arms = [Arm(road, "start"), Arm(outside.leave, "end"), Arm(outside.entry, "start")]
     crossing(net, arms, "yield", [road], z=outside.z, zebras=False, barred=[outside.leave, outside.entry])
-    deck(net, road)
-    return road
-
-
-def deck(net, road):
-    """What carries the road over the motorway: its surface alone has no underside."""
-    middle, crest = road.length / 2, RISE + CREST
-    edge = 3.5 + 0.75
-    # It begins more than 4 m below the lanes, so that it counts as below them, not on them.
-    block(net, road, "soundBarrier", "bridge wall", middle, 0.0, (84.0, 2 * edge - 0.2, DECK), z=-HANGS)
-    for s, width in ((0.0, 0.9), (-15.5, 0.9), (15.5, 0.9)):
-        block(net, road, "soundBarrier", "pier wall", middle + s, 0.0, (width, 6.5, crest - HANGS + 0.2), z=-crest)
+    s0, s1 = (road.length - SPAN) / 2, (road.length + SPAN) / 2
+    bridge(net, road, s0, s1)
+    edge = road.width("shoulder") + 0.45
     for side in (-1, 1):
-        rail(net, road, 12.0, road.length - 12.0, side * (edge + 0.2))
+        rail(net, road, 12.0, s0 - 1.0, side * edge)
+        rail(net, road, s1 + 1.0, road.length - 12.0, side * edge)
+    return road
 
 
 def village(net, line, first, last, rng):
@@ -252,6 +245,9 @@ def village(net, line, first, last, rng):
         if kmh != 50:
             for side in (-1, 1):
                 row(net, road, rng, 30.0, road.length - 20.0, side * 8.0, 11.0, 9.0, 2.4, 0.6, 3.0)
+    for k in range(18):
+        side = -1 if k % 2 else 1
+        block(net, roads[1], "none", "bin", 20.0 + 19.0 * k, side * (roads[1].width("sidewalk") + 0.5), (0.6, 0.6, 1.05))
     for s in (70.0, VILLAGE_LENGTH - 70.0):
         roads[1].objects.append(zebra(net.id(), s, 4.0))
     return roads
@@ -293,10 +289,14 @@ def works(net, road):
     wall(net, road, "barrier", "guardRail", 30.0, road.length - 30.0, -(LANE.width + 0.5), 0.8)
     s = 8.0
     while s < road.length - 8.0:
-        block(net, road, "obstacle", "board", s, -(LANE.width + 0.25), (0.2, 0.4, 1.1))
+        block(net, road, "obstacle", "beacon", s, -(LANE.width + 0.25), (0.2, 0.4, 1.1))
         s += 9.0
+    s = 20.0
+    while s < road.length - 20.0:
+        block(net, road, "none", "trafficCone", s, -(LANE.width + 1.6), (0.45, 0.45, 0.9))
+        s += 12.0
     for s in (120.0, 190.0, 260.0):
-        block(net, road, "obstacle", "container", s, -(1.5 * LANE.width + 0.6), (2.5, 1.8, 1.4))
+        block(net, road, "obstacle", "siteContainer", s, -(1.5 * LANE.width + 0.6), (2.5, 1.8, 1.4))
 
 
 def gantry(net, road, s, edge):

@@ -61,6 +61,7 @@ class Road:
     elevation: list = field(default_factory=list)
     objects: list = field(default_factory=list)
     signals: list = field(default_factory=list)
+    structures: list = field(default_factory=list)  # bridges and tunnels
 
     @property
     def length(self):
@@ -336,7 +337,7 @@ def road_text(road):
         f'<road length="{num(road.length)}" id="{road.id}" junction="{road.junction}">{link_text(road.ends)}'
         f'<type s="0" type="{road.kind}"><speed max="{road.kmh}" unit="km/h"/></type>'
         f"{plan(road.path)}{elevation(road.elevation)}<lanes>{sections}</lanes>"
-        f"<objects>{''.join(road.objects)}</objects><signals>{''.join(road.signals)}</signals></road>\n"
+        f"<objects>{''.join(road.objects + road.structures)}</objects><signals>{''.join(road.signals)}</signals></road>\n"
     )
 
 

@@ -18,7 +18,7 @@ GUTTER, PAVEMENT = Strip("shoulder", 0.4, mark="curb"), Strip("sidewalk", 1.8)
 STONES = Strip("driving", 2.85, COBBLES)
 ASPHALT = Strip("driving", 3.0)
 TRAM, ISLAND = Strip("tram", 2.8, mark="solid"), Strip("median", 2.8, mark="solid")
-TRACK_GAUGE = 1.435
+TRACK_GAUGE = 1.5  # between the middles of rails
 
 
 def both(*strips, kmh, middle="none"):
@@ -137,14 +137,9 @@ def junctions(town, plan):
 
 
 def tracks(town, plan):
-    """Rails in the middle of the boulevard, also across its junctions; at both ends an island of grass takes their place."""
+    """Rails across the junctions of the boulevard, as those in their lanes; at both ends an island of grass takes their place."""
     for place, other in TERMINI:
         terminus(plan.arm(place, other))
-    for road in town.roads:
-        for k, (start, profile) in enumerate(road.sections):
-            if profile.right[0].kind == "tram":
-                end = road.sections[k + 1][0] if k + 1 < len(road.sections) else road.length
-                road.objects += rails(town, start, end - start, (-1.4, 1.4))
     for c in (c for j in town.junctions for c in j.connections):
         ends = [arm.strips(inward)[0].kind for arm, inward in ((c.source, True), (c.target, False))]
         if c.is_driven and ends == ["tram", "tram"]:
@@ -232,6 +227,18 @@ def trees(site, road, right, pitch, beyond=1.5):
         s += pitch * site.between(0.8, 1.2)
 
 
+def bins(site, road, right):
+    """Bins behind the pavement, and a post box here and there."""
+    s = 9.0 + 8.0 * site.rng()
+    while s < road.length - 5.0:
+        place = (s, out(road, s, right, 0.35))
+        if site.rng() < 0.8:
+            site.put(road, "none", "bin", place, (0.5, 0.5, 1.0))
+        else:
+            site.put(road, "none", "postbox", place, (0.4, 0.4, 1.3), to_street(right))
+        s += site.between(9.0, 22.0)
+
+
 def signs(town, plan):
     for road in town.roads:
         if road.name in ("Osttor", "Nordtor", "Westtor", "Suedtor"):
@@ -251,6 +258,7 @@ def furnish(town, plan):
                 continue
             is_walled = (a, b) in WALLED and right
             lamps(site, road, right, 34.0 if inner else 28.0)
+            bins(site, road, right)
             if is_boulevard:
                 trees(site, road, right, 9.0)
             if not is_walled:

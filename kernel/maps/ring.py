@@ -7,9 +7,10 @@ import math
 
 from crossing import board, crossing, kerb
 from network import Arm, Network, Path, Section, Strip
-from opendrive import wrap, zebra
+from opendrive import beside, wrap, zebra
 from roundabout import Roundabout
-from scenery import block, generator, over, rail, row, tree, wall
+from scenery import area, block, generator, over, rail, row, tree, wall
+from site_plan import pose
 
 LANE, GRASS, WALK = 3.5, 2.5, 2.5
 VERGE = Strip("none", 3.0)
@@ -35,6 +36,7 @@ STRETCHES = {
 }
 STREETS = ("east", "light_1", "west", "light_2")  # from here to the middle
 OUTSIDE = {("north", "west"): (60, 1.5), ("south", "east"): (60, -1.0)}
+POND_ROAD, PONDS = ("south", "east"), ((70.0, 150.0), (185.0, 260.0))  # along the outside of its bend
 BACK = 18.0  # from the middle of a junction with lights to the mouths of its roads
 BEFORE_CIRCLE = 30.0  # from the mouth of a roundabout to the crosswalk on its arm
 AT_LIGHTS = 6.5  # paved for those who cross before a junction with lights
@@ -155,6 +157,10 @@ def parked(net, road, rng):
 def stops(net, road, s):
     """A bus stop in each direction, the one behind the other."""
     road.signals += [board(net.id(), road, s + 12.0, True, "224"), board(net.id(), road, s - 12.0, False, "224")]
+    behind = road.width("sidewalk") + 1.2
+    for at, side in ((s + 8.0, -1), (s - 8.0, 1)):
+        block(net, road, "obstacle", "busShelter", at, side * behind, (3.6, 1.4, 2.5), 0.0 if side > 0 else math.pi)
+        block(net, road, "none", "bin", at + 3.0, side * behind, (0.5, 0.5, 1.0))
 
 
 def furnish(net, road, rng, beside):
@@ -168,8 +174,22 @@ def furnish(net, road, rng, beside):
             wall(net, road, "soundBarrier", "noiseWall", 45.0, road.length - 45.0, side * behind, 3.5)
             row(net, road, rng, 40.0, road.length - 40.0, side * away, 9.0, 9.0, 2.2, 0.8, 4.0)
         else:
-            row(net, road, rng, 30.0, road.length - 30.0, side * away, 8.0, 9.0, 2.5, 0.7, 7.0)
+            start = PONDS[-1][1] + 10.0 if beside == "ponds" and side < 0 else 30.0
+            row(net, road, rng, start, road.length - 30.0, side * away, 8.0, 9.0, 2.5, 0.7, 7.0)
             hedges(net, road, rng, side * behind)
+
+
+def ponds(net, road):
+    """Water behind the pavement, a metre below the road."""
+    t = road.width("sidewalk") + 6.0
+    for s0, s1 in PONDS:
+        middle, half = (s0 + s1) / 2, (s1 - s0) / 2
+        shore = []
+        for k in range(20):
+            angle = math.tau * k / 20
+            point, heading = pose(road.path, middle + half * math.cos(angle))
+            shore.append(beside(point, heading, t + 14.0 + (12.0 + 2.0 * math.sin(3 * angle)) * math.sin(angle)))
+        area(net, road, "pond", shore, -1.0)
 
 
 def hedges(net, road, rng, t):
@@ -199,7 +219,9 @@ def ring():
             stops(net, road, road.length / 2)
     for (a, b), (kmh, bump) in OUTSIDE.items():
         road = draw(net, nodes[a], "outside", nodes[b], "outside", RING, kmh, bump)
-        furnish(net, road, rng, "trees")
+        furnish(net, road, rng, "ponds" if (a, b) == POND_ROAD else "trees")
+        if (a, b) == POND_ROAD:
+            ponds(net, road)
         # On the outside of the bends at both ends, which are to the left.
         for s in (55.0, road.length - 95.0):
             rail(net, road, s, s + 40.0, -(road.width("sidewalk") + 2.2))

@@ -1,5 +1,7 @@
 """Objects beside roads, and the heights of roads."""
 
+import math
+
 from opendrive import num
 
 
@@ -25,6 +27,37 @@ def over(length, z0, z1, bump):
     """From one height to another by way of one that lies `bump` metres above the mean, level there and at both ends."""
     half, top = length / 2, (z0 + z1) / 2 + bump
     return smooth(half, z0, top) + [(half, *smooth(half, top, z1)[0][1:])]
+
+
+def levels(knots):
+    """Through heights at some places, (s, z), level at each."""
+    return [(s, *smooth(t - s, z, w)[0][1:]) for (s, z), (t, w) in zip(knots, knots[1:])]
+
+
+def bridge(net, road, s0, s1, kind="concrete"):
+    """What carries a road from a place to another."""
+    road.structures.append(f'<bridge id="{net.id()}" s="{num(s0)}" length="{num(s1 - s0)}" type="{kind}"/>')
+
+
+def tunnel(net, road, s0, s1):
+    road.structures.append(
+        f'<tunnel id="{net.id()}" s="{num(s0)}" length="{num(s1 - s0)}" type="standard" lighting="0.8" daylight="0.2"/>'
+    )
+
+
+def area(net, road, name, places, z):
+    """What lies on the ground: its corners east and north of zero, and its height above the start of a road."""
+    start = road.path.pieces[0]
+    c, s = math.cos(start.hdg), math.sin(start.hdg)
+    at = lambda x, y: (c * (x - start.x) + s * (y - start.y), c * (y - start.y) - s * (x - start.x))
+    corners = "".join(
+        f'<cornerLocal id="{k}" u="{num(u)}" v="{num(v)}" z="{num(z)}" height="0"/>'
+        for k, (u, v) in enumerate(at(*place) for place in places)
+    )
+    road.objects.append(
+        f'<object id="{net.id()}" type="none" name="{name}" s="0" t="0" zOffset="0" hdg="0" orientation="none"><outlines>'
+        f'<outline id="0" closed="true">{corners}</outline></outlines></object>'
+    )
 
 
 def tree(net, road, s, t, height, crown):

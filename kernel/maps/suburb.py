@@ -188,6 +188,13 @@ def garden(site, road, right, s, width):
             site.put(road, "tree", "tree", (at, out(road, at, right, beyond)), (size, size, tall))
 
 
+def bins(site, road, right, gates):
+    """What stands at the kerb on the day of the dustmen: bins beside every other driveway."""
+    for _, end in gates[::2]:
+        if end + 1.4 < road.length:
+            site.put(road, "none", "bin", (end + 0.7, out(road, end, right, 0.4)), (0.6, 0.6, 1.1))
+
+
 def blocks_of_flats(site, road, right):
     s = 2.0
     while s + 14.0 < road.length:
@@ -280,6 +287,7 @@ def furnish(town, plan):
             else:
                 gates = plots(site, road, right)
             road.grounds[right] = grounds(gates)
+            bins(site, road, right, gates)
             skip += [(right, *gate) for gate in gates]
         parked(site, road, 0.8, skip)
 

@@ -15,7 +15,8 @@ pub(super) fn material(kind: xodr::LaneType) -> SurfaceKind {
     match kind {
         T::Sidewalk | T::Curb => SurfaceKind::Sidewalk,
         T::None | T::Median | T::Unknown => SurfaceKind::Terrain,
-        T::Rail | T::Tram => SurfaceKind::Ground,
+        T::Rail | T::Tram => SurfaceKind::Track,
+        T::Restricted => SurfaceKind::Ground,
         _ => SurfaceKind::Road,
     }
 }
@@ -43,7 +44,7 @@ pub(super) fn stretches(
 ) -> Vec<(SurfaceKind, Vec<[Vec3; 2]>)> {
     let usual = material(lane.kind);
     let told = source.materials(lane.id);
-    if told.is_empty() || usual != SurfaceKind::Road {
+    if told.is_empty() || !matches!(usual, SurfaceKind::Road | SurfaceKind::Ground) {
         return vec![(usual, ribs)];
     }
     let places = measured(&ribs);
@@ -56,6 +57,9 @@ pub(super) fn stretches(
             notes.pass(Passed::Surface, "counts as asphalt", what, || source.place_of_lane(lane.id));
             usual
         });
+        // What is not for driving is no road, however it is paved.
+        let is_paved = matches!(kind, SurfaceKind::Road | SurfaceKind::Setts);
+        let kind = if usual == SurfaceKind::Ground && is_paved { usual } else { kind };
         stretches.push((kind, cut(&ribs, &places, stretch.from..stretch.to)));
         from_m = stretch.to;
     }

@@ -5,6 +5,9 @@ use glam::Vec3;
 use super::rounding::snap3;
 use crate::map_data::{Surface, SurfaceKind};
 
+/// Height of paint above the surface: enough for a depth buffer at 100 m, too little to see.
+pub(super) const PAINT_M: f32 = 16.0 / 1024.0;
+
 /// A surface for each material.
 pub(super) struct Meshes(Vec<Surface>);
 

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::catalogue::{Meaning, meaning};
+use super::flat;
 use super::notes::{Notes, Passed};
 use super::rounding::{snap, snap3};
 use super::shapes::{beside_lanes, footprint, least_rectangle, point};
@@ -25,6 +26,9 @@ pub(super) fn bake(source: &Source, roads: &Roads<'_>, light_heads: &[LightHead]
         }
     }
     for (index, object) in source.net.objects().iter().enumerate() {
+        if flat::kind(object).is_some() {
+            continue;
+        }
         let mut pass = |why| notes.pass(Passed::Object, why, || said(object), || source.place_of_object(index));
         let variant = object.id.0 as u32;
         let Some(kind) = kind(object) else {
@@ -85,30 +89,45 @@ fn kind(object: &xodr::Object) -> Option<PropKind> {
         T::Tree => PropKind::Tree,
         T::Vegetation => PropKind::Hedge,
         T::Building => PropKind::Building,
-        T::Barrier | T::Railing => PropKind::GuardRail,
+        T::Barrier => loose(&object.name).unwrap_or(PropKind::GuardRail),
+        T::Railing => PropKind::GuardRail,
         T::SoundBarrier => PropKind::Wall,
         T::StreetLamp => PropKind::Lamp,
-        T::Pole | T::Obstacle => PropKind::Furniture,
+        T::Pole | T::Obstacle => loose(&object.name).unwrap_or(PropKind::Furniture),
         T::None | T::Unknown => by_name(&object.name.to_ascii_lowercase())?,
         _ => return None,
     })
 }
 
+/// What an object whose type says little is by its name, if that says more.
+fn loose(name: &str) -> Option<PropKind> {
+    by_name(&name.to_ascii_lowercase()).filter(|kind| matches!(kind, PropKind::Movable | PropKind::Sundry))
+}
+
 fn by_name(name: &str) -> Option<PropKind> {
-    const NAMES: [(&str, PropKind); 11] = [
-        ("parkedcar", PropKind::ParkedCar),
-        ("tree", PropKind::Tree),
-        ("hedge", PropKind::Hedge),
-        ("bush", PropKind::Hedge),
-        ("building", PropKind::Building),
-        ("house", PropKind::Building),
-        ("fence", PropKind::Fence),
-        ("wall", PropKind::Wall),
-        ("rail", PropKind::GuardRail),
-        ("lamp", PropKind::Lamp),
-        ("bench", PropKind::Furniture),
+    use PropKind as K;
+    const NAMES: [(PropKind, &[&str]); 12] = [
+        (K::ParkedCar, &["parkedcar"]),
+        (K::Tree, &["tree"]),
+        (K::Hedge, &["hedge", "bush"]),
+        (K::Building, &["building", "house"]),
+        (K::Fence, &["fence"]),
+        (K::Wall, &["wall"]),
+        (K::GuardRail, &["rail"]),
+        (K::Lamp, &["lamp"]),
+        // A cabinet is no bin.
+        (K::Furniture, &["bench", "cabinet", "bollard", "hydrant"]),
+        (
+            K::Movable,
+            &["bin", "trash", "garbage", "cone", "beacon", "barricade", "barrel", "pallet", "pram", "stroller"],
+        ),
+        (
+            K::Sundry,
+            &["stall", "kiosk", "shelter", "busstop", "postbox", "mailbox", "phonebox", "container", "billboard"],
+        ),
+        (K::Sundry, &["statue", "fountain", "swing", "slide", "climbing", "sandpit", "boat"]),
     ];
-    NAMES.iter().find(|(part, _)| name.contains(part)).map(|&(_, kind)| kind)
+    NAMES.iter().find(|(_, words)| words.iter().any(|word| name.contains(word))).map(|&(kind, _)| kind)
 }
 
 /// Boxes that fill a shape; none for one without a footprint or height.

@@ -10,8 +10,8 @@ use super::signs::Governed;
 use super::source::Source;
 use super::told::Told;
 use super::{
-    bus_stops, crosswalks, dressing, junctions, lanes, lights, marks, priority, props, signs, speeds, stops, surfaces,
-    terrain, walkways,
+    bus_stops, crosswalks, dressing, flat, junctions, lanes, lights, marks, priority, props, signs, speeds, stops,
+    structures, surfaces, terrain, walkways,
 };
 use crate::map_data::{Lane, MapData};
 use crate::places::LaneGrid;
@@ -77,8 +77,12 @@ fn map(name: &str, xodr: &str, notes: &mut Notes) -> Result<(MapData, Rest), Bak
     marks::note(&source, notes);
     // After the paint: who waits without a sign has no line on the road.
     let lanes = priority::bake(&source, lanes, &crossed, &governed);
-    surfaces.push(terrain::bake(&lanes, bounds));
-    let props = props::bake(&source, &grid.over(&lanes), &light_heads, notes);
+    let structures = structures::Structures::new(&source, &lanes);
+    let (footing, below) = structures.footing(&lanes);
+    let land = terrain::Land::new(footing, below, flat::pools(&source), bounds);
+    surfaces.push(land.bake());
+    let mut props = props::bake(&source, &grid.over(&lanes), &light_heads, notes);
+    props.extend(structures.bake(&source, &grid.over(&lanes), &land));
     let named_props = props.len();
     let props = dressing::bake(&source, grid.over(&lanes), bounds, props);
     let (name, origin_m) = (name.to_owned(), source.origin_m);

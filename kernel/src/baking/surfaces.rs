@@ -2,8 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
+use super::flat;
 use super::materials::{material, stretches};
-use super::mesh::Meshes;
+use super::mesh::{Meshes, PAINT_M};
 use super::notes::Notes;
 use super::rounding::{snap, snap3};
 use super::shapes::point;
@@ -14,8 +15,6 @@ use crate::ops;
 
 /// How far a kerb reaches below the pavement, metres.
 const KERB_FACE_M: f32 = 0.4;
-/// Height of paint above the surface: enough for a depth buffer at 100 m, too little to see.
-const PAINT_M: f32 = 16.0 / 1024.0;
 /// How far the floor of a junction lies below its lanes, metres.
 const FLOOR_M: f32 = 20.0 / 1024.0;
 /// Mouths farther apart than this share no paved floor.
@@ -24,6 +23,11 @@ const FLOOR_REACH_M: f32 = 60.0;
 const MAX_QUAD_M: f32 = 24.0;
 /// A strip of this many ribs is cut, however short it is.
 const MAX_RIBS: usize = 256;
+/// How far the bed of rails lies below other ground, metres: where a road crosses, its asphalt is seen.
+const BED_M: f32 = 32.0 / 1024.0;
+/// Between the middles of two rails, and how wide each is, metres.
+const GAUGE_M: f32 = 1.5;
+const RAIL_M: f32 = 0.08;
 /// An edge that strays less than this from a line is straight, metres.
 const STRAIGHT_M: f32 = 0.003;
 /// Depth of a stop line along the road, metres.
@@ -39,6 +43,7 @@ pub(super) fn bake(
 ) -> Vec<Surface> {
     let mut meshes = Meshes::new();
     pave(source, lanes, &mut meshes, notes);
+    flat::lay(source, &mut meshes);
     for junction in junctions {
         let corners = floor(lanes, junction);
         meshes.of(SurfaceKind::Road).fan(&corners);
@@ -56,11 +61,18 @@ fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes, notes: &mut Notes)
         if kind == SurfaceKind::Terrain && lanes[id as usize].junction.is_some() {
             continue;
         }
-        let lift = if kind == SurfaceKind::Sidewalk { Vec3::Z * source.rise(id) } else { Vec3::ZERO };
+        let lift = match kind {
+            SurfaceKind::Sidewalk => Vec3::Z * source.rise(id),
+            SurfaceKind::Track => Vec3::Z * -BED_M,
+            _ => Vec3::ZERO,
+        };
         let ribs: Vec<[Vec3; 2]> = mesh.vertices[span.vertices.start as usize..span.vertices.end as usize]
             .chunks_exact(2)
             .map(|rib| [snap3(point(rib[0]) + lift), snap3(point(rib[1]) + lift)])
             .collect();
+        if kind == SurfaceKind::Track {
+            rails(&ribs, lift).iter().for_each(|rail| meshes.of(SurfaceKind::Rail).strip(&thinned(rail)));
+        }
         for (kind, ribs) in stretches(source, lane, ribs, notes) {
             let ribs = thinned(&ribs);
             let surface = meshes.of(kind);
@@ -70,6 +82,18 @@ fn pave(source: &Source, lanes: &[Lane], meshes: &mut Meshes, notes: &mut Notes)
             }
         }
     }
+}
+
+/// Both rails along the middle of a bed that was lifted so much, above the ground around it.
+fn rails(ribs: &[[Vec3; 2]], lift: Vec3) -> [Vec<[Vec3; 2]>; 2] {
+    [1.0f32, -1.0].map(|side| {
+        let rib = |[left, right]: &[Vec3; 2]| {
+            let out = (*left - *right).normalize_or_zero();
+            let at = |m: f32| snap3((*left + *right) / 2.0 + out * m - lift + Vec3::Z * PAINT_M);
+            [at((side * GAUGE_M + RAIL_M) / 2.0), at((side * GAUGE_M - RAIL_M) / 2.0)]
+        };
+        ribs.iter().map(rib).collect()
+    })
 }
 
 /// Leaves out ribs between which a strip is straight.

@@ -31,8 +31,10 @@ const fn dry(kind: SurfaceKind) -> Grip {
         SurfaceKind::Road => Grip { peak: 1.0, sliding: 0.8, rolling: 0.013 },
         SurfaceKind::RoadLine => Grip { peak: 0.9, sliding: 0.7, rolling: 0.013 },
         SurfaceKind::Sidewalk => Grip { peak: 0.9, sliding: 0.75, rolling: 0.013 },
-        SurfaceKind::Ground | SurfaceKind::Setts => Grip { peak: 0.7, sliding: 0.58, rolling: 0.02 },
-        SurfaceKind::Terrain => Grip { peak: 0.45, sliding: 0.38, rolling: 0.05 },
+        SurfaceKind::Ground | SurfaceKind::Setts | SurfaceKind::Track | SurfaceKind::Rail => {
+            Grip { peak: 0.7, sliding: 0.58, rolling: 0.02 }
+        }
+        SurfaceKind::Terrain | SurfaceKind::Water => Grip { peak: 0.45, sliding: 0.38, rolling: 0.05 },
         SurfaceKind::Gravel => Grip { peak: 0.6, sliding: 0.55, rolling: 0.02 },
     }
 }
@@ -48,8 +50,8 @@ const fn wet(kind: SurfaceKind) -> [f32; 2] {
         SurfaceKind::Road => [0.75, 0.55],
         SurfaceKind::RoadLine => [0.5, 0.4],
         SurfaceKind::Sidewalk => [0.7, 0.58],
-        SurfaceKind::Ground | SurfaceKind::Setts => [0.45, 0.37],
-        SurfaceKind::Terrain => [0.28, 0.22],
+        SurfaceKind::Ground | SurfaceKind::Setts | SurfaceKind::Track | SurfaceKind::Rail => [0.45, 0.37],
+        SurfaceKind::Terrain | SurfaceKind::Water => [0.28, 0.22],
         SurfaceKind::Gravel => [0.55, 0.5],
     }
 }

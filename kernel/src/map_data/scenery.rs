@@ -23,6 +23,12 @@ state_enum! {
         Gravel = 5,
         /// Setts of a road.
         Setts = 6,
+        /// The bed between and beside rails.
+        Track = 7,
+        /// Steel on the bed or the asphalt.
+        Rail = 8,
+        /// Open water.
+        Water = 9,
     }
 }
 
@@ -62,8 +68,16 @@ state_enum! {
         Wall = 8,
         /// A guard rail; `size.x` is its length.
         GuardRail = 9,
-        /// Street furniture: bins, benches, boxes.
+        /// Street furniture that stands fast: benches, bollards, cabinets.
         Furniture = 10,
+        /// What somebody may take away: bins, cones, beacons, prams.
+        Movable = 11,
+        /// What has no class of its own: stalls, shelters, post boxes, swings.
+        Sundry = 12,
+        /// A piece of a bridge; it rises along its x axis by `variant` as [`Prop::rise_m`] reads it.
+        Bridge = 13,
+        /// A piece of the wall or roof of a tunnel; it rises as that of a bridge does.
+        Tunnel = 14,
     }
 }
 
@@ -89,7 +103,30 @@ digested! {
 /// Parked cars taller than this are vans, metres.
 const VAN_M: f32 = 1.8;
 
+/// Parts of a metre in which the rise of a piece is told.
+const RISE_PARTS: f32 = 1024.0;
+
+/// [`Prop::variant`] of a piece that rises so much along its x axis, metres.
+pub(crate) fn rising(rise_m: f32) -> u32 {
+    ((rise_m * RISE_PARTS) as i32).cast_unsigned()
+}
+
+impl SurfaceKind {
+    /// Whether it lies on other ground, too thin for wheels to notice.
+    pub fn lies_on_ground(self) -> bool {
+        matches!(self, Self::RoadLine | Self::Rail)
+    }
+}
+
 impl Prop {
+    /// How much higher the far end of a piece of a bridge or tunnel is than the near one, metres; 0 for all else.
+    pub fn rise_m(&self) -> f32 {
+        match self.kind {
+            PropKind::Bridge | PropKind::Tunnel => self.variant.cast_signed() as f32 / RISE_PARTS,
+            _ => 0.0,
+        }
+    }
+
     /// What a parked car is among the kinds of road users.
     pub fn parked_kind(&self) -> ActorKind {
         if self.size.z > VAN_M { ActorKind::Van } else { ActorKind::Car }

@@ -42,12 +42,13 @@ impl Ground {
 
 /// Whether a surface is of a road, paved or not.
 fn is_of_road(kind: SurfaceKind) -> bool {
-    matches!(kind, SurfaceKind::Road | SurfaceKind::Ground | SurfaceKind::Gravel | SurfaceKind::Setts)
+    use SurfaceKind as K;
+    matches!(kind, K::Road | K::Ground | K::Gravel | K::Setts | K::Track)
 }
 
 /// Whether a wheel on such a surface is off the road.
 pub(super) fn is_soft(kind: SurfaceKind) -> bool {
-    matches!(kind, SurfaceKind::Sidewalk | SurfaceKind::Terrain)
+    matches!(kind, SurfaceKind::Sidewalk | SurfaceKind::Terrain | SurfaceKind::Water)
 }
 
 impl fmt::Debug for Statics {

@@ -70,7 +70,7 @@ fn height_at([a, b, c]: [Vec3; 3], p: Vec2) -> Option<(f32, Vec3)> {
 fn boxes(surfaces: &[Surface]) -> (Vec<Bounds>, Vec<(u32, u32)>) {
     let mut boxes = Vec::new();
     let mut owners = Vec::new();
-    for (k, surface) in surfaces.iter().enumerate().filter(|(_, s)| s.kind != SurfaceKind::RoadLine) {
+    for (k, surface) in surfaces.iter().enumerate().filter(|(_, s)| !s.kind.lies_on_ground()) {
         for (t, triangle) in surface.triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|v| surface.positions[v as usize].truncate());
             boxes.push((a.min(b).min(c), a.max(b).max(c)));

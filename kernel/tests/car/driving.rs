@@ -111,7 +111,7 @@ proptest! {
 
     #[test]
     fn more_throttle_is_never_slower_and_more_brake_never_faster(
-        kind in prop::sample::select(SurfaceKind::ALL.to_vec()),
+        kind in prop::sample::select(GROUNDS.to_vec()),
         from in 0f32..35.0,
         low in 0f32..1.0,
         more in 0f32..1.0,

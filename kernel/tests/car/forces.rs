@@ -24,7 +24,7 @@ proptest! {
     #[test]
     fn force_stays_inside_the_friction_circle(
         sequence in sequences(),
-        kind in prop::sample::select(SurfaceKind::ALL.to_vec()),
+        kind in prop::sample::select(GROUNDS.to_vec()),
         speed in 0f32..40.0,
         (abs, esc) in any::<(bool, bool)>(),
     ) {

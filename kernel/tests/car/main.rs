@@ -28,6 +28,12 @@ use kernel::weather::{Water, Weather};
 const HELPED: CarSetup = CarSetup { abs: true, esc: true };
 const BARE: CarSetup = CarSetup { abs: false, esc: false };
 
+/// One kind of ground of each grip, and the one that the slabs of a square are made of; tracks and water have that of others.
+const GROUNDS: [SurfaceKind; 7] = {
+    use SurfaceKind as K;
+    [K::Road, K::RoadLine, K::Sidewalk, K::Terrain, K::Ground, K::Gravel, K::Setts]
+};
+
 /// A square of 4 km of one kind of ground, rising eastwards; paint lies on asphalt.
 fn plain(kind: SurfaceKind, grade: f32) -> MapData {
     let corner = |x: f32, y: f32| Vec3::new(x, y, grade * x) * 2000.0;
@@ -128,8 +134,8 @@ fn friction(kind: SurfaceKind) -> [f64; 2] {
         SurfaceKind::Road => [1.0, 0.8],
         SurfaceKind::RoadLine => [0.9, 0.7],
         SurfaceKind::Sidewalk => [0.9, 0.75],
-        SurfaceKind::Ground | SurfaceKind::Setts => [0.7, 0.58],
-        SurfaceKind::Terrain => [0.45, 0.38],
+        SurfaceKind::Ground | SurfaceKind::Setts | SurfaceKind::Track | SurfaceKind::Rail => [0.7, 0.58],
+        SurfaceKind::Terrain | SurfaceKind::Water => [0.45, 0.38],
         SurfaceKind::Gravel => [0.6, 0.55],
     }
 }
@@ -140,8 +146,8 @@ fn wet_friction(kind: SurfaceKind) -> [f64; 2] {
         SurfaceKind::Road => [0.75, 0.55],
         SurfaceKind::RoadLine => [0.5, 0.4],
         SurfaceKind::Sidewalk => [0.7, 0.58],
-        SurfaceKind::Ground | SurfaceKind::Setts => [0.45, 0.37],
-        SurfaceKind::Terrain => [0.28, 0.22],
+        SurfaceKind::Ground | SurfaceKind::Setts | SurfaceKind::Track | SurfaceKind::Rail => [0.45, 0.37],
+        SurfaceKind::Terrain | SurfaceKind::Water => [0.28, 0.22],
         SurfaceKind::Gravel => [0.55, 0.5],
     }
 }

@@ -18,9 +18,9 @@ fn name(kind: SurfaceKind) -> &'static str {
         SurfaceKind::Road => "asphalt",
         SurfaceKind::RoadLine => "paint",
         SurfaceKind::Sidewalk => "slabs",
-        SurfaceKind::Ground | SurfaceKind::Setts => "setts",
+        SurfaceKind::Ground | SurfaceKind::Setts | SurfaceKind::Track | SurfaceKind::Rail => "setts",
         SurfaceKind::Gravel => "gravel",
-        SurfaceKind::Terrain => "grass",
+        SurfaceKind::Terrain | SurfaceKind::Water => "grass",
     }
 }
 
@@ -135,7 +135,7 @@ fn moments(drives: u64) -> Vec<(f64, f64)> {
     let mut moments = Vec::new();
     for drive in 0..drives {
         let draw = |what: u64| unit(drive, Stream::Driver, what, 0);
-        let kinds = SurfaceKind::ALL;
+        let kinds = GROUNDS;
         let kind = kinds[below(drive, Stream::Driver, 0, 0, kinds.len() as u32) as usize];
         let mut car = Drive::over(kind, 40.0 * draw(1), CarSetup { abs: draw(2) < 0.5, esc: draw(3) < 0.5 });
         for part in 1..=4 {

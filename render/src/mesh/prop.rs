@@ -6,7 +6,7 @@ use kernel::scene::ActorKind;
 
 use super::model::Detail;
 use super::variety::Variety;
-use super::{Mesh, barrier, building, car, furniture, heavy, signal, tree};
+use super::{Mesh, barrier, building, car, furniture, heavy, loose, signal, structure, tree};
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
 /// footprint on the ground, z up.
@@ -26,6 +26,10 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
         PropKind::Wall => barrier::wall(variant, size),
         PropKind::GuardRail => barrier::guard_rail(size, detail),
         PropKind::Furniture => furniture::furniture(variant, size),
+        PropKind::Movable => loose::movable(variant, size, detail),
+        PropKind::Sundry => loose::sundry(variant, size),
+        PropKind::Bridge => structure::bridge(size, prop.rise_m()),
+        PropKind::Tunnel => structure::tunnel(size, prop.rise_m()),
     }
 }
 

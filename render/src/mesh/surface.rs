@@ -19,6 +19,9 @@ fn paint(kind: SurfaceKind) -> Paint {
         SurfaceKind::Terrain => Paint::plain(SemanticTag::Terrain, [104, 124, 62]).grainy(200).coded(CODE_GRASS),
         SurfaceKind::Ground => Paint::plain(SemanticTag::Ground, [140, 134, 124]).grainy(120),
         SurfaceKind::Gravel => Paint::plain(SemanticTag::Road, [152, 142, 122]).grainy(220),
+        SurfaceKind::Track => Paint::plain(SemanticTag::RailTrack, [112, 102, 92]).grainy(220),
+        SurfaceKind::Rail => Paint::plain(SemanticTag::RailTrack, [150, 148, 146]).glossy(120),
+        SurfaceKind::Water => Paint::plain(SemanticTag::Water, [66, 96, 112]).glossy(200),
         SurfaceKind::Setts => Paint::plain(SemanticTag::Road, [118, 112, 106]).grainy(160),
     }
 }

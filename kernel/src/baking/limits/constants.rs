@@ -43,6 +43,8 @@ pub const OBJECTS: f64 = 100_000.0;
 pub const COVERED: f64 = 3e6;
 /// Bytes of text that repeated objects copy.
 pub const COPIED_BYTES: f64 = (64 << 20) as f64;
+/// Length of a piece of a bridge or tunnel, metres: short enough for boxes to follow bends and slopes.
+pub const PIECE_M: f32 = 4.0;
 /// Signals of a map.
 pub const SIGNALS: usize = 50_000;
 /// Junctions of a map.

@@ -6,7 +6,7 @@ use super::place::place;
 use crate::baking::notes::{Notes, Passed};
 
 /// The elements that are read, by those that they are in.
-const READ: [(&str, &[&str]); 46] = [
+const READ: [(&str, &[&str]); 48] = [
     ("OpenDRIVE", &["header", "road", "junction", "controller"]),
     ("header", &["defaultRegulations"]),
     ("defaultRegulations", &["roadRegulations"]),
@@ -36,8 +36,10 @@ const READ: [(&str, &[&str]); 46] = [
     ("lane", &["link", "width", "border", "roadMark", "height", "speed", "material"]),
     ("roadMark", &["type", "explicit", "sway"]),
     ("explicit", &["line"]),
-    ("objects", &["object", "objectReference"]),
+    ("objects", &["object", "objectReference", "bridge", "tunnel"]),
     ("object", &["repeat", "outlines", "outline"]),
+    ("bridge", &["validity"]),
+    ("tunnel", &["validity"]),
     ("outlines", &["outline"]),
     ("outline", &["cornerRoad", "cornerLocal", "curveLocal"]),
     ("curveLocal", &["line", "arc", "paramPoly3"]),
@@ -86,15 +88,15 @@ mod tests {
 
     #[test]
     fn what_is_not_read_is_told_once_with_its_place_and_not_looked_into() {
-        let text = "<OpenDRIVE><header><geoReference/></header><road id=\"4\"><objects><bridge><userData/></bridge>\
-                    <object id=\"1\"/></objects></road><road id=\"5\"><objects><bridge/></objects><lanes/></road>\
+        let text = "<OpenDRIVE><header><geoReference/></header><road id=\"4\"><objects><station><userData/></station>\
+                    <object id=\"1\"/></objects></road><road id=\"5\"><objects><station/></objects><lanes/></road>\
                     <station/></OpenDRIVE>";
         let document = roxmltree::Document::parse(text).expect("XML");
         let mut notes = Notes::wanted();
         note(document.root_element(), &mut notes);
         let told: Vec<_> = notes.finish().into_iter().map(|g| (g.what, g.count, g.first)).collect();
         let expected = [
-            ("<bridge> in <objects>", 2, "road 4"),
+            ("<station> in <objects>", 2, "road 4"),
             ("<geoReference> in <header>", 1, "line 1"),
             ("<station> in <OpenDRIVE>", 1, "line 1"),
         ];

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use roxmltree::Node;
 
-use super::constants::RECORDS;
+use super::constants::{PIECE_M, RECORDS};
 use super::document::children;
 use super::numbers::number;
 use super::sums::{Sum, Sums, at_most};
@@ -34,7 +34,7 @@ pub fn check(road: Node<'_, '_>, lanes: usize, references: &References<'_>, sums
         let named = || node.attribute("id").and_then(|id| references.get(id)).copied();
         let object = if node.has_tag_name("objectReference") { named() } else { Some(node) };
         let Some(object) = object else { continue };
-        let copies = copies(object);
+        let copies = if is_structure(object) { pieces(road, object) } else { copies(object) };
         sums.add(Sum::Objects, copies, node)?;
         sums.add(Sum::Covered, copies * covered_m2(object), node)?;
         sums.add(Sum::CopiedBytes, (copies - 1.0) * object.range().len() as f64, node)?;
@@ -47,6 +47,18 @@ pub fn check(road: Node<'_, '_>, lanes: usize, references: &References<'_>, sums
     let types = children(road, "type").count();
     at_most(road, types, RECORDS, "records <type>")?;
     sums.add(Sum::Steps, (types * lanes) as f64, road)
+}
+
+/// Whether it is a bridge or tunnel, which is built along its road.
+fn is_structure(node: Node<'_, '_>) -> bool {
+    ["bridge", "tunnel"].iter().any(|name| node.has_tag_name(*name))
+}
+
+/// More pieces than a bridge or tunnel of a road is built of, in each of its sections.
+fn pieces(road: Node<'_, '_>, structure: Node<'_, '_>) -> f64 {
+    let length_m = |node| number(node, "length").unwrap_or(0.0).max(0.0);
+    let sections = children(road, "lanes").flat_map(|lanes| children(lanes, "laneSection")).count();
+    4.0 * (length_m(structure).min(length_m(road)) / f64::from(PIECE_M) + sections as f64)
 }
 
 /// How often an object stands there.

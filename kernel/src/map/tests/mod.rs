@@ -7,6 +7,7 @@ mod features;
 mod notes;
 mod places;
 mod signals;
+mod structures;
 
 use glam::Vec3;
 
@@ -18,7 +19,9 @@ fn check_sound(map: &RoadNetwork) {
     map.lanes.iter().enumerate().for_each(|(id, lane)| check_lane(map, id as LaneId, lane));
     map.surfaces.iter().for_each(check_surface);
     map.walk_edges.iter().for_each(|e| check_walk(map, e));
-    for prop in map.props.iter().filter(|p| p.kind != PropKind::SignalPole) {
+    // Decks and piers are below the road.
+    let carries = |p: &Prop| p.kind == PropKind::Bridge && p.size.y > 0.5;
+    for prop in map.props.iter().filter(|p| p.kind != PropKind::SignalPole && !carries(p)) {
         assert!(prop.size.is_finite() && prop.size.min_element() > 0.0, "{prop:?} has a size");
         check_rounded(prop.position);
         let on_sidewalk =

@@ -127,9 +127,9 @@ fn marks_and_surfaces_that_look_otherwise_are_told() {
 fn elements_without_a_place_in_a_map_are_told() {
     let text = road(
         "<objects><bridge id=\"7\" s=\"5\" length=\"9\" type=\"steel\"/><tunnel id=\"8\" s=\"50\" length=\"9\"/>\
-                     </objects><railroad/><userData code=\"a\"/><surface><CRG file=\"a.crg\"/></surface>",
+                     <station id=\"9\"/></objects><railroad/><userData code=\"a\"/><surface><CRG file=\"a.crg\"/></surface>",
     );
-    let expected = ["<bridge> in <objects>", "<tunnel> in <objects>", "<railroad> in <road>", "<userData> in <road>"];
+    let expected = ["<station> in <objects>", "<railroad> in <road>", "<userData> in <road>"];
     let expected: Vec<_> =
         expected.into_iter().chain(["<surface> in <road>"]).map(|what| (what, "is not read", 1, "road 1")).collect();
     expect(Passed::Element, &text, &expected);

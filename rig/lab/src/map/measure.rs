@@ -42,6 +42,10 @@ fn prop_kind(kind: PropKind) -> &'static str {
         PropKind::Wall => "wall",
         PropKind::GuardRail => "guard rail",
         PropKind::Furniture => "furniture",
+        PropKind::Movable => "movable thing",
+        PropKind::Sundry => "other thing",
+        PropKind::Bridge => "piece of bridge",
+        PropKind::Tunnel => "piece of tunnel",
     }
 }
 

@@ -26,6 +26,8 @@ fn class(kind: SurfaceKind) -> Option<SemanticTag> {
         SurfaceKind::RoadLine => Some(SemanticTag::RoadLine),
         SurfaceKind::Sidewalk => Some(SemanticTag::SideWalk),
         SurfaceKind::Ground => Some(SemanticTag::Ground),
+        SurfaceKind::Track | SurfaceKind::Rail => Some(SemanticTag::RailTrack),
+        SurfaceKind::Water => Some(SemanticTag::Water),
         SurfaceKind::Terrain => None,
     }
 }

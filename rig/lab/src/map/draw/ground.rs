@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3Swizzles};
 use kernel::geometry::direction;
-use kernel::map::{Baked, Junction, Lane, LaneKind, LanePoint, MapData, Prop, PropKind};
+use kernel::map::{Baked, Junction, Lane, LaneKind, LanePoint, MapData, Prop, PropKind, SurfaceKind};
 
 use super::frame::{Key, Swatch};
 use super::path::{Path, thinned};
@@ -62,7 +62,9 @@ pub fn scenery(sheet: &Sheet, map: &MapData, out: &mut String, keys: &mut Vec<Ke
         match prop.kind {
             PropKind::Building => houses.area(sheet, &corners(prop)),
             PropKind::Hedge => hedges.area(sheet, &corners(prop)),
-            PropKind::Fence | PropKind::Wall | PropKind::GuardRail => {
+            // Decks, piers and roofs are wider.
+            PropKind::Bridge | PropKind::Tunnel if prop.size.y > 0.5 => {}
+            PropKind::Fence | PropKind::Wall | PropKind::GuardRail | PropKind::Bridge | PropKind::Tunnel => {
                 let along = direction(prop.heading_rad) * (prop.size.x / 2.0);
                 fences.line(sheet, &[prop.position.xy() - along, prop.position.xy() + along]);
             }
@@ -85,6 +87,18 @@ pub fn scenery(sheet: &Sheet, map: &MapData, out: &mut String, keys: &mut Vec<Ke
     key(!trees.is_empty(), Swatch::Disc("#a9c48c"), "tree");
     key(!hedges.is_empty(), Swatch::Area("#b9cda0"), "hedge");
     key(!fences.is_empty(), Swatch::Line("#a59f90"), "fence, wall, rail");
+}
+
+/// Lakes and rivers.
+pub fn water(sheet: &Sheet, map: &MapData, out: &mut String, keys: &mut Vec<Key>) {
+    let mut path = Path::default();
+    for surface in map.surfaces.iter().filter(|surface| surface.kind == SurfaceKind::Water) {
+        for triangle in &surface.triangles {
+            path.area(sheet, &triangle.map(|corner| surface.positions[corner as usize].xy()));
+        }
+    }
+    path.put(out, "water", "fill=\"#a8c6dc\" stroke=\"#a8c6dc\" stroke-width=\"6\"");
+    keys.extend((!path.is_empty()).then_some(Key { swatch: Swatch::Area("#a8c6dc"), name: "water" }));
 }
 
 /// Medians, verges and other strips.

@@ -90,6 +90,7 @@ struct Picture {
 fn svg(baked: &Baked, sheet: &Sheet) -> Picture {
     let mut body = String::new();
     let mut keys: Vec<Key> = Vec::new();
+    ground::water(sheet, &baked.map, &mut body, &mut keys);
     ground::strips(sheet, baked, &mut body, &mut keys);
     ground::scenery(sheet, &baked.map, &mut body, &mut keys);
     ground::lanes(sheet, baked, &mut body, &mut keys);
@@ -121,6 +122,7 @@ mod tests {
                 "{name}"
             );
             let layers = ["driving", "mark", "arrow", "sidewalk", "crosswalk", "building", "junction", "parked"];
+            assert_eq!(picture.text.contains("class=\"water"), name == "ring", "{name}");
             for layer in if name == "city" { &layers[..] } else { &layers[..3] } {
                 assert!(picture.text.contains(&format!("class=\"{layer}")), "{name} has no {layer}");
             }
