@@ -9,6 +9,7 @@ from pathlib import Path
 import network
 import streets
 from city import city
+from lakeside import lakeside
 from motorway import motorway
 from old_town import old_town
 from opendrive import write
@@ -22,7 +23,7 @@ HERE = Path(__file__).resolve().parent
 if __name__ == "__main__":
     for build in (city, rural):
         write(build(), HERE)
-    for build in (motorway, ring):
+    for build in (motorway, ring, lakeside):
         network.write(build(), HERE)
     for build in (old_town, suburb):
         streets.write(build(), HERE)

@@ -27,16 +27,16 @@ ROUNDABOUTS = ("east", "north", "west", "south")
 MIDDLE, MIDDLE_HEIGHT = (-30.0, 20.0), 4.5
 # Stretches of the ring: limit in km/h, height above the mean in between, and what is beside them.
 STRETCHES = {
-    ("east", "light_1"): (50, 0.8, "trees"),
+    ("east", "light_1"): (50, 0.8, "ponds"),
     ("light_1", "north"): (50, -0.6, "bus"),
     ("north", "west"): (70, -2.0, "walls"),
     ("west", "light_2"): (50, 0.7, "bus"),
-    ("light_2", "south"): (50, 0.5, "trees"),
+    ("light_2", "south"): (50, 0.5, "ponds"),
     ("south", "east"): (70, 1.6, "walls"),
 }
 STREETS = ("east", "light_1", "west", "light_2")  # from here to the middle
 OUTSIDE = {("north", "west"): (60, 1.5), ("south", "east"): (60, -1.0)}
-POND_ROAD, PONDS = ("south", "east"), ((70.0, 150.0), (185.0, 260.0))  # along the outside of its bend
+PONDS = (70.0, 150.0), (185.0, 260.0)  # from and to, along the outside of some bends
 BACK = 18.0  # from the middle of a junction with lights to the mouths of its roads
 BEFORE_CIRCLE = 30.0  # from the mouth of a roundabout to the crosswalk on its arm
 AT_LIGHTS = 6.5  # paved for those who cross before a junction with lights
@@ -132,20 +132,20 @@ def cross(net, road, start, end):
         road.sections = sections
 
 
-def park(road):
-    """Lets cars park along a street, but not where it begins and ends."""
+def park(road, free=48.0):
+    """Lets cars park along a street, but not so near where it begins and ends."""
     strips = road.sections[0].right
     bays = [Strip("parking", s.width) if s.kind == "shoulder" else s for s in strips]
-    road.sections += [Section(48.0, bays, bays), Section(road.length - 48.0, strips, strips)]
+    road.sections += [Section(free, bays, bays), Section(road.length - free, strips, strips)]
 
 
-def parked(net, road, rng):
+def parked(net, road, rng, free=48.0, halt=30.0):
     edge = road.width("driving")
     for side in (-1, 1):
-        s = 52.0
-        while s < road.length - 54.0:
+        s = free + 4.0
+        while s < road.length - free - 6.0:
             # Buses halt in the middle.
-            if rng() < 0.5 and abs(s - road.length / 2) > 30.0:
+            if rng() < 0.5 and abs(s - road.length / 2) > halt:
                 hdg = 0.0 if side < 0 else math.pi
                 road.objects.append(
                     f'<object id="{net.id()}" type="none" name="parkedCar" s="{s:.2f}" t="{side * (edge + 1.15):.2f}" '
@@ -167,6 +167,8 @@ def furnish(net, road, rng, beside):
     """What stands along the ring: trees on the grass, and behind the pavement trees or walls against noise."""
     grass, behind = road.width("shoulder") + GRASS / 2, road.width("sidewalk") + 1.6
     away = behind + 5.0
+    if beside == "ponds":
+        ponds(net, road)
     for side in (-1, 1):
         if beside != "walls":
             row(net, road, rng, 40.0, road.length - 36.0, side * grass, 13.0, 6.0, 1.3, 0.85)
@@ -180,16 +182,22 @@ def furnish(net, road, rng, beside):
 
 
 def ponds(net, road):
-    """Water behind the pavement, a metre below the road."""
-    t = road.width("sidewalk") + 6.0
+    """Water behind the pavement, a little below the road."""
+    t = road.width("sidewalk") + 2.0
     for s0, s1 in PONDS:
+        low = min(height(road, s) for s in (s0, s1)) - height(road, 0.0) - 0.45
         middle, half = (s0 + s1) / 2, (s1 - s0) / 2
         shore = []
         for k in range(20):
             angle = math.tau * k / 20
             point, heading = pose(road.path, middle + half * math.cos(angle))
-            shore.append(beside(point, heading, t + 14.0 + (12.0 + 2.0 * math.sin(3 * angle)) * math.sin(angle)))
-        area(net, road, "pond", shore, -1.0)
+            shore.append(beside(point, heading, t + 15.0 + (13.0 + 2.0 * math.sin(3 * angle)) * math.sin(angle)))
+        area(net, road, "pond", shore, low)
+
+
+def height(road, s):
+    start, *powers = [record for record in road.elevation if record[0] <= s][-1]
+    return sum(a * (s - start) ** k for k, a in enumerate(powers))
 
 
 def hedges(net, road, rng, t):
@@ -219,9 +227,7 @@ def ring():
             stops(net, road, road.length / 2)
     for (a, b), (kmh, bump) in OUTSIDE.items():
         road = draw(net, nodes[a], "outside", nodes[b], "outside", RING, kmh, bump)
-        furnish(net, road, rng, "ponds" if (a, b) == POND_ROAD else "trees")
-        if (a, b) == POND_ROAD:
-            ponds(net, road)
+        furnish(net, road, rng, "ponds")
         # On the outside of the bends at both ends, which are to the left.
         for s in (55.0, road.length - 95.0):
             rail(net, road, s, s + 40.0, -(road.width("sidewalk") + 2.2))

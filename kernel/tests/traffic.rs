@@ -69,6 +69,14 @@ fn traffic_lives_in_the_country() {
     is_sound("rural", &on("rural", SEED, 10));
 }
 
+/// Over the level crossing, through the tunnel and over the hill, on several seeds.
+#[test]
+fn traffic_lives_by_the_lake() {
+    for seed in SEED..SEED + 3 {
+        is_sound("lakeside", &on("lakeside", seed, 10));
+    }
+}
+
 /// Two people for every three metres of ways of two metres: nobody jams, and nobody holds up traffic.
 #[test]
 fn people_get_past_each_other_where_it_is_narrow() {

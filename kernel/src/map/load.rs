@@ -6,7 +6,7 @@ use super::network::RoadNetwork;
 use crate::baking::{self, BakeError};
 
 /// Names of the bundled maps.
-pub const BUNDLED: [&str; 6] = ["city", "rural", "old_town", "suburb", "ring", "motorway"];
+pub const BUNDLED: [&str; 7] = ["city", "rural", "old_town", "suburb", "ring", "motorway", "lakeside"];
 
 /// What they are baked from; `kernel/maps/author.py` writes these.
 const TEXTS: [&str; BUNDLED.len()] = [
@@ -16,6 +16,7 @@ const TEXTS: [&str; BUNDLED.len()] = [
     include_str!("../../maps/suburb.xodr"),
     include_str!("../../maps/ring.xodr"),
     include_str!("../../maps/motorway.xodr"),
+    include_str!("../../maps/lakeside.xodr"),
 ];
 
 /// Bakes the text of an OpenDRIVE file; `name` goes into [`MapData::name`](crate::map_data::MapData).

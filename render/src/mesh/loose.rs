@@ -7,6 +7,8 @@ use super::variety::Variety;
 use super::{Mesh, Paint};
 use crate::SemanticTag;
 
+/// What is as slim and higher is a bin, metres.
+const HIGHEST_CONE_M: f32 = 0.95;
 const WHITE: [u8; 3] = [232, 230, 224];
 const ORANGE: [u8; 3] = [226, 92, 30];
 
@@ -15,7 +17,7 @@ pub fn movable(variant: u32, size: Vec3, detail: Detail) -> Mesh {
     let wide = size.x.max(size.y);
     if wide > 1.5 * size.z {
         barricade(size)
-    } else if wide < 0.6 * size.z && size.x.min(size.y) > 0.6 * wide {
+    } else if wide < 0.6 * size.z && size.z < HIGHEST_CONE_M && size.x.min(size.y) > 0.6 * wide {
         cone(size, detail)
     } else if size.x.min(size.y) < 0.6 * wide {
         beacon(size)

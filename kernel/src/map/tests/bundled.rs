@@ -8,8 +8,9 @@ const DIGESTS: [(&str, u128); BUNDLED.len()] = [
     ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c),
     ("old_town", 0xcc40_6eef_77f1_3d01_3002_ff6a_2184_988b),
     ("suburb", 0xe88a_2978_0438_f0d7_177c_c86a_8616_a9da),
-    ("ring", 0x814d_2c55_4722_61c8_ffd2_7821_a89c_9abf),
+    ("ring", 0xba9f_c997_4b21_69c2_82b0_8505_38f7_0075),
     ("motorway", 0x49d3_4443_7e2a_d567_460e_476d_99e0_cb45),
+    ("lakeside", 0xc567_d50d_ac35_ce18_9bba_6905_b522_4dbd),
 ];
 
 #[test]
@@ -124,6 +125,31 @@ fn the_motorway_is_long_and_crossed_above() {
     let above = |p: Vec3| points().any(|q| p.z - q.z > 5.0 && (p - q).truncate().length() < 1.0);
     assert!(points().filter(|p| p.z > 13.0).any(above), "a bridge");
     assert_eq!(map.crosswalks.len(), 2);
+}
+
+#[test]
+fn the_lakeside_has_water_bridges_a_tunnel_rails_and_a_steep_hill() {
+    let map = bundled("lakeside").unwrap();
+    let surface = |kind| map.surfaces.iter().find(|s| s.kind == kind).unwrap_or_else(|| panic!("{kind:?}"));
+    for kind in [SurfaceKind::Water, SurfaceKind::Track, SurfaceKind::Ground] {
+        assert!(surface(kind).triangles.len() > 1, "{kind:?}");
+    }
+    let rails = surface(SurfaceKind::Rail);
+    let on_road = |p: Vec3| map.ground(p).is_some_and(|ground| ground.kind == SurfaceKind::Road);
+    let crosses = |t: &[u32; 3]| {
+        let [from, to, _] = t.map(|v| rails.positions[v as usize]);
+        (0..=24).any(|k| on_road(from.lerp(to, k as f32 / 24.0)))
+    };
+    assert!(rails.triangles.iter().any(crosses), "a level crossing");
+    let props = |kind| map.props.iter().filter(|p| p.kind == kind).count();
+    assert!(props(PropKind::Bridge) > 150 && props(PropKind::Tunnel) > 80);
+    assert!(props(PropKind::Movable) > 100 && props(PropKind::Sundry) > 20 && props(PropKind::Building) > 150);
+    let driven = || map.lanes.iter().filter(|l| l.kind == LaneKind::Driving);
+    let rise = |p: &[LanePoint]| ((p[4].position.z - p[0].position.z) / (p[4].s_m - p[0].s_m).max(1.0)).abs();
+    let steepest = driven().flat_map(|l| l.points.windows(5)).map(rise).fold(0.0, f32::max);
+    assert!((0.085..=0.101).contains(&steepest), "{steepest}");
+    let limits: Vec<f32> = driven().map(|l| (l.speed_limit_mps * 3.6).round()).collect();
+    assert!([30.0, 50.0, 70.0, 80.0, 100.0].iter().all(|kmh| limits.contains(kmh)));
 }
 
 #[test]

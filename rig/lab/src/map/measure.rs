@@ -44,8 +44,8 @@ fn prop_kind(kind: PropKind) -> &'static str {
         PropKind::Furniture => "furniture",
         PropKind::Movable => "movable thing",
         PropKind::Sundry => "other thing",
-        PropKind::Bridge => "piece of bridge",
-        PropKind::Tunnel => "piece of tunnel",
+        PropKind::Bridge => "bridge piece",
+        PropKind::Tunnel => "tunnel piece",
     }
 }
 
