@@ -22,12 +22,6 @@ impl Places {
         Self { recording: place("mcap"), case: place("case.mcap"), counterfactual: place("counterfactual.json") }
     }
 
-    /// Where the counterfactual of a run lies, by its corner case.
-    pub fn counterfactual_of(case: &Path) -> PathBuf {
-        let name = case.file_name().unwrap_or_default().to_string_lossy();
-        case.with_file_name(format!("{}.counterfactual.json", name.strip_suffix(".case.mcap").unwrap_or(&name)))
-    }
-
     /// Those that a run has which came to this, the recording first.
     pub fn of(&self, line: &RunLine) -> impl Iterator<Item = &Path> {
         let case = line.case.as_ref().map(|_| self.case.as_path());
@@ -39,10 +33,11 @@ impl Places {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::redrive::Counterfactual;
 
     #[test]
     fn a_counterfactual_is_found_by_its_case() {
         let places = Places::new(Path::new("runs"), "early", 7);
-        assert_eq!(Places::counterfactual_of(&places.case), places.counterfactual);
+        assert_eq!(Counterfactual::place(&places.case), places.counterfactual);
     }
 }

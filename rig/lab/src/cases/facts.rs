@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use base::files::{self, most};
 use base::words;
 use kernel::time::Tick;
 use kernel::traffic::{HazardLevel, HazardRates};
@@ -10,7 +9,6 @@ use replay::{CaseHeader, Label};
 
 use super::conditions;
 use super::situation::{Situation, Spot, next_ahead};
-use crate::campaign::Places;
 use crate::redrive::{Counterfactual, Need};
 
 /// Digits of a recording's digest that an identity has.
@@ -67,10 +65,7 @@ impl Facts {
     /// Those of a file.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let header = CaseHeader::open(path)?;
-        // What is not about this recording, or cannot be read, says nothing about the case.
-        let beside = files::read_if_there(&Places::counterfactual_of(path), most::TABLE).ok().flatten();
-        let counterfactual = beside.and_then(|bytes| Counterfactual::of_source(&bytes, &header.info.source));
-        Ok(Self::of(&header, counterfactual.as_ref()))
+        Ok(Self::of(&header, Counterfactual::beside(path, &header.info.source).as_ref()))
     }
 
     /// Those of a case, and of what would have happened without its intervention.

@@ -122,8 +122,6 @@ const COLUMNS: &str = "c.path, c.identity, c.digest, c.label, c.comment, c.perce
 
 /// The cases that a query asks for, in its order.
 pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlite::Result<Vec<CaseLine>> {
-    // Rows are long: only their numbers are sorted, and of those that are not wanted nothing else is read.
-    let mut order = db.prepare(&sql.select("c.id, c.situation", query.limit.filter(|_| !query.unique)))?;
     let mut case = db.prepare(&format!(
         "SELECT {COLUMNS} FROM cases c LEFT JOIN measured m ON m.digest = c.digest WHERE c.id = ?"
     ))?;
@@ -133,18 +131,51 @@ pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlit
             "SELECT actor, kind, frames, pixels FROM overlooked WHERE digest = ? ORDER BY pixels DESC, actor",
         )?,
     };
-    let mut rows = order.query(rusqlite::params_from_iter(sql.values()))?;
-    let (mut lines, mut groups) = (Vec::new(), Groups::default());
-    let most = query.limit.map_or(usize::MAX, |limit| limit as usize);
-    while lines.len() < most {
-        let Some(row) = rows.next()? else { break };
-        let (id, group): (i64, i64) = (row.get("id")?, row.get("situation")?);
-        if !query.unique || groups.is_new(group) {
-            let distance_m = row.get::<_, Option<f64>>("distance2")?.map(f64::sqrt);
-            lines.push(CaseLine { distance_m, ..case.query_row([id], |row| more.line(row, reveal))? });
+    let line = |(id, distance2): (i64, Option<f64>)| {
+        let line = case.query_row([id], |row| more.line(row, reveal))?;
+        Ok(CaseLine { distance_m: distance2.map(f64::sqrt), ..line })
+    };
+    wanted(db, query, sql)?.into_iter().map(line).collect()
+}
+
+/// Of so many rows for each group that is asked for, one is mostly of another group.
+const ROWS_A_GROUP: u32 = 8;
+
+/// The numbers of the cases that are asked for, and the squares of their distances, in order. Rows are long: only their numbers
+/// are sorted, and of those that are not wanted nothing else is read.
+fn wanted(db: &Connection, query: &Query, sql: &Sql) -> rusqlite::Result<Vec<(i64, Option<f64>)>> {
+    if !query.unique {
+        return Ok(first(db, query, sql, query.limit)?.0);
+    }
+    if let Some(limit) = query.limit {
+        let few = limit.saturating_mul(ROWS_A_GROUP);
+        let (found, rows) = first(db, query, sql, Some(few))?;
+        if found.len() == limit as usize || rows < few {
+            return Ok(found);
         }
     }
-    Ok(lines)
+    Ok(first(db, query, sql, None)?.0)
+}
+
+/// Those among the first so many rows, of each group one where groups count once; and how many rows were seen.
+fn first(
+    db: &Connection,
+    query: &Query,
+    sql: &Sql,
+    rows_asked: Option<u32>,
+) -> rusqlite::Result<(Vec<(i64, Option<f64>)>, u32)> {
+    let mut order = db.prepare(&sql.select("c.id, c.situation", rows_asked))?;
+    let mut rows = order.query(rusqlite::params_from_iter(sql.values()))?;
+    let most = query.limit.map_or(usize::MAX, |limit| limit as usize);
+    let (mut found, mut groups, mut seen) = (Vec::new(), Groups::default(), 0);
+    while found.len() < most {
+        let Some(row) = rows.next()? else { break };
+        seen += 1;
+        if !query.unique || groups.is_new(row.get("situation")?) {
+            found.push((row.get("id")?, row.get("distance2")?));
+        }
+    }
+    Ok((found, seen))
 }
 
 /// How many cases a query asks for.

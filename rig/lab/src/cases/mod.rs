@@ -39,7 +39,6 @@ use self::line::{CaseLine, lines};
 use self::query::{Query, Scope, Sort, Sql};
 use self::review::Change;
 use self::rows::Within;
-use crate::redrive::Need;
 
 /// What the index of a folder is called in it.
 pub const FILE: &str = "cases.sqlite";
@@ -206,7 +205,7 @@ fn scope(
     options: &Options,
 ) -> anyhow::Result<(Scope, Vec<Failure>)> {
     let within = given.iter().map(|folder| Within::of(library::order_below(index.way_to(folder.whole())))).collect();
-    let near = options.near.as_deref().map(situation_of).transpose()?;
+    let near = options.near.as_deref().map(|path| situation_of(path, index)).transpose()?;
     let scope = Scope { within, only_wanted: !files.is_empty(), near, reveal: options.reveal };
     let mut failed = Vec::new();
     let mut wanted = Vec::new();
@@ -223,26 +222,14 @@ fn scope(
     Ok((scope, failed))
 }
 
-/// Of some cases those on whose takeover a campaign came to one of these verdicts; all, where none is asked for.
-pub fn keep_judged<T>(cases: Vec<T>, path: impl Fn(&T) -> &Path, verdicts: &[Need]) -> anyhow::Result<Vec<T>> {
-    if verdicts.is_empty() {
-        return Ok(cases);
-    }
-    let mut kept = Vec::new();
-    for case in cases {
-        if Facts::read(path(&case))?.verdict.is_some_and(|verdict| verdicts.contains(&verdict)) {
-            kept.push(case);
-        }
-    }
-    if kept.is_empty() {
-        let names: Vec<&str> = verdicts.iter().map(|verdict| verdict.name()).collect();
-        anyhow::bail!("on none of the corner cases the verdict is {}", names.join(" or "));
-    }
-    Ok(kept)
-}
-
 /// The situation of a case, and which case it is.
-fn situation_of(path: &Path) -> anyhow::Result<(situation::Situation, String)> {
+fn situation_of(path: &Path, index: &Index) -> anyhow::Result<(situation::Situation, String)> {
+    // A case of the index is not read again: to see its scene its map has to be built.
+    if let Ok(whole) = path.canonicalize()
+        && let Some(known) = index.read(|db| rows::situation_at(db, &library::order(index.way_to(&whole))))?
+    {
+        return Ok(known);
+    }
     let facts = Facts::read(path)?;
     let situation = facts.situation().with_context(|| format!("{}: holds no scene of its takeover", path.display()))?;
     Ok((situation, facts.identity))

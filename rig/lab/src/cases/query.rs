@@ -295,7 +295,7 @@ impl Sql {
             [Value::from(map_digest.to_vec()), Value::from(spot.x_m - NEAR_M), Value::from(spot.x_m + NEAR_M)],
         );
         self.with(
-            "c.label IS ? AND c.nearest IS ? AND c.identity <> ?",
+            "c.label IS ? AND c.nearest IS ? AND c.id NOT IN (SELECT id FROM cases WHERE identity = ?)",
             [
                 label.clone().map_or(Value::Null, Value::from),
                 nearest.clone().map_or(Value::Null, Value::from),

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use replay::Label;
-use rusqlite::{Connection, Row, Statement, Transaction, params};
+use rusqlite::{Connection, OptionalExtension, Row, Statement, Transaction, params};
 
 use super::facts::Facts;
 use super::situation::{Situation, Spot, groups};
@@ -161,6 +161,13 @@ pub fn situation(row: &Row<'_>) -> rusqlite::Result<Option<Situation>> {
         spot: Spot { x_m, y_m, ahead_x, ahead_y },
         speed_mps: row.get("speed_mps")?,
     }))
+}
+
+/// The situation of the case at a place, as the index knows it, and which case it is.
+pub fn situation_at(db: &Connection, place: &str) -> rusqlite::Result<Option<(Situation, String)>> {
+    let read = |row: &Row<'_>| Ok((situation(row)?, row.get("identity")?));
+    let found = db.query_row("SELECT * FROM cases WHERE place = ?", [place], read).optional()?;
+    Ok(found.and_then(|(situation, identity)| Some((situation?, identity))))
 }
 
 /// A row, as far as it is compared with all others.

@@ -17,7 +17,7 @@ use super::given::Given;
 use super::index::Index;
 use super::rows::{self, Known, Within, Writer};
 use super::schema;
-use crate::campaign::Places;
+use crate::redrive::Counterfactual;
 
 /// Files that are written in one step; an interruption loses no more than these.
 const BATCH: usize = 1000;
@@ -99,7 +99,7 @@ fn found(index: &Index, folder: &Given, path: PathBuf) -> Result<Found, Failure>
         }
         let way = index.way_to(path);
         let text = way.to_str().context("its name is not UTF-8; expected one that is")?;
-        let beside = Places::counterfactual_of(path).metadata().ok();
+        let beside = Counterfactual::place(path).metadata().ok();
         let stamp = format!("{} {}", stamp(&metadata), beside.as_ref().map(stamp).unwrap_or_default());
         Ok((library::order(way), text.to_owned(), stamp))
     };

@@ -23,7 +23,9 @@ const TABLES: [&str; 14] = [
     "CREATE INDEX cases_in_order ON cases (\
      place, copy, situation, label, perception_caused, verdict, map, weather, conditions, hazards, checkpoint, blind, \
      speed_mps, fork_min_ttc_s)",
-    "CREATE INDEX cases_by_spot ON cases (map_digest, x_m)",
+    // What likeness is told by.
+    "CREATE INDEX cases_by_spot ON cases (\
+     map_digest, x_m, y_m, ahead_x, ahead_y, speed_mps, label, nearest, place, copy, situation)",
     "CREATE INDEX cases_by_situation ON cases (situation)",
     "CREATE INDEX cases_by_digest ON cases (digest)",
     "CREATE INDEX cases_by_identity ON cases (identity)",

@@ -18,11 +18,10 @@ use replay::{Label, Recording};
 use super::manifest::Manifest;
 use super::provenance::{Drive, FrameLine};
 use super::recipe::{CaseUsed, CasesRecipe, Recipe, city};
-use crate::cases::keep_judged;
 use crate::cityscapes;
 use crate::looks::Studio;
 use crate::pipeline::Studios;
-use crate::redrive::Need;
+use crate::redrive::{Need, keep_judged};
 
 /// Which corner cases become a dataset.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! The verdict on an intervention, kept beside its recording.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::Context;
@@ -106,8 +106,20 @@ impl Counterfactual {
         known.filter(|known| known.key == Key::of(recording))
     }
 
+    /// Where that of a run lies, by its corner case.
+    pub fn place(case: &Path) -> PathBuf {
+        let name = case.file_name().unwrap_or_default().to_string_lossy();
+        case.with_file_name(format!("{}.counterfactual.json", name.strip_suffix(".case.mcap").unwrap_or(&name)))
+    }
+
+    /// The one beside a corner case; what is not about its recording, or cannot be read, says nothing about it.
+    pub fn beside(case: &Path, source: &[u8; 32]) -> Option<Self> {
+        let bytes = files::read_if_there(&Self::place(case), most::TABLE).ok().flatten()?;
+        Self::of_source(&bytes, source)
+    }
+
     /// As it is in a file, whatever program wrote it, if it is about the recording of this digest.
-    pub fn of_source(bytes: &[u8], source: &[u8; 32]) -> Option<Self> {
+    fn of_source(bytes: &[u8], source: &[u8; 32]) -> Option<Self> {
         let digest = blake3::Hash::from_bytes(*source).to_hex();
         serde_json::from_slice::<Self>(bytes).ok().filter(|known| known.key.recording == digest.as_str())
     }

@@ -18,7 +18,7 @@ use measures::criticality::Extremes;
 use replay::{Case, Label, Log, PROGRAM, Recorder, Recording, Replayer, WRITTEN_BY};
 use serde::{Deserialize, Serialize};
 
-use super::verdict::{EARLY_TICKS, is_near_miss};
+use super::near_miss::{EARLY_TICKS, is_near_miss};
 
 /// What is done otherwise than in the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]

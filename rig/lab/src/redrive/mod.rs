@@ -6,6 +6,8 @@
 
 mod counterfactual;
 mod fork;
+mod judged;
+mod near_miss;
 mod verdict;
 
 use std::collections::BTreeMap;
@@ -25,7 +27,9 @@ use serde::{Deserialize, Serialize};
 
 pub use self::counterfactual::Counterfactual;
 use self::fork::{Course, Fork, Harm, Otherwise, from_takeover, takeover};
-pub use self::verdict::{EARLY_TICKS, Need, is_near_miss};
+pub use self::judged::keep_judged;
+pub use self::near_miss::{EARLY_TICKS, is_near_miss};
+pub use self::verdict::Need;
 use super::store::Store;
 use crate::machine::Machine;
 use crate::share::{Share, ShareDone};

@@ -1,16 +1,10 @@
 //! What a fork says about the intervention.
 
-use kernel::time::{Tick, seconds};
-use measures::criticality::Sample;
+use kernel::time::Tick;
 use serde::{Deserialize, Serialize};
 
 use super::fork::{Course, Otherwise};
-
-/// An intervention is early when harm would have come later than this after it.
-pub const EARLY_TICKS: Tick = seconds(3);
-/// It comes close where the time to collision falls below this, seconds, or more braking than this is required, m/s^2.
-const NEAR_MISS_TTC_S: f64 = 1.0;
-const NEAR_MISS_MPS2: f64 = 6.0;
+use super::near_miss::EARLY_TICKS;
 
 /// Whether an intervention was needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -74,19 +68,11 @@ impl Need {
     }
 }
 
-/// Whether somebody came close in a time of which these are the samples.
-pub fn is_near_miss<'a>(samples: impl IntoIterator<Item = &'a Sample>) -> bool {
-    samples.into_iter().any(|sample| {
-        sample.ttc_s.as_ref().is_some_and(|ttc| ttc.value < NEAR_MISS_TTC_S)
-            || sample.required_deceleration_mps2.as_ref().is_some_and(|needed| needed.value > NEAR_MISS_MPS2)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::redrive::fork::{Harm, HarmKind};
-    use measures::criticality::{Extremes, Worst};
+    use measures::criticality::Extremes;
 
     fn course(harm: Option<(Tick, HarmKind)>, intervention: Option<Tick>) -> Course {
         let harm = harm.map(|(tick, what)| Harm { tick, what, with: None, speed_kmh: 30.0 });
@@ -103,12 +89,6 @@ mod tests {
         assert_eq!(verdict(None), Need::NearMiss);
         assert_eq!(verdict(Some((1181, HarmKind::Collision))), Need::NearMiss);
         assert_eq!(verdict(Some((1180, HarmKind::Collision))), Need::Necessary);
-        let worst = |value| Some(Worst { value, with: "car 1".into() });
-        let sample = |ttc_s, required_deceleration_mps2| {
-            [Sample { tick: 1, ttc_s, pret_s: None, required_deceleration_mps2, encroachment: None }]
-        };
-        assert!(is_near_miss(&sample(worst(0.9), None)) && is_near_miss(&sample(worst(3.0), worst(6.1))));
-        assert!(!is_near_miss(&sample(worst(1.0), worst(6.0))) && !is_near_miss(&sample(None, None)));
     }
 
     #[test]
