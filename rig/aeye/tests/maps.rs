@@ -21,7 +21,7 @@ const ODD: &str = r#"<OpenDRIVE><header revMajor="1" revMinor="7" vendor="somebo
 <lane id="-2" type="tram"><width sOffset="0" a="3"/></lane>
 <lane id="-3" type="sidewalk"><width sOffset="0" a="2"/></lane></right></laneSection></lanes>
 <objects><object id="1" type="gantry" s="20" t="0" length="1" width="9" height="6"/>
-<bridge id="2" s="100" length="50" type="steel"/></objects>
+<station id="2" name="Central" type="small"/></objects>
 <signals><signal id="3" s="31" t="-9" type="101" subtype="10" country="DE" dynamic="no" orientation="+"/>
 <signal id="4" s="60" t="-9" type="101" subtype="10" country="DE" dynamic="no" orientation="+"/></signals>
 </road></OpenDRIVE>"#;
@@ -67,7 +67,7 @@ fn what_is_not_understood_is_told_with_number_and_place() {
         ("lane", "type tram", 1, "road 12, section 0, lane -2"),
         ("road mark", "colour yellow", 1, "road 12, s 0.0 m"),
         ("surface", "material lava", 1, "road 12, section 0, lane -1"),
-        ("element", "<bridge> in <objects>", 1, "road 12"),
+        ("element", "<station> in <objects>", 1, "road 12"),
     ] {
         let group = groups.iter().find(|group| group["kind"] == kind && group["what"] == what);
         let group = group.unwrap_or_else(|| panic!("{kind} {what} is not among {groups:#?}"));
