@@ -131,9 +131,9 @@ pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlit
             "SELECT actor, kind, frames, pixels FROM overlooked WHERE digest = ? ORDER BY pixels DESC, actor",
         )?,
     };
-    let line = |(id, distance2): (i64, Option<f64>)| {
-        let line = case.query_row([id], |row| more.line(row, reveal))?;
-        Ok(CaseLine { distance_m: distance2.map(f64::sqrt), ..line })
+    let line = |wanted: Wanted| {
+        let line = case.query_row([wanted.id], |row| more.line(row, reveal))?;
+        Ok(CaseLine { distance_m: wanted.distance2.map(f64::sqrt), ..line })
     };
     wanted(db, query, sql)?.into_iter().map(line).collect()
 }
@@ -141,9 +141,16 @@ pub fn lines(db: &Connection, query: &Query, sql: &Sql, reveal: bool) -> rusqlit
 /// Of so many rows for each group that is asked for, one is mostly of another group.
 const ROWS_A_GROUP: u32 = 8;
 
-/// The numbers of the cases that are asked for, and the squares of their distances, in order. Rows are long: only their numbers
+/// A case that is asked for.
+struct Wanted {
+    id: i64,
+    /// Square of the distance, m^2.
+    distance2: Option<f64>,
+}
+
+/// The cases that are asked for, in order. Rows are long: only their numbers
 /// are sorted, and of those that are not wanted nothing else is read.
-fn wanted(db: &Connection, query: &Query, sql: &Sql) -> rusqlite::Result<Vec<(i64, Option<f64>)>> {
+fn wanted(db: &Connection, query: &Query, sql: &Sql) -> rusqlite::Result<Vec<Wanted>> {
     if !query.unique {
         return Ok(first(db, query, sql, query.limit)?.0);
     }
@@ -158,12 +165,7 @@ fn wanted(db: &Connection, query: &Query, sql: &Sql) -> rusqlite::Result<Vec<(i6
 }
 
 /// Those among the first so many rows, of each group one where groups count once; and how many rows were seen.
-fn first(
-    db: &Connection,
-    query: &Query,
-    sql: &Sql,
-    rows_asked: Option<u32>,
-) -> rusqlite::Result<(Vec<(i64, Option<f64>)>, u32)> {
+fn first(db: &Connection, query: &Query, sql: &Sql, rows_asked: Option<u32>) -> rusqlite::Result<(Vec<Wanted>, u32)> {
     let mut order = db.prepare(&sql.select("c.id, c.situation", rows_asked))?;
     let mut rows = order.query(rusqlite::params_from_iter(sql.values()))?;
     let most = query.limit.map_or(usize::MAX, |limit| limit as usize);
@@ -172,7 +174,7 @@ fn first(
         let Some(row) = rows.next()? else { break };
         seen += 1;
         if !query.unique || groups.is_new(row.get("situation")?) {
-            found.push((row.get("id")?, row.get("distance2")?));
+            found.push(Wanted { id: row.get("id")?, distance2: row.get("distance2")? });
         }
     }
     Ok((found, seen))
