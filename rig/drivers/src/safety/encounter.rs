@@ -13,7 +13,7 @@ use crate::footprint::{Footprint, forward, middle};
 /// An encroachment predicted within this time is critical (Westhofen et al. 2022), seconds.
 pub const CRITICAL_S: f32 = 2.0;
 /// Step of the prediction, seconds.
-pub const STEP_S: f32 = 0.1;
+const STEP_S: f32 = 0.1;
 /// How far around the car others matter, metres.
 pub const NEAR_M: f32 = 60.0;
 /// Slower than this the ego car touches nobody, m/s.

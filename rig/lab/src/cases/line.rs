@@ -148,8 +148,8 @@ struct Wanted {
     distance2: Option<f64>,
 }
 
-/// The cases that are asked for, in order. Rows are long: only their numbers
-/// are sorted, and of those that are not wanted nothing else is read.
+/// The cases that are asked for, in order. Rows are long: only their numbers are sorted, and of those that are not wanted
+/// nothing else is read.
 fn wanted(db: &Connection, query: &Query, sql: &Sql) -> rusqlite::Result<Vec<Wanted>> {
     if !query.unique {
         return Ok(first(db, query, sql, query.limit)?.0);

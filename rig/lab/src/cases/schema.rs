@@ -19,7 +19,7 @@ const TABLES: [&str; 14] = [
      fork_min_ttc_s REAL, x_m REAL, y_m REAL, ahead_x REAL, ahead_y REAL, nearest TEXT, nearest_m REAL, \
      map_digest BLOB NOT NULL, digest BLOB NOT NULL, identity TEXT NOT NULL, checkpoint_digest TEXT, \
      seed INTEGER NOT NULL, kernel TEXT NOT NULL, comment TEXT) STRICT",
-    // What most queries read, in the order in which they give it: a seventh of the table.
+    // What most queries read, in the order in which they give it, instead of the long rows of the table.
     "CREATE INDEX cases_in_order ON cases (\
      place, copy, situation, label, perception_caused, verdict, map, weather, conditions, hazards, checkpoint, blind, \
      speed_mps, fork_min_ttc_s)",
