@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test matrix bench dist oracles peers cluster kills fuzz properties check-long headless setup tools build
+.PHONY: demo test matrix bench dist oracles peers cluster campaign-check kills fuzz properties check-long headless setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -60,6 +60,10 @@ peers: build
 cluster: PACKAGES += python3-venv slurm-wlm munge
 cluster: build
 	tests/cluster/run.sh $(AEYE) $(dir $(AEYE))../cluster
+
+## Drives 140 km through true masks, an hour or two, and fails where takeovers have doubled.
+campaign-check: setup
+	AEYE_LOOP_KM=140 cargo test --release --workspace --test truth -- --nocapture
 
 ## Kills the program 200 times in everything that takes long; what was finished must stay.
 kills: setup

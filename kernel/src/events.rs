@@ -76,7 +76,7 @@ state! {
 }
 
 state! {
-    /// What both drivers see besides the picture.
+    /// What the HUD of both drivers is drawn from.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Hud {
         /// Speed of the ego car, m/s.

@@ -10,6 +10,7 @@ use std::time::Instant;
 use base::maps::Map;
 use base::spread;
 use drivers::episode::{Episode, STEP_TICKS, hud};
+use drivers::readout::Readout;
 use drivers::vision::{Eye, Optics};
 use kernel::{Controls, Seat};
 use render::{RenderOptions, Renderer};
@@ -51,7 +52,7 @@ fn drive(drives: usize, steps: usize, jobs: usize) -> anyhow::Result<String> {
             episode.step(optics, Controls::from_fractions(0.0, 1.0, 0.0), STEP_TICKS)?;
             mask.clear();
             mask.extend_from_slice(episode.mask(optics)?.ids);
-            std::hint::black_box((&mask, hud::row(&episode.world().hud())));
+            std::hint::black_box((&mask, hud::row(&Readout::of(&episode.world().hud()))));
         }
         Ok(())
     })?;

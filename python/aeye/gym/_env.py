@@ -26,7 +26,8 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     present) or both, and `hud` (float32 of shape (11,)): `speed_mps`, `limit_mps`, the next traffic light as
     `light_red`, `light_yellow` and `light_green` (one of them is 1, or none) and `light_distance_m` to its line, the
     way at the junction ahead as `turn_left`, `turn_straight` and `turn_right` (one of them is 1) and `turn_distance_m`,
-    and `bearing_deg` of the route 12 m ahead, positive to the right.
+    and `bearing_deg` of the route 12 m ahead, positive to the right. It is what the HUD shows: whole km/h (here in m/s), and
+    distances in steps of 10 m, below 20 m of 5 m.
 
     Actions are float32 of shape (3,): steering in [-1, 1], positive to the right, throttle and brake in [0, 1]. They are held
     for `ticks` ticks of 1/60 s, 1 to 60; beyond its range each counts as its end. The semantic driver's indicators are set by themselves.

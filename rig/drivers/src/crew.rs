@@ -4,6 +4,7 @@ use kernel::events::EventKind;
 use kernel::{Seat, TickInput, World};
 use replay::{Label, MaskShown};
 
+use crate::readout::Readout;
 use crate::safety::{SafetyBot, label_of};
 use crate::semantic::SemanticBot;
 use crate::vision::Vision;
@@ -17,16 +18,16 @@ pub struct Bots {
 }
 
 impl Bots {
-    /// In both seats, with this safety driver.
-    pub fn both(safety: SafetyBot) -> Self {
-        Self { semantic: Some(SemanticBot::default()), safety: Some(safety) }
+    /// In both seats.
+    pub fn both(semantic: SemanticBot, safety: SafetyBot) -> Self {
+        Self { semantic: Some(semantic), safety: Some(safety) }
     }
 
-    /// Beside somebody else's seat.
-    pub fn beside(seat: Seat) -> Self {
+    /// Beside somebody else's seat in the run of a seed.
+    pub fn beside(seat: Seat, seed: u64) -> Self {
         match seat {
-            Seat::Semantic => Self { semantic: None, safety: Some(SafetyBot::default()) },
-            Seat::Safety => Self { semantic: Some(SemanticBot::default()), safety: None },
+            Seat::Semantic => Self { semantic: None, safety: Some(SafetyBot::drawn(seed)) },
+            Seat::Safety => Self { semantic: Some(SemanticBot::drawn(seed)), safety: None },
         }
     }
 
@@ -38,7 +39,7 @@ impl Bots {
     /// Puts the controls of their seats for the next tick in place. Without a mask the semantic one does nothing.
     pub fn act(&mut self, world: &World, mask: Option<MaskView<'_>>, input: &mut TickInput) {
         if let (Some(bot), Some(mask)) = (&mut self.semantic, mask) {
-            input.semantic = bot.controls(&SemanticView { mask, hud: world.hud() });
+            input.semantic = bot.controls(&SemanticView { mask, hud: Readout::of(&world.hud()) });
         }
         if let Some(bot) = &mut self.safety {
             input.safety = bot.controls(world);
@@ -58,14 +59,14 @@ pub struct Crew {
 }
 
 impl Crew {
-    /// Takes the seats.
-    pub fn new(vision: Vision) -> Self {
-        Self::with(vision, SafetyBot::default())
+    /// Takes the seats in the run of a seed.
+    pub fn drawn(vision: Vision, seed: u64) -> Self {
+        Self::of(vision, SemanticBot::drawn(seed), SafetyBot::drawn(seed))
     }
 
-    /// Takes the seats, with this safety driver.
-    pub fn with(vision: Vision, safety: SafetyBot) -> Self {
-        Self { vision, bots: Bots::both(safety) }
+    /// Takes the seats.
+    pub fn of(vision: Vision, semantic: SemanticBot, safety: SafetyBot) -> Self {
+        Self { vision, bots: Bots::both(semantic, safety) }
     }
 
     /// Both drivers' controls for the next tick, and what the semantic driver saw.

@@ -8,6 +8,7 @@ use kernel::scene::{ActorScene, EgoScene};
 use kernel::signals::LightPhase;
 use kernel::{Controls, World, ego, ops};
 
+use crate::readout::Readout;
 use crate::{Driver, indicate, single_track};
 
 /// How far the route is looked at, metres.
@@ -52,7 +53,7 @@ impl Driver<World> for Expert {
             .map(|leader| follow(speed_mps, wanted_mps, leader))
             .fold(free(speed_mps, wanted_mps), f32::min);
         let (throttle, brake) = pedals(acceleration, speed_mps);
-        let flags = indicate::turn(&hud.arrow);
+        let flags = indicate::turn(&Readout::of(&hud));
         Controls { flags, ..Controls::from_fractions(route.steer(&scene.ego), throttle, brake) }
     }
 }

@@ -9,6 +9,7 @@ pub mod film;
 pub mod footprint;
 mod indicate;
 pub mod pictures;
+pub mod readout;
 pub mod recorded_eye;
 pub mod safety;
 pub mod seat;
@@ -16,10 +17,11 @@ pub mod semantic;
 pub mod session;
 pub mod simulate;
 pub mod single_track;
+pub mod temper;
 pub mod vision;
 
 use kernel::Controls;
-use kernel::events::Hud;
+use readout::Readout;
 
 /// A driver in one of the seats; `View` is all it gets to see.
 pub trait Driver<View: ?Sized> {
@@ -33,7 +35,7 @@ pub struct SemanticView<'a> {
     /// The mask on the screen.
     pub mask: MaskView<'a>,
     /// What the HUD shows.
-    pub hud: Hud,
+    pub hud: Readout,
 }
 
 /// A borrowed mask: tag ids of CARLA 0.9.10, rows from top to bottom, seen through

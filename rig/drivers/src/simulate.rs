@@ -5,12 +5,13 @@ use std::io::Write;
 use base::maps::Map;
 use kernel::arbiter::{Outcome, Phase};
 use kernel::time::{CLIP_TICKS, TICK_HZ, Tick, seconds};
-use kernel::{Keyframe, Scenario, World};
+use kernel::{Keyframe, Scenario, Seat, World};
 use replay::{Annotation, Label, Manifest};
 
 use crate::crew::Crew;
 use crate::safety::BORING_TICKS;
 use crate::session::{Session, SessionState};
+use crate::temper::Temper;
 use crate::vision::{self, Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
 
 /// A fork that bots drive starts at least this long before the intervention, so that nothing is decided yet.
@@ -22,21 +23,26 @@ pub fn fork_before_ticks(label: Label) -> Tick {
 /// intervention, and `aeye redrive`, unless it is told otherwise. Predictions of criticality look as far ahead.
 pub const FORK_AFTER_TICKS: Tick = seconds(10);
 
+/// What a manifest calls a simulated driver.
+pub const BOT: &str = "bot";
+
 /// The manifest of a simulated run: bots in both seats, what the semantic one sees, and when.
 pub fn manifest(scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
-    manifest_with(["bot"; 2], scenario, map, eye)
+    manifest_with([BOT; 2], scenario, map, eye)
 }
 
 /// As [`manifest`], with who sits in the seats, the semantic driver first.
-pub fn manifest_with([semantic, safety]: [&str; 2], scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
+pub fn manifest_with(who: [&str; 2], scenario: &Scenario, map: &Map, eye: &Eye) -> Manifest {
+    let bots = [Seat::Semantic, Seat::Safety].into_iter().zip(who).filter(|(_, who)| *who == BOT);
     let entries = [
-        ("semantic", semantic.to_owned()),
-        ("safety", safety.to_owned()),
+        ("semantic", who[0].to_owned()),
+        ("safety", who[1].to_owned()),
         ("frame_ticks", FRAME_TICKS.to_string()),
         ("latency_ticks", LATENCY_TICKS.to_string()),
     ];
     let mut provenance = vision::provenance(eye, eye.size());
     provenance.extend(entries.map(|(name, value)| (name.to_owned(), value)));
+    provenance.extend(Temper::entries(bots.map(|(seat, _)| seat), scenario.seed));
     Manifest::new(scenario, &map.network, map.foreign.clone(), provenance)
 }
 
@@ -64,7 +70,7 @@ pub fn drive_as<W: Write>(
     let world = World::new(&manifest.scenario, &map.network)?;
     let mut keyframes = vec![world.initial_keyframe()];
     let mut session = Session::new(world, manifest, out)?;
-    let mut crew = Crew::new(vision);
+    let mut crew = Crew::drawn(vision, manifest.scenario.seed);
     let mut ended = false;
     while !ended && keep_on(session.world()) {
         let (input, shown) = crew.act(session.world())?;
@@ -112,7 +118,7 @@ fn needed_with_truth(
     let Some(start) = keyframes.iter().rev().find(early) else { return Ok((true, vision)) };
     let end = at + FORK_AFTER_TICKS;
     let mut fork = World::fork(&lasting(world.scenario().clone(), end), world.network(), start)?;
-    let mut crew = Crew::new(vision.with_eye(Eye::Truth));
+    let mut crew = Crew::drawn(vision.with_eye(Eye::Truth), world.scenario().seed);
     while fork.tick() < end && matches!(fork.arbiter().phase, Phase::Arming | Phase::Driving) {
         let (input, _) = crew.act(&fork)?;
         fork.step(&input);

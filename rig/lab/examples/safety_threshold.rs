@@ -76,7 +76,7 @@ struct Watched {
 
 fn watch(scenario: &Scenario, map: &Map, mut vision: Vision, person: u64) -> anyhow::Result<Watched> {
     let mut world = World::new(scenario, &map.network)?;
-    let mut driver = Bots::beside(Seat::Safety);
+    let mut driver = Bots::beside(Seat::Safety, scenario.seed);
     let bot = |urgent| SafetyBot::of_person(person).with_urgent(urgent);
     let mut watchers = TRIED.map(|urgent| (bot(urgent), None));
     let mut sampler = Sampler::default();

@@ -1,19 +1,19 @@
 //! The simulated semantic driver is a function of mask and HUD: what the mask shows changes what it
 //! does, and the truth behind it does not.
 
+use drivers::readout::Readout;
 use drivers::semantic::SemanticBot;
 use drivers::{Driver, MaskView, SemanticView};
 use kernel::Controls;
-use kernel::events::{Hud, RouteArrow};
 use kernel::map::Turn;
 use render::SemanticTag;
 
 const WIDTH: usize = 256;
 const HEIGHT: usize = 128;
 
-fn hud() -> Hud {
-    let arrow = RouteArrow { turn: Turn::Straight, distance_m: 120, bearing_deg: 0 };
-    Hud { speed_mps: 9.0, limit_mps: 50.0 / 3.6, light: None, light_distance_m: 0, arrow }
+fn hud() -> Readout {
+    let (turn, junction_m) = (Turn::Straight, Some(120));
+    Readout { speed_kmh: 32, limit_kmh: 50, light: None, light_m: 0, turn, junction_m, bearing_deg: 0 }
 }
 
 /// A straight road in the lower half: its right edge 1.75 m to the right, a line to the left.

@@ -23,7 +23,7 @@ fn write(folder: &Path, name: &str, recording: &Recording) -> PathBuf {
 }
 
 fn refused(paths: &[PathBuf], reference: Option<&str>) -> String {
-    of_recordings(paths, Choice { reference, ..Choice::default() }).expect_err("refused").to_string()
+    of_recordings(paths, Choice { reference, ..Choice::default() }, |_, _| true).expect_err("refused").to_string()
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn every_ride_counts_once_for_its_checkpoint() {
     let case_path = dir.path().join("0.case.mcap");
     fs::write(&case_path, case.encode().unwrap()).unwrap();
 
-    let of = of_recordings(&[dir.path().to_owned()], Choice::default()).unwrap().checkpoints;
+    let of = of_recordings(&[dir.path().to_owned()], Choice::default(), |_, _| true).unwrap().checkpoints;
     let counts: Vec<_> = of.iter().map(|c| (c.checkpoint.as_str(), c.statistics.rides, c.statistics.cases)).collect();
     assert_eq!(counts, [("old", 2, 1), ("new", 1, 0)]);
     let (old, new) = (&of[0], &of[1]);
@@ -61,7 +61,7 @@ fn every_ride_counts_once_for_its_checkpoint() {
     let (again, copy) = (dir.path().join("0.mcap"), dir.path().join("below/copy.mcap"));
     fs::create_dir(dir.path().join("below")).unwrap();
     fs::copy(&again, &copy).unwrap();
-    let both = of_recordings(&[again, dir.path().to_owned()], Choice::default()).unwrap();
+    let both = of_recordings(&[again, dir.path().to_owned()], Choice::default(), |_, _| true).unwrap();
     assert_eq!(both.checkpoints[0].statistics.rides, 2, "a file that is given twice counts once, and so does a copy");
     assert!(
         both.failed.iter().all(|failure| failure.error.contains("holds the same recording as"))
@@ -82,7 +82,9 @@ fn blind_drives_are_one_until_they_are_revealed() {
         write(dir.path(), file, &recording(false, &entries));
     }
     let names = |reveal| {
-        let of = of_recordings(&[dir.path().to_owned()], Choice { reveal, ..Choice::default() }).unwrap().checkpoints;
+        let of = of_recordings(&[dir.path().to_owned()], Choice { reveal, ..Choice::default() }, |_, _| true)
+            .unwrap()
+            .checkpoints;
         of.into_iter().map(|c| c.checkpoint).collect::<Vec<_>>()
     };
     assert_eq!((names(false), names(true)), (vec!["blind".to_owned()], vec!["old".into(), "new".into()]));

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use lab::redrive::Need;
 
+use super::library::verdict;
 use super::values::{file, jobs};
 
 /// Arguments of `verify`.
@@ -64,4 +66,8 @@ pub struct StatisticsArgs {
     /// Recordings read at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Count only takeovers on which a campaign came to one of these verdicts, which stands beside the recording; others
+    /// end their drive without a corner case.
+    #[arg(long, value_delimiter = ',', value_parser = verdict(), value_name = "VERDICT,...")]
+    pub verdict: Vec<Need>,
 }

@@ -14,6 +14,7 @@ use render::{Camera, Frame};
 
 use super::studio::Studio;
 use super::{Episode, Facts, hud, manifest};
+use crate::readout::Readout;
 use crate::vision::{Eye, Optics};
 
 /// What all episodes of a fleet share.
@@ -187,7 +188,7 @@ impl Plan {
             image.copy_from_slice(&episode.image(optics, size)?);
         }
         let world = episode.world();
-        row.hud.copy_from_slice(&hud::row(&world.hud()));
+        row.hud.copy_from_slice(&hud::row(&Readout::of(&world.hud())));
         row.figures.copy_from_slice(&figures(world, &facts));
         Ok(())
     }

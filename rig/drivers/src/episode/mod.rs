@@ -16,6 +16,7 @@ use replay::{Annotation, Manifest};
 
 use crate::crew::Bots;
 use crate::indicate;
+use crate::readout::Readout;
 use crate::vision::{Optics, Screen};
 use crate::{MaskView, simulate};
 use base::maps::Map;
@@ -52,7 +53,7 @@ impl Episode {
         looks: bool,
     ) -> anyhow::Result<Self> {
         let world = World::new(scenario, &map.network)?;
-        let (bots, observer) = (Bots::beside(seat), Observer::new(&world));
+        let (bots, observer) = (Bots::beside(seat, scenario.seed), Observer::new(&world));
         let looks = looks || bots.needs_mask() || manifest.is_some();
         let drive = Drive::new(world, manifest)?;
         Ok(Self { seat, drive, bots, screen: Screen::default(), looks, observer, held: Controls::default() })
@@ -99,7 +100,7 @@ impl Episode {
     fn agents_input(&self) -> TickInput {
         match self.seat {
             Seat::Semantic => {
-                let flags = self.held.flags | indicate::turn(&self.world().hud().arrow);
+                let flags = self.held.flags | indicate::turn(&Readout::of(&self.world().hud()));
                 TickInput { semantic: Controls { flags, ..self.held }, ..TickInput::default() }
             }
             Seat::Safety => TickInput { safety: self.held, ..TickInput::default() },
@@ -153,8 +154,8 @@ impl Episode {
 /// What the manifest calls who sits in the seats, the semantic driver first.
 fn seats(agent: Seat) -> [&'static str; 2] {
     match agent {
-        Seat::Semantic => ["agent", "bot"],
-        Seat::Safety => ["bot", "agent"],
+        Seat::Semantic => ["agent", simulate::BOT],
+        Seat::Safety => [simulate::BOT, "agent"],
     }
 }
 

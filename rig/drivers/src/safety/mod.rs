@@ -9,7 +9,7 @@ mod looks;
 
 use kernel::rng::{self, Stream};
 use kernel::time::{TICK_HZ, Tick, seconds};
-use kernel::{Controls, World, ops};
+use kernel::{Controls, Seat, World, ops};
 
 use eyes::Eyes;
 use replay::Label;
@@ -17,6 +17,7 @@ use replay::Label;
 use super::Driver;
 use crate::footprint;
 use crate::single_track;
+use crate::temper::Temper;
 pub use encounter::{CRITICAL_S, Encroachment, Touched, encroachers, label_of, predicted_encroachment};
 pub use eyes::in_sight;
 pub use hazard::{Hazard, Source};
@@ -43,7 +44,8 @@ const STEER_TO_M: usize = 8;
 pub struct SafetyBot {
     /// Number of the person, who has reaction times of their own.
     person: u64,
-    /// From here on the semantic driver is not trusted to act: see [`Hazard::urgency`].
+    temper: Temper,
+    /// From here on an attentive one does not trust the semantic driver to act: see [`Hazard::urgency`].
     urgent: f32,
     eyes: Eyes,
     looks: Looks,
@@ -70,10 +72,16 @@ impl Default for SafetyBot {
 }
 
 impl SafetyBot {
-    /// One of many, of whom [`SafetyBot::default`] is number 0: they differ in their reaction times.
+    /// Who sits there in the run of a seed.
+    pub fn drawn(seed: u64) -> Self {
+        Self::default().with_temper(Temper::drawn(seed, Seat::Safety))
+    }
+
+    /// One of many, of whom [`SafetyBot::default`] is number 0, all attentive: they differ in their reaction times.
     pub fn of_person(person: u64) -> Self {
         Self {
             person,
+            temper: Temper::default(),
             urgent: URGENT,
             eyes: Eyes::default(),
             looks: Looks::default(),
@@ -86,6 +94,11 @@ impl SafetyBot {
     /// The same person with another threshold than [`URGENT`].
     pub fn with_urgent(self, urgent: f32) -> Self {
         Self { urgent, ..self }
+    }
+
+    /// The same person in another temper.
+    pub fn with_temper(self, temper: Temper) -> Self {
+        Self { temper, ..self }
     }
 
     /// Why it took over, once it has.
@@ -115,9 +128,10 @@ impl SafetyBot {
             None => self.feared.push_mut(Feared { source: hazard.source, since: tick, last: tick }),
         };
         feared.last = tick;
-        let is_ready = tick >= feared.since + reaction_ticks(world.scenario().seed, self.person, feared.since);
+        let reaction_ticks = reaction_ticks(world.scenario().seed, self.person, feared.since) as f32;
+        let is_ready = tick >= feared.since + (self.temper.reaction_factor() * reaction_ticks) as Tick;
         let is_worse = self.reason.as_ref().is_none_or(|reason| hazard.urgency > reason.urgency);
-        if is_ready && hazard.urgency >= self.urgent && is_worse {
+        if is_ready && hazard.urgency >= self.temper.vigour() * self.urgent && is_worse {
             self.reason = Some(hazard);
         }
     }

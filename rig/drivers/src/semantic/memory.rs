@@ -1,10 +1,13 @@
 //! What the driver remembers: where the arrow pointed before, and how vehicles moved.
 
+use kernel::map::Turn;
 use kernel::ops;
+use kernel::signals::LightPhase;
 use kernel::time::TICK_S;
 
 use super::arc::{Arc, Point};
-use super::sight::Contact;
+use super::sight::{self, Contact};
+use crate::readout::{self, Readout};
 
 /// Distance between two remembered points of the route, metres.
 const TRAIL_STEP_M: f32 = 0.4;
@@ -17,6 +20,8 @@ const GAP_M: f32 = 1.2;
 const GAP_PER_M: f32 = 0.08;
 /// Looks after which the velocity of a vehicle is believed.
 const BELIEVED_AFTER: u32 = 4;
+/// Who left the picture at its side is believed to go on for this long, seconds.
+const REMEMBERED_S: f32 = 3.0;
 
 /// How long others are let pass after they were last seen to come, seconds.
 const PATIENCE_S: f32 = 1.2;
@@ -84,6 +89,66 @@ impl Trail {
     }
 }
 
+/// A distance that is shown in steps, counted down in between.
+#[derive(Clone, Copy, Debug, Default)]
+struct Countdown {
+    shown_m: u16,
+    left_m: f32,
+}
+
+impl Countdown {
+    /// Metres, by what is shown now and what was driven since: right after a step it is known, before the first one it is
+    /// taken to be as near as it can be.
+    fn read(&mut self, shown_m: u16, moved: Moved) -> f32 {
+        let next_m = shown_m + readout::step_m(shown_m);
+        if shown_m != self.shown_m {
+            self.left_m = f32::from(if next_m == self.shown_m { next_m } else { shown_m });
+        }
+        self.shown_m = shown_m;
+        self.left_m = (self.left_m - moved.forward_m).clamp(f32::from(shown_m), f32::from(next_m));
+        self.left_m
+    }
+}
+
+/// What the HUD says, with distances as the driver takes them to be.
+#[derive(Clone, Copy, Debug)]
+pub struct Dash {
+    /// Speed and limit, m/s.
+    pub speed_mps: f32,
+    pub limit_mps: f32,
+    /// The next light, and metres to its stop line.
+    pub light: Option<LightPhase>,
+    pub light_m: f32,
+    /// The way at the next junction, and metres to it: 0 inside, infinite where none is shown.
+    pub turn: Turn,
+    pub junction_m: f32,
+    /// Bearing of the route, degrees, positive to the right.
+    pub bearing_deg: i16,
+}
+
+/// Reads the HUD.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reading {
+    light: Countdown,
+    junction: Countdown,
+}
+
+impl Reading {
+    /// What the HUD says now, after the car has moved.
+    pub fn read(&mut self, hud: &Readout, moved: Moved) -> Dash {
+        let junction_m = hud.junction_m.map(|shown_m| self.junction.read(shown_m, moved));
+        Dash {
+            speed_mps: hud.speed_mps(),
+            limit_mps: hud.limit_mps(),
+            light: hud.light,
+            light_m: self.light.read(hud.light_m, moved),
+            turn: hud.turn,
+            junction_m: junction_m.unwrap_or(f32::INFINITY),
+            bearing_deg: hud.bearing_deg,
+        }
+    }
+}
+
 /// Somebody who was seen more than once.
 #[derive(Clone, Copy, Debug)]
 pub struct Track {
@@ -92,12 +157,21 @@ pub struct Track {
     /// Velocity over ground, m/s.
     pub velocity_mps: Point,
     looks: u32,
+    /// For so long it has been out of the picture, seconds.
+    unseen_s: f32,
 }
 
 impl Track {
     /// Where it will be if it goes on like this.
     pub fn after(&self, t_s: f32) -> Point {
         (self.at.0 + t_s * self.velocity_mps.0, self.at.1 + t_s * self.velocity_mps.1)
+    }
+
+    /// The same, if it has gone on unseen beside the picture.
+    fn beside(&self, dt_s: f32) -> Option<Self> {
+        let gone_on = Self { at: self.after(dt_s), unseen_s: self.unseen_s + dt_s, ..*self };
+        let is_believed = self.looks >= BELIEVED_AFTER && gone_on.unseen_s < REMEMBERED_S;
+        (is_believed && !sight::is_in_picture(gone_on.at)).then_some(gone_on)
     }
 }
 
@@ -123,19 +197,24 @@ impl Tracks {
         let dt_s = self.since_look_s.max(TICK_S);
         self.since_look_s = 0.0;
         let known = std::mem::take(&mut self.tracks);
+        let mut found = vec![false; known.len()];
         for at in blobs(contacts) {
             let off = |t: &Track| ops::hypot(t.after(dt_s).0 - at.0, t.after(dt_s).1 - at.1);
-            let same = known.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|t| off(t) < 2.0 + 0.1 * at.0);
+            let nearest = known.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+            let same = nearest.filter(|(_, t)| off(t) < 2.0 + 0.1 * at.0);
             self.tracks.push(match same {
-                Some(t) => {
+                Some((index, t)) => {
+                    found[index] = true;
                     let measured = ((at.0 - t.at.0) / dt_s, (at.1 - t.at.1) / dt_s);
                     let mix = |old: f32, new: f32| old + NEW_SHARE * (new.clamp(-20.0, 20.0) - old);
                     let velocity_mps = (mix(t.velocity_mps.0, measured.0), mix(t.velocity_mps.1, measured.1));
-                    Track { at, velocity_mps, looks: t.looks + 1 }
+                    Track { at, velocity_mps, looks: t.looks + 1, unseen_s: 0.0 }
                 }
-                None => Track { at, velocity_mps: (0.0, 0.0), looks: 0 },
+                None => Track { at, velocity_mps: (0.0, 0.0), looks: 0, unseen_s: 0.0 },
             });
         }
+        let missed = known.iter().zip(found).filter(|(_, found)| !found).map(|(track, _)| track);
+        self.tracks.extend(missed.filter_map(|track| track.beside(dt_s)));
     }
 
     /// Those whose movement is known and faster than `least_mps`.
@@ -233,6 +312,22 @@ mod tests {
     }
 
     #[test]
+    fn a_distance_in_steps_is_counted_down() {
+        let (mut countdown, mut distance_m, mut worst_m) = (Countdown::default(), 57.0_f32, 0.0_f32);
+        while distance_m > 0.5 {
+            distance_m -= 0.1;
+            let read_m =
+                countdown.read(readout::shown_m(distance_m as u16), Moved { forward_m: 0.103, turned_rad: 0.0 });
+            // Before the first step it is as near as it can be.
+            let is_known = distance_m < 50.0;
+            worst_m = if is_known { worst_m.max((read_m - distance_m).abs()) } else { worst_m };
+            assert!(is_known || read_m == 50.0, "{read_m} of {distance_m}");
+        }
+        assert!(worst_m < 0.5, "{worst_m}");
+        assert_eq!(countdown.read(80, STILL), 80.0, "the next one");
+    }
+
+    #[test]
     fn patience_ends() {
         let mut patience = Patience::default();
         let forward = Moved { forward_m: 0.1, turned_rad: 0.0 };
@@ -266,6 +361,28 @@ mod tests {
             let known_m = drive(&mut room, Some(seen_m)).expect("it is seen");
             assert!((known_m - (seen_m - 0.6)).abs() < 1e-3, "{known_m} of {seen_m}");
         }
+    }
+
+    #[test]
+    fn who_leaves_the_picture_at_its_side_is_expected_to_go_on_and_who_vanishes_in_it_is_not() {
+        let seen_for_s = |y_m: fn(f32) -> f32| {
+            let mut tracks = Tracks::default();
+            let mut look = |contacts: &[Contact]| {
+                tracks.look(contacts);
+                (0..6).for_each(|_| tracks.carry(STILL));
+                tracks.moving(1.5).map(|track| track.at).next()
+            };
+            for tenths in 0..15 {
+                look(&[Contact { x_m: 12.0, y_m: y_m(0.1 * tenths as f32), is_person: false, on_road: true }]);
+            }
+            let unseen: Vec<Point> = (0..60).map_while(|_| look(&[])).collect();
+            (unseen.len(), unseen.last().copied())
+        };
+        // To the left at 5 m/s, out of the picture at once.
+        let (looks, last) = seen_for_s(|t_s| 2.4 + 5.0 * t_s);
+        assert!((28..=30).contains(&looks), "{looks}");
+        assert!(last.is_some_and(|(x_m, y_m)| (x_m - 12.0).abs() < 0.5 && (y_m - 24.0).abs() < 1.5), "{last:?}");
+        assert_eq!(seen_for_s(|t_s| -4.0 + 5.0 * t_s).0, 0, "in the middle of the picture");
     }
 
     #[test]

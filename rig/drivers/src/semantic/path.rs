@@ -1,17 +1,16 @@
 //! Where to steer: the arc that follows the arrow, keeps the lane and stays on the asphalt.
 
-use kernel::events::{Hud, RouteArrow};
 use kernel::{ego, ops};
 
 use super::arc::{Arc, Point, SHARPEST};
-use super::memory::Trail;
+use super::memory::{Dash, Trail};
 use super::sight::{Ground, Sight};
 
 /// Distance along the route of the point that the arrow of the HUD shows, metres from the middle of
 /// the car.
 pub const ARROW_M: f32 = 12.0;
 /// Distance to a junction within which lines and edges stop to lead, metres.
-const JUNCTION_M: u16 = 8;
+const JUNCTION_M: f32 = 8.0;
 /// Distance of the point on the trail that is steered to: least, and by speed (Coulter 1992), metres
 /// and seconds.
 const LOOK_M: f32 = 7.5;
@@ -68,19 +67,19 @@ impl Arc {
 }
 
 /// The place that the arrow points to, in the car's frame: so far along an arc that starts straight ahead.
-pub fn arrow_point(arrow: &RouteArrow) -> Point {
-    let bearing_rad = -f32::from(arrow.bearing_deg).to_radians();
+pub fn arrow_point(bearing_deg: i16) -> Point {
+    let bearing_rad = -f32::from(bearing_deg).to_radians();
     let chord = if bearing_rad == 0.0 { 1.0 } else { ops::sin(bearing_rad) / bearing_rad };
     let distance_m = ARROW_M * chord.max(0.5);
     (MIDDLE_M + distance_m * ops::cos(bearing_rad), distance_m * ops::sin(bearing_rad))
 }
 
 /// The arc to steer: along the remembered arrows, outside of junctions moved to the middle of the lane.
-pub fn choose(sight: &Sight<'_>, hud: &Hud, trail: &Trail) -> Arc {
-    let look_m = LOOK_M.max(LOOK_S * hud.speed_mps).min(ARROW_M);
-    let (x_m, y_m) = trail.point_at(look_m).unwrap_or_else(|| arrow_point(&hud.arrow));
+pub fn choose(sight: &Sight<'_>, dash: &Dash, trail: &Trail) -> Arc {
+    let look_m = LOOK_M.max(LOOK_S * dash.speed_mps).min(ARROW_M);
+    let (x_m, y_m) = trail.point_at(look_m).unwrap_or_else(|| arrow_point(dash.bearing_deg));
     let followed = Arc::to(x_m, y_m);
-    if hud.arrow.distance_m < JUNCTION_M || hud.arrow.bearing_deg.abs() > TURNING_DEG {
+    if dash.junction_m < JUNCTION_M || dash.bearing_deg.abs() > TURNING_DEG {
         return nearest_on_road(sight, followed, look_m);
     }
     let shifted = lane_shift_m(sight, followed).map(|shift_m| followed.beside(MIDDLE_M + ARROW_M, shift_m));

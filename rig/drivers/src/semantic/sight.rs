@@ -17,6 +17,12 @@ const LEAST_ROWS: usize = 2;
 /// Farthest contact with the ground that is told apart from the horizon, metres.
 const FARTHEST_M: f32 = 55.0;
 
+/// Whether a point of the car's frame lies within the picture's sides.
+pub fn is_in_picture((x_m, y_m): (f32, f32)) -> bool {
+    let camera = Camera::driver(2, 1);
+    y_m.abs() < (x_m - camera.position.x) * kernel::ops::tan(0.5 * camera.fov_x_rad)
+}
+
 /// What a piece of ground shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {

@@ -1,24 +1,23 @@
 //! How fast to go: the limit, bends, junctions, lights, and whatever stands in the way.
 
 use kernel::ego::{self, FRONT_M};
-use kernel::events::Hud;
 use kernel::map::Turn;
 use kernel::ops;
 use kernel::signals::LightPhase;
 
 use super::arc::Arc;
-use super::memory::{Track, Tracks};
+use super::memory::{Dash, Track, Tracks};
 use super::sight::{Contact, Sight};
 
 /// Half of the car's width, metres.
 const HALF_WIDTH_M: f32 = 0.5 * ego::SIZE_M.y;
-/// Deceleration that is planned with, m/s^2.
-pub const COMFORT_MPS2: f32 = 2.0;
+/// Deceleration that an attentive driver plans with, m/s^2.
+const COMFORT_MPS2: f32 = 2.0;
 /// Time in which a wrong speed is made right, seconds.
 pub const SPEED_TIME_S: f32 = 0.7;
 /// Deceleration that a yellow light is worth, m/s^2.
 const YELLOW_MPS2: f32 = 3.5;
-/// Lateral acceleration in bends, m/s^2.
+/// Lateral acceleration of an attentive driver in bends, m/s^2.
 const LATERAL_MPS2: f32 = 2.2;
 /// Gap kept to what stands in the way, metres.
 const STANDOFF_M: f32 = 4.0;
@@ -28,10 +27,12 @@ const BEFORE_LINE_M: f32 = 1.5;
 const TURN_MPS: f32 = 5.5;
 /// Speed across junctions without lights, m/s.
 const CROSSING_MPS: f32 = 5.5;
+/// Distance to one from which it is slowed down for, metres.
+const CROSSING_FROM_M: f32 = 30.0;
 /// Speed at which the end of the visible road is approached, m/s.
 const FEELING_MPS: f32 = 4.5;
 /// Distance to a junction within which others are given way, metres.
-const GIVE_WAY_M: u16 = 14;
+const GIVE_WAY_M: f32 = 14.0;
 /// Quarters of a second that are looked ahead there.
 const GIVE_WAY_STEPS: u32 = 16;
 /// Distance at which two vehicles meet, metres.
@@ -43,8 +44,11 @@ const RIGHT_BEND: f32 = 0.14;
 const REACH_M: f32 = 45.0;
 /// How far ahead along the arc somebody counts as in the way, metres: what 2 m/s^2 need from 50 km/h.
 const IN_THE_WAY_M: f32 = 50.0;
-/// Side clearance to vehicles, to people beside the road, and to people on it, metres.
-const BESIDE_VEHICLE_M: f32 = 0.5;
+/// Side clearance to vehicles, as long as the car stands and more the faster it is, to people beside the road, and to
+/// people on it, metres.
+const BESIDE_VEHICLE_M: [f32; 2] = [0.2, 0.5];
+/// Speed from which the greater one is kept, m/s.
+const BESIDE_AT_MPS: f32 = 5.0;
 const BESIDE_WALKER_M: f32 = 0.6;
 const BESIDE_CROSSING_M: f32 = 3.6;
 
@@ -57,15 +61,13 @@ const MOMENT_S: f32 = 0.7;
 const CREEPING_MPS: f32 = 2.0;
 
 /// The speed from which the car can slow to `end_mps` within `distance_m`.
-fn braking_from(end_mps: f32, distance_m: f32) -> f32 {
-    (end_mps * end_mps + 2.0 * COMFORT_MPS2 * distance_m.max(0.0)).sqrt()
+fn braking_from(end_mps: f32, distance_m: f32, comfort_mps2: f32) -> f32 {
+    (end_mps * end_mps + 2.0 * comfort_mps2 * distance_m.max(0.0)).sqrt()
 }
 
-/// The speed from which the car comes to a stand within `distance_m` by comfortable braking that sets in after the time
-/// in which a wrong speed is made right (the safe speed of Gipps 1981 behind one who stands).
-pub fn safe_mps(distance_m: f32) -> f32 {
-    let lag_mps = COMFORT_MPS2 * SPEED_TIME_S;
-    braking_from(lag_mps, distance_m) - lag_mps
+/// The braking that brings the car to a stand within `distance_m`, m/s^2.
+pub fn needed_mps2(speed_mps: f32, distance_m: f32) -> f32 {
+    speed_mps * speed_mps / (2.0 * distance_m.max(0.3))
 }
 
 /// What the driver wants of the pedals.
@@ -75,6 +77,18 @@ pub struct Wish {
     pub speed_mps: f32,
     /// Distance to a point where the car has to stand, metres from its front.
     pub stop_in_m: Option<f32>,
+    /// Deceleration that is planned with, m/s^2.
+    pub comfort_mps2: f32,
+}
+
+impl Wish {
+    /// The speed from which the car comes to a stand where it has to by comfortable braking that sets in after the time
+    /// in which a wrong speed is made right (the safe speed of Gipps 1981 behind one who stands), m/s.
+    pub fn safe_mps(&self) -> f32 {
+        let lag_mps = self.comfort_mps2 * SPEED_TIME_S;
+        let safe_mps = |stop_m| braking_from(lag_mps, stop_m, self.comfort_mps2) - lag_mps;
+        self.stop_in_m.map_or(f32::INFINITY, safe_mps)
+    }
 }
 
 /// Others on the road, and where to wait for them.
@@ -88,21 +102,24 @@ pub struct Scene {
     pub has_lights: bool,
 }
 
-/// The speed for an arc.
-pub fn wish(sight: &Sight<'_>, arc: Arc, hud: &Hud, scene: Scene) -> Wish {
-    let stops = [scene.obstacle_m, stop_line_m(hud), scene.give_way_m];
+/// The speed for an arc, of a driver who brakes and turns so many times as hard as an attentive one.
+pub fn wish(sight: &Sight<'_>, arc: Arc, dash: &Dash, scene: Scene, vigour: f32) -> Wish {
+    let comfort_mps2 = vigour * COMFORT_MPS2;
+    let stops = [scene.obstacle_m, stop_line_m(dash), scene.give_way_m];
     let stop_in_m = stops.into_iter().flatten().reduce(f32::min);
-    let bend_mps = (LATERAL_MPS2 / arc.curvature.abs().max(1e-3)).sqrt();
-    let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M);
-    let speed_mps = hud.limit_mps.min(bend_mps).min(road_mps).min(junction_mps(hud, scene.has_lights));
-    Wish { speed_mps, stop_in_m }
+    let bend_mps = (vigour * LATERAL_MPS2 / arc.curvature.abs().max(1e-3)).sqrt();
+    let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M, comfort_mps2);
+    let (there_mps, junction_m) = junction_mps(dash, scene.has_lights);
+    let junction_mps = braking_from(there_mps, junction_m - 2.0, comfort_mps2);
+    let speed_mps = dash.limit_mps.min(bend_mps).min(road_mps).min(junction_mps);
+    Wish { speed_mps, stop_in_m, comfort_mps2 }
 }
 
 /// Metres from the front of the car to where it must stand because of people and vehicles.
-pub fn obstacle_m(contacts: &[Contact], arc: Arc) -> Option<f32> {
+pub fn obstacle_m(contacts: &[Contact], arc: Arc, speed_mps: f32) -> Option<f32> {
     let distances = contacts.iter().filter_map(|contact| {
         let (s_m, left_m) = arc.project(contact.x_m, contact.y_m);
-        let in_the_way = s_m < IN_THE_WAY_M && left_m.abs() < HALF_WIDTH_M + clearance_m(contact);
+        let in_the_way = s_m < IN_THE_WAY_M && left_m.abs() < HALF_WIDTH_M + clearance_m(contact, speed_mps);
         in_the_way.then_some(s_m - FRONT_M - STANDOFF_M)
     });
     distances.reduce(f32::min)
@@ -126,9 +143,12 @@ pub fn crossing_m(tracks: &Tracks, arc: Arc, speed_mps: f32) -> Option<f32> {
     tracks.moving(WALKING_MPS).filter_map(meets).reduce(f32::min)
 }
 
-fn clearance_m(contact: &Contact) -> f32 {
+fn clearance_m(contact: &Contact, speed_mps: f32) -> f32 {
     match (contact.is_person, contact.on_road) {
-        (false, _) => BESIDE_VEHICLE_M,
+        (false, _) => {
+            let [standing_m, driving_m] = BESIDE_VEHICLE_M;
+            standing_m + (driving_m - standing_m) * (speed_mps / BESIDE_AT_MPS).clamp(0.0, 1.0)
+        }
         (true, false) => BESIDE_WALKER_M,
         (true, true) => BESIDE_CROSSING_M,
     }
@@ -136,15 +156,15 @@ fn clearance_m(contact: &Contact) -> f32 {
 
 /// Metres from the front of the car to where it lets others pass at a junction without lights: where
 /// the car would meet a moving vehicle within the next seconds if both went on.
-pub fn give_way_m(arc: Arc, hud: &Hud, tracks: &Tracks) -> Option<f32> {
-    if hud.arrow.distance_m > GIVE_WAY_M {
+pub fn give_way_m(arc: Arc, dash: &Dash, tracks: &Tracks) -> Option<f32> {
+    if dash.junction_m > GIVE_WAY_M {
         return None;
     }
-    let own_mps = hud.speed_mps.max(3.5);
+    let own_mps = dash.speed_mps.max(3.5);
     let meets = |track: &Track| {
         (1..=GIVE_WAY_STEPS).find_map(|step| {
             let t_s = 0.25 * step as f32;
-            let (x, y) = expected_way(arc, hud, FRONT_M + own_mps * t_s);
+            let (x, y) = expected_way(arc, dash, FRONT_M + own_mps * t_s);
             let near = |t_s: f32| ops::hypot(track.after(t_s).0 - x, track.after(t_s).1 - y) < MEET_M;
             [t_s - 0.75, t_s, t_s + 0.75].into_iter().any(near).then_some(own_mps * t_s)
         })
@@ -152,14 +172,14 @@ pub fn give_way_m(arc: Arc, hud: &Hud, tracks: &Tracks) -> Option<f32> {
     let same_way = |track: &&Track| track.velocity_mps.0 > 2.0 * track.velocity_mps.1.abs();
     let meeting_m = tracks.moving(1.5).filter(|t| !same_way(t)).filter_map(meets).reduce(f32::min)?;
     // Before the junction it waits at its border, inside right before the other's way.
-    let border_m = f32::from(hud.arrow.distance_m) - 1.0;
+    let border_m = dash.junction_m - 1.0;
     Some(if border_m > 0.0 { border_m } else { meeting_m - MEET_M })
 }
 
 /// Where the rear axle will be after `s_m` metres: straight up to the junction, then round its bend.
-fn expected_way(arc: Arc, hud: &Hud, s_m: f32) -> (f32, f32) {
-    let straight_m = f32::from(hud.arrow.distance_m);
-    let bend = match hud.arrow.turn {
+fn expected_way(arc: Arc, dash: &Dash, s_m: f32) -> (f32, f32) {
+    let straight_m = dash.junction_m;
+    let bend = match dash.turn {
         Turn::Straight => arc.curvature,
         Turn::Left => LEFT_BEND.max(arc.curvature),
         Turn::Right => -RIGHT_BEND.max(-arc.curvature),
@@ -169,24 +189,23 @@ fn expected_way(arc: Arc, hud: &Hud, s_m: f32) -> (f32, f32) {
 }
 
 /// Metres from the front of the car to a stop line that has to be respected.
-fn stop_line_m(hud: &Hud) -> Option<f32> {
-    let to_line_m = f32::from(hud.light_distance_m) - BEFORE_LINE_M;
-    let needed_mps2 = hud.speed_mps * hud.speed_mps / (2.0 * to_line_m.max(0.1));
-    match hud.light? {
+fn stop_line_m(dash: &Dash) -> Option<f32> {
+    let to_line_m = dash.light_m - BEFORE_LINE_M;
+    match dash.light? {
         LightPhase::Green => None,
         LightPhase::Red => Some(to_line_m),
-        LightPhase::Yellow => (needed_mps2 < YELLOW_MPS2).then_some(to_line_m),
+        LightPhase::Yellow => (needed_mps2(dash.speed_mps, to_line_m) < YELLOW_MPS2).then_some(to_line_m),
     }
 }
 
-/// Speed allowed by the junction ahead.
-fn junction_mps(hud: &Hud, has_lights: bool) -> f32 {
-    let there_mps = match hud.arrow.turn {
+/// Speed allowed by the junction ahead, and the distance to it.
+fn junction_mps(dash: &Dash, has_lights: bool) -> (f32, f32) {
+    let there_mps = match dash.turn {
         Turn::Left | Turn::Right => TURN_MPS,
-        Turn::Straight if !has_lights && hud.arrow.distance_m < 30 => CROSSING_MPS,
-        Turn::Straight => return f32::INFINITY,
+        Turn::Straight if !has_lights && dash.junction_m < CROSSING_FROM_M => CROSSING_MPS,
+        Turn::Straight => f32::INFINITY,
     };
-    braking_from(there_mps, f32::from(hud.arrow.distance_m) - 2.0)
+    (there_mps, dash.junction_m)
 }
 
 #[cfg(test)]
@@ -204,6 +223,14 @@ mod tests {
             (0..6).for_each(|_| tracks.carry(Moved { forward_m: 0.0, turned_rad: 0.0 }));
         }
         tracks
+    }
+
+    #[test]
+    fn a_car_creeps_by_a_parked_one_that_is_too_near_for_driving_by() {
+        let beside = |room_m: f32| Contact { x_m: 6.0, y_m: -HALF_WIDTH_M - room_m, is_person: false, on_road: true };
+        let stops = |room_m, speed_mps| obstacle_m(&[beside(room_m)], Arc { curvature: 0.0 }, speed_mps).is_some();
+        assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 0.0)), [true, false, false, false]);
+        assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 12.0)), [true, true, true, false]);
     }
 
     #[test]

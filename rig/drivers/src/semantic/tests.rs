@@ -1,14 +1,15 @@
 //! Closed loops on painted roads: no renderer, no world.
 
 use kernel::ego;
-use kernel::events::{Hud, RouteArrow};
 use kernel::map::Turn;
 use kernel::signals::LightPhase;
 use kernel::{Controls, ops};
 use render::{Camera, SemanticTag};
 
+use super::pedals::{FULL_BRAKE_MPS2, FULL_THROTTLE_MPS2};
 use super::*;
 use crate::MaskView;
+use crate::readout::Readout;
 
 const WIDTH: usize = 256;
 const HEIGHT: usize = 128;
@@ -57,7 +58,7 @@ impl Road {
     }
 
     /// The arrow of the HUD: bearing of the lane 12 m ahead in steps of 5 degrees.
-    fn arrow(&self, pose: Pose) -> RouteArrow {
+    fn bearing_deg(&self, pose: Pose) -> i16 {
         let middle = pose.place(ego::CENTRE_M.x, 0.0);
         let travelled = if self.curvature == 0.0 {
             middle.0
@@ -66,7 +67,7 @@ impl Road {
         };
         let (x, y, _) = Arc { curvature: self.curvature }.at(travelled + path::ARROW_M);
         let bearing = ops::wrap_angle(ops::atan2(y - middle.1, x - middle.0) - pose.heading).to_degrees();
-        RouteArrow { turn: Turn::Straight, distance_m: 100, bearing_deg: -(5.0 * (bearing / 5.0).round()) as i16 }
+        -(5.0 * (bearing / 5.0).round()) as i16
     }
 }
 
@@ -83,16 +84,17 @@ impl Pose {
     }
 }
 
-fn hud(speed_mps: f32, arrow: RouteArrow) -> Hud {
-    Hud { speed_mps, limit_mps: 50.0 / 3.6, light: None, light_distance_m: 0, arrow }
+fn hud(speed_mps: f32, bearing_deg: i16) -> Readout {
+    let speed_kmh = (3.6 * speed_mps).round() as u16;
+    let (light, light_m) = (None, 0);
+    Readout { speed_kmh, limit_kmh: 50, light, light_m, turn: Turn::Straight, junction_m: Some(100), bearing_deg }
 }
 
-fn straight_on() -> RouteArrow {
-    RouteArrow { turn: Turn::Straight, distance_m: 100, bearing_deg: 0 }
-}
-
-fn controls(ids: &[u8], hud: Hud) -> Controls {
-    SemanticBot::default().controls(&SemanticView { mask: MaskView { width: WIDTH, height: HEIGHT, ids }, hud })
+/// What an attentive driver does after a second in front of an unchanged screen.
+fn controls(ids: &[u8], hud: Readout) -> Controls {
+    let view = SemanticView { mask: MaskView { width: WIDTH, height: HEIGHT, ids }, hud };
+    let mut bot = SemanticBot::default();
+    (0..60).map(|_| bot.controls(&view)).last().expect("60 ticks")
 }
 
 /// Largest offset from the lane's middle in the last 10 of 15 s.
@@ -106,7 +108,7 @@ fn worst_offset_m(road: &Road, start_left_m: f32, speed_mps: f32) -> f32 {
             ids = road.mask(pose);
         }
         let mask = MaskView { width: WIDTH, height: HEIGHT, ids: &ids };
-        let controls = bot.controls(&SemanticView { mask, hud: hud(speed_mps, road.arrow(pose)) });
+        let controls = bot.controls(&SemanticView { mask, hud: hud(speed_mps, road.bearing_deg(pose)) });
         pose.drive(controls, speed_mps);
         if tick >= 300 {
             worst = worst.max(road.offset_m(pose.x, pose.y).abs());
@@ -126,9 +128,9 @@ fn it_keeps_its_lane_on_straights_and_bends() {
 #[test]
 fn it_drives_on_a_free_road_and_stops_at_red() {
     let ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
-    let free = controls(&ids, hud(8.0, straight_on()));
+    let free = controls(&ids, hud(8.0, 0));
     assert!(free.throttle > 0 && free.brake == 0, "{free:?}");
-    let red = Hud { light: Some(LightPhase::Red), light_distance_m: 12, ..hud(8.0, straight_on()) };
+    let red = Readout { light: Some(LightPhase::Red), light_m: 10, ..hud(8.0, 0) };
     let red = controls(&ids, red);
     assert!(red.brake > 10_000 && red.throttle == 0, "{red:?}");
 }
@@ -142,7 +144,7 @@ fn it_brakes_for_a_person_but_not_for_specks() {
         for row in rows {
             ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(SemanticTag::Pedestrian as u8);
         }
-        controls(&ids, hud(8.0, straight_on()))
+        controls(&ids, hud(8.0, 0))
     };
     // 12.8 m in front of the camera a person is 17 pixels high and 5 wide.
     assert!(with_person(126..131, 62..79).brake > 0);
@@ -181,7 +183,7 @@ fn it_draws_up_to_a_queue_without_being_about_to_hit_it() {
                 ids = if shown.len() > 1 { shown.pop_front().expect("two") } else { shown[0].clone() };
             }
             let mask = MaskView { width: WIDTH, height: HEIGHT, ids: &ids };
-            let controls = bot.controls(&SemanticView { mask, hud: hud(speed_mps, straight_on()) });
+            let controls = bot.controls(&SemanticView { mask, hud: hud(speed_mps, 0) });
             let asked = FULL_THROTTLE_MPS2 * f32::from(controls.throttle) / f32::from(u16::MAX)
                 - FULL_BRAKE_MPS2 * f32::from(controls.brake) / f32::from(u16::MAX);
             // Pedals and suspension take a moment.
@@ -198,6 +200,21 @@ fn it_draws_up_to_a_queue_without_being_about_to_hit_it() {
         // Rows of the picture are metres apart at first sight, so it brakes harder than is comfortable, but not fully.
         assert!(hardest > -0.6 * FULL_BRAKE_MPS2, "{start_mps}: {hardest} m/s^2");
     }
+}
+
+/// Before it stands, the room of what was in the way seems to be there still; a picture in which nothing moves frees it.
+#[test]
+fn it_drives_on_when_what_it_waited_for_is_gone_though_nothing_moves_any_more() {
+    let road = Road { curvature: 0.0 };
+    let free = road.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    let blocked = queue_ahead(2.0, 0.0);
+    let mut bot = SemanticBot::default();
+    let mut throttle = |ids: &[u8], ticks: usize| {
+        let view = SemanticView { mask: MaskView { width: WIDTH, height: HEIGHT, ids }, hud: hud(0.0, 0) };
+        (0..ticks).map(|_| bot.controls(&view).throttle).max().expect("ticks")
+    };
+    assert_eq!(throttle(&blocked, 300), 0, "it stands before a car");
+    assert!(throttle(&free, 120) > 0, "one picture of the free road, shown for 2 s");
 }
 
 #[test]
@@ -222,7 +239,7 @@ fn a_bend_ahead_is_no_farther_than_it_is_along_the_route() {
         let road = Road { curvature };
         let pose = Pose { x: 0.0, y: 0.0, heading: 0.0 };
         let middle = pose.place(ego::CENTRE_M.x, 0.0);
-        let (x, y) = path::arrow_point(&road.arrow(pose));
+        let (x, y) = path::arrow_point(road.bearing_deg(pose));
         let along = Arc { curvature }.project(x, y).0 - Arc { curvature }.project(middle.0, middle.1).0;
         // Half a step of the arrow is 0.52 m at this distance.
         assert!((along - path::ARROW_M).abs() < 0.53, "curvature {curvature}: {along} m");

@@ -39,5 +39,6 @@ mod tests {
     fn a_counterfactual_is_found_by_its_case() {
         let places = Places::new(Path::new("runs"), "early", 7);
         assert_eq!(Counterfactual::place(&places.case), places.counterfactual);
+        assert_eq!(Counterfactual::place(&places.recording), places.counterfactual);
     }
 }

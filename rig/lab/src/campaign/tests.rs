@@ -48,7 +48,8 @@ fn a_campaign_that_gets_nowhere_is_given_up_and_a_slow_one_is_not() {
 
 #[test]
 fn figures_know_what_ended_the_campaign() {
-    let rides = |km: f64| Ride { km, minutes: km, is_case: true, label: None, perception_caused: None };
+    let rides =
+        |km: f64| Ride { km, minutes: km, is_case: true, label: None, perception_caused: None, tempers: [None; 2] };
     let mut lines = runs([(2.0, true), (3.0, true)]);
     lines.iter_mut().for_each(|line| line.ride = Some(rides(line.figures.km)));
     let of = |until| figures(1, until, &["full".to_owned()], lines.clone());

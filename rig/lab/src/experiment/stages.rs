@@ -83,7 +83,7 @@ impl Stages<'_> {
         let folder = self.out.join(SECOND_CAMPAIGN);
         let recordings: Vec<PathBuf> = second_campaign.runs.iter().map(|run| folder.join(&run.file)).collect();
         let choice = statistics::Choice { sampling: second_campaign.until.sampling(), ..Default::default() };
-        let of_all = statistics::of_recordings(&recordings, choice)?;
+        let of_all = statistics::of_recordings(&recordings, choice, |_, _| true)?;
         Failed::check(&of_all.failed, recordings.len())?;
         let table_2 = of_all.checkpoints;
         begin(8, "writing tables and report");

@@ -106,10 +106,11 @@ impl Counterfactual {
         known.filter(|known| known.key == Key::of(recording))
     }
 
-    /// Where that of a run lies, by its corner case.
-    pub fn place(case: &Path) -> PathBuf {
-        let name = case.file_name().unwrap_or_default().to_string_lossy();
-        case.with_file_name(format!("{}.counterfactual.json", name.strip_suffix(".case.mcap").unwrap_or(&name)))
+    /// Where that of a run lies, by its corner case or its recording.
+    pub fn place(file: &Path) -> PathBuf {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let run = name.strip_suffix(".mcap").unwrap_or(&name);
+        file.with_file_name(format!("{}.counterfactual.json", run.strip_suffix(".case").unwrap_or(run)))
     }
 
     /// The one beside a corner case; what is not about its recording, or cannot be read, says nothing about it.

@@ -6,16 +6,18 @@ use anyhow::{Context, bail};
 use base::words;
 use drivers::crew::Crew;
 use drivers::safety::SafetyBot;
+use drivers::semantic::SemanticBot;
 use drivers::simulate::{fork_before_ticks, lasting};
+use drivers::temper::Temper;
 use drivers::vision::{self, Vision};
 use kernel::arbiter::Phase;
 use kernel::events::{Event, EventKind};
 use kernel::scene::Weather;
 use kernel::time::{CLIP_TICKS, TICK_HZ, Tick};
-use kernel::{Controls, Keyframe, RoadNetwork, TickInput, World};
+use kernel::{Controls, Keyframe, RoadNetwork, Seat, TickInput, World};
 use measures::Criticality;
 use measures::criticality::Extremes;
-use replay::{Case, Label, Log, PROGRAM, Recorder, Recording, Replayer, WRITTEN_BY};
+use replay::{Case, Label, Log, PROGRAM, Provenance, Recorder, Recording, Replayer, WRITTEN_BY};
 use serde::{Deserialize, Serialize};
 
 use super::near_miss::{EARLY_TICKS, is_near_miss};
@@ -135,7 +137,9 @@ impl Fork {
         let mut recorder = Recorder::new(Vec::new(), &manifest, &world.initial_keyframe())?;
         // What an earlier drive left on the screen is none of this one's.
         let eye = vision.eye().clone();
-        let mut crew = Crew::with(vision.with_eye(eye), self.safety_driver());
+        let semantic =
+            SemanticBot::of_temper(Temper::told(&log.manifest.provenance, Seat::Semantic).unwrap_or_default());
+        let mut crew = Crew::of(vision.with_eye(eye), semantic, self.safety_driver(&log.manifest.provenance));
         let (mut harm, mut collision) = (None, None);
         while world.tick() < end && world.arbiter().phase != Phase::Done {
             // The bots look on before the fork, too: their memory is then that of the drive.
@@ -184,10 +188,12 @@ impl Fork {
         })
     }
 
-    fn safety_driver(&self) -> SafetyBot {
+    /// Somebody else than in the recorded run, or the same, but in the temper of then.
+    fn safety_driver(&self, told: &Provenance) -> SafetyBot {
+        let temper = Temper::told(told, Seat::Safety).unwrap_or_default();
         match self.otherwise {
-            Otherwise::NoIntervention { .. } => SafetyBot::default(),
-            Otherwise::OtherEye { person } => SafetyBot::of_person(person),
+            Otherwise::NoIntervention { .. } => SafetyBot::default().with_temper(temper),
+            Otherwise::OtherEye { person } => SafetyBot::of_person(person).with_temper(temper),
         }
     }
 

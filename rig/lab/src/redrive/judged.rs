@@ -16,8 +16,7 @@ pub fn keep_judged<T>(cases: Vec<T>, path: impl Fn(&T) -> &Path, verdicts: &[Nee
     let mut kept = Vec::new();
     for case in cases {
         let path = path(&case);
-        let counterfactual = Counterfactual::beside(path, &CaseHeader::open(path)?.info.source);
-        if counterfactual.is_some_and(|found| verdicts.contains(&found.verdict)) {
+        if is_judged(path, CaseHeader::open(path)?.info.source, verdicts) {
             kept.push(case);
         }
     }
@@ -26,4 +25,9 @@ pub fn keep_judged<T>(cases: Vec<T>, path: impl Fn(&T) -> &Path, verdicts: &[Nee
         bail!("on none of the corner cases the verdict is {}", names.join(" or "));
     }
     Ok(kept)
+}
+
+/// Whether a campaign came to one of these verdicts on the takeover of a recording, by the case or the recording itself.
+pub fn is_judged(path: &Path, recording: [u8; 32], verdicts: &[Need]) -> bool {
+    Counterfactual::beside(path, &recording).is_some_and(|found| verdicts.contains(&found.verdict))
 }

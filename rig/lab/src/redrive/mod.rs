@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::counterfactual::Counterfactual;
 use self::fork::{Course, Fork, Harm, Otherwise, from_takeover, takeover};
-pub use self::judged::keep_judged;
+pub use self::judged::{is_judged, keep_judged};
 pub use self::near_miss::{EARLY_TICKS, is_near_miss};
 pub use self::verdict::Need;
 use super::store::Store;

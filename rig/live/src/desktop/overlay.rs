@@ -30,8 +30,9 @@ pub fn paint(painter: &Painter, rect: Rect, hud: &HudText) {
     }
     paint_limit(painter, at(hud::LIMIT_AT), hud, rect.height());
     paint_arrow(painter, at(hud::ARROW_AT), hud, rect.height());
-    if let Some(phase) = hud.light {
-        paint_light(painter, at(hud::LIGHT_AT), phase, rect.height());
+    if let Some((phase, distance)) = &hud.light {
+        paint_light(painter, at(hud::LIGHT_AT), *phase, rect.height());
+        write(hud::LIGHT_M_AT, Align2::CENTER_CENTER, distance, hud::TEXT_SIZE);
     }
 }
 

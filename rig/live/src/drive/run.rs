@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use drivers::crew;
+use drivers::readout::Readout;
 use drivers::safety::SafetyBot;
 use drivers::semantic::SemanticBot;
 use drivers::session::{Session, SessionState};
@@ -24,17 +25,17 @@ pub struct Bots {
 }
 
 impl Bots {
-    /// For the seats that are to be driven by bots, semantic driver's first.
-    pub fn new(choices: &[SeatChoice; 2]) -> Self {
+    /// For the seats that are to be driven by bots, semantic driver's first, in the run of a seed.
+    pub fn new(choices: &[SeatChoice; 2], seed: u64) -> Self {
         let [semantic, safety] = choices.each_ref().map(|choice| *choice == SeatChoice::Bot);
-        Self { semantic: semantic.then(SemanticBot::default), safety: safety.then(SafetyBot::default) }
+        Self { semantic: semantic.then(|| SemanticBot::drawn(seed)), safety: safety.then(|| SafetyBot::drawn(seed)) }
     }
 
     /// Replaces the controls of their seats. The semantic bot looks at the mask on the screen; without
     /// one it does nothing. While the other seat's unit is not armed, what brakes the car stays.
     fn act(&mut self, world: &World, screen: Option<&Screen>, ready: bool, input: &mut TickInput) {
         if let (Some(bot), true) = (&mut self.semantic, ready) {
-            let view = screen.and_then(Screen::mask).map(|mask| SemanticView { mask, hud: world.hud() });
+            let view = screen.and_then(Screen::mask).map(|mask| SemanticView { mask, hud: Readout::of(&world.hud()) });
             input.semantic = view.map_or_else(Controls::default, |view| bot.controls(&view));
         }
         if let Some(bot) = &mut self.safety {
@@ -159,7 +160,7 @@ mod tests {
         let image = Arc::new(Image { width: 128, height: 64, rgb: Vec::new() });
         let view = View { run: 1, tick: 0, image, mask, captured_us: 0, ready_us: 0 };
         let screen = Screen { view: Arc::new(view), presented_us: 0 };
-        let mut bots = Bots::new(&[SeatChoice::Bot, SeatChoice::Keyboard]);
+        let mut bots = Bots::new(&[SeatChoice::Bot, SeatChoice::Keyboard], 1);
         let braked = TickInput { semantic: Controls::from_fractions(0.0, 0.0, 0.6), safety: Controls::default() };
         let mut act = |ready| {
             let mut input = braked;

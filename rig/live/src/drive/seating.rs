@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use base::words::{self, SEATS};
+use drivers::temper::Temper;
 use kernel::Seat;
 use kernel::scenario::Rules;
 use replay::Provenance;
@@ -86,9 +87,15 @@ impl Seating {
         self.setup.clone()
     }
 
-    /// Bots for the seats that no one sits in.
-    pub fn bots(&self) -> Bots {
-        Bots::new(&self.choices)
+    /// Bots for the seats that no one sits in, in the run of a seed.
+    pub fn bots(&self, seed: u64) -> Bots {
+        Bots::new(&self.choices, seed)
+    }
+
+    /// What a recording of the run of a seed says about the bots.
+    pub fn tempers(&self, seed: u64) -> Provenance {
+        let bots = [Seat::Semantic, Seat::Safety].into_iter().zip(&self.choices);
+        Temper::entries(bots.filter(|(_, choice)| **choice == SeatChoice::Bot).map(|(seat, _)| seat), seed)
     }
 
     /// Both units in words, once they have been polled.

@@ -33,7 +33,7 @@ impl Library {
         let Found { files, failed: unread } = library::find(&places, Kind::DrivesAndCases);
         failed.extend(unread);
         let (cases, recordings): (Vec<_>, Vec<_>) = files.into_iter().partition(|entry| entry.is_case);
-        let (rides, unread) = group(&recordings, false, None);
+        let (rides, unread) = group(&recordings, false, None, |_, _| true);
         failed.extend(unread);
         Self { cases, rides, failed }
     }

@@ -71,9 +71,15 @@ impl Typed for StatisticsOfAll {
 
 /// Statistics of recordings and of those anywhere below folders (where corner cases and forks are left out),
 /// checkpoint by checkpoint in the order of their first rides.
-pub fn of_recordings(paths: &[PathBuf], choice: Choice<'_>) -> anyhow::Result<StatisticsOfAll> {
+///
+/// What the recording of a corner case has to be for it to count, `counts` says; other cases end their drive all the same.
+pub fn of_recordings(
+    paths: &[PathBuf],
+    choice: Choice<'_>,
+    counts: impl Fn(&Path, &Recording) -> bool + Sync,
+) -> anyhow::Result<StatisticsOfAll> {
     let Found { files, mut failed } = library::find(paths, Kind::Drives);
-    let (groups, unread) = group(&files, choice.reveal, choice.jobs);
+    let (groups, unread) = group(&files, choice.reveal, choice.jobs, counts);
     failed.extend(unread);
     let Some(first) = groups.first() else {
         let why = Failed::check(&failed, 0).err();
@@ -103,9 +109,14 @@ struct Known {
 }
 
 /// Rides by checkpoint, in the order of their first recordings, and the files that are none.
-pub fn group(files: &[Entry], reveal: bool, threads: Option<u16>) -> (Vec<Group>, Vec<Failure>) {
+pub fn group(
+    files: &[Entry],
+    reveal: bool,
+    threads: Option<u16>,
+    counts: impl Fn(&Path, &Recording) -> bool + Sync,
+) -> (Vec<Group>, Vec<Failure>) {
     let (mut groups, mut failed): (Vec<Group>, _) = (Vec::new(), Vec::new());
-    let known = collect_in_order(jobs(threads), files.len(), |index| read(&files[index].path, reveal));
+    let known = collect_in_order(jobs(threads), files.len(), |index| read(&files[index].path, reveal, &counts));
     for (Entry { path, .. }, known) in files.iter().zip(known) {
         match known {
             Ok(Known { ride: Some(ride), checkpoint, checkpoint_digest: digest }) => {
@@ -122,7 +133,7 @@ pub fn group(files: &[Entry], reveal: bool, threads: Option<u16>) -> (Vec<Group>
     (groups, failed)
 }
 
-fn read(path: &Path, reveal: bool) -> anyhow::Result<Known> {
+fn read(path: &Path, reveal: bool, counts: impl Fn(&Path, &Recording) -> bool) -> anyhow::Result<Known> {
     let recording = Recording::open(path)?;
     let manifest = &recording.log().manifest;
     if manifest.case.is_some() {
@@ -133,10 +144,12 @@ fn read(path: &Path, reveal: bool) -> anyhow::Result<Known> {
     }
     let told = study::tellable(&manifest.provenance, reveal);
     let untold = if study::is_blind(&manifest.provenance) { BLIND } else { UNKNOWN };
+    let ride = Ride::of(&recording);
+    let counted = |ride: Ride| if ride.is_case && !counts(path, &recording) { ride.uncounted() } else { ride };
     Ok(Known {
         checkpoint: told.get("checkpoint").cloned().unwrap_or_else(|| untold.into()),
         checkpoint_digest: recorded_eye::digest_of(&told),
-        ride: Ride::of(&recording),
+        ride: ride.map(counted),
     })
 }
 

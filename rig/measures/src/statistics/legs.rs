@@ -77,6 +77,7 @@ mod tests {
             is_case,
             label: None,
             perception_caused: None,
+            tempers: [None; 2],
         });
         let legs = Legs::of(&rides);
         assert_eq!((legs.completed, legs.km_mean, legs.minutes_mean), (2, Some(3.0), Some(30.0)));

@@ -57,8 +57,39 @@ pub struct Statistics {
     pub cases_per_min: f64,
     /// 95 % interval of that rate, exact for `sampling`.
     pub cases_per_min_95: (f64, f64),
+    /// How the rides are spread over the population of simulated drivers, by semantic driver; people are left out.
+    pub by_semantic_temper: BTreeMap<&'static str, Share>,
+    /// By safety driver.
+    pub by_safety_temper: BTreeMap<&'static str, Share>,
     /// Kilometres and minutes between corner cases, as the paper prints them.
     pub legs: Legs,
+}
+
+/// What the rides of one kind of driver came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Share {
+    /// Number of rides.
+    pub rides: usize,
+    /// Kilometres driven.
+    pub km: f64,
+    /// Corner cases.
+    pub cases: u64,
+}
+
+impl Share {
+    /// By the temper of who sits in the first or second seat.
+    fn by_temper(rides: &[Ride], seat: usize) -> BTreeMap<&'static str, Self> {
+        let mut shares = BTreeMap::<_, Self>::new();
+        for ride in rides {
+            if let Some(temper) = ride.tempers[seat] {
+                let share = shares.entry(temper.name()).or_default();
+                share.rides += 1;
+                share.km += ride.km;
+                share.cases += u64::from(ride.is_case);
+            }
+        }
+        shares
+    }
 }
 
 impl Statistics {
@@ -88,6 +119,8 @@ impl Statistics {
             cases_per_km_95_of_rides: stats::rate_interval(&clusters, BOOTSTRAP_SEED),
             cases_per_min: per(number as f64, minutes),
             cases_per_min_95: (per(low, minutes), per(high, minutes)),
+            by_semantic_temper: Share::by_temper(rides, 0),
+            by_safety_temper: Share::by_temper(rides, 1),
             legs: Legs::of(rides),
         }
     }
@@ -95,13 +128,15 @@ impl Statistics {
 
 #[cfg(test)]
 mod tests {
+    use drivers::temper::Temper;
     use proptest::prelude::*;
 
     use super::*;
 
     fn ride((km, is_case): (f64, bool)) -> Ride {
         let label = is_case.then_some(Label::Walker);
-        Ride { km, minutes: 2.0 * km, is_case, label, perception_caused: is_case.then_some(true) }
+        let tempers = [Some(if km < 2.0 { Temper::Tired } else { Temper::Attentive }), None];
+        Ride { km, minutes: 2.0 * km, is_case, label, perception_caused: is_case.then_some(true), tempers }
     }
 
     proptest! {
@@ -113,6 +148,9 @@ mod tests {
             prop_assert!((completed + s.legs.censored_km - s.km).abs() < 1e-9);
             prop_assert_eq!(s.legs.completed as u64, s.cases);
             prop_assert_eq!(s.cases_by_label.values().sum::<u64>(), s.cases);
+            prop_assert_eq!(s.by_semantic_temper.values().map(|share| share.cases).sum::<u64>(), s.cases);
+            prop_assert!((s.by_semantic_temper.values().map(|share| share.km).sum::<f64>() - s.km).abs() < 1e-9);
+            prop_assert!(s.by_safety_temper.is_empty());
             prop_assert!(s.cases_per_km_95.0 <= s.cases_per_km && s.cases_per_km <= s.cases_per_km_95.1);
             // A kilometre takes two minutes here.
             prop_assert!((s.cases_per_km_95.1 - 2.0 * s.cases_per_min_95.1).abs() < 1e-9);

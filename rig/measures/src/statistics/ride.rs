@@ -1,5 +1,7 @@
 //! A run, as statistics count it.
 
+use drivers::temper::Temper;
+use kernel::Seat;
 use replay::{Label, Recording};
 
 /// A run that counts.
@@ -15,6 +17,8 @@ pub struct Ride {
     pub label: Option<Label>,
     /// Whether true masks avoid the corner case, where that is known.
     pub perception_caused: Option<bool>,
+    /// Which simulated drivers sat in the seats, the semantic one first; `None` for a person.
+    pub tempers: [Option<Temper>; 2],
 }
 
 impl Ride {
@@ -31,6 +35,12 @@ impl Ride {
             is_case: log.decided_at().is_some(),
             label: annotation.map(|a| a.label),
             perception_caused: annotation.and_then(|a| a.perception_caused),
+            tempers: [Seat::Semantic, Seat::Safety].map(|seat| Temper::told(&log.manifest.provenance, seat)),
         })
+    }
+
+    /// The same drive where its end is not to count as a corner case.
+    pub fn uncounted(self) -> Self {
+        Self { is_case: false, label: None, perception_caused: None, ..self }
     }
 }

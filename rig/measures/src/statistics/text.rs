@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Comparison, Statistics};
+use super::{Comparison, Share, Statistics};
 
 /// The paper's table, then rates by exposure, for each name.
 pub fn table<'a>(columns: impl Iterator<Item = (&'a str, &'a Statistics, Option<&'a Comparison>)> + Clone) -> String {
@@ -41,6 +41,13 @@ pub fn table<'a>(columns: impl Iterator<Item = (&'a str, &'a Statistics, Option<
         }
         if let Some(comparison) = comparison {
             let _ = write!(text, "\n{:width$} {}", "", against(comparison));
+        }
+        for (seat, shares) in [("semantic", &s.by_semantic_temper), ("safety", &s.by_safety_temper)] {
+            let words = |(temper, share): (&&str, &Share)| format!("{temper} {} in {:.1} km", share.cases, share.km);
+            let words: Vec<String> = shares.iter().map(words).collect();
+            if !words.is_empty() {
+                let _ = write!(text, "\n{:width$} {seat} drivers: {}", "", words.join(", "));
+            }
         }
     }
     text

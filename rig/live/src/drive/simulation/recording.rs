@@ -19,6 +19,7 @@ pub fn manifest(plan: &Plan, seating: &Seating, number: u32, world: &World) -> M
     provenance.insert("live".into(), "true".into());
     provenance.extend(plan.cast.provenance_of_run(number).clone());
     provenance.extend(seating.provenance());
+    provenance.extend(seating.tempers(world.scenario().seed));
     Manifest::new(world.scenario(), &plan.map.network, plan.map.foreign.clone(), provenance)
 }
 

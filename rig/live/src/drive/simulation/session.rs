@@ -112,12 +112,13 @@ impl Session {
             return Ok(());
         }
         let Some(world) = self.runs.take_next() else { return Ok(()) };
+        let seed = world.scenario().seed;
         let number = self.runs.number();
         let manifest = recording::manifest(&self.plan, &self.seating, number, &world);
         maps::put_beside(self.plan.map.foreign.as_ref(), &self.plan.record)?;
         let (path, file) = recording::create(&self.plan.record, number, self.outbox.clone())?;
         self.voice.say(format_args!("run {number}: recording {}", path.display()));
-        self.runs.start(Run::start(world, &manifest, self.seating.bots(), path, file)?);
+        self.runs.start(Run::start(world, &manifest, self.seating.bots(seed), path, file)?);
         self.pace.restart();
         self.voice.forget();
         self.seating.seats().engage_forward();

@@ -1,0 +1,27 @@
+//! The loop itself: through true masks the drivers of this program need next to no takeovers.
+//!
+//! `AEYE_LOOP_KM` kilometres instead of the few of `make test`: `make campaign-check`.
+
+mod common;
+
+use common::{aeye, run};
+use serde_json::Value;
+
+/// What is driven where nobody asks for more, km.
+const QUICK_KM: f64 = 4.0;
+/// Corner cases a kilometre as they were measured when the drivers were last worked on.
+const MEASURED_PER_KM: f64 = 0.05;
+
+#[test]
+fn takeovers_have_not_doubled() {
+    let asked = std::env::var("AEYE_LOOP_KM").map(|km| km.parse().expect("a number of kilometres"));
+    let km: f64 = asked.unwrap_or(QUICK_KM);
+    let folder = tempfile::tempdir().expect("writable");
+    let line = format!("campaign --json --checkpoint truth --maps all --km {km} --max-time 1m --seed 4242 --out runs");
+    let (code, out, said) = run(&mut aeye(folder.path(), &line));
+    assert_eq!(code, Some(0), "{said}");
+    let figures: Value = serde_json::from_str(&out).expect("it is JSON");
+    let cases = figures["cases"].as_f64().expect("a number");
+    let most = (2.0 * MEASURED_PER_KM * figures["km"].as_f64().expect("a number")).max(1.0);
+    assert!(cases <= most, "{cases} cases where there were half of {most:.1}: {out}");
+}
