@@ -17,7 +17,7 @@ state_enum! {
         Intervened = 0,
         /// The ego car collided and nobody had intervened.
         Missed = 1,
-        /// The time of the run was over.
+        /// The time of the run was over, or the road.
         Censored = 2,
     }
 }
@@ -158,7 +158,7 @@ impl Arbiter {
         self.stands_ticks = if stands { self.stands_ticks.saturating_add(1) } else { 0 };
         let outcome = match (self.phase, self.intervention) {
             (Phase::Driving, _) if after.collided => Outcome::Missed,
-            (Phase::Driving, _) if tick >= seconds(rules.max_seconds) => Outcome::Censored,
+            (Phase::Driving, _) if after.at_end || tick >= seconds(rules.max_seconds) => Outcome::Censored,
             (Phase::TakenOver, Some(intervention))
                 if self.stands_ticks >= STOPPED_TICKS || tick >= intervention.tick + seconds(rules.takeover_s) =>
             {
@@ -180,6 +180,8 @@ pub struct After {
     pub collided: bool,
     /// It is inside a junction.
     pub in_junction: bool,
+    /// Its road ends right ahead.
+    pub at_end: bool,
     /// Its speed, m/s.
     pub speed_mps: f32,
 }
@@ -232,7 +234,7 @@ mod tests {
     };
 
     fn after(collided: bool, speed_mps: f32) -> After {
-        After { collided, in_junction: false, speed_mps }
+        After { collided, in_junction: false, at_end: false, speed_mps }
     }
 
     fn controls(steer: f32, throttle: f32, brake: f32) -> Controls {
@@ -349,6 +351,16 @@ mod tests {
         let released = arbiter.arbitrate(202, &TickInput { safety: Controls::default(), ..input }, &rules, 4.0);
         assert_eq!((released.applied.controls, arbiter.phase), (input.semantic, Phase::Driving), "it was no takeover");
         assert!(arbiter.arbitrate(203, &input, &rules, 5.0).intervention.is_some());
+    }
+
+    #[test]
+    fn the_end_of_the_road_censors_unless_somebody_has_taken_over() {
+        let mut arbiter = Arbiter::new();
+        let ends = After { at_end: true, ..after(false, 9.0) };
+        assert!(!arbiter.judge(100, &ends, &RULES), "nothing before arming is judged");
+        decide(&mut arbiter, 200, Controls::default(), Controls::default());
+        assert!(arbiter.judge(200, &ends, &RULES));
+        assert_eq!((arbiter.outcome, arbiter.ended_at), (Some(Outcome::Censored), Some(200)));
     }
 
     #[test]

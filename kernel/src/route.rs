@@ -101,28 +101,42 @@ impl Route {
 
     fn extend(&mut self, network: &RoadNetwork, seed: u64) {
         let length = |lane: LaneId| network.lanes[lane as usize].length_m;
-        let mut known_m = self.lanes.iter().map(|&lane| length(lane)).sum::<f32>() - self.s_m;
+        let mut known_m = self.known_m(network);
         while known_m < HORIZON_M {
-            let last = self.lanes[self.lanes.len() - 1];
-            let choices = &network.lanes[last as usize].successors;
+            let choices = network.ways().onward(self.last());
             if choices.is_empty() {
                 break;
             }
             let pick = rng::below(seed, Stream::Route, u64::from(self.drawn), 0, choices.len() as u32);
             self.drawn = self.drawn.wrapping_add(1);
             let next = choices[pick as usize];
-            self.lanes.push(next);
-            known_m += length(next).max(0.1);
+            self.lanes.push(next.lane);
+            known_m += (length(next.lane) - next.at_m).max(0.1);
         }
+    }
+
+    fn last(&self) -> LaneId {
+        self.lanes[self.lanes.len() - 1]
+    }
+
+    /// Metres from the middle of the car to where the route is not known any more.
+    fn known_m(&self, network: &RoadNetwork) -> f32 {
+        self.stretches(network).last().map_or(0.0, |(lane, start)| start + network.lanes[lane as usize].length_m)
+    }
+
+    /// Metres from the front of the car to where the road ends; `None` where that is not in sight.
+    pub fn ends_in_m(&self, network: &RoadNetwork) -> Option<f32> {
+        network.ways().onward(self.last()).is_empty().then(|| self.known_m(network) - NOSE_M)
     }
 
     /// Each lane of the route with the distance from the middle of the car to its start, metres;
     /// negative for the lane under the car.
     fn stretches<'a>(&'a self, network: &'a RoadNetwork) -> impl Iterator<Item = (LaneId, f32)> + 'a {
-        self.lanes.iter().scan(-self.s_m, |start, &lane| {
-            let at = *start;
-            *start += network.lanes[lane as usize].length_m;
-            Some((lane, at))
+        self.lanes.iter().scan((None, -self.s_m), |(before, end_m), &lane| {
+            // Who comes from a lane that ends beside this one is not at its start.
+            let start_m = *end_m - before.map_or(0.0, |before| network.ways().enters_at_m(before, lane));
+            (*before, *end_m) = (Some(lane), start_m + network.lanes[lane as usize].length_m);
+            Some((lane, start_m))
         })
     }
 
@@ -149,19 +163,18 @@ impl Route {
 
     /// The place of the route `ahead_m` before the middle of the car.
     fn point(&self, network: &RoadNetwork, ahead_m: f32) -> Vec3 {
+        let holds = |(lane, start): &(LaneId, f32)| ahead_m < start + network.lanes[*lane as usize].length_m;
         let (lane, start) = self
             .stretches(network)
-            .take_while(|(_, start)| *start <= ahead_m)
-            .last()
+            .find(holds)
+            .or_else(|| self.stretches(network).last())
             .unwrap_or((self.lanes[0], -self.s_m));
         network.lane_point(lane, ahead_m - start).position
     }
 
     /// The middle of the route from the car on, points about 1 m apart.
     pub fn ahead(&self, network: &RoadNetwork, distance_m: f32) -> Vec<Vec3> {
-        let known: f32 =
-            self.stretches(network).last().map_or(0.0, |(lane, start)| start + network.lanes[lane as usize].length_m);
-        let steps = ops::floor(distance_m.clamp(0.0, known.max(0.0))) as u32;
+        let steps = ops::floor(distance_m.clamp(0.0, self.known_m(network).max(0.0))) as u32;
         (0..=steps).map(|step| self.point(network, step as f32)).collect()
     }
 

@@ -134,3 +134,44 @@ fn a_light_is_shown_as_soon_as_people_have_to_see_it() {
     // MUTCD: 82 m at 48 km/h; slower than that no less than 50 m.
     assert!((82.0..90.0).contains(&farthest_m[0]) && (49.0..=50.0).contains(&farthest_m[1]), "{farthest_m:?}");
 }
+
+/// Two roads of one lane side by side: the left one goes on for 100 m, the right one ends.
+fn lane_drop() -> RoadNetwork {
+    let road = |id: u32, y_m: f64, length_m: f64| {
+        format!(
+            "<road id=\"{id}\" length=\"{length_m}\" junction=\"-1\"><planView><geometry s=\"0\" x=\"0\" y=\"{y_m}\" \
+             hdg=\"0\" length=\"{length_m}\"><line/></geometry></planView><lanes><laneSection s=\"0\"><center><lane id=\"0\" \
+             type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" \
+             d=\"0\"/></lane></right></laneSection></lanes></road>"
+        )
+    };
+    let (goes_on, ends) = (road(1, 0.0, 200.0), road(2, -3.5, 100.0));
+    let text = format!("<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>{goes_on}{ends}</OpenDRIVE>");
+    crate::map::bake("lane_drop", &text).expect("it is a map")
+}
+
+#[test]
+fn a_route_leaves_a_lane_that_ends_for_the_one_beside_it_and_tells_where_the_road_ends() {
+    let network = lane_drop();
+    let (mut beside, mut ended) = (0, 0);
+    for (id, _) in network.lanes.iter().enumerate().filter(|(_, lane)| lane.kind == LaneKind::Driving) {
+        let mut route = Route::from(&network, 1, id as LaneId, 0.0);
+        for (place, pair) in route.lanes.windows(2).enumerate() {
+            let at_m = network.ways().enters_at_m(pair[0], pair[1]);
+            beside += usize::from(at_m > 0.0);
+            let starts: Vec<f32> = route.stretches(&network).map(|(_, start_m)| start_m).collect();
+            let end_m = starts[place] + network.lanes[pair[0] as usize].length_m;
+            assert!((starts[place + 1] + at_m - end_m).abs() < 1e-3, "lane {id}: {starts:?}");
+        }
+        // All the way to the end the point ahead is ahead, and the route is followed without a stray.
+        let known_m = route.known_m(&network);
+        let points: Vec<Vec3> = route.ahead(&network, known_m);
+        for pair in points.windows(2) {
+            let heading_rad = ops::atan2(pair[1].y - pair[0].y, pair[1].x - pair[0].x);
+            assert!((pair[1] - pair[0]).length() < 5.0, "lane {id}: {pair:?}");
+            assert!(!route.follow(&network, 1, pair[0], heading_rad), "lane {id}: {pair:?} {route:?} {heading_rad}");
+        }
+        ended += usize::from(route.ends_in_m(&network).is_some_and(|ends_in_m| ends_in_m < 2.0));
+    }
+    assert!(beside > 0 && ended > 0, "{beside} {ended}");
+}

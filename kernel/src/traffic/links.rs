@@ -15,7 +15,8 @@ const ASLANT_RAD: f32 = 0.5;
 
 /// A lane that follows, and where on it a vehicle arrives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Onward {
+pub struct Onward {
+    /// The lane.
     pub lane: LaneId,
     /// Metres from its start: 0 but where a lane ends beside one that goes on.
     pub at_m: f32,

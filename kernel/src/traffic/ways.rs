@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::doors::{DoorSpot, door_spots};
 use super::lane_way::{CrosswalkSpan, LaneWay, directions, lane_ways};
-use super::links::LEAST_HALF_M;
+use super::links::{LEAST_HALF_M, Onward};
 use super::reasons::{Draw, draws};
 use super::roundabout::{Roundabout, roundabouts};
 use super::routes::{Class, Routes};
@@ -62,6 +62,16 @@ pub struct Ways {
 }
 
 impl Ways {
+    /// Where the traffic of a lane goes on.
+    pub(crate) fn onward(&self, lane: LaneId) -> &[Onward] {
+        &self.lanes[lane as usize].onward
+    }
+
+    /// Where on a lane it comes from another, metres from its start.
+    pub(crate) fn enters_at_m(&self, from: LaneId, to: LaneId) -> f32 {
+        self.onward(from).iter().find(|next| next.lane == to).map_or(0.0, |next| next.at_m)
+    }
+
     /// The lookups of a map.
     pub(crate) fn new(places: &Arc<Places>) -> Self {
         let map = &*places.map;

@@ -27,6 +27,9 @@ use super::{bodies, doors, start};
 /// How long a keyframe that is due waits while the ego car touches an actor.
 pub const KEYFRAME_GRACE_TICKS: Tick = seconds(2);
 
+/// The run ends so far before the end of a road from which nobody can drive on, metres.
+const END_M: f32 = 10.0;
+
 /// The simulated world. `Clone` copies the engine's caches too; use it for rewinds and forks.
 #[derive(Clone)]
 pub struct World {
@@ -173,7 +176,8 @@ impl World {
         let wrong_way = watch::wrong_way(network, car, tick);
         run.watch.rules(limit_mps, self.physics.off_road(), wrong_way, &mut log);
         let in_junction = network.lanes[ego.route.lanes[0] as usize].junction.is_some();
-        let after = After { collided, in_junction, speed_mps };
+        let at_end = ego.route.ends_in_m(network).is_some_and(|ends_in_m| ends_in_m < END_M);
+        let after = After { collided, in_junction, at_end, speed_mps };
         if run.arbiter.judge(tick, &after, &self.scenario.rules) {
             log.note(EventKind::Ended);
         }

@@ -5,7 +5,7 @@ use kernel::map::Turn;
 use kernel::ops;
 use kernel::signals::LightPhase;
 
-use super::arc::Arc;
+use super::arc::{Arc, Point};
 use super::memory::{Dash, Track, Tracks};
 use super::sight::{Contact, Sight};
 
@@ -35,6 +35,10 @@ const FEELING_MPS: f32 = 4.5;
 const GIVE_WAY_M: f32 = 14.0;
 /// Quarters of a second that are looked ahead there.
 const GIVE_WAY_STEPS: u32 = 16;
+/// Acceleration of a car that drives off, m/s^2.
+const DRIVING_OFF_MPS2: f32 = 2.0;
+/// What must not be met: the front of the car, its middle and its rear, metres from the rear axle.
+const PARTS_M: [f32; 3] = [FRONT_M, 0.5 * FRONT_M, 0.0];
 /// Distance at which two vehicles meet, metres.
 const MEET_M: f32 = 3.0;
 /// Curvature of usual turns, 1/m.
@@ -160,13 +164,16 @@ pub fn give_way_m(arc: Arc, dash: &Dash, tracks: &Tracks) -> Option<f32> {
     if dash.junction_m > GIVE_WAY_M {
         return None;
     }
-    let own_mps = dash.speed_mps.max(3.5);
     let meets = |track: &Track| {
         (1..=GIVE_WAY_STEPS).find_map(|step| {
             let t_s = 0.25 * step as f32;
-            let (x, y) = expected_way(arc, dash, FRONT_M + own_mps * t_s);
-            let near = |t_s: f32| ops::hypot(track.after(t_s).0 - x, track.after(t_s).1 - y) < MEET_M;
-            [t_s - 0.75, t_s, t_s + 0.75].into_iter().any(near).then_some(own_mps * t_s)
+            let driven_m = drives_off_m(dash.speed_mps, t_s);
+            let near = |(x, y): Point, t_s: f32| ops::hypot(track.after(t_s).0 - x, track.after(t_s).1 - y) < MEET_M;
+            let is_met = |part_m: f32| {
+                let place = expected_way(arc, dash, part_m + driven_m);
+                [t_s - 0.75, t_s, t_s + 0.75].into_iter().any(|t_s| near(place, t_s))
+            };
+            PARTS_M.into_iter().any(is_met).then_some(driven_m)
         })
     };
     let same_way = |track: &&Track| track.velocity_mps.0 > 2.0 * track.velocity_mps.1.abs();
@@ -174,6 +181,16 @@ pub fn give_way_m(arc: Arc, dash: &Dash, tracks: &Tracks) -> Option<f32> {
     // Before the junction it waits at its border, inside right before the other's way.
     let border_m = dash.junction_m - 1.0;
     Some(if border_m > 0.0 { border_m } else { meeting_m - MEET_M })
+}
+
+/// The way of a car that goes on as fast as it is, or drives off, metres.
+fn drives_off_m(speed_mps: f32, t_s: f32) -> f32 {
+    if speed_mps >= TURN_MPS {
+        return speed_mps * t_s;
+    }
+    let speeding_up_s = t_s.min((TURN_MPS - speed_mps) / DRIVING_OFF_MPS2);
+    let sped_up_m = (speed_mps + 0.5 * DRIVING_OFF_MPS2 * speeding_up_s) * speeding_up_s;
+    sped_up_m + TURN_MPS * (t_s - speeding_up_s)
 }
 
 /// Where the rear axle will be after `s_m` metres: straight up to the junction, then round its bend.
@@ -223,6 +240,33 @@ mod tests {
             (0..6).for_each(|_| tracks.carry(Moved { forward_m: 0.0, turned_rad: 0.0 }));
         }
         tracks
+    }
+
+    /// A left turn across the lane of one who comes from ahead with 10 m/s: whether it is waited for.
+    #[test]
+    fn who_turns_left_waits_for_whom_it_would_not_have_passed_in_time() {
+        let oncoming = |x_m: f32| {
+            let mut tracks = Tracks::default();
+            for look in 0..10 {
+                let x_m = x_m + 1.0 * (10 - look) as f32;
+                tracks.look(&[Contact { x_m, y_m: 3.5, is_person: false, on_road: true }]);
+                (0..6).for_each(|_| tracks.carry(Moved { forward_m: 0.0, turned_rad: 0.0 }));
+            }
+            tracks
+        };
+        let dash = |speed_mps| Dash {
+            speed_mps,
+            limit_mps: 13.9,
+            light: None,
+            light_m: 0.0,
+            turn: Turn::Left,
+            junction_m: 0.0,
+            bearing_deg: -15,
+        };
+        let waits = |x_m, speed_mps| give_way_m(Arc { curvature: 0.09 }, &dash(speed_mps), &oncoming(x_m)).is_some();
+        // From a stand its rear leaves the other's lane after 4 s, at 5.5 m/s after 2 s.
+        assert_eq!([12.0, 25.0, 35.0].map(|x_m| waits(x_m, 0.0)), [true, true, true]);
+        assert_eq!([12.0, 25.0, 45.0].map(|x_m| waits(x_m, TURN_MPS)), [true, true, false]);
     }
 
     #[test]
