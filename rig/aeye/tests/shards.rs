@@ -14,10 +14,10 @@ use base::output::OutputFolder;
 use common::{aeye, run};
 use serde_json::Value;
 
-/// The last two are corner cases.
+/// The first and the fourth are corner cases.
 const RUNS: u32 = 5;
 const DRIVES: &str = "campaign --checkpoint early --maps street.xodr --pedestrians 60 --hazards raised --max-time 14s \
-                      --seed 15";
+                      --seed 23";
 
 /// A folder in which campaigns are driven.
 struct Place(PathBuf);
