@@ -358,9 +358,12 @@ mod tests {
         let mut arbiter = Arbiter::new();
         let ends = After { at_end: true, ..after(false, 9.0) };
         assert!(!arbiter.judge(100, &ends, &RULES), "nothing before arming is judged");
+        let mut taken = arbiter.clone();
         decide(&mut arbiter, 200, Controls::default(), Controls::default());
         assert!(arbiter.judge(200, &ends, &RULES));
         assert_eq!((arbiter.outcome, arbiter.ended_at), (Some(Outcome::Censored), Some(200)));
+        decide(&mut taken, 200, Controls::default(), Controls::from_fractions(0.0, 0.0, 1.0));
+        assert!(taken.intervention.is_some() && !taken.judge(200, &ends, &RULES));
     }
 
     #[test]

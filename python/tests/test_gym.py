@@ -61,6 +61,8 @@ def test_the_controls_of_a_headless_drive_give_that_drive(seat, drive, tmp_path)
     for name, column in recording.masks.items():
         assert np.array_equal(again.masks[name], column), name
     said, expected = again.inspect()["provenance"], recording.inspect()["provenance"]
+    # Nobody knows what kind of driver an agent is.
+    del expected[f"{seat}_temper"]
     assert said == expected | {seat: "agent"}
 
 

@@ -42,11 +42,11 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     `aeye.gym.Facts` and gives an array of shape (n,), or a dictionary of such, whose sum is the reward. `termination` and
     `truncation` take facts and give a bool array of shape (n,), where an episode ends early (None: when the semantic driver's
     agent is taken over; never). The end of the run ends it in any case: terminated after a takeover or collision, truncated
-    when its time is over.
+    when its time or the road is over.
 
     `info` has `tick`, `hash` and `seed`, `facts` (`aeye.gym.Facts` without `tick`, `hash` and the columns of the HUD), and after
     a step `reward_terms`; at the end of an episode also `outcome` (`intervened`, `missed`: a collision that nobody
-    prevented, `censored`: the time was over, or empty where it ended before the run), and `recording`, the path, where it is kept.
+    prevented, `censored`: the time or the road was over, or empty where it ended before the run), and `recording`, the path, where it is kept.
 
     Raises FileError where a file is not there, InputError for a value that cannot be.
     """

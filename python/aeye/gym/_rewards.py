@@ -12,7 +12,7 @@ Facts: TypeAlias = dict[str, NDArray[Any]]
 """What a step came to: an array of shape (n,) for each name, an entry for each drive (one where there is one drive).
 
 `tick` (60 a second), `hash` (low 32 bits of the world's state), `outcome` (-1 while the run goes on, 0 it ended after a
-takeover, 1 by a collision that nobody prevented, 2 because its time was over), `taken_over` (0 or 1); of the step alone:
+takeover, 1 by a collision that nobody prevented, 2 because its time or the road was over), `taken_over` (0 or 1); of the step alone:
 `progress_m` (along the route, negative against it), `jerk_mps2` (integral of the jerk along the car, without sign),
 `sideways_mps` (integral of the acceleration to the side, without sign), `red_lights` and `collisions` (how many),
 `off_road_s`, `wrong_way_s` and `speeding_s` (for how long), `takeovers` (0 or 1); and the columns of the HUD by their names.

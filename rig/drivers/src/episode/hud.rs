@@ -22,7 +22,7 @@ pub const NAMES: [&str; 11] = [
 
 /// Least and greatest values of what [`row`] gives.
 pub const RANGES: [[f32; 2]; NAMES.len()] = [
-    [-50.0, 100.0],
+    [0.0, 100.0],
     [0.0, 50.0],
     [0.0, 1.0],
     [0.0, 1.0],

@@ -72,7 +72,7 @@ impl Typed for StatisticsOfAll {
 /// Statistics of recordings and of those anywhere below folders (where corner cases and forks are left out),
 /// checkpoint by checkpoint in the order of their first rides.
 ///
-/// What the recording of a corner case has to be for it to count, `counts` says; other cases end their drive all the same.
+/// Which takeovers count `counts` says; others end their drive without a corner case.
 pub fn of_recordings(
     paths: &[PathBuf],
     choice: Choice<'_>,
@@ -145,7 +145,8 @@ fn read(path: &Path, reveal: bool, counts: impl Fn(&Path, &Recording) -> bool) -
     let told = study::tellable(&manifest.provenance, reveal);
     let untold = if study::is_blind(&manifest.provenance) { BLIND } else { UNKNOWN };
     let ride = Ride::of(&recording);
-    let counted = |ride: Ride| if ride.is_case && !counts(path, &recording) { ride.uncounted() } else { ride };
+    let is_takeover = recording.log().intervention.is_some();
+    let counted = |ride: Ride| if is_takeover && !counts(path, &recording) { ride.uncounted() } else { ride };
     Ok(Known {
         checkpoint: told.get("checkpoint").cloned().unwrap_or_else(|| untold.into()),
         checkpoint_digest: recorded_eye::digest_of(&told),
