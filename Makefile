@@ -61,7 +61,7 @@ cluster: PACKAGES += python3-venv slurm-wlm munge
 cluster: build
 	tests/cluster/run.sh $(AEYE) $(dir $(AEYE))../cluster
 
-## Drives 140 km through true masks, an hour or two, and fails where takeovers have doubled.
+## Drives 140 km through true masks, and fails where takeovers are over twice as frequent as 0.05 a km.
 campaign-check: setup
 	AEYE_LOOP_KM=140 cargo test --release --workspace --test truth -- --nocapture
 
