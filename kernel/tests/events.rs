@@ -1,6 +1,8 @@
 //! What a drive brings about, on the ring road: events, HUD and route.
 
 mod common;
+#[path = "common/roundabout.rs"]
+mod roundabout;
 
 use common::{RING_M, on_ring, ring, script};
 use kernel::events::{Event, EventKind};
@@ -8,6 +10,7 @@ use kernel::map::Turn;
 use kernel::scenario::{Scenario, driving_lanes};
 use kernel::signals::{self, LightPhase};
 use kernel::{Controls, TickInput, World};
+use roundabout::Roundabout;
 
 /// The ring without anyone else, the car on the outer lane, seven arcs before the light.
 fn alone() -> Scenario {
@@ -209,6 +212,21 @@ fn a_scenario_that_does_not_fit_is_refused_in_one_sentence() {
     let expected = "scenario does not fit map ring: ego.lane is 99, expected a driving lane of ring: ";
     assert_eq!(lane, format!("{expected}{}", driving_lanes(&ring()).join(", ")));
     assert!(refused(0, 500.0).starts_with("scenario does not fit map ring: ego.s_m is 500, expected at most 64"));
+}
+
+/// The arms of a roundabout end outside.
+#[test]
+fn no_drive_starts_right_before_a_dead_end() {
+    let text = Roundabout { arm_m: 100.0, ..Roundabout::default() }.open_drive();
+    let network = kernel::map::bake("roundabout", &text).expect("it bakes");
+    let mut outward = 0;
+    for seed in 0..100 {
+        let (lane, s_m) = Scenario::default_for("roundabout", seed).start_on(&network).expect("a start");
+        let lane = &network.lanes[lane as usize];
+        outward += u32::from(lane.successors.is_empty());
+        assert!(!lane.successors.is_empty() || lane.length_m - s_m >= 40.0, "{seed}: {s_m} m on {}", lane.name);
+    }
+    assert!(outward > 20, "{outward}");
 }
 
 #[test]

@@ -1,6 +1,8 @@
 """Campaigns and drives on are those of the command."""
 
 import importlib.util
+import shutil
+from pathlib import Path
 
 import aeye
 import pytest
@@ -91,8 +93,13 @@ def test_files_that_are_not_there_are_said_at_once(case, tmp_path):
     assert not (tmp_path / "out").exists()
     with pytest.raises(aeye.InputError, match="two or more checkpoints"):
         aeye.compare(case, "early", tmp_path / "out")
+
+
+def test_cases_without_the_verdict_that_is_asked_for_are_said_to_be_none(case, tmp_path):
+    """A copy without its `.counterfactual.json` has no verdict at all."""
+    alone = Path(shutil.copy(case, tmp_path))
     with pytest.raises(aeye.EngineError, match="on none of the corner cases the verdict is near miss"):
-        aeye.compare(case, ["early", "truth"], tmp_path / "judged", verdict="near-miss")
+        aeye.compare(alone, ["early", "truth"], tmp_path / "judged", verdict="near-miss")
 
 
 def test_a_drive_on_needs_a_question(case, tmp_path):

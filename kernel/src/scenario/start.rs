@@ -1,13 +1,15 @@
 //! Where the ego car starts: on the lane that a scenario names, or on one that its seed draws.
 
 use crate::ego;
-use crate::map::{LaneId, LaneKind, RoadNetwork};
+use crate::map::{Lane, LaneId, LaneKind, RoadNetwork};
 use crate::rng::{self, Stream};
 
 use super::fields::Scenario;
 
 /// Shortest lane on which a car starts when the scenario names none, metres.
 const LEAST_LANE_M: f32 = 20.0;
+/// So far from the end of a lane from which none leads on it starts, metres: a run ends there.
+const BEFORE_END_M: f32 = 40.0;
 /// Ranges of lanes that a refusal names at most.
 const RANGES_NAMED: usize = 8;
 
@@ -72,7 +74,7 @@ pub fn driving_lanes(network: &RoadNetwork) -> Vec<String> {
 fn drawn(seed: u64, network: &RoadNetwork) -> Option<(LaneId, f32)> {
     let fits = |least_m: f32| {
         let driving = network.lanes.iter().enumerate().filter(|(_, lane)| lane.kind == LaneKind::Driving);
-        let long = driving.filter(|(_, lane)| lane.junction.is_none() && lane.length_m >= least_m);
+        let long = driving.filter(|(_, lane)| lane.junction.is_none() && usable_m(lane) >= least_m);
         long.map(|(id, _)| id as LaneId).collect::<Vec<_>>()
     };
     let mut lanes = fits(LEAST_LANE_M);
@@ -80,6 +82,11 @@ fn drawn(seed: u64, network: &RoadNetwork) -> Option<(LaneId, f32)> {
         lanes = fits(0.0);
     }
     let lane = *lanes.get(rng::below(seed, Stream::Route, u64::MAX, 0, lanes.len() as u32) as usize)?;
-    let room = (network.lanes[lane as usize].length_m - 2.0 * ego::SIZE_M.x).max(0.0);
+    let room = (usable_m(&network.lanes[lane as usize]) - 2.0 * ego::SIZE_M.x).max(0.0);
     Some((lane, ego::SIZE_M.x / 2.0 + room * rng::unit(seed, Stream::Route, u64::MAX, 1)))
+}
+
+/// The part of a lane that a drive can begin on, metres.
+fn usable_m(lane: &Lane) -> f32 {
+    if lane.successors.is_empty() { (lane.length_m - BEFORE_END_M).max(0.0) } else { lane.length_m }
 }

@@ -7,14 +7,18 @@ use kernel::time::TICK_S;
 
 use super::arc::{Arc, Point};
 use super::sight::{self, Contact};
+use super::speed::Ahead;
 use crate::readout::{self, Readout};
 
 /// Distance between two remembered points of the route, metres.
 const TRAIL_STEP_M: f32 = 0.4;
 /// Half of the stretch of the trail that is averaged, metres; evens out the steps of the arrow.
 const TRAIL_AVERAGE_M: f32 = 1.6;
-/// Share of a new measurement in a velocity.
+/// Share of a new measurement in a velocity; half of it, away from the car, where the depth is known no better than this,
+/// metres; and most that it changes, m/s.
 const NEW_SHARE: f32 = 0.3;
+const KNOWN_DEPTH_M: f32 = 2.0;
+const MOST_CHANGE_MPS: f32 = 6.0;
 /// Gap that splits contacts into two vehicles, metres, and its growth with distance.
 const GAP_M: f32 = 1.2;
 const GAP_PER_M: f32 = 0.08;
@@ -89,6 +93,9 @@ impl Trail {
     }
 }
 
+/// A step of a distance that was driven comes where it was expected, within this, metres.
+const NEAR_STEP_M: f32 = 4.0;
+
 /// A distance that is shown in steps, counted down in between.
 #[derive(Clone, Copy, Debug, Default)]
 struct Countdown {
@@ -102,7 +109,8 @@ impl Countdown {
     fn read(&mut self, shown_m: u16, moved: Moved) -> f32 {
         let next_m = shown_m + readout::step_m(shown_m);
         if shown_m != self.shown_m {
-            self.left_m = f32::from(if next_m == self.shown_m { next_m } else { shown_m });
+            let is_driven = next_m == self.shown_m && self.left_m - f32::from(next_m) < NEAR_STEP_M;
+            self.left_m = f32::from(if is_driven { next_m } else { shown_m });
         }
         self.shown_m = shown_m;
         self.left_m = (self.left_m - moved.forward_m).clamp(f32::from(shown_m), f32::from(next_m));
@@ -167,6 +175,21 @@ impl Track {
         (self.at.0 + t_s * self.velocity_mps.0, self.at.1 + t_s * self.velocity_mps.1)
     }
 
+    /// What a new look makes of it: how far away it is, is known no better than the rows of pixels tell, so what is within
+    /// a row is where it was expected.
+    fn seen_again(&self, blob: &Blob, dt_s: f32) -> Self {
+        let at = blob.nearest_to(self.after(dt_s));
+        let mix = |old_mps: f32, share: f32, moved_m: f32| {
+            old_mps + (share * (moved_m / dt_s - old_mps)).clamp(-MOST_CHANGE_MPS, MOST_CHANGE_MPS)
+        };
+        // Who is new may do anything; of those who are known, a row of pixels says little.
+        let known_share = NEW_SHARE / (1.0 + blob.depth_error_m / KNOWN_DEPTH_M);
+        let share = NEW_SHARE.min(known_share.max(2.0 / (self.looks + 1) as f32));
+        let along_mps = mix(self.velocity_mps.0, share, at.0 - self.at.0);
+        let velocity_mps = (along_mps, mix(self.velocity_mps.1, share, at.1 - self.at.1));
+        Self { at, velocity_mps, looks: self.looks + 1, unseen_s: 0.0 }
+    }
+
     /// The same, if it has gone on unseen beside the picture.
     fn beside(&self, dt_s: f32) -> Option<Self> {
         let gone_on = Self { at: self.after(dt_s), unseen_s: self.unseen_s + dt_s, ..*self };
@@ -198,23 +221,32 @@ impl Tracks {
         self.since_look_s = 0.0;
         let known = std::mem::take(&mut self.tracks);
         let mut found = vec![false; known.len()];
-        for at in blobs(contacts) {
-            let off = |t: &Track| ops::hypot(t.after(dt_s).0 - at.0, t.after(dt_s).1 - at.1);
+        for blob in blobs(contacts) {
+            let off = |t: &Track| blob.off_m(t.after(dt_s));
             let nearest = known.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-            let same = nearest.filter(|(_, t)| off(t) < 2.0 + 0.1 * at.0);
+            let same = nearest.filter(|(_, t)| off(t) < 2.0 + 0.1 * blob.at.0);
             self.tracks.push(match same {
                 Some((index, t)) => {
                     found[index] = true;
-                    let measured = ((at.0 - t.at.0) / dt_s, (at.1 - t.at.1) / dt_s);
-                    let mix = |old: f32, new: f32| old + NEW_SHARE * (new.clamp(-20.0, 20.0) - old);
-                    let velocity_mps = (mix(t.velocity_mps.0, measured.0), mix(t.velocity_mps.1, measured.1));
-                    Track { at, velocity_mps, looks: t.looks + 1, unseen_s: 0.0 }
+                    t.seen_again(&blob, dt_s)
                 }
-                None => Track { at, velocity_mps: (0.0, 0.0), looks: 0, unseen_s: 0.0 },
+                None => Track { at: blob.at, velocity_mps: (0.0, 0.0), looks: 0, unseen_s: 0.0 },
             });
         }
         let missed = known.iter().zip(found).filter(|(_, found)| !found).map(|(track, _)| track);
         self.tracks.extend(missed.filter_map(|track| track.beside(dt_s)));
+    }
+
+    /// How fast the vehicle of a contact drives ahead along an arc, m/s; 0 where its movement is not known yet.
+    pub fn leads_mps(&self, contact: &Contact, arc: Arc) -> f32 {
+        let off = |t: &Track| ops::hypot(t.at.0 - contact.x_m, t.at.1 - contact.y_m);
+        let nearest = self.tracks.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        let same = nearest.filter(|t| off(t) < 2.0 + contact.depth_error_m && t.looks >= BELIEVED_AFTER);
+        same.map_or(0.0, |t| {
+            let (s_m, _) = arc.project(t.at.0, t.at.1);
+            let (_, _, heading_rad) = arc.at(s_m);
+            (t.velocity_mps.0 * ops::cos(heading_rad) + t.velocity_mps.1 * ops::sin(heading_rad)).max(0.0)
+        })
     }
 
     /// Those whose movement is known and faster than `least_mps`.
@@ -246,7 +278,7 @@ impl Patience {
 /// The room before what stands in the way, carried along between looks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Room {
-    ahead_m: Option<f32>,
+    ahead: Option<Ahead>,
     /// So many looks that do not show it are needed to forget it.
     belief: u32,
 }
@@ -254,45 +286,84 @@ pub struct Room {
 impl Room {
     /// Carries the room along while the car moves.
     pub fn carry(&mut self, moved: Moved) {
-        self.ahead_m = self.ahead_m.map(|ahead_m| ahead_m - moved.forward_m);
+        if let Some(ahead) = &mut self.ahead {
+            ahead.stop_in_m += ahead.leads_mps * TICK_S - moved.forward_m;
+        }
     }
 
     /// Takes in what a new mask shows: less room is believed at once, more of it little by little; what was seen again
     /// and again is not forgotten at once.
-    pub fn look(&mut self, seen_m: Option<f32>) {
-        let Some(seen_m) = seen_m else {
+    pub fn look(&mut self, seen: Option<Ahead>) {
+        let Some(seen) = seen else {
             self.belief = self.belief.saturating_sub(1);
-            self.ahead_m = self.ahead_m.filter(|_| self.belief > 0);
+            self.ahead = self.ahead.filter(|_| self.belief > 0);
             return;
         };
-        let known_m = self.ahead_m.unwrap_or(seen_m);
-        let share = if seen_m < known_m { 1.0 } else { FARTHER_SHARE };
-        self.ahead_m = Some(known_m + share * (seen_m - known_m));
+        let known_m = self.ahead.map_or(seen.stop_in_m, |known| known.stop_in_m);
+        let share = if seen.stop_in_m < known_m { 1.0 } else { FARTHER_SHARE };
+        self.ahead = Some(Ahead { stop_in_m: known_m + share * (seen.stop_in_m - known_m), ..seen });
         self.belief = (self.belief + BELIEF_PER_LOOK).min(MOST_BELIEF);
     }
 
     /// Metres to where the car must stand; `None` where nothing is in the way.
-    pub fn ahead_m(&self) -> Option<f32> {
-        self.ahead_m
+    pub fn stop_in_m(&self) -> Option<f32> {
+        self.ahead.map(|ahead| ahead.stop_in_m)
     }
 }
 
-/// One place for each vehicle or group of people: its nearest distance, the middle of its width.
-fn blobs<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Vec<Point> {
-    let mut blobs: Vec<(Point, Contact, f32)> = Vec::new();
-    for contact in contacts {
+/// A vehicle or a group of people in a mask.
+struct Blob {
+    /// Its nearest distance, the middle of its width.
+    at: Point,
+    /// As [`Contact::depth_error_m`], at its nearest.
+    depth_error_m: f32,
+    /// The contact that was added last, and how far to the left the first one is.
+    last: Contact,
+    left_m: f32,
+}
+
+impl Blob {
+    fn of(contact: &Contact) -> Self {
+        let at = (contact.x_m, contact.y_m);
+        Self { at, depth_error_m: contact.depth_error_m, last: *contact, left_m: contact.y_m }
+    }
+
+    /// Whether a contact, farther right than the others, belongs to it.
+    fn borders(&self, contact: &Contact) -> bool {
         let gap_m = GAP_M + GAP_PER_M * contact.x_m;
-        let of =
-            |last: &Contact| (last.x_m - contact.x_m).abs() < 2.0 * gap_m && (last.y_m - contact.y_m).abs() < gap_m;
-        match blobs.iter_mut().find(|(_, last, _)| of(last)) {
-            Some((at, last, left_m)) => {
-                *at = (at.0.min(contact.x_m), 0.5 * (*left_m + contact.y_m));
-                *last = *contact;
-            }
-            None => blobs.push(((contact.x_m, contact.y_m), *contact, contact.y_m)),
+        (self.last.x_m - contact.x_m).abs() < 2.0 * gap_m && (self.last.y_m - contact.y_m).abs() < gap_m
+    }
+
+    fn add(&mut self, contact: &Contact) {
+        if contact.x_m < self.at.0 {
+            (self.at.0, self.depth_error_m) = (contact.x_m, contact.depth_error_m);
+        }
+        self.at.1 = 0.5 * (self.left_m + contact.y_m);
+        self.last = *contact;
+    }
+
+    /// Where it is if it is as near to a point as the rows of pixels leave open: somewhere on the ray on which it is seen.
+    fn nearest_to(&self, (x_m, _): Point) -> Point {
+        sight::on_ray(self.at, x_m.clamp(self.at.0 - self.depth_error_m, self.at.0 + self.depth_error_m))
+    }
+
+    /// Distance to a point, beyond what the rows of pixels leave open.
+    fn off_m(&self, at: Point) -> f32 {
+        let nearest = self.nearest_to(at);
+        ops::hypot(nearest.0 - at.0, nearest.1 - at.1)
+    }
+}
+
+/// One for each vehicle or group of people, of contacts from left to right.
+fn blobs<'a>(contacts: impl IntoIterator<Item = &'a Contact>) -> Vec<Blob> {
+    let mut blobs: Vec<Blob> = Vec::new();
+    for contact in contacts {
+        match blobs.iter_mut().find(|blob| blob.borders(contact)) {
+            Some(blob) => blob.add(contact),
+            None => blobs.push(Blob::of(contact)),
         }
     }
-    blobs.into_iter().map(|(at, ..)| at).collect()
+    blobs
 }
 
 #[cfg(test)]
@@ -342,16 +413,16 @@ mod tests {
         let mut room = Room::default();
         let forward = Moved { forward_m: 0.1, turned_rad: 0.0 };
         let drive = |room: &mut Room, seen_m: Option<f32>| {
-            room.look(seen_m);
+            room.look(seen_m.map(Ahead::standing));
             (0..6).for_each(|_| room.carry(forward));
-            room.ahead_m()
+            room.stop_in_m()
         };
         // Seen once and never again: gone with the second look without it.
         assert!(drive(&mut room, Some(30.0)).is_some() && drive(&mut room, None).is_some());
         assert_eq!(drive(&mut room, None), None);
         // Seen for long, then farther, then not at all for less than the belief.
         (0..10).for_each(|_| assert!(drive(&mut room, Some(30.0)).is_some()));
-        let known_m = room.ahead_m().expect("it is believed");
+        let known_m = room.stop_in_m().expect("it is believed");
         let farther_m = drive(&mut room, Some(known_m + 15.0)).expect("it is seen");
         assert!(farther_m < known_m + 3.0, "{known_m}, then {farther_m}");
         (1..MOST_BELIEF).for_each(|_| assert!(drive(&mut room, None).is_some()));
@@ -373,7 +444,13 @@ mod tests {
                 tracks.moving(1.5).map(|track| track.at).next()
             };
             for tenths in 0..15 {
-                look(&[Contact { x_m: 12.0, y_m: y_m(0.1 * tenths as f32), is_person: false, on_road: true }]);
+                look(&[Contact {
+                    x_m: 12.0,
+                    depth_error_m: 0.0,
+                    y_m: y_m(0.1 * tenths as f32),
+                    is_person: false,
+                    on_road: true,
+                }]);
             }
             let unseen: Vec<Point> = (0..60).map_while(|_| look(&[])).collect();
             (unseen.len(), unseen.last().copied())
@@ -391,7 +468,8 @@ mod tests {
         let moved = Moved { forward_m: 0.1, turned_rad: 0.0 };
         // The car drives at 6 m/s; a vehicle crosses from the left at 4 m/s, another one stands.
         for look in 0..30 {
-            let contact = |x_m: f32, y_m: f32| Contact { x_m, y_m, is_person: false, on_road: true };
+            let contact =
+                |x_m: f32, y_m: f32| Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
             let away = 40.0 - 0.6 * look as f32;
             let crossing = 12.0 - 0.4 * look as f32;
             tracks.look(&[contact(away, crossing + 0.5), contact(away, crossing), contact(away + 2.0, -9.0)]);

@@ -19,9 +19,9 @@ use crate::vision::{FRAME_TICKS, LATENCY_TICKS};
 use crate::{indicate, single_track};
 use arc::Arc;
 use memory::{Dash, Moved, Patience, Reading, Room, Tracks, Trail};
-use pedals::Foot;
+use pedals::{Foot, Nose};
 use sight::{Contact, Sight};
-use speed::{Scene, Wish};
+use speed::{Ahead, Scene, Wish};
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
@@ -35,6 +35,9 @@ pub struct SemanticBot {
     /// Steering of the last tick, [-1, 1], positive to the right.
     steer: f32,
     foot: Foot,
+    nose: Nose,
+    /// How far the nose was down in the picture of the mask that was looked at last, radians.
+    down_rad: f32,
     reading: Reading,
     trail: Trail,
     tracks: Tracks,
@@ -50,10 +53,15 @@ pub struct SemanticBot {
 
 impl Driver<SemanticView<'_>> for SemanticBot {
     fn controls(&mut self, view: &SemanticView<'_>) -> Controls {
-        let sight = Sight::new(view.mask);
-        let (arc, wish) = self.decide(&sight, view);
+        let is_new = self.ids != view.mask.ids;
+        if is_new {
+            self.down_rad = self.nose.down_rad();
+        }
+        let sight = Sight::new(view.mask, self.down_rad);
+        let (arc, wish) = self.decide(&sight, view, is_new);
         self.steer = follow(self.steer, single_track::steering(arc.curvature));
         let (throttle, brake) = self.foot.press(view.hud.speed_mps(), &wish, self.temper.reaction_factor());
+        self.nose.dip(throttle, brake, view.hud.speed_mps());
         Controls { flags: indicate::turn(&view.hud), ..Controls::from_fractions(self.steer, throttle, brake) }
     }
 }
@@ -70,7 +78,7 @@ impl SemanticBot {
     }
 
     /// Takes in the view: where to steer, and how fast to go.
-    pub fn decide(&mut self, sight: &Sight<'_>, view: &SemanticView<'_>) -> (Arc, Wish) {
+    fn decide(&mut self, sight: &Sight<'_>, view: &SemanticView<'_>, is_new: bool) -> (Arc, Wish) {
         let moved = Moved::along(Arc { curvature: single_track::curvature(self.steer) }, view.hud.speed_mps());
         let dash = self.reading.read(&view.hud, moved);
         self.trail.extend(moved, path::arrow_point(dash.bearing_deg));
@@ -81,8 +89,11 @@ impl SemanticBot {
         self.looked_ticks += 1;
         // Nothing moves in the picture of a car that stands before a parked one, and yet it is a new picture.
         let stands_still = view.hud.speed_kmh == 0 && self.looked_ticks >= FRAME_TICKS;
-        if self.ids != view.mask.ids || stands_still {
-            self.look(sight, view.mask.ids, arc, &dash);
+        if is_new {
+            self.look(sight, view.mask.ids);
+            self.make_room(arc, &dash);
+        } else if stands_still {
+            self.make_room(arc, &dash);
         }
         // A light leaves the HUD once its line is passed, but the junction still has it.
         self.has_lights = dash.light.is_some() || (self.has_lights && dash.junction_m < PASSED_LIGHT_M);
@@ -90,22 +101,27 @@ impl SemanticBot {
         let gives_way = !self.has_lights || dash.turn == Turn::Left;
         let give_way_m = if gives_way { speed::give_way_m(arc, &dash, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
-        let scene = Scene { obstacle_m: self.room.ahead_m(), give_way_m, has_lights: self.has_lights };
+        let scene = Scene { obstacle_m: self.room.stop_in_m(), give_way_m, has_lights: self.has_lights };
         (arc, speed::wish(sight, arc, &dash, scene, self.temper.vigour()))
     }
 
     /// Takes in a new mask, whose picture is as old as it took to predict it.
-    fn look(&mut self, sight: &Sight<'_>, ids: &[u8], arc: Arc, dash: &Dash) {
-        self.looked_ticks = 0;
+    fn look(&mut self, sight: &Sight<'_>, ids: &[u8]) {
         self.ids.clear();
         self.ids.extend_from_slice(ids);
         self.contacts = sight.contacts();
         self.tracks.look(self.contacts.iter().filter(|contact| !contact.is_person));
         self.people.look(self.contacts.iter().filter(|contact| contact.is_person));
+    }
+
+    /// What stands in the way by the mask that was looked at last.
+    fn make_room(&mut self, arc: Arc, dash: &Dash) {
+        self.looked_ticks = 0;
         let driven_m = dash.speed_mps * LATENCY_TICKS as f32 * TICK_S;
-        let stands_m = speed::obstacle_m(&self.contacts, arc, dash.speed_mps).map(|seen_m| seen_m - driven_m);
-        let walks_m = speed::crossing_m(&self.people, arc, dash.speed_mps);
-        self.room.look(stands_m.into_iter().chain(walks_m).reduce(f32::min));
+        let stands = speed::obstacle(&self.contacts, &self.tracks, arc, dash.speed_mps)
+            .map(|seen| Ahead { stop_in_m: seen.stop_in_m - driven_m, ..seen });
+        let walks = speed::crossing_m(&self.people, arc, dash.speed_mps).map(Ahead::standing);
+        self.room.look(stands.into_iter().chain(walks).reduce(Ahead::nearer));
     }
 }
 

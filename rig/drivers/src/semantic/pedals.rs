@@ -1,8 +1,9 @@
 //! From what the driver wants to the pedals: a foot that takes its time.
 
-use kernel::time::{TICK_HZ, Tick};
+use kernel::time::{TICK_HZ, TICK_S, Tick};
 
 use super::speed::{self, SPEED_TIME_S, Wish};
+use crate::vision::LATENCY_TICKS;
 
 /// Acceleration at full throttle and deceleration at full brake, m/s^2.
 pub const FULL_THROTTLE_MPS2: f32 = 4.0;
@@ -21,6 +22,9 @@ const READY_S: f32 = 1.5;
 const HOLDING_MPS: f32 = 0.5;
 /// Brake that holds the car.
 const HOLDING: f32 = 0.5;
+/// Time that the pedals and the suspension take, seconds, and how far the nose goes down for each m/s^2 of braking, radians.
+const PEDAL_S: f32 = 0.1;
+const DOWN_RAD_PER_MPS2: f32 = 0.0032;
 
 /// The right foot.
 #[derive(Clone, Copy, Debug)]
@@ -47,23 +51,56 @@ impl Foot {
             Self::Drives { .. } if is_to_stand && speed_mps < HOLDING_MPS => *self = Self::Holds { free_ticks: 0 },
             Self::Holds { free_ticks } if is_to_stand => *free_ticks = 0,
             Self::Holds { free_ticks } if *free_ticks < reaction_ticks => *free_ticks += 1,
-            Self::Holds { .. } => *self = Self::default(),
+            Self::Holds { .. } => *self = Self::Drives { ready_ticks: ready_ticks(), wanted_ticks: 0 },
             Self::Drives { .. } => {}
         }
         match self {
             Self::Holds { .. } => (0.0, HOLDING),
-            Self::Drives { ready_ticks, wanted_ticks } => {
+            Self::Drives { ready_ticks: over_brake, wanted_ticks } => {
                 let (free_mps2, stop_mps2) = (free_mps2(speed_mps, wish), stop_mps2(speed_mps, wish));
                 let is_wanted = stop_mps2 < free_mps2.min(-SURPRISING_MPS2);
                 *wanted_ticks = if is_wanted { *wanted_ticks + 1 } else { 0 };
-                let is_surprised = is_wanted && *ready_ticks == 0 && *wanted_ticks <= reaction_ticks;
+                let is_surprised = is_wanted && *over_brake == 0 && *wanted_ticks <= reaction_ticks;
                 let mps2 = if is_surprised { free_mps2 } else { free_mps2.min(stop_mps2) };
-                let ready = (READY_S * TICK_HZ as f32) as Tick;
-                *ready_ticks = if mps2 < 0.0 { ready } else { ready_ticks.saturating_sub(1) };
+                let brakes_to_stand = stop_mps2 < 0.0 && stop_mps2 <= free_mps2 && !is_surprised;
+                *over_brake = if brakes_to_stand || mps2 < -SURPRISING_MPS2 {
+                    ready_ticks()
+                } else {
+                    over_brake.saturating_sub(1)
+                };
                 if mps2 >= 0.0 { (mps2 / FULL_THROTTLE_MPS2, 0.0) } else { (0.0, -mps2 / FULL_BRAKE_MPS2) }
             }
         }
     }
+}
+
+/// The nose of the car, as the driver feels it: it dips when the car brakes, and all in the picture is higher then.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nose {
+    mps2: f32,
+    /// How far it was down, radians, at the last ticks, the oldest first.
+    past_rad: [f32; LATENCY_TICKS as usize + 1],
+}
+
+impl Nose {
+    /// Takes in what the pedals do.
+    pub fn dip(&mut self, throttle: f32, brake: f32, speed_mps: f32) {
+        let asked_mps2 = FULL_THROTTLE_MPS2 * throttle - FULL_BRAKE_MPS2 * brake;
+        // Who stands is not braked.
+        let asked_mps2 = if speed_mps > 0.0 { asked_mps2 } else { asked_mps2.max(0.0) };
+        self.mps2 += (asked_mps2 - self.mps2) * TICK_S / PEDAL_S;
+        self.past_rad.rotate_left(1);
+        self.past_rad[LATENCY_TICKS as usize] = -DOWN_RAD_PER_MPS2 * self.mps2;
+    }
+
+    /// How far it was down when the picture was taken that is on the screen for the first time, radians.
+    pub fn down_rad(&self) -> f32 {
+        self.past_rad[0]
+    }
+}
+
+fn ready_ticks() -> Tick {
+    (READY_S * TICK_HZ as f32) as Tick
 }
 
 /// Acceleration towards a speed, m/s^2.
@@ -127,5 +164,26 @@ mod tests {
         let red = Wish { stop_in_m: Some(0.0), ..WISH };
         assert_eq!(foot.press(0.2, &red, 1.0), (0.0, HOLDING));
         assert_eq!(ticks_until(&mut foot, 0.0, &WISH, |(throttle, _)| throttle > 0.0), 31);
+    }
+
+    /// On a flat road, 8 m/s and then the brake.
+    #[test]
+    fn the_nose_is_where_the_kernel_has_it() {
+        let map = base::maps::Map::find("city").expect("it is bundled");
+        let text = "map = \"city\"\n[traffic]\ncars = 0\nmotorcycles = 0\nbicycles = 0\npedestrians = 0\n";
+        let scenario = kernel::Scenario::from_toml(text).expect("it is a scenario");
+        let mut world = kernel::World::new(&scenario, &map.network).expect("it fits");
+        let (mut nose, mut felt) = (Nose::default(), Vec::new());
+        for tick in 0..200 {
+            let (throttle, brake) = if tick < 120 { (0.8, 0.0) } else { (0.0, 0.35) };
+            let semantic = kernel::Controls::from_fractions(0.0, throttle, brake);
+            nose.dip(throttle, brake, world.hud().speed_mps);
+            world.step(&kernel::TickInput { semantic, safety: kernel::Controls::default() });
+            let forward = world.scene().ego.rotation * glam::Vec3::X;
+            felt.push((nose.past_rad[LATENCY_TICKS as usize], -forward.z));
+        }
+        for (feels_rad, is_rad) in felt.into_iter().skip(60) {
+            assert!((feels_rad - is_rad).abs() < 0.006, "{feels_rad} rad, it is {is_rad}");
+        }
     }
 }

@@ -14,13 +14,23 @@ const VEHICLE_HEIGHT_M: f32 = 1.4;
 const LEAST_SHARE: f32 = 0.35;
 /// Least height of a blob in pixels.
 const LEAST_ROWS: usize = 2;
-/// Farthest contact with the ground that is told apart from the horizon, metres.
-const FARTHEST_M: f32 = 55.0;
+/// Farthest contact with the ground that is told apart from the horizon, metres: two rows of pixels below it on the usual
+/// screen, which are as many as a car there is high.
+const FARTHEST_M: f32 = 100.0;
 
-/// Whether a point of the car's frame lies within the picture's sides.
+/// What is seen of somebody is the middle of the part in the picture: so far from its side it may leave, metres.
+const LEAVING_M: f32 = 1.0;
+
+/// Whether a point of the car's frame lies well within the picture's sides.
 pub fn is_in_picture((x_m, y_m): (f32, f32)) -> bool {
     let camera = Camera::driver(2, 1);
-    y_m.abs() < (x_m - camera.position.x) * kernel::ops::tan(0.5 * camera.fov_x_rad)
+    y_m.abs() + LEAVING_M < (x_m - camera.position.x) * kernel::ops::tan(0.5 * camera.fov_x_rad)
+}
+
+/// The point at a distance that is seen in the same columns as another one.
+pub fn on_ray((seen_x_m, seen_y_m): (f32, f32), x_m: f32) -> (f32, f32) {
+    let camera_x_m = Camera::driver(2, 1).position.x;
+    (x_m, seen_y_m * (x_m - camera_x_m) / (seen_x_m - camera_x_m))
 }
 
 /// What a piece of ground shows.
@@ -43,6 +53,8 @@ pub enum Ground {
 pub struct Contact {
     /// Metres forward of the rear axle.
     pub x_m: f32,
+    /// It may be so much nearer or farther, metres: half of the depth that a row of pixels covers there.
+    pub depth_error_m: f32,
     /// Metres to the left.
     pub y_m: f32,
     /// A person, not a vehicle.
@@ -57,14 +69,17 @@ pub struct Sight<'a> {
     mask: MaskView<'a>,
     camera: Camera,
     focal_px: f32,
+    /// Rows from the upper edge to the horizon.
+    horizon_px: f32,
 }
 
 impl<'a> Sight<'a> {
-    /// Looks at a mask.
-    pub fn new(mask: MaskView<'a>) -> Self {
+    /// Looks at a mask from a car whose nose is so far down, radians.
+    pub fn new(mask: MaskView<'a>, down_rad: f32) -> Self {
         let camera = Camera::driver(mask.width as u32, mask.height as u32);
         let focal_px = 0.5 * mask.width as f32 / kernel::ops::tan(0.5 * camera.fov_x_rad);
-        Self { mask, camera, focal_px }
+        let horizon_px = 0.5 * mask.height as f32 - focal_px * down_rad;
+        Self { mask, camera, focal_px, horizon_px }
     }
 
     fn tag(&self, column: usize, row: usize) -> u8 {
@@ -73,12 +88,12 @@ impl<'a> Sight<'a> {
 
     /// First row below the horizon.
     fn horizon(&self) -> usize {
-        self.mask.height / 2
+        self.horizon_px.ceil() as usize
     }
 
     /// Distance of the ground seen in a row below the horizon, metres from the rear axle.
     fn row_x_m(&self, row: usize) -> f32 {
-        let below = row as f32 + 0.5 - 0.5 * self.mask.height as f32;
+        let below = row as f32 + 0.5 - self.horizon_px;
         self.camera.position.x + self.focal_px * self.camera.position.z / below
     }
 
@@ -94,7 +109,7 @@ impl<'a> Sight<'a> {
             return Ground::Unseen;
         }
         let column = 0.5 * self.mask.width as f32 - self.focal_px * y_m / ahead;
-        let row = 0.5 * self.mask.height as f32 + self.focal_px * self.camera.position.z / ahead;
+        let row = self.horizon_px + self.focal_px * self.camera.position.z / ahead;
         if column < 0.0 || column >= self.mask.width as f32 || row >= self.mask.height as f32 {
             return Ground::Unseen;
         }
@@ -187,17 +202,19 @@ impl<'a> Sight<'a> {
         (!figure.pixels.is_empty()).then_some(figure)
     }
 
-    /// The contact of a blob of `rows` rows that ends above `row`.
+    /// The contact of a blob of `rows` rows that ends above `row`, whose upper edge is its end give or take half a row.
     fn contact(&self, column: usize, row: usize, rows: usize) -> Option<Contact> {
         let is_person = is_person(self.tag(column, row - 1));
-        let x_m = self.row_x_m(row - 1);
+        let below_px = row as f32 - self.horizon_px;
+        let ahead_m = self.focal_px * self.camera.position.z / below_px;
+        let (x_m, depth_error_m) = (self.camera.position.x + ahead_m, 0.5 * ahead_m / below_px);
         let height_m = if is_person { PERSON_HEIGHT_M } else { VEHICLE_HEIGHT_M };
-        let expected_rows = height_m * self.focal_px / (x_m - self.camera.position.x);
+        let expected_rows = height_m * self.focal_px / ahead_m;
         let is_tall_enough = rows >= LEAST_ROWS && rows as f32 >= LEAST_SHARE * expected_rows;
         let below = (row < self.mask.height).then(|| ground_of(self.tag(column, row)));
         let on_road = below.is_none_or(|ground| ground != Ground::Other);
         let y_m = self.column_y_m(column, x_m);
-        (is_tall_enough && x_m < FARTHEST_M).then_some(Contact { x_m, y_m, is_person, on_road })
+        (is_tall_enough && x_m < FARTHEST_M).then_some(Contact { x_m, depth_error_m, y_m, is_person, on_road })
     }
 
     /// What borders the lane around a point of a row: metres to the left and to the right of

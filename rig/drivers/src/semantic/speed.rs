@@ -37,17 +37,19 @@ const GIVE_WAY_M: f32 = 14.0;
 const GIVE_WAY_STEPS: u32 = 16;
 /// Acceleration of a car that drives off, m/s^2.
 const DRIVING_OFF_MPS2: f32 = 2.0;
-/// What must not be met: the front of the car, its middle and its rear, metres from the rear axle.
-const PARTS_M: [f32; 3] = [FRONT_M, 0.5 * FRONT_M, 0.0];
+/// What must not be met: the front of the car, its middle and its rear axle, metres from the latter.
+const PARTS_M: [f32; 3] = [FRONT_M, ego::CENTRE_M.x, 0.0];
 /// Distance at which two vehicles meet, metres.
 const MEET_M: f32 = 3.0;
 /// Curvature of usual turns, 1/m.
 const LEFT_BEND: f32 = 0.09;
 const RIGHT_BEND: f32 = 0.14;
 /// How far the road is looked at, metres.
-const REACH_M: f32 = 45.0;
-/// How far ahead along the arc somebody counts as in the way, metres: what 2 m/s^2 need from 50 km/h.
+const REACH_M: f32 = 90.0;
+/// How far ahead along the arc somebody counts as in the way, at least, metres: what 2 m/s^2 need from 50 km/h.
 const IN_THE_WAY_M: f32 = 50.0;
+/// Deceleration that who drives ahead is expected to be capable of, where he is not watched braking, m/s^2.
+const LEADER_MPS2: f32 = 4.0;
 /// Side clearance to vehicles, as long as the car stands and more the faster it is, to people beside the road, and to
 /// people on it, metres.
 const BESIDE_VEHICLE_M: [f32; 2] = [0.2, 0.5];
@@ -58,9 +60,11 @@ const BESIDE_CROSSING_M: f32 = 3.6;
 
 /// People who move faster than this walk, m/s.
 const WALKING_MPS: f32 = 0.5;
-/// How far ahead people are believed to keep their way, and how well it is known when they are somewhere, seconds.
+/// How far ahead people are believed to keep their way, and how well it is known when they are somewhere, seconds; and how
+/// far away it is too uncertain where they walk, metres.
 const FORESEEN_S: f32 = 3.5;
 const MOMENT_S: f32 = 0.7;
+const FORESEEN_M: f32 = 42.0;
 /// Speed with which the car is taken to come by, at least, m/s.
 const CREEPING_MPS: f32 = 2.0;
 
@@ -119,14 +123,46 @@ pub fn wish(sight: &Sight<'_>, arc: Arc, dash: &Dash, scene: Scene, vigour: f32)
     Wish { speed_mps, stop_in_m, comfort_mps2 }
 }
 
-/// Metres from the front of the car to where it must stand because of people and vehicles.
-pub fn obstacle_m(contacts: &[Contact], arc: Arc, speed_mps: f32) -> Option<f32> {
-    let distances = contacts.iter().filter_map(|contact| {
+/// What is in the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ahead {
+    /// Metres from the front of the car to where it must stand because of it.
+    pub stop_in_m: f32,
+    /// So fast it gets away, and the place to stand with it, m/s.
+    pub leads_mps: f32,
+}
+
+impl Ahead {
+    /// Who stands.
+    pub fn standing(stop_in_m: f32) -> Self {
+        Self { stop_in_m, leads_mps: 0.0 }
+    }
+
+    /// The one that asks for the slower speed.
+    pub fn nearer(self, other: Self) -> Self {
+        if other.stop_in_m < self.stop_in_m { other } else { self }
+    }
+}
+
+/// Farther along the arc nobody counts as in the way, metres.
+fn in_the_way_m(speed_mps: f32) -> f32 {
+    IN_THE_WAY_M.max(0.5 * speed_mps * speed_mps / COMFORT_MPS2)
+}
+
+/// Where the car must stand because of people and vehicles: behind those who stand, and behind where those who drive ahead
+/// would come to a stand.
+pub fn obstacle(contacts: &[Contact], vehicles: &Tracks, arc: Arc, speed_mps: f32) -> Option<Ahead> {
+    let in_the_way = contacts.iter().filter_map(|contact| {
         let (s_m, left_m) = arc.project(contact.x_m, contact.y_m);
-        let in_the_way = s_m < IN_THE_WAY_M && left_m.abs() < HALF_WIDTH_M + clearance_m(contact, speed_mps);
-        in_the_way.then_some(s_m - FRONT_M - STANDOFF_M)
+        let is_beside = left_m.abs() >= HALF_WIDTH_M + clearance_m(contact, speed_mps);
+        if s_m >= in_the_way_m(speed_mps) || is_beside {
+            return None;
+        }
+        let leads_mps = if contact.is_person { 0.0 } else { vehicles.leads_mps(contact, arc) };
+        let stand_in_m = 0.5 * leads_mps * leads_mps / LEADER_MPS2;
+        Some(Ahead { stop_in_m: s_m - FRONT_M - STANDOFF_M + stand_in_m, leads_mps })
     });
-    distances.reduce(f32::min)
+    in_the_way.reduce(Ahead::nearer)
 }
 
 /// Metres from the front of the car to where it must stand because of people who walk into its way: those who will be
@@ -141,7 +177,7 @@ pub fn crossing_m(tracks: &Tracks, arc: Arc, speed_mps: f32) -> Option<f32> {
             arc.project(x_m, y_m).1.abs() < HALF_WIDTH_M + BESIDE_WALKER_M
         };
         let times_s = [there_s - MOMENT_S, there_s, there_s + MOMENT_S];
-        let is_ahead = to_m > 0.0 && s_m < IN_THE_WAY_M && there_s < FORESEEN_S;
+        let is_ahead = to_m > 0.0 && s_m < FORESEEN_M && there_s < FORESEEN_S;
         (is_ahead && times_s.into_iter().any(is_in_the_way)).then_some(to_m - STANDOFF_M)
     };
     tracks.moving(WALKING_MPS).filter_map(meets).reduce(f32::min)
@@ -169,11 +205,13 @@ pub fn give_way_m(arc: Arc, dash: &Dash, tracks: &Tracks) -> Option<f32> {
             let t_s = 0.25 * step as f32;
             let driven_m = drives_off_m(dash.speed_mps, t_s);
             let near = |(x, y): Point, t_s: f32| ops::hypot(track.after(t_s).0 - x, track.after(t_s).1 - y) < MEET_M;
-            let is_met = |part_m: f32| {
-                let place = expected_way(arc, dash, part_m + driven_m);
+            let is_met = |s_m: &f32| {
+                let place = expected_way(arc, dash, *s_m);
                 [t_s - 0.75, t_s, t_s + 0.75].into_iter().any(|t_s| near(place, t_s))
             };
-            PARTS_M.into_iter().any(is_met).then_some(driven_m)
+            // Who is there already gets away by going on.
+            let places_m = PARTS_M.into_iter().map(|part_m| part_m + driven_m).filter(|s_m| *s_m > FRONT_M);
+            places_m.rev().find(is_met).map(|s_m| s_m - FRONT_M)
         })
     };
     let same_way = |track: &&Track| track.velocity_mps.0 > 2.0 * track.velocity_mps.1.abs();
@@ -236,7 +274,7 @@ mod tests {
         for look in 0..10 {
             let t_s = 0.1 * look as f32;
             let (x_m, y_m) = (from.0 + t_s * velocity_mps.0, from.1 + t_s * velocity_mps.1);
-            tracks.look(&[Contact { x_m, y_m, is_person: true, on_road: false }]);
+            tracks.look(&[Contact { x_m, depth_error_m: 0.0, y_m, is_person: true, on_road: false }]);
             (0..6).for_each(|_| tracks.carry(Moved { forward_m: 0.0, turned_rad: 0.0 }));
         }
         tracks
@@ -249,7 +287,7 @@ mod tests {
             let mut tracks = Tracks::default();
             for look in 0..10 {
                 let x_m = x_m + 1.0 * (10 - look) as f32;
-                tracks.look(&[Contact { x_m, y_m: 3.5, is_person: false, on_road: true }]);
+                tracks.look(&[Contact { x_m, depth_error_m: 0.0, y_m: 3.5, is_person: false, on_road: true }]);
                 (0..6).for_each(|_| tracks.carry(Moved { forward_m: 0.0, turned_rad: 0.0 }));
             }
             tracks
@@ -271,8 +309,12 @@ mod tests {
 
     #[test]
     fn a_car_creeps_by_a_parked_one_that_is_too_near_for_driving_by() {
-        let beside = |room_m: f32| Contact { x_m: 6.0, y_m: -HALF_WIDTH_M - room_m, is_person: false, on_road: true };
-        let stops = |room_m, speed_mps| obstacle_m(&[beside(room_m)], Arc { curvature: 0.0 }, speed_mps).is_some();
+        let beside = |room_m: f32| {
+            let y_m = -HALF_WIDTH_M - room_m;
+            Contact { x_m: 6.0, depth_error_m: 0.0, y_m, is_person: false, on_road: true }
+        };
+        let (nobody, ahead) = (Tracks::default(), Arc { curvature: 0.0 });
+        let stops = |room_m, speed_mps| obstacle(&[beside(room_m)], &nobody, ahead, speed_mps).is_some();
         assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 0.0)), [true, false, false, false]);
         assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 12.0)), [true, true, true, false]);
     }

@@ -1,5 +1,7 @@
 //! Closed loops on painted roads: no renderer, no world.
 
+use std::collections::VecDeque;
+
 use kernel::ego;
 use kernel::map::Turn;
 use kernel::signals::LightPhase;
@@ -123,6 +125,10 @@ fn it_keeps_its_lane_on_straights_and_bends() {
         let worst = worst_offset_m(&Road { curvature }, 0.6, speed_mps);
         assert!(worst < 0.5, "curvature {curvature}: {worst} m off the middle of the lane");
     }
+    for curvature in [0.0, 0.002, -0.002] {
+        let worst = worst_offset_m(&Road { curvature }, 0.6, 80.0 / 3.6);
+        assert!(worst < 0.6, "curvature {curvature}: {worst} m off the middle of the lane at 80 km/h");
+    }
 }
 
 #[test]
@@ -169,36 +175,89 @@ fn queue_ahead(gap_m: f32, down_rad: f32) -> Vec<u8> {
     ids
 }
 
-/// The nose of the car dips by about 1.3 degrees when it brakes with 3 m/s^2, and all seems farther then.
+/// The bot behind a car on a straight road, tick by tick.
+struct Behind {
+    bot: SemanticBot,
+    shown: VecDeque<Vec<u8>>,
+    tick: u32,
+    limit_kmh: u16,
+    gap_m: f32,
+    speed_mps: f32,
+    mps2: f32,
+}
+
+impl Behind {
+    fn new(gap_m: f32, speed_mps: f32, limit_kmh: u16) -> Self {
+        let (bot, shown) = (SemanticBot::default(), VecDeque::new());
+        Self { bot, shown, tick: 0, limit_kmh, gap_m, speed_mps, mps2: 0.0 }
+    }
+
+    fn step(&mut self, leader_mps: f32) {
+        // What is on the screen is 6 to 11 ticks old. The nose of the car dips by some 0.6 degrees when it brakes with
+        // 3 m/s^2, and all seems farther then.
+        if self.tick.is_multiple_of(6) {
+            let mut ids = queue_ahead(self.gap_m, -0.0032 * self.mps2);
+            // No two pictures are the same on the move.
+            ids[0] = (self.tick / 6 % 2) as u8;
+            self.shown.push_back(ids);
+            self.shown.drain(..self.shown.len().saturating_sub(2));
+        }
+        self.tick += 1;
+        let mask = MaskView { width: WIDTH, height: HEIGHT, ids: &self.shown[0] };
+        let hud = Readout { limit_kmh: self.limit_kmh, junction_m: None, ..hud(self.speed_mps, 0) };
+        let controls = self.bot.controls(&SemanticView { mask, hud });
+        let asked = FULL_THROTTLE_MPS2 * f32::from(controls.throttle) / f32::from(u16::MAX)
+            - FULL_BRAKE_MPS2 * f32::from(controls.brake) / f32::from(u16::MAX);
+        // Pedals and suspension take a moment.
+        self.mps2 += (asked - self.mps2) * TICK_S / 0.2;
+        self.speed_mps = (self.speed_mps + self.mps2 * TICK_S).max(0.0);
+        self.gap_m += (leader_mps - self.speed_mps) * TICK_S;
+    }
+}
+
 #[test]
 fn it_draws_up_to_a_queue_without_being_about_to_hit_it() {
-    for start_mps in [6.0, 10.0, 50.0 / 3.6] {
-        let (mut bot, mut ids) = (SemanticBot::default(), Vec::new());
-        let (mut gap_m, mut speed_mps, mut mps2, mut hardest) = (90.0_f32, start_mps, 0.0_f32, 0.0_f32);
-        let mut shown = std::collections::VecDeque::new();
-        for tick in 0..1800 {
-            // What is on the screen is 6 to 11 ticks old.
-            if tick % 6 == 0 {
-                shown.push_back(queue_ahead(gap_m, -0.0075 * mps2));
-                ids = if shown.len() > 1 { shown.pop_front().expect("two") } else { shown[0].clone() };
-            }
-            let mask = MaskView { width: WIDTH, height: HEIGHT, ids: &ids };
-            let controls = bot.controls(&SemanticView { mask, hud: hud(speed_mps, 0) });
-            let asked = FULL_THROTTLE_MPS2 * f32::from(controls.throttle) / f32::from(u16::MAX)
-                - FULL_BRAKE_MPS2 * f32::from(controls.brake) / f32::from(u16::MAX);
-            // Pedals and suspension take a moment.
-            mps2 += (asked - mps2) * TICK_S / 0.2;
-            speed_mps = (speed_mps + mps2 * TICK_S).max(0.0);
-            gap_m -= speed_mps * TICK_S;
-            hardest = hardest.min(mps2);
-            let (t_s, braking) = (2.0_f32, mps2.min(-1e-3));
-            let t_s = t_s.min(-speed_mps / braking);
-            let driven_m = speed_mps * t_s + 0.5 * braking * t_s * t_s;
+    for (start_mps, limit_kmh) in [(6.0, 50), (10.0, 50), (50.0 / 3.6, 50), (70.0 / 3.6, 70)] {
+        let (mut car, mut hardest) = (Behind::new(150.0, start_mps, limit_kmh), 0.0_f32);
+        for _ in 0..1800 {
+            car.step(0.0);
+            hardest = hardest.min(car.mps2);
+            let (t_s, braking) = (2.0_f32, car.mps2.min(-1e-3));
+            let t_s = t_s.min(-car.speed_mps / braking);
+            let driven_m = car.speed_mps * t_s + 0.5 * braking * t_s * t_s;
+            let Behind { gap_m, speed_mps, mps2, .. } = car;
             assert!(speed_mps < 0.5 || driven_m < gap_m, "{start_mps}: {speed_mps} m/s, {mps2}, {gap_m} m before it");
         }
+        let Behind { gap_m, speed_mps, .. } = car;
         assert!(speed_mps < 0.1 && (1.0..6.0).contains(&gap_m), "{start_mps}: {speed_mps} m/s, {gap_m} m before it");
         // Rows of the picture are metres apart at first sight, so it brakes harder than is comfortable, but not fully.
         assert!(hardest > -0.6 * FULL_BRAKE_MPS2, "{start_mps}: {hardest} m/s^2");
+    }
+}
+
+/// The leader drives for a minute and then brakes hard; from 10 s on the gap is said in seconds.
+#[test]
+fn it_keeps_pace_with_who_drives_ahead_and_stands_behind_them_when_they_brake() {
+    for (leader_mps, limit_kmh, braking_mps2) in [(8.0, 50, 6.0), (12.0, 50, 6.0), (18.0, 80, 5.0)] {
+        let mut car = Behind::new(40.0, leader_mps, limit_kmh);
+        let (mut slowest, mut gaps_s) = (f32::INFINITY, Vec::new());
+        for tick in 0..3600 {
+            car.step(leader_mps);
+            if tick >= 600 {
+                slowest = slowest.min(car.speed_mps);
+                gaps_s.push(car.gap_m / leader_mps);
+            }
+        }
+        let gap_s = gaps_s.iter().sum::<f32>() / gaps_s.len() as f32;
+        assert!(slowest > 0.75 * leader_mps, "{leader_mps}: {slowest} m/s behind it");
+        assert!((1.2..5.0).contains(&gap_s), "{leader_mps}: {gap_s} s behind it");
+        let (mut speed_mps, mut nearest_m) = (leader_mps, f32::INFINITY);
+        for _ in 0..900 {
+            speed_mps = (speed_mps - braking_mps2 * TICK_S).max(0.0);
+            car.step(speed_mps);
+            nearest_m = nearest_m.min(car.gap_m);
+        }
+        assert!(car.speed_mps < 0.1 && nearest_m > 1.0, "{leader_mps}: {nearest_m} m behind it");
     }
 }
 
@@ -226,11 +285,11 @@ fn a_figure_is_as_far_as_its_lowest_foot() {
             ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(SemanticTag::Pedestrian as u8);
         }
     }
-    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids });
+    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids }, 0.0);
     let (_, foot_m) = sight.rows_between(0.0, 60.0).find(|(row, _)| *row == 78).expect("in view");
     let contacts = sight.contacts();
     assert_eq!(contacts.len(), 8, "a contact for every column: {contacts:?}");
-    assert!(contacts.iter().all(|c| c.is_person && c.x_m == foot_m), "{foot_m} m: {contacts:?}");
+    assert!(contacts.iter().all(|c| c.is_person && (c.x_m - foot_m).abs() < 0.5), "{foot_m} m: {contacts:?}");
 }
 
 #[test]
@@ -255,11 +314,11 @@ fn a_rider_is_where_his_wheels_are() {
             ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(tag as u8);
         }
     }
-    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids });
+    let sight = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids }, 0.0);
     let (_, wheels_m) = sight.rows_between(0.0, 60.0).find(|(row, _)| *row == 78).expect("in view");
     let contacts = sight.contacts();
     assert!(
-        contacts.len() >= 4 && contacts.iter().all(|c| !c.is_person && c.x_m == wheels_m),
+        contacts.len() >= 4 && contacts.iter().all(|c| !c.is_person && (c.x_m - wheels_m).abs() < 0.5),
         "{wheels_m} m: {contacts:?}"
     );
 }
