@@ -2,7 +2,7 @@
 //! for `benches/peers/gym.py`, which does the same from Python.
 //!
 //! `episode_speed DRIVES ROUNDS STEPS JOBS`: in each round so many drives on the map `city` have so many steps of 6 ticks,
-//! seen through true masks, at full throttle.
+//! seen through true masks from the start on, at full throttle.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -48,14 +48,21 @@ fn drive(drives: usize, steps: usize, jobs: usize) -> anyhow::Result<String> {
     };
     spread::on_threads(jobs, drives, device, |(optics, mask): &mut (Optics, Vec<u8>), seed| {
         let mut episode = Episode::new(&map.scenario(seed as u64), &map, Seat::Semantic, None, true)?;
+        observe(&mut episode, optics, mask)?;
         for _ in 0..steps {
             episode.step(optics, Controls::from_fractions(0.0, 1.0, 0.0), STEP_TICKS)?;
-            mask.clear();
-            mask.extend_from_slice(episode.mask(optics)?.ids);
-            std::hint::black_box((&mask, hud::row(&Readout::of(&episode.world().hud()))));
+            observe(&mut episode, optics, mask)?;
         }
         Ok(())
     })?;
     let seconds = begin.elapsed().as_secs_f64();
     Ok(format!("{{\"steps\": {}, \"steps_a_second\": {:.1}}}", drives * steps, (drives * steps) as f64 / seconds))
+}
+
+/// As after a reset or a step of `aeye.gym`.
+fn observe(episode: &mut Episode, optics: &mut Optics, mask: &mut Vec<u8>) -> anyhow::Result<()> {
+    mask.clear();
+    mask.extend_from_slice(episode.mask(optics)?.ids);
+    std::hint::black_box((&mask, hud::row(&Readout::of(&episode.world().hud()))));
+    Ok(())
 }

@@ -13,7 +13,8 @@ use anyhow::bail;
 use base::library::{self, Kind};
 use base::say::say;
 use glam::{Vec2, Vec3};
-use kernel::scene::ActorKind;
+use kernel::arbiter::Phase;
+use kernel::scene::{ActorKind, FIRST_PARKED_ID};
 use kernel::time::{TICK_HZ, Tick};
 use rayon::prelude::*;
 use replay::{Recording, Replayer};
@@ -22,8 +23,8 @@ use replay::{Recording, Replayer};
 const STRETCH_M: f32 = 50.0;
 /// Others farther away are not looked at, metres.
 const NEAR_M: f32 = 300.0;
-/// Stretches that others were on for less than this tell nothing, seconds.
-const LEAST_S: f64 = 5.0;
+/// Stretches on which others drove less than this in all tell nothing, kilometres.
+const LEAST_KM: f64 = 0.05;
 /// Ticks from one look to the next.
 const LOOK_TICKS: Tick = 6;
 
@@ -79,6 +80,9 @@ fn main() -> anyhow::Result<()> {
 
 fn line(map: &str, [ego, others]: [Driven; 2]) {
     let (ego_kmh, others_kmh) = (ego.kmh(), others.kmh());
+    if ego.km == 0.0 {
+        return say(format_args!("{map:12} no stretch that others drove on as well"));
+    }
     let percent = 100.0 * ego_kmh / others_kmh;
     say(format_args!(
         "{map:12} {:7.1} km  ego {ego_kmh:5.1} km/h  cars {others_kmh:5.1} km/h  {percent:4.0} %",
@@ -94,11 +98,13 @@ fn watch(path: &Path) -> anyhow::Result<(String, Roads)> {
     let mut roads = Roads::new();
     loop {
         let scene = replayer.world().scene();
-        if scene.tick.is_multiple_of(LOOK_TICKS) {
+        let is_driven = matches!(replayer.world().arbiter().phase, Phase::Arming | Phase::Driving);
+        if is_driven && scene.tick.is_multiple_of(LOOK_TICKS) {
             let ego = stretch_of(scene.ego.position, scene.ego.rotation * Vec3::X);
             roads.entry(ego).or_default()[0].add(in_a_look(replayer.world().hud().speed_mps));
             let is_near = |at: Vec3| at.distance(scene.ego.position) < NEAR_M;
-            for car in scene.actors.iter().filter(|actor| actor.kind == ActorKind::Car && is_near(actor.position)) {
+            let is_car = |id, kind| kind == ActorKind::Car && id < FIRST_PARKED_ID;
+            for car in scene.actors.iter().filter(|car| is_car(car.id, car.kind) && is_near(car.position)) {
                 let stretch = stretch_of(car.position, car.rotation * Vec3::X);
                 roads.entry(stretch).or_default()[1].add(in_a_look(car.speed_mps));
             }
@@ -123,7 +129,7 @@ fn stretch_of(at: Vec3, forward: Vec3) -> Stretch {
 /// What the ego car drove where others were, and the same kilometres in the time of the others.
 fn compare(roads: &Roads) -> [Driven; 2] {
     let mut compared = [Driven::default(); 2];
-    for [ego, others] in roads.values().filter(|[_, others]| others.s >= LEAST_S && others.km > 0.0) {
+    for [ego, others] in roads.values().filter(|[_, others]| others.km >= LEAST_KM) {
         compared[0].add(*ego);
         compared[1].add(Driven { km: ego.km, s: others.s * ego.km / others.km });
     }

@@ -7,15 +7,14 @@ use kernel::time::TICK_S;
 
 use super::arc::{Arc, Point};
 use super::sight::{self, Contact};
-use super::speed::Ahead;
 use crate::readout::{self, Readout};
 
 /// Distance between two remembered points of the route, metres.
 const TRAIL_STEP_M: f32 = 0.4;
 /// Half of the stretch of the trail that is averaged, metres; evens out the steps of the arrow.
 const TRAIL_AVERAGE_M: f32 = 1.6;
-/// Share of a new measurement in a velocity; half of it, away from the car, where the depth is known no better than this,
-/// metres; and most that it changes, m/s.
+/// Share of a new measurement in a velocity; half of it where the depth is known no better than this, metres; and most that
+/// it changes, m/s.
 const NEW_SHARE: f32 = 0.3;
 const KNOWN_DEPTH_M: f32 = 2.0;
 const MOST_CHANGE_MPS: f32 = 6.0;
@@ -30,8 +29,8 @@ const REMEMBERED_S: f32 = 3.0;
 /// How long others are let pass after they were last seen to come, seconds.
 const PATIENCE_S: f32 = 1.2;
 
-/// Share of a look at which what stands in the way seems farther than before: the nose of a car that brakes dips, and
-/// all seems farther then.
+/// Share of a look at which what stands in the way seems farther than before: a row of pixels farther up is soon the old
+/// one again.
 const FARTHER_SHARE: f32 = 0.15;
 /// Looks without what stands in the way that are needed to forget it: so many for each look that showed it, and at most.
 const BELIEF_PER_LOOK: u32 = 2;
@@ -275,6 +274,27 @@ impl Patience {
     }
 }
 
+/// What is in the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ahead {
+    /// Metres from the front of the car to where it must stand because of it.
+    pub stop_in_m: f32,
+    /// So fast it gets away, and the place to stand with it, m/s.
+    pub leads_mps: f32,
+}
+
+impl Ahead {
+    /// Who stands.
+    pub fn standing(stop_in_m: f32) -> Self {
+        Self { stop_in_m, leads_mps: 0.0 }
+    }
+
+    /// The one that asks for the slower speed.
+    pub fn nearer(self, other: Self) -> Self {
+        if other.stop_in_m < self.stop_in_m { other } else { self }
+    }
+}
+
 /// The room before what stands in the way, carried along between looks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Room {
@@ -396,6 +416,10 @@ mod tests {
         }
         assert!(worst_m < 0.5, "{worst_m}");
         assert_eq!(countdown.read(80, STILL), 80.0, "the next one");
+        // A step that comes long before it was expected is no step of the way that was driven.
+        let mut another = Countdown { shown_m: 50, left_m: 58.0 };
+        assert_eq!(another.read(40, STILL), 40.0);
+        assert_eq!(Countdown { shown_m: 50, left_m: 52.0 }.read(40, STILL), 50.0);
     }
 
     #[test]

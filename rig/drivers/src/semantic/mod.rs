@@ -18,10 +18,10 @@ use crate::temper::Temper;
 use crate::vision::{FRAME_TICKS, LATENCY_TICKS};
 use crate::{indicate, single_track};
 use arc::Arc;
-use memory::{Dash, Moved, Patience, Reading, Room, Tracks, Trail};
+use memory::{Ahead, Dash, Moved, Patience, Reading, Room, Tracks, Trail};
 use pedals::{Foot, Nose};
 use sight::{Contact, Sight};
-use speed::{Ahead, Scene, Wish};
+use speed::{Scene, Wish};
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
@@ -105,7 +105,7 @@ impl SemanticBot {
         (arc, speed::wish(sight, arc, &dash, scene, self.temper.vigour()))
     }
 
-    /// Takes in a new mask, whose picture is as old as it took to predict it.
+    /// Takes in a new mask.
     fn look(&mut self, sight: &Sight<'_>, ids: &[u8]) {
         self.ids.clear();
         self.ids.extend_from_slice(ids);
@@ -114,7 +114,7 @@ impl SemanticBot {
         self.people.look(self.contacts.iter().filter(|contact| contact.is_person));
     }
 
-    /// What stands in the way by the mask that was looked at last.
+    /// What stands in the way by the mask that was looked at last, whose picture was as old as it took to predict it.
     fn make_room(&mut self, arc: Arc, dash: &Dash) {
         self.looked_ticks = 0;
         let driven_m = dash.speed_mps * LATENCY_TICKS as f32 * TICK_S;

@@ -24,7 +24,7 @@ const HOLDING_MPS: f32 = 0.5;
 const HOLDING: f32 = 0.5;
 /// Time that the pedals and the suspension take, seconds, and how far the nose goes down for each m/s^2 of braking, radians.
 const PEDAL_S: f32 = 0.1;
-const DOWN_RAD_PER_MPS2: f32 = 0.0032;
+pub const DOWN_RAD_PER_MPS2: f32 = 0.0032;
 
 /// The right foot.
 #[derive(Clone, Copy, Debug)]
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(ticks_until(&mut foot, 0.0, &WISH, |(throttle, _)| throttle > 0.0), 31);
     }
 
-    /// On a flat road, 8 m/s and then the brake.
+    /// On a flat road, 6 m/s and then the brake.
     #[test]
     fn the_nose_is_where_the_kernel_has_it() {
         let map = base::maps::Map::find("city").expect("it is bundled");
@@ -182,8 +182,11 @@ mod tests {
             let forward = world.scene().ego.rotation * glam::Vec3::X;
             felt.push((nose.past_rad[LATENCY_TICKS as usize], -forward.z));
         }
-        for (feels_rad, is_rad) in felt.into_iter().skip(60) {
-            assert!((feels_rad - is_rad).abs() < 0.006, "{feels_rad} rad, it is {is_rad}");
+        assert!((world.hud().speed_mps - 2.0).abs() < 0.5, "{} m/s", world.hud().speed_mps);
+        for (tick, (feels_rad, is_rad)) in felt.into_iter().enumerate() {
+            // The body swings when the pedals change, which nobody foresees.
+            let most_rad = if (60..120).contains(&tick) || tick >= 160 { 0.0015 } else { 0.009 };
+            assert!((feels_rad - is_rad).abs() < most_rad, "tick {tick}: {feels_rad} rad, it is {is_rad}");
         }
     }
 }

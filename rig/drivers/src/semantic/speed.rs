@@ -6,7 +6,7 @@ use kernel::ops;
 use kernel::signals::LightPhase;
 
 use super::arc::{Arc, Point};
-use super::memory::{Dash, Track, Tracks};
+use super::memory::{Ahead, Dash, Track, Tracks};
 use super::sight::{Contact, Sight};
 
 /// Half of the car's width, metres.
@@ -48,7 +48,7 @@ const RIGHT_BEND: f32 = 0.14;
 const REACH_M: f32 = 90.0;
 /// How far ahead along the arc somebody counts as in the way, at least, metres: what 2 m/s^2 need from 50 km/h.
 const IN_THE_WAY_M: f32 = 50.0;
-/// Deceleration that who drives ahead is expected to be capable of, where he is not watched braking, m/s^2.
+/// Deceleration that who drives ahead is expected to brake with at any time, m/s^2.
 const LEADER_MPS2: f32 = 4.0;
 /// Side clearance to vehicles, as long as the car stands and more the faster it is, to people beside the road, and to
 /// people on it, metres.
@@ -121,27 +121,6 @@ pub fn wish(sight: &Sight<'_>, arc: Arc, dash: &Dash, scene: Scene, vigour: f32)
     let junction_mps = braking_from(there_mps, junction_m - 2.0, comfort_mps2);
     let speed_mps = dash.limit_mps.min(bend_mps).min(road_mps).min(junction_mps);
     Wish { speed_mps, stop_in_m, comfort_mps2 }
-}
-
-/// What is in the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ahead {
-    /// Metres from the front of the car to where it must stand because of it.
-    pub stop_in_m: f32,
-    /// So fast it gets away, and the place to stand with it, m/s.
-    pub leads_mps: f32,
-}
-
-impl Ahead {
-    /// Who stands.
-    pub fn standing(stop_in_m: f32) -> Self {
-        Self { stop_in_m, leads_mps: 0.0 }
-    }
-
-    /// The one that asks for the slower speed.
-    pub fn nearer(self, other: Self) -> Self {
-        if other.stop_in_m < self.stop_in_m { other } else { self }
-    }
 }
 
 /// Farther along the arc nobody counts as in the way, metres.

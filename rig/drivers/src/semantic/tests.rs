@@ -8,7 +8,7 @@ use kernel::signals::LightPhase;
 use kernel::{Controls, ops};
 use render::{Camera, SemanticTag};
 
-use super::pedals::{FULL_BRAKE_MPS2, FULL_THROTTLE_MPS2};
+use super::pedals::{DOWN_RAD_PER_MPS2, FULL_BRAKE_MPS2, FULL_THROTTLE_MPS2};
 use super::*;
 use crate::MaskView;
 use crate::readout::Readout;
@@ -45,12 +45,18 @@ impl Road {
     }
 
     fn mask(&self, pose: Pose) -> Vec<u8> {
+        self.mask_from(pose, 0.0)
+    }
+
+    /// The mask of a camera that looks down by an angle.
+    fn mask_from(&self, pose: Pose, down_rad: f32) -> Vec<u8> {
         let mut ids = vec![SemanticTag::Sky as u8; WIDTH * HEIGHT];
         let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
         let focal = 0.5 * WIDTH as f32 / ops::tan(0.5 * camera.fov_x_rad);
-        for row in HEIGHT / 2..HEIGHT {
+        let horizon = 0.5 * HEIGHT as f32 - focal * down_rad;
+        for row in (horizon - 0.5).ceil() as usize..HEIGHT {
             for column in 0..WIDTH {
-                let ahead = focal * camera.position.z / (row as f32 + 0.5 - 0.5 * HEIGHT as f32);
+                let ahead = focal * camera.position.z / (row as f32 + 0.5 - horizon).max(1e-3);
                 let left = (0.5 * WIDTH as f32 - column as f32 - 0.5) * ahead / focal;
                 let (x, y) = pose.place(camera.position.x + ahead, left);
                 ids[row * WIDTH + column] = self.tag(x, y) as u8;
@@ -162,7 +168,7 @@ fn it_brakes_for_a_person_but_not_for_specks() {
 /// The rear of a car that stands on a straight road, 1.8 m wide and 1.5 m high, in the picture of a camera that looks down
 /// by an angle.
 fn queue_ahead(gap_m: f32, down_rad: f32) -> Vec<u8> {
-    let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    let mut ids = Road { curvature: 0.0 }.mask_from(Pose { x: 0.0, y: 0.0, heading: 0.0 }, down_rad);
     let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
     let focal = 0.5 * WIDTH as f32 / ops::tan(0.5 * camera.fov_x_rad);
     let ahead_m = ego::FRONT_M + gap_m - camera.position.x;
@@ -196,7 +202,7 @@ impl Behind {
         // What is on the screen is 6 to 11 ticks old. The nose of the car dips by some 0.6 degrees when it brakes with
         // 3 m/s^2, and all seems farther then.
         if self.tick.is_multiple_of(6) {
-            let mut ids = queue_ahead(self.gap_m, -0.0032 * self.mps2);
+            let mut ids = queue_ahead(self.gap_m, -DOWN_RAD_PER_MPS2 * self.mps2);
             // No two pictures are the same on the move.
             ids[0] = (self.tick / 6 % 2) as u8;
             self.shown.push_back(ids);
