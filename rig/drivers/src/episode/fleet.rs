@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::Context;
 use base::failure::Usage;
 use base::maps::{self, Map};
 use base::{output, spread};
@@ -122,11 +121,11 @@ impl Fleet {
         let numbers = self.begun + 1..;
         self.begun += starts.len() as u64;
         let work: Vec<_> = starts.into_iter().zip(rows).zip(numbers).collect();
-        let running = each(plan.jobs, work, |((start, row), number)| {
+        let running = each(plan.jobs, work, |worker, ((start, row), number)| {
             let Start { place, scenario, map } = start;
             let manifest = plan.archive.as_ref().map(|_| manifest(&scenario, &map, plan.seat, studio.eye()));
             let mut episode = Episode::new(&scenario, &map, plan.seat, manifest.as_ref(), plan.masks)?;
-            studio.with(&map.network, |optics| plan.observe(&mut episode, optics, Facts::default(), row))?;
+            studio.with(&map.network, worker, |optics| plan.observe(&mut episode, optics, Facts::default(), row))?;
             Ok((place, Running { episode, map, number, seed: scenario.seed }))
         })?;
         for (place, running) in running {
@@ -147,9 +146,9 @@ impl Fleet {
             };
             work.push((running, *controls, row));
         }
-        each(plan.jobs, work, |(running, controls, row)| {
+        each(plan.jobs, work, |worker, (running, controls, row)| {
             let Running { episode, map, .. } = running;
-            studio.with(&map.network, |optics| {
+            studio.with(&map.network, worker, |optics| {
                 let facts = episode.step(optics, controls, plan.ticks)?;
                 plan.observe(episode, optics, facts, row)
             })
@@ -161,7 +160,7 @@ impl Fleet {
     pub fn finish(&mut self, places: &[usize]) -> anyhow::Result<Vec<Option<PathBuf>>> {
         let plan = &self.plan;
         let ended = places.iter().map(|place| self.places.get_mut(*place).and_then(Option::take)).collect();
-        each(plan.jobs, ended, |ended: Option<Running>| {
+        each(plan.jobs, ended, |_, ended: Option<Running>| {
             let Some(Running { episode, map, number, seed }) = ended else { return Ok(None) };
             let has_begun = episode.world().tick() > 0;
             let Some(archive) = plan.archive.as_ref().filter(|_| has_begun) else { return Ok(None) };
@@ -175,7 +174,7 @@ impl Fleet {
         let running = self.places.get(place).and_then(Option::as_ref);
         let over = || Usage("the episode is over; expected a reset before a picture".to_owned());
         let Running { episode, map, .. } = running.ok_or_else(over)?;
-        self.studio.with(&map.network, |optics| episode.draw(optics, camera))
+        self.studio.with(&map.network, 0, |optics| episode.draw(optics, camera))
     }
 }
 
@@ -214,17 +213,61 @@ fn figures(world: &World, facts: &Facts) -> [f64; COLUMNS.len()] {
     row
 }
 
-/// Does work on threads, and gives what it comes to in its order.
+/// Does work on threads, and gives what it comes to in its order. The same worker does the same of it each time, as long as
+/// none is behind: see [`Studio`].
 fn each<W: Send, T: Send>(
     jobs: usize,
     work: Vec<W>,
-    f: impl Fn(W) -> anyhow::Result<T> + Sync,
+    f: impl Fn(usize, W) -> anyhow::Result<T> + Sync,
 ) -> anyhow::Result<Vec<T>> {
-    if let [_] = work.as_slice() {
-        return work.into_iter().map(f).collect();
+    let workers = jobs.clamp(1, work.len().max(1));
+    if workers == 1 {
+        return work.into_iter().map(|work| f(0, work)).collect();
     }
+    let count = work.len();
     let work: Vec<Mutex<Option<W>>> = work.into_iter().map(|work| Mutex::new(Some(work))).collect();
     let take = |index: usize| work[index].lock().unwrap_or_else(PoisonError::into_inner).take();
-    let done = spread::collect_in_order(jobs, work.len(), |index| f(take(index).context("each is done once")?));
-    done.into_iter().collect()
+    let of_worker = |worker: usize| {
+        let own = (worker..count).step_by(workers);
+        let of_others = (0..count).rev().filter(|index| index % workers != worker);
+        let done = own.chain(of_others).filter_map(|index| Some((index, f(worker, take(index)?))));
+        done.collect::<Vec<_>>()
+    };
+    let done = spread::collect_in_order(workers, workers, of_worker);
+    let mut done: Vec<_> = done.into_iter().flatten().collect();
+    done.sort_by_key(|(index, _)| *index);
+    done.into_iter().map(|(_, done)| done).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Barrier;
+
+    use anyhow::bail;
+
+    use super::*;
+
+    #[test]
+    fn each_worker_does_its_own_work_and_then_that_of_others_and_all_is_told_in_order() {
+        // Both begin together, and the second one waits with its first piece until all others are done.
+        let (begun, done) = (Barrier::new(2), Mutex::new(0));
+        let workers = each(2, (0..7).collect(), |worker, number| {
+            if number < 2 {
+                begun.wait();
+            }
+            while number == 1 && *done.lock().expect("no panic") < 6 {
+                std::thread::yield_now();
+            }
+            *done.lock().expect("no panic") += 1;
+            Ok((number, worker))
+        });
+        let expected = [(0, 0), (1, 1), (2, 0), (3, 0), (4, 0), (5, 0), (6, 0)];
+        assert_eq!(workers.expect("no error"), expected);
+    }
+
+    #[test]
+    fn an_error_of_one_is_that_of_all() {
+        let failed = each(3, vec![1, 2, 3, 4], |_, number| if number == 3 { bail!("the third") } else { Ok(()) });
+        assert_eq!(failed.expect_err("it fails").to_string(), "the third");
+    }
 }
