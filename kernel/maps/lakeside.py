@@ -1,7 +1,8 @@
 """The map `lakeside`: a few blocks of a town, a street that leaves it through a tunnel, a road along a lake, and an expressway
 back around the lake, on bridges over its outlet and over the railway, which the road along the lake crosses on the level.
 
-A country road leads over a hill, up to 10 % steep, to a hamlet and back to the town.
+Beside that road lies a branch of the railway, at the kerbs of the main street of the town lie tracks of a tramway, and
+behind its pavement basins of water. A country road leads over a hill, up to 10 % steep, to a hamlet and back to the town.
 """
 
 import math
@@ -9,7 +10,7 @@ import math
 from crossing import crossing, kerb
 from network import Arm, Network, Path, Strip
 from opendrive import beside, zebra
-from ring import limits, park, parked, stops
+from ring import height, limits, park, parked, stops
 from scenery import area, block, bridge, generator, levels, over, rail, row, tree, tunnel, wall
 from site_plan import pose, to_street
 
@@ -20,6 +21,7 @@ PROMENADE = [Strip("driving", 3.5), Strip("shoulder", 0.6), Strip("sidewalk", 3.
 EXPRESSWAY = [Strip("driving", 3.75), Strip("driving", 3.75), Strip("shoulder", 1.5)]
 PROMENADE_EDGE = sum(strip.width for strip in PROMENADE)
 TRACK = Strip("rail", 3.2)
+TRAM, GAUGE = 4.65, 1.5  # from the middle of a street to that of a track in its shoulder, and between the middles of rails
 
 # Corners of the town by column and row, and the heights of its columns.
 COLUMNS, ROWS, HEIGHTS = (-600.0, -480.0, -360.0), (-100.0, 40.0, 180.0), (7.0, 5.6, 4.5)
@@ -28,9 +30,10 @@ BACK, WIDE = 18.0, 26.0  # from the middle of a junction to the mouths of its ro
 SHORE, EAST, NORTH, HAMLET = (-40.0, 0.0), (620.0, 60.0), (-300.0, 420.0), (80.0, -330.0)
 LOW, TOP = 3.0, 24.0  # of the shore and the railway, and of the hill
 NORTH_Z, HAMLET_Z = 5.0, 12.0
-LAKE = 1.4  # height of its water
+LAKE = 2.3  # height of its water: were it lower, its banks would hide it from the road
 LIGHTS = {(1, 1), (2, 1)}
 RAILWAY = 570.0  # how far east it runs
+APART, TURN = 4.6, 430.0  # of the tracks of railway and branch, and where this turns away from the road along the lake
 CLEAR = 7.4  # of a road over the railway
 
 
@@ -59,13 +62,16 @@ def lakeside():
     for (column, line), arms in ((name, arms) for name, arms in joins.arms.items() if isinstance(name, tuple)):
         control = "lights" if (column, line) in LIGHTS else "yield"
         major = [arm.road for arm in arms if abs(math.sin(arm.heading)) < 0.5] if control == "yield" else ()
-        crossing(net, arms, control, major, z=HEIGHTS[column], zebras=False)
+        junction = crossing(net, arms, control, major, z=HEIGHTS[column], zebras=False)
         cross(net, arms)
+        if (column, line) == (1, 1):
+            tramway(net, junction, arms)
     for name, control, z in (("shore", "yield", LOW), ("east", "lights", LOW), ("north", "lights", NORTH_Z), ("hamlet", "yield", HAMLET_Z)):
         arms = joins.arms[name]
         major = [arm.road for arm in arms if abs(math.sin(arm.heading)) < 0.5] if control == "yield" else ()
         crossing(net, arms, control, major, z=z, zebras=False)
         cross(net, arms)
+    branch(net, joins.arms["shore"])
     return net
 
 
@@ -93,8 +99,10 @@ def town(net, rng, joins):
                 road.elevation = over(path.length, HEIGHTS[column], HEIGHTS[other[0]], 0.0)
                 joins.add((column, line), road, "start")
                 joins.add(other, road, "end")
-                furnish(net, road, rng)
-                if line == other[1] == 1:
+                is_main = line == other[1] == 1
+                furnish(net, road, rng, -1 if is_main else 0)
+                if is_main:
+                    basin(net, road)
                     stops(net, road, road.length / 2)
                 else:
                     bays(net, road, rng, (column, line) == (1, 2))
@@ -109,8 +117,8 @@ def bays(net, road, rng, works):
         parked(net, road, rng, FREE, 0.0)
 
 
-def furnish(net, road, rng):
-    """Houses with gaps behind the pavement, lamps, trees, and bins."""
+def furnish(net, road, rng, free=0):
+    """Houses, with fences in gaps between them, but on a side that is `free` of them, lamps, trees, and bins."""
     edge = road.width("sidewalk")
     for side in (-1, 1):
         s = 4.0
@@ -120,11 +128,17 @@ def furnish(net, road, rng):
             if s + front > road.length - 4.0:
                 break
             size = (depth, front, 3.1 * floors + 1.0)
-            if rng() < 0.88:
+            is_house = rng() < 0.88
+            if side == free:
+                pass
+            elif is_house:
                 block(net, road, "building", "house", s + front / 2, side * (edge + 1.6 + depth / 2), size, to_street(side < 0))
             else:
                 tree(net, road, s + front / 2, side * (edge + 6.0), 8.0, 2.4)
-            s += front + (0.4 if rng() < 0.7 else 5.0)
+            gap = 0.4 if rng() < 0.7 else 5.0
+            if gap > 1.0 and side != free and s + front + gap < road.length:
+                wall(net, road, "none", "gardenFence", s + front, s + front + gap, side * (edge + 1.8), 1.2, 0.1)
+            s += front + gap
         lamps(net, road, side, 8.0, road.length - 6.0)
         s = 16.0 + 6.0 * rng()
         while s < road.length - 10.0:
@@ -136,6 +150,24 @@ def furnish(net, road, rng):
             else:
                 block(net, road, "obstacle", "bench", s, side * (edge + 0.6), (1.7, 0.6, 0.9))
             s += 11.0 + 8.0 * rng()
+
+
+def basin(net, road):
+    """Water behind the pavement on the right of a street, a little below its lower end."""
+    edge, fall = road.width("sidewalk"), height(road, road.length) - height(road, 0.0)
+    s0, s1, t0, t1 = 9.0, road.length - 9.0, edge + 3.0, edge + 19.0
+    corners = [beyond(road, s, t)[0] for s, t in ((s0, t0), (s1, t0), (s1, t1), (s0, t1))]
+    area(net, road, "waterBasin", corners, min(0.0, fall) - 0.4)
+
+
+def tramway(net, junction, arms):
+    """Tracks in the shoulders of the main street, and on through the junction in its middle."""
+    street = [arm.road for arm in arms if abs(math.sin(arm.heading)) < 0.5]
+    those = {road.id for road in street}
+    through = [c.road for c in junction.connections if {end[1] for end in c.road.ends.values()} == those]
+    for road, side in [(road, side) for road in street for side in (-1, 1)] + [(road, -1) for road in through]:
+        for t in (TRAM - GAUGE / 2, TRAM + GAUGE / 2):
+            wall(net, road, "none", "tramTrack", 0.0, road.length, side * t, 0.01, 0.07)
 
 
 def lamps(net, road, side, s0, s1):
@@ -180,7 +212,8 @@ def shore(net, rng, joins):
     limits(net, road, 70)
     water(net, road)
     promenade(net, road, rng)
-    row(net, road, rng, 20.0, path.length - 60.0, -9.0, 11.0, 9.0, 2.2, 0.8, 4.0)
+    for s0, s1, t in ((20.0, TURN, -16.0), (TURN + 70.0, path.length - 60.0, -9.0)):
+        row(net, road, rng, s0, s1, t, 11.0, 9.0, 2.2, 0.8, 4.0)
     level_crossing(net, road)
 
 
@@ -204,7 +237,7 @@ def water(net, road):
     s = 70.0
     while s < road.length - 110.0:
         point, heading = pose(road.path, s)
-        near.append(beside(point, heading, -(15.0 + 4.0 * math.sin(s / 31.0))))
+        near.append(beside(point, heading, -(13.0 + 1.5 * math.sin(s / 31.0))))
         s += 20.0
     far = [(528.0, 110.0), (512.0, 190.0), (470.0, 260.0), (400.0, 305.0), (310.0, 330.0), (230.0, 335.0), (190.0, 350.0)]
     outlet = [(182.0, 400.0), (186.0, 470.0), (146.0, 470.0), (142.0, 400.0), (132.0, 345.0)]
@@ -239,7 +272,7 @@ def promenade(net, road, rng):
         if rng() < 0.5:
             tree(net, road, s + 17.0, edge + 3.0, 6.0 + 2.0 * rng(), 1.6)
         if rng() < 0.35:
-            block(net, road, "none", "boat", s + 20.0, edge + 4.5, (4.2, 1.6, 1.1), 0.3)
+            block(net, road, "none", "boat", s + 20.0, edge + 3.4, (4.2, 1.6, 1.1), 0.3, -0.2)
         s += 26.0
 
 
@@ -334,7 +367,8 @@ def country(net, rng, joins):
         limits(net, way, 70)
         hamlet(net, way, rng, 22.0, 60.0)
         for side in (-1, 1):
-            row(net, way, rng, 80.0, path.length - 40.0, side * 9.0, 12.0, 9.0, 2.3, 0.6, 5.0)
+            t = 16.0 if name == "shore" and side < 0 else 9.0  # beyond the branch line
+            row(net, way, rng, 80.0, path.length - 40.0, side * t, 12.0, 9.0, 2.3, 0.6, 5.0)
 
 
 def hamlet(net, road, rng, s0, s1):
@@ -355,3 +389,30 @@ def railway(net, rng):
     track.elevation = [(0.0, LOW, 0.0, 0.0, 0.0)]
     for side in (-1, 1):
         row(net, track, rng, 30.0, 300.0, side * 12.0, 14.0, 9.0, 2.2, 0.5, 5.0)
+
+
+def branch(net, arms):
+    """A track from a buffer stop beside the road from the hamlet, along that by the lake, to the railway."""
+    _, road, way = (arm.road for arm in arms)
+    t, halt, leave, join = way.width("shoulder") + 2.6, 80.0, way.length - 70.0, 75.0
+    (start, heading), (corner, onward) = beyond(way, halt, t), beyond(road, join, t)
+    path = follow(Path(start, heading), way, halt, leave, t)
+    down = path.length
+    follow(path.to(corner, onward), road, join, TURN, t).to((RAILWAY - APART + TRACK.width / 2, -420.0), -math.pi / 2)
+    track = net.road(path, [], [TRACK], 60, kind="rural", is_lined=False)
+    slope = [(s, height(way, halt + (leave - halt) * s / down)) for s in (down * k / 10 for k in range(11))]
+    track.elevation = levels(slope + [(down + 50.0, LOW), (path.length, LOW)])
+    block(net, track, "obstacle", "bufferStop", 0.5, -TRACK.width / 2, (0.8, 2.4, 1.2))
+
+
+def beyond(road, s, right):
+    point, heading = pose(road.path, s)
+    return beside(point, heading, right), heading
+
+
+def follow(path, road, s0, s1, right):
+    """Leads a path on beside a road."""
+    count = round((s1 - s0) / 40.0)
+    for k in range(1, count + 1):
+        path.hermite(*beyond(road, s0 + (s1 - s0) * k / count, right))
+    return path

@@ -320,7 +320,7 @@ def middle(road, section):
     """The mark along the middle."""
     if driven(section.left):
         return mark("broken", "both") if road.junction == -1 else mark("none")
-    is_edge = road.junction == -1 or road.is_lined and section.left
+    is_edge = road.is_lined and (road.junction == -1 or section.left)
     return mark("solid") if is_edge else mark("none")
 
 

@@ -36,7 +36,7 @@ STRETCHES = {
 }
 STREETS = ("east", "light_1", "west", "light_2")  # from here to the middle
 OUTSIDE = {("north", "west"): (60, 1.5), ("south", "east"): (60, -1.0)}
-PONDS = (70.0, 150.0), (185.0, 260.0)  # from and to, along the outside of some bends
+PONDS = (70.0, 150.0), (185.0, 260.0), (340.0, 440.0)  # from and to, along the outside of some bends that are long enough
 BACK = 18.0  # from the middle of a junction with lights to the mouths of its roads
 BEFORE_CIRCLE = 30.0  # from the mouth of a roundabout to the crosswalk on its arm
 AT_LIGHTS = 6.5  # paved for those who cross before a junction with lights
@@ -176,15 +176,20 @@ def furnish(net, road, rng, beside):
             wall(net, road, "soundBarrier", "noiseWall", 45.0, road.length - 45.0, side * behind, 3.5)
             row(net, road, rng, 40.0, road.length - 40.0, side * away, 9.0, 9.0, 2.2, 0.8, 4.0)
         else:
-            start = PONDS[-1][1] + 10.0 if beside == "ponds" and side < 0 else 30.0
+            # Nothing hides the ponds.
+            start = shores(road)[-1][1] + 10.0 if beside == "ponds" and side < 0 else 30.0
             row(net, road, rng, start, road.length - 30.0, side * away, 8.0, 9.0, 2.5, 0.7, 7.0)
-            hedges(net, road, rng, side * behind)
+            hedges(net, road, rng, start + 15.0, side * behind)
+
+
+def shores(road):
+    return [pond for pond in PONDS if pond[1] < road.length - 120.0]
 
 
 def ponds(net, road):
     """Water behind the pavement, a little below the road."""
     t = road.width("sidewalk") + 2.0
-    for s0, s1 in PONDS:
+    for s0, s1 in shores(road):
         low = min(height(road, s) for s in (s0, s1)) - height(road, 0.0) - 0.45
         middle, half = (s0 + s1) / 2, (s1 - s0) / 2
         shore = []
@@ -200,9 +205,8 @@ def height(road, s):
     return sum(a * (s - start) ** k for k, a in enumerate(powers))
 
 
-def hedges(net, road, rng, t):
-    """Hedges behind the pavement, with gaps."""
-    s = 45.0
+def hedges(net, road, rng, s, t):
+    """Hedges behind the pavement, with gaps, from `s` on."""
     while s < road.length - 50.0:
         if rng() < 0.4:
             block(net, road, "vegetation", "hedge", s, t, (5.6, 1.0, 1.3))

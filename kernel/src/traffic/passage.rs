@@ -19,6 +19,8 @@ use super::watchdog::{DISSOLVE_S, DISSOLVE_SEEN_S, STUCK_S};
 
 /// Vehicles leave and enter the map no nearer to the ego car than this, metres.
 const UNSEEN_M: f32 = 2.0 * EGO_CLEARANCE_M;
+/// Who has stood where the map ends for so long leaves it though the ego car sees it: behind it a queue stands for nothing.
+const AT_END_S: u8 = 3;
 /// Speed at which they enter it, m/s.
 const ENTRY_MPS: f32 = 3.0;
 /// Free space before a vehicle that enters, metres, and beside it.
@@ -46,7 +48,7 @@ impl Actors {
             }
             let id = u32::from(vehicle.id);
             if self.at_end(i) {
-                self.enter_map(i, around, vehicle.stuck_s >= STUCK_S);
+                self.enter_map(i, around, vehicle.stuck_s >= AT_END_S);
                 continue;
             }
             if vehicle.stuck_s == STUCK_S && was.stuck_s < STUCK_S {

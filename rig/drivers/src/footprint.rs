@@ -1,10 +1,20 @@
 //! What a road user covers of the ground.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use kernel::ego;
 use kernel::geometry::direction;
 use kernel::map::Prop;
 use kernel::scene::{ActorScene, EgoScene};
+
+/// Who is more above or below than this, and than this for each metre away, is on another road, metres: a slope is no bridge.
+const LEVEL_M: f32 = 2.5;
+const STEEPEST: f32 = 0.1;
+
+/// Whether two places may belong to the same road, not to one that passes over the other.
+pub fn on_level(a: Vec3, b: Vec3) -> bool {
+    let between = a - b;
+    between.z.abs() < LEVEL_M + STEEPEST * between.truncate().length()
+}
 
 /// A rectangle on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +53,7 @@ impl Footprint {
 
     /// That of an actor.
     pub fn of_actor(actor: &ActorScene) -> Self {
-        let forward = (actor.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X);
+        let forward = (actor.rotation * Vec3::X).truncate().normalize_or(Vec2::X);
         Self { centre: actor.position.truncate(), forward, half: 0.5 * actor.kind.size_m().truncate() }
     }
 
@@ -64,12 +74,20 @@ pub fn middle(car: &EgoScene) -> Vec2 {
 
 /// Direction of the ego car, seen from above.
 pub fn forward(car: &EgoScene) -> Vec2 {
-    (car.rotation * glam::Vec3::X).truncate().normalize_or(Vec2::X)
+    (car.rotation * Vec3::X).truncate().normalize_or(Vec2::X)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn who_is_on_the_bridge_above_is_on_another_road() {
+        let here = Vec3::new(3.0, 4.0, 7.0);
+        let at = |ahead_m: f32, up_m: f32| on_level(here, here + Vec3::new(ahead_m, 0.0, up_m));
+        assert!(at(5.0, 0.5) && at(50.0, 5.0) && at(50.0, -5.0));
+        assert!(!at(10.0, 5.5) && !at(10.0, -5.5));
+    }
 
     #[test]
     fn footprints_overlap_as_boxes_do() {

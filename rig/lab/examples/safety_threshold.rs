@@ -28,6 +28,8 @@ const TRIED: [f32; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const AGAIN_TICKS: Tick = seconds(5);
 /// A collision counts as foreseen by a takeover at most this long before.
 const FORESEEN_TICKS: Tick = seconds(5);
+/// Runs after which the table so far is shown.
+const TOLD_EVERY: usize = 16;
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -52,11 +54,16 @@ fn main() -> anyhow::Result<()> {
             let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, Eye::open(&choice)?);
             let watched = watch(&scenario, map, vision, run as u64)?;
             say(format_args!("run {run} on {}: {}", map.network.name, watched.words()));
-            found.lock().expect("no thread panics").push(watched);
+            let mut found = found.lock().expect("no thread panics");
+            found.push(watched);
+            if found.len() % TOLD_EVERY == 0 {
+                say(format_args!("{}", table(&found)));
+            }
         }
     };
     std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..2).map(|_| scope.spawn(work)).collect();
+        let cores = std::thread::available_parallelism()?.get();
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
         threads.into_iter().try_for_each(|thread| thread.join().expect("no thread panics"))
     })?;
     say(format_args!("{}", table(&found.into_inner()?)));

@@ -8,9 +8,9 @@ const DIGESTS: [(&str, u128); BUNDLED.len()] = [
     ("rural", 0xee2f_0919_131f_3f54_fbe0_6a07_8ecb_362c),
     ("old_town", 0xcc40_6eef_77f1_3d01_3002_ff6a_2184_988b),
     ("suburb", 0xe88a_2978_0438_f0d7_177c_c86a_8616_a9da),
-    ("ring", 0xba9f_c997_4b21_69c2_82b0_8505_38f7_0075),
+    ("ring", 0xc06e_2018_9eea_846a_c405_f5f8_80dc_4342),
     ("motorway", 0x49d3_4443_7e2a_d567_460e_476d_99e0_cb45),
-    ("lakeside", 0xc567_d50d_ac35_ce18_9bba_6905_b522_4dbd),
+    ("lakeside", 0x0959_bb9c_6e0f_9cd0_3a76_f774_b53d_d270),
 ];
 
 #[test]

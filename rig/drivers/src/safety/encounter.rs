@@ -8,7 +8,7 @@ use replay::Label;
 
 use super::forecast::{EgoWay, actor_after, driven_m};
 use super::looks::Looks;
-use crate::footprint::{Footprint, forward, middle};
+use crate::footprint::{Footprint, forward, middle, on_level};
 
 /// An encroachment predicted within this time is critical (Westhofen et al. 2022), seconds.
 pub const CRITICAL_S: f32 = 2.0;
@@ -144,8 +144,11 @@ pub fn label_of(kind: ActorKind) -> Label {
     if kind.is_on_foot() { Label::Walker } else { Label::Vehicle }
 }
 
-/// Whether braking for an actor makes sense: people must be on the road, and vehicles not follow.
+/// Whether braking for an actor makes sense: people must be on the road, vehicles not follow, and nobody on a bridge.
 fn matters(world: &World, scene: &SceneSnapshot, actor: &ActorScene) -> bool {
+    if !on_level(actor.position, scene.ego.position) {
+        return false;
+    }
     if actor.kind.is_on_foot() {
         return world.network().on_road(actor.position);
     }

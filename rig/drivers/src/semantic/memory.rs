@@ -6,6 +6,7 @@ use kernel::signals::LightPhase;
 use kernel::time::TICK_S;
 
 use super::arc::{Arc, Point};
+use super::moved::Moved;
 use super::sight::{self, Contact};
 use crate::readout::{self, Readout};
 
@@ -35,33 +36,6 @@ const FARTHER_SHARE: f32 = 0.15;
 /// Looks without what stands in the way that are needed to forget it: so many for each look that showed it, and at most.
 const BELIEF_PER_LOOK: u32 = 2;
 const MOST_BELIEF: u32 = 8;
-
-/// How the car moved in a tick: metres forward, radians to the left.
-#[derive(Clone, Copy, Debug)]
-pub struct Moved {
-    /// Metres along the car's axis.
-    pub forward_m: f32,
-    /// Radians counter-clockwise.
-    pub turned_rad: f32,
-}
-
-impl Moved {
-    /// By driving an arc for a tick.
-    pub fn along(arc: Arc, speed_mps: f32) -> Self {
-        let forward_m = speed_mps * TICK_S;
-        Self { forward_m, turned_rad: arc.curvature * forward_m }
-    }
-
-    /// Where a fixed point is after the movement.
-    fn shift(&self, (x, y): Point) -> Point {
-        self.turn((x - self.forward_m, y))
-    }
-
-    fn turn(&self, (x, y): Point) -> Point {
-        let (sin, cos) = (ops::sin(self.turned_rad), ops::cos(self.turned_rad));
-        (x * cos + y * sin, y * cos - x * sin)
-    }
-}
 
 /// The places that the arrow pointed to, carried along while the car moves.
 #[derive(Clone, Debug, Default)]
@@ -234,6 +208,13 @@ impl Tracks {
         }
         let missed = known.iter().zip(found).filter(|(_, found)| !found).map(|(track, _)| track);
         self.tracks.extend(missed.filter_map(|track| track.beside(dt_s)));
+    }
+
+    /// What an unchanged mask says: nobody in it has moved, and who left it at its side has gone on.
+    pub fn look_again(&mut self) {
+        let dt_s = std::mem::take(&mut self.since_look_s);
+        let goes_on = |t: Track| if sight::is_in_picture(t.at) { Some(t) } else { t.beside(dt_s) };
+        self.tracks = self.tracks.drain(..).filter_map(goes_on).collect();
     }
 
     /// How fast the vehicle of a contact drives ahead along an arc, m/s; 0 where its movement is not known yet.

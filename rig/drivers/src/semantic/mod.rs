@@ -2,6 +2,7 @@
 
 pub mod arc;
 mod memory;
+mod moved;
 pub mod path;
 mod pedals;
 pub mod sight;
@@ -15,10 +16,11 @@ use kernel::{Controls, Seat};
 
 use super::{Driver, SemanticView};
 use crate::temper::Temper;
-use crate::vision::{FRAME_TICKS, LATENCY_TICKS};
+use crate::vision::FRAME_TICKS;
 use crate::{indicate, single_track};
 use arc::Arc;
-use memory::{Ahead, Dash, Moved, Patience, Reading, Room, Tracks, Trail};
+use memory::{Ahead, Dash, Patience, Reading, Room, Tracks, Trail};
+use moved::{Lag, Moved};
 use pedals::{Foot, Nose};
 use sight::{Contact, Sight};
 use speed::{Scene, Wish};
@@ -38,6 +40,7 @@ pub struct SemanticBot {
     nose: Nose,
     /// How far the nose was down in the picture of the mask that was looked at last, radians.
     down_rad: f32,
+    lag: Lag,
     reading: Reading,
     trail: Trail,
     tracks: Tracks,
@@ -80,6 +83,7 @@ impl SemanticBot {
     /// Takes in the view: where to steer, and how fast to go.
     fn decide(&mut self, sight: &Sight<'_>, view: &SemanticView<'_>, is_new: bool) -> (Arc, Wish) {
         let moved = Moved::along(Arc { curvature: single_track::curvature(self.steer) }, view.hud.speed_mps());
+        self.lag.push(moved);
         let dash = self.reading.read(&view.hud, moved);
         self.trail.extend(moved, path::arrow_point(dash.bearing_deg));
         self.tracks.carry(moved);
@@ -93,6 +97,8 @@ impl SemanticBot {
             self.look(sight, view.mask.ids);
             self.make_room(arc, &dash);
         } else if stands_still {
+            self.tracks.look_again();
+            self.people.look_again();
             self.make_room(arc, &dash);
         }
         // A light leaves the HUD once its line is passed, but the junction still has it.
@@ -101,7 +107,9 @@ impl SemanticBot {
         let gives_way = !self.has_lights || dash.turn == Turn::Left;
         let give_way_m = if gives_way { speed::give_way_m(arc, &dash, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
-        let scene = Scene { obstacle_m: self.room.stop_in_m(), give_way_m, has_lights: self.has_lights };
+        let after_turn_m = speed::after_turn_m(&self.contacts, arc, dash.speed_mps);
+        let obstacle_m = self.room.stop_in_m();
+        let scene = Scene { obstacle_m, after_turn_m, give_way_m, has_lights: self.has_lights };
         (arc, speed::wish(sight, arc, &dash, scene, self.temper.vigour()))
     }
 
@@ -109,17 +117,19 @@ impl SemanticBot {
     fn look(&mut self, sight: &Sight<'_>, ids: &[u8]) {
         self.ids.clear();
         self.ids.extend_from_slice(ids);
-        self.contacts = sight.contacts();
+        let now = |seen: Contact| {
+            let (x_m, y_m) = self.lag.now((seen.x_m, seen.y_m));
+            Contact { x_m, y_m, ..seen }
+        };
+        self.contacts = sight.contacts().into_iter().map(now).collect();
         self.tracks.look(self.contacts.iter().filter(|contact| !contact.is_person));
         self.people.look(self.contacts.iter().filter(|contact| contact.is_person));
     }
 
-    /// What stands in the way by the mask that was looked at last, whose picture was as old as it took to predict it.
+    /// What stands in the way by the mask that was looked at last.
     fn make_room(&mut self, arc: Arc, dash: &Dash) {
         self.looked_ticks = 0;
-        let driven_m = dash.speed_mps * LATENCY_TICKS as f32 * TICK_S;
-        let stands = speed::obstacle(&self.contacts, &self.tracks, arc, dash.speed_mps)
-            .map(|seen| Ahead { stop_in_m: seen.stop_in_m - driven_m, ..seen });
+        let stands = speed::obstacle(&self.contacts, &self.tracks, arc, dash.speed_mps);
         let walks = speed::crossing_m(&self.people, arc, dash.speed_mps).map(Ahead::standing);
         self.room.look(stands.into_iter().chain(walks).reduce(Ahead::nearer));
     }

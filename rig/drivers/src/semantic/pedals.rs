@@ -58,6 +58,9 @@ impl Foot {
             Self::Holds { .. } => (0.0, HOLDING),
             Self::Drives { ready_ticks: over_brake, wanted_ticks } => {
                 let (free_mps2, stop_mps2) = (free_mps2(speed_mps, wish), stop_mps2(speed_mps, wish));
+                if wish.expects_others {
+                    *over_brake = ready_ticks();
+                }
                 let is_wanted = stop_mps2 < free_mps2.min(-SURPRISING_MPS2);
                 *wanted_ticks = if is_wanted { *wanted_ticks + 1 } else { 0 };
                 let is_surprised = is_wanted && *over_brake == 0 && *wanted_ticks <= reaction_ticks;
@@ -124,7 +127,7 @@ fn stop_mps2(speed_mps: f32, wish: &Wish) -> f32 {
 mod tests {
     use super::*;
 
-    const WISH: Wish = Wish { speed_mps: 13.0, stop_in_m: None, comfort_mps2: 2.0 };
+    const WISH: Wish = Wish { speed_mps: 13.0, stop_in_m: None, comfort_mps2: 2.0, expects_others: false };
 
     /// Ticks until a foot that was on the throttle does something else.
     fn ticks_until(foot: &mut Foot, speed_mps: f32, wish: &Wish, is_done: impl Fn((f32, f32)) -> bool) -> usize {
@@ -141,6 +144,9 @@ mod tests {
         // Half a second with nothing in the way: the foot is still there.
         (0..30).for_each(|_| assert!(foot.press(12.0, &WISH, 1.0).0 > 0.0));
         assert_eq!(ticks_until(&mut foot, 12.0, &sudden, brakes), 1);
+        let mut turns = Foot::default();
+        turns.press(12.0, &Wish { expects_others: true, ..WISH }, 1.0);
+        assert_eq!(ticks_until(&mut turns, 12.0, &sudden, brakes), 1);
         let mut tired = Foot::default();
         assert!((0..45).all(|_| tired.press(12.0, &sudden, 1.5).1 == 0.0) && tired.press(12.0, &sudden, 1.5).1 > 0.3);
     }

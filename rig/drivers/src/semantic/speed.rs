@@ -23,8 +23,9 @@ const LATERAL_MPS2: f32 = 2.2;
 const STANDOFF_M: f32 = 4.0;
 /// Where the car stops before a stop line, metres.
 const BEFORE_LINE_M: f32 = 1.5;
-/// Speed in turns at junctions, m/s.
+/// Speed in turns at junctions, m/s; in those to the right, where people on foot are seen late.
 const TURN_MPS: f32 = 5.5;
+const RIGHT_TURN_MPS: f32 = 4.5;
 /// Speed across junctions without lights, m/s.
 const CROSSING_MPS: f32 = 5.5;
 /// Distance to one from which it is slowed down for, metres.
@@ -50,6 +51,12 @@ const REACH_M: f32 = 90.0;
 const IN_THE_WAY_M: f32 = 50.0;
 /// Deceleration that who drives ahead is expected to brake with at any time, m/s^2.
 const LEADER_MPS2: f32 = 4.0;
+/// Sharper arcs than this, 1/m, are turns that end soon: whoever stands between them and straight ahead may be in the way
+/// after that, up to this distance, metres.
+const TURNING: f32 = 0.025;
+const AFTER_TURN_M: f32 = 25.0;
+/// Speed with which it is turned towards them, at least, m/s.
+const TURNING_IN_MPS: f32 = 2.5;
 /// Side clearance to vehicles, as long as the car stands and more the faster it is, to people beside the road, and to
 /// people on it, metres.
 const BESIDE_VEHICLE_M: [f32; 2] = [0.2, 0.5];
@@ -87,16 +94,21 @@ pub struct Wish {
     pub stop_in_m: Option<f32>,
     /// Deceleration that is planned with, m/s^2.
     pub comfort_mps2: f32,
+    /// Others are to be expected in the way: the foot is over the brake.
+    pub expects_others: bool,
 }
 
 impl Wish {
     /// The speed from which the car comes to a stand where it has to by comfortable braking that sets in after the time
     /// in which a wrong speed is made right (the safe speed of Gipps 1981 behind one who stands), m/s.
     pub fn safe_mps(&self) -> f32 {
-        let lag_mps = self.comfort_mps2 * SPEED_TIME_S;
-        let safe_mps = |stop_m| braking_from(lag_mps, stop_m, self.comfort_mps2) - lag_mps;
-        self.stop_in_m.map_or(f32::INFINITY, safe_mps)
+        self.stop_in_m.map_or(f32::INFINITY, |stop_m| safe_mps(stop_m, self.comfort_mps2))
     }
+}
+
+fn safe_mps(stop_m: f32, comfort_mps2: f32) -> f32 {
+    let lag_mps = comfort_mps2 * SPEED_TIME_S;
+    braking_from(lag_mps, stop_m, comfort_mps2) - lag_mps
 }
 
 /// Others on the road, and where to wait for them.
@@ -104,6 +116,8 @@ impl Wish {
 pub struct Scene {
     /// Metres from the front of the car to where it must stand because of people and vehicles.
     pub obstacle_m: Option<f32>,
+    /// The same because of those who may be in the way after the turn.
+    pub after_turn_m: Option<f32>,
     /// Metres from the front of the car to where it lets others pass.
     pub give_way_m: Option<f32>,
     /// The HUD shows a light, or showed the one of this junction.
@@ -119,8 +133,11 @@ pub fn wish(sight: &Sight<'_>, arc: Arc, dash: &Dash, scene: Scene, vigour: f32)
     let road_mps = braking_from(FEELING_MPS, arc.free_m(sight, REACH_M) - FRONT_M, comfort_mps2);
     let (there_mps, junction_m) = junction_mps(dash, scene.has_lights);
     let junction_mps = braking_from(there_mps, junction_m - 2.0, comfort_mps2);
-    let speed_mps = dash.limit_mps.min(bend_mps).min(road_mps).min(junction_mps);
-    Wish { speed_mps, stop_in_m, comfort_mps2 }
+    let to_them_mps = scene.after_turn_m.map_or(f32::INFINITY, |stand_m| safe_mps(stand_m, comfort_mps2));
+    let turning_mps = to_them_mps.max(TURNING_IN_MPS);
+    let speed_mps = dash.limit_mps.min(bend_mps).min(road_mps).min(junction_mps).min(turning_mps);
+    let expects_others = dash.turn != Turn::Straight && dash.junction_m == 0.0;
+    Wish { speed_mps, stop_in_m, comfort_mps2, expects_others }
 }
 
 /// Farther along the arc nobody counts as in the way, metres.
@@ -133,7 +150,7 @@ fn in_the_way_m(speed_mps: f32) -> f32 {
 pub fn obstacle(contacts: &[Contact], vehicles: &Tracks, arc: Arc, speed_mps: f32) -> Option<Ahead> {
     let in_the_way = contacts.iter().filter_map(|contact| {
         let (s_m, left_m) = arc.project(contact.x_m, contact.y_m);
-        let is_beside = left_m.abs() >= HALF_WIDTH_M + clearance_m(contact, speed_mps);
+        let is_beside = left_m.abs() >= swept_m(arc, left_m) + clearance_m(contact, speed_mps);
         if s_m >= in_the_way_m(speed_mps) || is_beside {
             return None;
         }
@@ -142,6 +159,31 @@ pub fn obstacle(contacts: &[Contact], vehicles: &Tracks, arc: Arc, speed_mps: f3
         Some(Ahead { stop_in_m: s_m - FRONT_M - STANDOFF_M + stand_in_m, leads_mps })
     });
     in_the_way.reduce(Ahead::nearer)
+}
+
+/// How far from the arc of its rear axle the car reaches on a side, metres: on the outer one of a turn its front swings out.
+fn swept_m(arc: Arc, left_m: f32) -> f32 {
+    if left_m * arc.curvature >= 0.0 {
+        return HALF_WIDTH_M;
+    }
+    let radius_m = 1.0 / arc.curvature.abs();
+    ops::hypot(radius_m + HALF_WIDTH_M, FRONT_M) - radius_m
+}
+
+/// Where the car must stand, metres from its front, if it goes on straight at any moment of a turn: behind those between
+/// its arc and straight ahead.
+pub fn after_turn_m(contacts: &[Contact], arc: Arc, speed_mps: f32) -> Option<f32> {
+    let is_between = |contact: &&Contact| {
+        let room_m = HALF_WIDTH_M + clearance_m(contact, speed_mps);
+        let (_, left_m) = arc.project(contact.x_m, contact.y_m);
+        let side = arc.curvature.signum();
+        // Outside of the arc, and inside of straight ahead.
+        contact.on_road && side * left_m < room_m && side * contact.y_m > -room_m
+    };
+    let is_near = |contact: &&Contact| (FRONT_M..AFTER_TURN_M).contains(&contact.x_m);
+    let turns = arc.curvature.abs() > TURNING;
+    let found = contacts.iter().filter(|_| turns).filter(is_near).filter(is_between);
+    found.map(|contact| ops::hypot(contact.x_m, contact.y_m) - FRONT_M - STANDOFF_M).reduce(f32::min)
 }
 
 /// Metres from the front of the car to where it must stand because of people who walk into its way: those who will be
@@ -235,7 +277,8 @@ fn stop_line_m(dash: &Dash) -> Option<f32> {
 /// Speed allowed by the junction ahead, and the distance to it.
 fn junction_mps(dash: &Dash, has_lights: bool) -> (f32, f32) {
     let there_mps = match dash.turn {
-        Turn::Left | Turn::Right => TURN_MPS,
+        Turn::Left => TURN_MPS,
+        Turn::Right => RIGHT_TURN_MPS,
         Turn::Straight if !has_lights && dash.junction_m < CROSSING_FROM_M => CROSSING_MPS,
         Turn::Straight => f32::INFINITY,
     };
@@ -245,7 +288,7 @@ fn junction_mps(dash: &Dash, has_lights: bool) -> (f32, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::semantic::memory::Moved;
+    use crate::semantic::moved::Moved;
 
     /// A person who goes on like this for a second, as they are seen by a car that stands still.
     fn walker(from: (f32, f32), velocity_mps: (f32, f32)) -> Tracks {
@@ -296,6 +339,34 @@ mod tests {
         let stops = |room_m, speed_mps| obstacle(&[beside(room_m)], &nobody, ahead, speed_mps).is_some();
         assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 0.0)), [true, false, false, false]);
         assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 12.0)), [true, true, true, false]);
+    }
+
+    #[test]
+    fn the_front_of_a_turning_car_swings_out() {
+        let sharp = Arc { curvature: -0.125 };
+        let swings_m = swept_m(sharp, 1.0) - HALF_WIDTH_M;
+        assert!((0.5..0.8).contains(&swings_m), "{swings_m}");
+        assert_eq!(swept_m(sharp, -1.0), HALF_WIDTH_M);
+        assert!(swept_m(Arc { curvature: 0.002 }, -1.0) < HALF_WIDTH_M + 0.02);
+        assert_eq!(swept_m(Arc { curvature: 0.0 }, -1.0), HALF_WIDTH_M);
+        // Somebody half a metre beside the straight car is in the way of the turning one.
+        let (x_m, y_m) = sharp.beside(5.0, HALF_WIDTH_M + 0.6);
+        let beside = Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
+        assert!(obstacle(&[beside], &Tracks::default(), sharp, 2.0).is_some());
+    }
+
+    #[test]
+    fn a_turn_is_driven_slowly_towards_whom_it_may_end_behind() {
+        let at = |x_m: f32, y_m: f32| Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
+        let found = |contact, curvature| after_turn_m(&[contact], Arc { curvature }, 5.0);
+        // To the right: straight ahead, between that and the arc, left of it, right of the arc.
+        let contacts = [at(16.0, 0.0), at(16.0, -6.0), at(16.0, 4.0), at(6.0, -6.0)];
+        assert_eq!(contacts.map(|contact| found(contact, -0.1).is_some()), [true, true, false, false]);
+        assert_eq!(
+            contacts.map(|contact| found(Contact { y_m: -contact.y_m, ..contact }, 0.1).is_some()),
+            [true, true, false, false]
+        );
+        assert_eq!(found(at(16.0, 0.0), -0.02), None, "a bend");
     }
 
     #[test]

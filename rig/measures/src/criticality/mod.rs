@@ -3,7 +3,8 @@
 //! The metrics are those of Westhofen et al. 2022 (Criticality Metrics for Automated Driving, Archives of
 //! Computational Methods in Engineering), for the ego car and the road user for whom each is worst.
 //! Predictions let both go on straight at their present speeds for at most [`HORIZON_S`]; road users are
-//! the boxes around them. Parked cars and scenery are left out, except by the predicted encroachment.
+//! the boxes around them. Who is on a bridge above or below is left out; so are parked cars and scenery, except by the
+//! predicted encroachment.
 
 mod encounter;
 mod extreme;
@@ -13,6 +14,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use base::words;
+use drivers::footprint::on_level;
 use drivers::safety::{LOOK_TICKS, Looks, predicted_encroachment};
 use kernel::scene::{ActorScene, SceneSnapshot};
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
@@ -153,7 +155,10 @@ impl Sampler {
 impl Sample {
     fn of(scene: &SceneSnapshot, encroachment: Option<String>) -> Self {
         let ego = Mover::of_ego(&scene.ego);
-        let near = |actor: &&ActorScene| actor.position.truncate().distance(ego.footprint.centre) < NEAR_M;
+        let near = |actor: &&ActorScene| {
+            let is_near = actor.position.truncate().distance(ego.footprint.centre) < NEAR_M;
+            is_near && on_level(actor.position, scene.ego.position)
+        };
         let encounters: Vec<(String, Encounter)> = scene
             .actors
             .iter()
