@@ -210,13 +210,6 @@ impl Tracks {
         self.tracks.extend(missed.filter_map(|track| track.beside(dt_s)));
     }
 
-    /// What an unchanged mask says: nobody in it has moved, and who left it at its side has gone on.
-    pub fn look_again(&mut self) {
-        let dt_s = std::mem::take(&mut self.since_look_s);
-        let goes_on = |t: Track| if sight::is_in_picture(t.at) { Some(t) } else { t.beside(dt_s) };
-        self.tracks = self.tracks.drain(..).filter_map(goes_on).collect();
-    }
-
     /// How fast the vehicle of a contact drives ahead along an arc, m/s; 0 where its movement is not known yet.
     pub fn leads_mps(&self, contact: &Contact, arc: Arc) -> f32 {
         let off = |t: &Track| ops::hypot(t.at.0 - contact.x_m, t.at.1 - contact.y_m);

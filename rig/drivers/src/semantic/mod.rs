@@ -97,8 +97,7 @@ impl SemanticBot {
             self.look(sight, view.mask.ids);
             self.make_room(arc, &dash);
         } else if stands_still {
-            self.tracks.look_again();
-            self.people.look_again();
+            self.track();
             self.make_room(arc, &dash);
         }
         // A light leaves the HUD once its line is passed, but the junction still has it.
@@ -107,7 +106,7 @@ impl SemanticBot {
         let gives_way = !self.has_lights || dash.turn == Turn::Left;
         let give_way_m = if gives_way { speed::give_way_m(arc, &dash, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
-        let after_turn_m = speed::after_turn_m(&self.contacts, arc, dash.speed_mps);
+        let after_turn_m = speed::after_turn_m(&self.contacts, arc, &dash);
         let obstacle_m = self.room.stop_in_m();
         let scene = Scene { obstacle_m, after_turn_m, give_way_m, has_lights: self.has_lights };
         (arc, speed::wish(sight, arc, &dash, scene, self.temper.vigour()))
@@ -122,6 +121,11 @@ impl SemanticBot {
             Contact { x_m, y_m, ..seen }
         };
         self.contacts = sight.contacts().into_iter().map(now).collect();
+        self.track();
+    }
+
+    /// How those move who are seen in the mask that was looked at last; an unchanged one says that nobody in it did.
+    fn track(&mut self) {
         self.tracks.look(self.contacts.iter().filter(|contact| !contact.is_person));
         self.people.look(self.contacts.iter().filter(|contact| contact.is_person));
     }

@@ -51,6 +51,8 @@ const REACH_M: f32 = 90.0;
 const IN_THE_WAY_M: f32 = 50.0;
 /// Deceleration that who drives ahead is expected to brake with at any time, m/s^2.
 const LEADER_MPS2: f32 = 4.0;
+/// An arc of this radius is straight, metres.
+const STRAIGHT_M: f32 = 1e4;
 /// Sharper arcs than this, 1/m, are turns that end soon: whoever stands between them and straight ahead may be in the way
 /// after that, up to this distance, metres.
 const TURNING: f32 = 0.025;
@@ -136,8 +138,7 @@ pub fn wish(sight: &Sight<'_>, arc: Arc, dash: &Dash, scene: Scene, vigour: f32)
     let to_them_mps = scene.after_turn_m.map_or(f32::INFINITY, |stand_m| safe_mps(stand_m, comfort_mps2));
     let turning_mps = to_them_mps.max(TURNING_IN_MPS);
     let speed_mps = dash.limit_mps.min(bend_mps).min(road_mps).min(junction_mps).min(turning_mps);
-    let expects_others = dash.turn != Turn::Straight && dash.junction_m == 0.0;
-    Wish { speed_mps, stop_in_m, comfort_mps2, expects_others }
+    Wish { speed_mps, stop_in_m, comfort_mps2, expects_others: is_turning(dash) }
 }
 
 /// Farther along the arc nobody counts as in the way, metres.
@@ -161,27 +162,32 @@ pub fn obstacle(contacts: &[Contact], vehicles: &Tracks, arc: Arc, speed_mps: f3
     in_the_way.reduce(Ahead::nearer)
 }
 
+/// Whether the car turns at a junction.
+fn is_turning(dash: &Dash) -> bool {
+    dash.turn != Turn::Straight && dash.junction_m == 0.0
+}
+
 /// How far from the arc of its rear axle the car reaches on a side, metres: on the outer one of a turn its front swings out.
 fn swept_m(arc: Arc, left_m: f32) -> f32 {
-    if left_m * arc.curvature >= 0.0 {
+    let radius_m = 1.0 / arc.curvature.abs();
+    if left_m * arc.curvature >= 0.0 || radius_m > STRAIGHT_M {
         return HALF_WIDTH_M;
     }
-    let radius_m = 1.0 / arc.curvature.abs();
     ops::hypot(radius_m + HALF_WIDTH_M, FRONT_M) - radius_m
 }
 
 /// Where the car must stand, metres from its front, if it goes on straight at any moment of a turn: behind those between
 /// its arc and straight ahead.
-pub fn after_turn_m(contacts: &[Contact], arc: Arc, speed_mps: f32) -> Option<f32> {
+pub fn after_turn_m(contacts: &[Contact], arc: Arc, dash: &Dash) -> Option<f32> {
     let is_between = |contact: &&Contact| {
-        let room_m = HALF_WIDTH_M + clearance_m(contact, speed_mps);
+        let room_m = HALF_WIDTH_M + clearance_m(contact, dash.speed_mps);
         let (_, left_m) = arc.project(contact.x_m, contact.y_m);
         let side = arc.curvature.signum();
         // Outside of the arc, and inside of straight ahead.
         contact.on_road && side * left_m < room_m && side * contact.y_m > -room_m
     };
     let is_near = |contact: &&Contact| (FRONT_M..AFTER_TURN_M).contains(&contact.x_m);
-    let turns = arc.curvature.abs() > TURNING;
+    let turns = is_turning(dash) && arc.curvature.abs() > TURNING;
     let found = contacts.iter().filter(|_| turns).filter(is_near).filter(is_between);
     found.map(|contact| ops::hypot(contact.x_m, contact.y_m) - FRONT_M - STANDOFF_M).reduce(f32::min)
 }
@@ -348,7 +354,7 @@ mod tests {
         assert!((0.5..0.8).contains(&swings_m), "{swings_m}");
         assert_eq!(swept_m(sharp, -1.0), HALF_WIDTH_M);
         assert!(swept_m(Arc { curvature: 0.002 }, -1.0) < HALF_WIDTH_M + 0.02);
-        assert_eq!(swept_m(Arc { curvature: 0.0 }, -1.0), HALF_WIDTH_M);
+        assert_eq!([0.0, 1e-8].map(|curvature| swept_m(Arc { curvature }, -1.0)), [HALF_WIDTH_M; 2]);
         // Somebody half a metre beside the straight car is in the way of the turning one.
         let (x_m, y_m) = sharp.beside(5.0, HALF_WIDTH_M + 0.6);
         let beside = Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
@@ -358,7 +364,16 @@ mod tests {
     #[test]
     fn a_turn_is_driven_slowly_towards_whom_it_may_end_behind() {
         let at = |x_m: f32, y_m: f32| Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
-        let found = |contact, curvature| after_turn_m(&[contact], Arc { curvature }, 5.0);
+        let dash = |junction_m| Dash {
+            speed_mps: 5.0,
+            limit_mps: 13.9,
+            light: None,
+            light_m: 0.0,
+            turn: Turn::Right,
+            junction_m,
+            bearing_deg: 0,
+        };
+        let found = |contact, curvature| after_turn_m(&[contact], Arc { curvature }, &dash(0.0));
         // To the right: straight ahead, between that and the arc, left of it, right of the arc.
         let contacts = [at(16.0, 0.0), at(16.0, -6.0), at(16.0, 4.0), at(6.0, -6.0)];
         assert_eq!(contacts.map(|contact| found(contact, -0.1).is_some()), [true, true, false, false]);
@@ -367,6 +382,7 @@ mod tests {
             [true, true, false, false]
         );
         assert_eq!(found(at(16.0, 0.0), -0.02), None, "a bend");
+        assert_eq!(after_turn_m(&[at(16.0, 0.0)], Arc { curvature: -0.1 }, &dash(30.0)), None, "no junction");
     }
 
     #[test]
