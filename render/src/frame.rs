@@ -2,7 +2,7 @@
 
 use kernel::time::Tick;
 
-/// One image with its ground truth. All planes come from one draw; rows from top to bottom, pixels
+/// One image with its ground truth. All planes come from one draw, which may leave the colours out; rows from top to bottom, pixels
 /// from left to right.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {

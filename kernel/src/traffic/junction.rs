@@ -143,12 +143,12 @@ fn prevents(asking: &Member, other: &Member, conflict: &LaneConflict, there: &St
 }
 
 /// The order of two who ask, the same seen from both: who is in a roundabout first, or it would fill up, until those who
-/// want in have waited long; then the impatient, then the right of way, then the longer wait, then the smaller id.
+/// want in have waited long; then the impatient; then the right of way, then the longer wait, then the smaller id. The ego
+/// car does not hear of how long others have waited.
 fn goes_before(a: &Member, b: &Member, precedence: i8) -> bool {
     // Unless the map tells that those who drive round wait.
     let rounds =
         |m: &Member, other: &Member, precedence: i8| m.rounds.is_some() && m.rounds == other.enters && precedence >= 0;
-    // The ego car does not hear of it.
     let first =
         |round: &Member, other: &Member| round.vehicle == EGO || goes_round_first(round.wait_ticks, other.wait_ticks);
     if rounds(a, b, precedence) {
@@ -157,8 +157,8 @@ fn goes_before(a: &Member, b: &Member, precedence: i8) -> bool {
     if rounds(b, a, -precedence) {
         return !first(b, a);
     }
-    let impatient = |m: &Member| m.wait_ticks > PATIENCE_TICKS;
-    match (impatient(a), impatient(b)) {
+    let impatient = |m: &Member, other: &Member| other.vehicle != EGO && m.wait_ticks > PATIENCE_TICKS;
+    match (impatient(a, b), impatient(b, a)) {
         (true, false) => true,
         (false, true) => false,
         (false, false) if precedence != 0 => precedence > 0,

@@ -29,10 +29,12 @@ use super::vehicle::Vehicle;
 use super::walk::{ASTRAY_M, Streets};
 use super::walker::{Walker, WalkerMode};
 
-/// The ego car is expected at a junction that it reaches within this time, s.
+/// The ego car is expected at a junction that it reaches within this time, s, and from this near it may speed up, m.
 const EGO_EXPECTED_S: f32 = 4.0;
-/// Slower than this it lets others go, m/s.
+const EGO_SPEEDS_UP_M: f32 = 8.0;
+/// Slower than this it lets others go, m/s, but before a light that is green, at most so far before the line, m.
 const EGO_WAITS_MPS: f32 = 1.0;
+const EGO_STARTS_M: f32 = 12.0;
 
 /// Buffers of a step.
 #[derive(Clone, Debug, Default)]
@@ -277,9 +279,7 @@ impl Sight {
     fn add_ego(&self, actors: &Actors, around: &Surroundings<'_>, members: &mut Members) {
         let (map, ego) = (actors.map(), &around.ego);
         let speed = ego.velocity_mps.truncate().length();
-        if speed < EGO_WAITS_MPS {
-            return;
-        }
+        let stands = speed < EGO_WAITS_MPS;
         let place = actors.ways.places.roads().nearest(ego.position, LaneKind::Driving, Some(ego.heading_rad), 4.0);
         let Some(place) = place else { return };
         let lane = &map.lanes[place.lane as usize];
@@ -291,13 +291,18 @@ impl Sight {
             let near = |id: &u32| map.project(*id, ego.position);
             let lanes = map.junctions[junction as usize].lanes.iter().map(near);
             let step = |p: Projection| Step { lane: p.lane, start_m: -p.s_m, from_m: 0.0 };
-            members.push(member(zone, true), lanes.filter(|p| p.distance_m < 1.8).map(step));
+            // Beside every lane it is on the nearest one.
+            let is_on = |p: &Projection| p.lane == place.lane || p.distance_m < 1.8;
+            if !stands {
+                members.push(member(zone, true), lanes.filter(is_on).map(step));
+            }
             return;
         }
-        let ahead_m = lane.length_m - place.s_m;
-        let expected = ahead_m - half_m < speed * EGO_EXPECTED_S;
-        let light = |next| map.light_between(place.lane, next);
-        let open = |next: u32| light(next).is_none_or(|group| self.lights[group as usize].0 != LightPhase::Red);
+        let to_line_m = lane.length_m - place.s_m - half_m;
+        let light = |next| map.light_between(place.lane, next).map(|group| self.lights[group as usize].0);
+        let starts = |next| light(next) == Some(LightPhase::Green) && to_line_m < EGO_STARTS_M;
+        let open = |next| if stands { starts(next) } else { light(next) != Some(LightPhase::Red) };
+        let expected = stands || to_line_m < EGO_SPEEDS_UP_M + speed * EGO_EXPECTED_S;
         let ways = &actors.ways.lanes;
         let next = ways[place.lane as usize].onward.iter();
         let next = next.filter_map(|onward| Some((onward.lane, ways[onward.lane as usize].zone?)));
@@ -310,7 +315,7 @@ impl Sight {
         let turns = |lane: u32| indicated.is_none_or(|turn| map.lanes[lane as usize].turn == turn);
         let none_turns = !next.clone().any(|(lane, _)| turns(lane));
         let taken = next.filter(|(lane, _)| (none_turns || turns(*lane)) && open(*lane));
-        let lanes = taken.clone().map(|(lane, _)| Step { lane, start_m: ahead_m, from_m: 0.0 });
+        let lanes = taken.clone().map(|(lane, _)| Step { lane, start_m: to_line_m + half_m, from_m: 0.0 });
         if let Some((_, zone)) = taken.clone().next().filter(|_| expected) {
             members.push(member(zone, false), lanes);
         }

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use super::pipelines::{Layouts, Pipelines};
+use super::pipelines::{self, Layouts, Pipelines};
 use super::{Gpu, GrowingBuffer, SceneUniform, Targets, readback, textures};
+use crate::SemanticTag;
 use crate::blob::BlobVertex;
 use crate::mesh::{FINISHES, Finish, Vertex};
 
@@ -21,6 +22,8 @@ pub(crate) struct Draws<'a> {
     /// Number of the shadow map; a new one is the next in order.
     pub(crate) shadow_map: usize,
     pub(crate) blobs: &'a [BlobVertex],
+    /// Whether colours are to be drawn, not classes and instances alone.
+    pub(crate) colours: bool,
     /// Whether fog, water or rain is to be drawn.
     pub(crate) weather: bool,
     /// Drops of rain.
@@ -34,6 +37,8 @@ pub(crate) struct Passes {
     dry: Pipelines,
     /// Those for fog, water and rain, made when they are needed first.
     weather: Option<Pipelines>,
+    /// The one for pictures without colours, made when it is needed first.
+    classes: Option<wgpu::RenderPipeline>,
     uniform: wgpu::Buffer,
     scene_group: wgpu::BindGroup,
     shadow_side: u32,
@@ -78,6 +83,7 @@ impl Passes {
         Self {
             dry: Pipelines::new(gpu, &layouts, shadow_taps, false),
             weather: None,
+            classes: None,
             shadow_taps,
             scene_group: bind(gpu, &layouts.scene, &scene),
             shadow_side,
@@ -98,6 +104,24 @@ impl Passes {
         self.moving.write(gpu, draws.moving_vertices);
         self.blobs.write(gpu, draws.blobs);
         let ranges = self.write_indices(gpu, draws);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        if draws.colours {
+            self.colour_passes(gpu, &mut encoder, &ranges, draws, targets);
+        } else {
+            self.class_pass(gpu, &mut encoder, &ranges, targets);
+        }
+        readback::record(&mut encoder, targets);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn colour_passes(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        ranges: &Ranges,
+        draws: &Draws<'_>,
+        targets: &Targets,
+    ) {
         while self.shadow_maps.len() <= draws.shadow_map {
             self.shadow_maps.push(self.new_shadow_map(gpu));
         }
@@ -105,13 +129,10 @@ impl Passes {
             self.weather = Some(Pipelines::new(gpu, &self.layouts, self.shadow_taps, true));
         }
         let pipelines = self.weather.as_ref().filter(|_| draws.weather).unwrap_or(&self.dry);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if draws.casters.is_some() {
-            self.shadow_pass(&mut encoder, &ranges, draws);
+            self.shadow_pass(encoder, ranges, draws);
         }
-        self.main_pass(&mut encoder, pipelines, &ranges, draws, targets);
-        readback::record(&mut encoder, targets);
-        gpu.queue.submit([encoder.finish()]);
+        self.main_pass(encoder, pipelines, ranges, draws, targets);
     }
 
     fn write_indices(&mut self, gpu: &Gpu, draws: &Draws<'_>) -> Ranges {
@@ -148,6 +169,26 @@ impl Passes {
         }
     }
 
+    /// Classes, instances and depth: the sky is where nothing is.
+    fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, targets: &Targets) {
+        let pipeline = self.classes.get_or_insert_with(|| pipelines::classes(gpu, &self.layouts)).clone();
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+        let (ids, depth) = (view(&targets.ids), view(&targets.depth));
+        let sky = wgpu::Color { r: f64::from(SemanticTag::Sky as u8), ..wgpu::Color::TRANSPARENT };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("classes"),
+            color_attachments: &[None, Some(colour_attachment(&ids, sky))],
+            depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &self.scene_group, &[]);
+        pass.set_pipeline(&pipeline);
+        self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
+        for finish in [Finish::Facade, Finish::Plain, Finish::Grainy] {
+            self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
+        }
+    }
+
     fn main_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -160,7 +201,7 @@ impl Passes {
         let (colour, ids, depth) = (view(&targets.colour), view(&targets.ids), view(&targets.depth));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("main"),
-            color_attachments: &[Some(colour_attachment(&colour)), Some(colour_attachment(&ids))],
+            color_attachments: &[&colour, &ids].map(|view| Some(colour_attachment(view, wgpu::Color::TRANSPARENT))),
             depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
             ..Default::default()
         });
@@ -203,8 +244,8 @@ struct Ranges {
     casters: Range<u32>,
 }
 
-fn colour_attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
-    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+fn colour_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 

@@ -102,28 +102,47 @@ impl Recipe<'_> {
     }
 }
 
+/// The pipeline that draws classes and instances, and no colours.
+pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> wgpu::RenderPipeline {
+    Recipe {
+        module: &module(gpu, "classes"),
+        layout: &pipeline_layout(gpu, &[Some(&layouts.scene)]),
+        vertex: "vertex",
+        fragment: Some("fragment"),
+        buffers: &[Some(world_vertices())],
+        targets: &[None, Some(IDS.into())],
+        constants: &[],
+        cull: true,
+        depth_write: true,
+        depth_compare: wgpu::CompareFunction::Greater,
+        bias: Default::default(),
+    }
+    .make(gpu)
+}
+
+fn module(gpu: &Gpu, name: &str) -> wgpu::ShaderModule {
+    let text = shaders::source(name).unwrap_or_default();
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("shader"),
+        source: wgpu::ShaderSource::Wgsl(text.into()),
+    })
+}
+
+fn pipeline_layout(gpu: &Gpu, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu::PipelineLayout {
+    gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    })
+}
+
 impl Pipelines {
     /// `shadow_taps`: samples of the shadow map along each axis; `weather`: whether there is fog, water or rain.
     pub(super) fn new(gpu: &Gpu, layouts: &Layouts, shadow_taps: u32, weather: bool) -> Self {
         let weather = ("WEATHER", f64::from(u8::from(weather)));
-        let module = |name: &str| {
-            let text = shaders::source(name).unwrap_or_default();
-            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("shader"),
-                source: wgpu::ShaderSource::Wgsl(text.into()),
-            })
-        };
-        let layout = |groups: &[Option<&wgpu::BindGroupLayout>]| {
-            gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: None,
-                bind_group_layouts: groups,
-                immediate_size: 0,
-            })
-        };
-        let (scene_only, with_shadow) =
-            (layout(&[Some(&layouts.scene)]), layout(&[Some(&layouts.scene), Some(&layouts.shadow)]));
-        let (world, sky, blob, shadow) = (module("world"), module("sky"), module("blob"), module("shadow"));
-        let rain = module("rain");
+        let scene_only = pipeline_layout(gpu, &[Some(&layouts.scene)]);
+        let with_shadow = pipeline_layout(gpu, &[Some(&layouts.scene), Some(&layouts.shadow)]);
+        let [world, sky, blob, shadow, rain] = ["world", "sky", "blob", "shadow", "rain"].map(|name| module(gpu, name));
         let opaque = [Some(COLOUR.into()), Some(IDS.into())];
         let base = Recipe {
             module: &world,

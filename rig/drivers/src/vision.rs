@@ -6,10 +6,10 @@ use std::{io, mem};
 
 use anyhow::Context;
 use base::failure::Usage;
-use kernel::World;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
+use kernel::{SceneSnapshot, World};
 use perception::{BUNDLED, Checkpoint, Compute, Mask, RgbView, Segmenter};
-use render::{Camera, Frame, RenderOptions, Renderer};
+use render::{Camera, Frame, RenderError, RenderOptions, Renderer};
 use replay::{MaskShown, Provenance};
 
 use crate::MaskView;
@@ -100,6 +100,16 @@ impl Eye {
             Self::Network { segmenter, .. } => (segmenter.size().0 as u32, segmenter.size().1 as u32),
             Self::External(external) => external.size(),
         }
+    }
+
+    /// Whether it looks at colours.
+    pub fn needs_colours(&self) -> bool {
+        !matches!(self, Self::Truth)
+    }
+
+    /// What it needs of a picture.
+    pub fn draw(&self, renderer: &mut Renderer, scene: &SceneSnapshot, camera: &Camera) -> Result<Frame, RenderError> {
+        if self.needs_colours() { renderer.draw(scene, camera) } else { renderer.draw_classes(scene, camera) }
     }
 
     /// The mask of a frame, as tag ids.
@@ -199,13 +209,20 @@ pub struct Optics {
     renderer: Renderer,
     eye: Eye,
     camera: Camera,
+    /// Colours are drawn though the eye needs none.
+    with_colours: bool,
 }
 
 impl Optics {
     /// Looks at the renderer's map through an eye.
     pub fn new(renderer: Renderer, eye: Eye) -> Self {
         let (width, height) = eye.size();
-        Self { renderer, eye, camera: Camera::driver(width, height) }
+        Self { renderer, eye, camera: Camera::driver(width, height), with_colours: false }
+    }
+
+    /// The same for somebody who looks at the colours of the eye's pictures, too.
+    pub fn with_colours(self) -> Self {
+        Self { with_colours: true, ..self }
     }
 
     /// What looks.
@@ -218,9 +235,14 @@ impl Optics {
         Ok(self.renderer.draw(&world.scene(), camera)?)
     }
 
-    /// The mask that comes to the screen at a tick, and the colours that it is of.
+    /// The mask that comes to the screen at a tick, and the colours that it is of, where they were drawn.
     fn picture(&mut self, world: &World, tick_shown: Tick) -> anyhow::Result<(Picture, Vec<u8>)> {
-        let mut frame = self.renderer.draw(&world.scene(), &self.camera)?;
+        let scene = world.scene();
+        let mut frame = if self.with_colours {
+            self.renderer.draw(&scene, &self.camera)?
+        } else {
+            self.eye.draw(&mut self.renderer, &scene, &self.camera)?
+        };
         let mask = self.eye.take_in(&mut frame)?;
         let digest = digest_of(&mask.ids);
         // The controls of the next tick are the first that are given with this mask in view.
@@ -253,9 +275,9 @@ impl Screen {
         Ok((mask, picture.shown))
     }
 
-    /// The colours of the frame of a tick, 3 bytes a pixel, if that is the one that was drawn last for a mask.
+    /// The colours of the frame of a tick, 3 bytes a pixel, if that is the one that was drawn last for a mask, and with them.
     pub fn colours_of(&self, tick: Tick) -> Option<&[u8]> {
-        self.drawn.as_ref().filter(|(drawn, _)| *drawn == tick).map(|(_, rgb)| rgb.as_slice())
+        self.drawn.as_ref().filter(|(drawn, rgb)| *drawn == tick && !rgb.is_empty()).map(|(_, rgb)| rgb.as_slice())
     }
 
     fn follow(&mut self, optics: &mut Optics, world: &World) -> anyhow::Result<()> {

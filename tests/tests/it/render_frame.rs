@@ -42,6 +42,26 @@ fn both_presets_give_the_same_truth() {
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn classes_alone_are_those_of_the_picture_with_colours() {
+    for preset in [Preset::Cheap, Preset::Full] {
+        let new = || Renderer::new(&street::network(), &RenderOptions { preset, ..Default::default() }).unwrap();
+        let (mut whole, mut both) = (new(), new());
+        for moment in 0..6 {
+            let scene = street::scene(moment);
+            for camera in [Camera::driver(256, 128), Camera::chase(320, 200)] {
+                let frame = whole.draw(&scene, &camera).unwrap();
+                let classes = both.draw_classes(&scene, &camera).unwrap();
+                assert!(classes.rgb.is_empty() && classes.class_ids.iter().any(|id| *id != classes.class_ids[0]));
+                assert_eq!(classes, Frame { rgb: Vec::new(), ..frame.clone() }, "moment {moment}");
+                // And leave nothing behind for the next picture.
+                assert_eq!(both.draw(&scene, &camera).unwrap(), frame, "moment {moment}");
+            }
+        }
+    }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn planes_belong_together() {
     let scene = street::scene(1);
     let frame = renderer().draw(&scene, &Camera::driver(512, 256)).unwrap();

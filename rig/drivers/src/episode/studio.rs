@@ -12,6 +12,7 @@ use crate::vision::{Eye, Optics};
 /// As many devices as drives are stepped at the same time.
 pub struct Studio {
     eye: Eye,
+    with_colours: bool,
     most: usize,
     drives: usize,
     shelf: Mutex<Shelf>,
@@ -32,9 +33,10 @@ struct Device {
 }
 
 impl Studio {
-    /// One that looks through an eye, with at most so many devices for so many drives.
-    pub fn new(eye: Eye, most: usize, drives: usize) -> Self {
-        Self { eye, most, drives, shelf: Mutex::default() }
+    /// One that looks through an eye, and may need colours that the eye does not, with at most so many devices for so many
+    /// drives.
+    pub fn new(eye: Eye, with_colours: bool, most: usize, drives: usize) -> Self {
+        Self { eye, with_colours, most, drives, shelf: Mutex::default() }
     }
 
     /// What looks.
@@ -82,7 +84,8 @@ impl Studio {
 
     fn build(&self, network: &RoadNetwork) -> anyhow::Result<Optics> {
         let renderer = Renderer::new(network, &RenderOptions::default())?.with_shadow_maps(self.drives);
-        Ok(Optics::new(renderer, self.eye.clone()))
+        let optics = Optics::new(renderer, self.eye.clone());
+        Ok(if self.with_colours { optics.with_colours() } else { optics })
     }
 
     fn shelf(&self) -> MutexGuard<'_, Shelf> {

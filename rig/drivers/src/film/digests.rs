@@ -131,7 +131,7 @@ fn rebuild(film: &Film, eye: &mut Eye) -> anyhow::Result<BTreeMap<Tick, u64>> {
     let camera = Camera::driver(width, height);
     let bar = progress::bar("masks", digests.len() as u64);
     for (tick, digest) in &mut digests {
-        let frame = renderer.draw(&reel.at(*tick)?.scene, &camera)?;
+        let frame = eye.draw(&mut renderer, &reel.at(*tick)?.scene, &camera)?;
         *digest = digest_of(&eye.see(frame)?.ids);
         bar.inc(1);
     }

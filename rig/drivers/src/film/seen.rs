@@ -84,7 +84,8 @@ impl<'a> SeenTrack<'a> {
             let Some(eye) = &mut self.eye else { return Ok(None) };
             let (width, height) = self.film.eye.size;
             let moment = self.reel.at(tick_of_frame)?;
-            let mask = eye.see(renderer.draw(&moment.scene, &Camera::driver(width, height))?)?;
+            let frame = eye.draw(renderer, &moment.scene, &Camera::driver(width, height))?;
+            let mask = eye.see(frame)?;
             let image = Image { width: mask.width, height: mask.height, rgb: render::tags::colours(&mask.ids) };
             self.last = Some(Rebuilt { tick_of_frame, digest: digest_of(&mask.ids), image: Arc::new(image) });
         }

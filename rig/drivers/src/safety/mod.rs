@@ -7,7 +7,9 @@ mod forecast;
 mod hazard;
 mod looks;
 
+use glam::Vec2;
 use kernel::rng::{self, Stream};
+use kernel::scene::{ActorScene, SceneSnapshot};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Controls, Seat, World, ops};
 
@@ -15,7 +17,7 @@ use eyes::Eyes;
 use replay::Label;
 
 use super::Driver;
-use crate::footprint;
+use crate::footprint::{self, Footprint, on_level};
 use crate::single_track;
 use crate::temper::Temper;
 pub use encounter::{CRITICAL_S, Encroachment, Touched, encroachers, label_of, predicted_encroachment};
@@ -34,6 +36,10 @@ pub const FORGET_TICKS: Tick = 12;
 pub const URGENT: f32 = 0.5;
 /// Standing without a red light ahead gets boring after this time.
 pub const BORING_TICKS: Tick = seconds(60);
+/// The same behind somebody who stands in the way, whom they see, so that they know what it waits for; and so far before the
+/// car that is, metres.
+const QUEUE_TICKS: Tick = seconds(180);
+const QUEUE_M: f32 = 8.0;
 /// Deceleration of the full brake is asked for at once.
 const BRAKE: f32 = 1.0;
 /// How far ahead on the route the car is steered to, metres.
@@ -143,8 +149,18 @@ impl SafetyBot {
             self.stands_since = None;
             return false;
         }
-        world.tick() >= *self.stands_since.get_or_insert(world.tick()) + BORING_TICKS
+        let patience_ticks = if is_blocked(&world.scene()) { QUEUE_TICKS } else { BORING_TICKS };
+        world.tick() >= *self.stands_since.get_or_insert(world.tick()) + patience_ticks
     }
+}
+
+/// Whether somebody stands right before the car.
+fn is_blocked(scene: &SceneSnapshot) -> bool {
+    let car = Footprint::of_ego(&scene.ego);
+    let half = Vec2::new(0.5 * QUEUE_M, car.half.y);
+    let ahead = Footprint { centre: car.centre + (car.half.x + half.x) * car.forward, half, ..car };
+    let is_there = |a: &ActorScene| on_level(a.position, scene.ego.position) && ahead.overlaps(&Footprint::of_actor(a));
+    scene.actors.iter().any(is_there)
 }
 
 impl Driver<World> for SafetyBot {

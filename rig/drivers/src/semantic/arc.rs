@@ -1,7 +1,12 @@
 //! Places in the car's frame, and the arcs that lead there.
 
+use kernel::ego::{self, FRONT_M};
 use kernel::ops;
 
+/// Half of the car's width, metres.
+pub const HALF_WIDTH_M: f32 = 0.5 * ego::SIZE_M.y;
+/// An arc of this radius is straight, metres.
+const STRAIGHT_M: f32 = 1e4;
 /// Sharpest arc that is tried, 1/m; about the car's turning circle.
 pub const SHARPEST: f32 = 0.2;
 
@@ -48,5 +53,47 @@ impl Arc {
         let left_m = radius - ops::hypot(dx, dy) * radius.signum();
         let turned = if turned < 0.0 && x_m < 0.0 { 0.0 } else { ops::wrap_angle(turned) };
         (turned.abs() * radius.abs(), left_m)
+    }
+    /// How far from the arc of its rear axle the car reaches on the side of a point so far to the left, metres: on the outer
+    /// one of a turn its front swings out.
+    pub fn swept_m(&self, left_m: f32) -> f32 {
+        let radius_m = 1.0 / self.curvature.abs();
+        if left_m * self.curvature >= 0.0 || radius_m > STRAIGHT_M {
+            return HALF_WIDTH_M;
+        }
+        ops::hypot(radius_m + HALF_WIDTH_M, FRONT_M) - radius_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projecting_undoes_placing() {
+        for curvature in [-0.15, -0.02, 0.0, 0.05, 0.12] {
+            let arc = Arc { curvature };
+            for (s, left) in [(4.0, 0.0), (9.0, 1.5), (7.0, -2.0)] {
+                let (x, y) = arc.beside(s, left);
+                let (s2, left2) = arc.project(x, y);
+                assert!((s - s2).abs() < 1e-2 && (left - left2).abs() < 1e-2, "{curvature} {s} {left}: {s2} {left2}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_arc_to_a_point_meets_it() {
+        let (s, left) = Arc::to(11.0, 5.0).project(11.0, 5.0);
+        assert!(left.abs() < 1e-3 && s > 12.0);
+    }
+
+    #[test]
+    fn the_front_of_a_turning_car_swings_out() {
+        let sharp = Arc { curvature: -0.125 };
+        let swings_m = sharp.swept_m(1.0) - HALF_WIDTH_M;
+        assert!((0.5..0.8).contains(&swings_m), "{swings_m}");
+        assert_eq!(sharp.swept_m(-1.0), HALF_WIDTH_M);
+        assert!(Arc { curvature: 0.002 }.swept_m(-1.0) < HALF_WIDTH_M + 0.02);
+        assert_eq!([0.0, 1e-8].map(|curvature| Arc { curvature }.swept_m(-1.0)), [HALF_WIDTH_M; 2]);
     }
 }

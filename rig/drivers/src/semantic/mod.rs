@@ -1,16 +1,20 @@
 //! The simulated semantic driver: a function of the mask, the HUD and the little it remembers of them.
 
 pub mod arc;
+mod crossing;
 mod memory;
 mod moved;
 pub mod path;
 mod pedals;
 pub mod sight;
 pub mod speed;
+mod squeeze;
 #[cfg(test)]
 mod tests;
+mod tracks;
 
 use kernel::map::Turn;
+use kernel::signals::LightPhase;
 use kernel::time::{TICK_S, Tick};
 use kernel::{Controls, Seat};
 
@@ -19,16 +23,20 @@ use crate::temper::Temper;
 use crate::vision::FRAME_TICKS;
 use crate::{indicate, single_track};
 use arc::Arc;
-use memory::{Ahead, Dash, Patience, Reading, Room, Tracks, Trail};
+use memory::{Ahead, Dash, Patience, Reading, Room, Trail};
 use moved::{Lag, Moved};
 use pedals::{Foot, Nose};
 use sight::{Contact, Sight};
 use speed::{Scene, Wish};
+use squeeze::{SQUEEZING_MPS, Squeeze, Way};
+use tracks::Tracks;
 
 /// Fastest turning of the steering wheel, fractions of full steering a second.
 const STEER_RATE: f32 = 1.6;
 /// Distance to a junction within which a light that is no longer shown was its own, metres.
 const PASSED_LIGHT_M: f32 = 10.0;
+/// The car waits for what it would have to stand before within this, metres.
+const IN_THE_WAY_M: f32 = 3.0;
 
 /// Drives by the mask and the HUD alone.
 #[derive(Clone, Debug, Default)]
@@ -47,6 +55,7 @@ pub struct SemanticBot {
     people: Tracks,
     patience: Patience,
     room: Room,
+    squeeze: Squeeze,
     has_lights: bool,
     /// The mask that was looked at last, how long ago, and where others stood in it.
     ids: Vec<u8>,
@@ -89,27 +98,40 @@ impl SemanticBot {
         self.tracks.carry(moved);
         self.people.carry(moved);
         self.room.carry(moved);
+        self.squeeze.carry(moved, self.waits(&dash));
         let arc = path::choose(sight, &dash, &self.trail);
         self.looked_ticks += 1;
         // Nothing moves in the picture of a car that stands before a parked one, and yet it is a new picture.
         let stands_still = view.hud.speed_kmh == 0 && self.looked_ticks >= FRAME_TICKS;
         if is_new {
             self.look(sight, view.mask.ids);
-            self.make_room(arc, &dash);
+            self.make_room(sight, arc, &dash);
         } else if stands_still {
             self.track();
-            self.make_room(arc, &dash);
+            self.make_room(sight, arc, &dash);
         }
         // A light leaves the HUD once its line is passed, but the junction still has it.
         self.has_lights = dash.light.is_some() || (self.has_lights && dash.junction_m < PASSED_LIGHT_M);
         // Lights keep crossing traffic away, but not the oncoming one that a left turn crosses.
         let gives_way = !self.has_lights || dash.turn == Turn::Left;
-        let give_way_m = if gives_way { speed::give_way_m(arc, &dash, &self.tracks) } else { None };
+        let give_way_m = if gives_way { crossing::give_way_m(arc, &dash, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
-        let after_turn_m = speed::after_turn_m(&self.contacts, arc, &dash);
-        let obstacle_m = self.room.stop_in_m();
-        let scene = Scene { obstacle_m, after_turn_m, give_way_m, has_lights: self.has_lights };
-        (arc, speed::wish(sight, arc, &dash, scene, self.temper.vigour()))
+        let after_turn_m = speed::after_turn_m(&self.contacts, &self.tracks, arc, &dash);
+        let scene = Scene { obstacle_m: self.room.stop_in_m(), after_turn_m, give_way_m, has_lights: self.has_lights };
+        let vigour = self.temper.vigour();
+        match self.squeeze.way() {
+            None => (arc, speed::wish(sight, arc, &dash, scene, vigour)),
+            Some(Way { arc, free_m }) => {
+                let slow = Dash { limit_mps: SQUEEZING_MPS, ..dash };
+                (arc, speed::wish(sight, arc, &slow, Scene { obstacle_m: Some(free_m), ..scene }, vigour))
+            }
+        }
+    }
+
+    /// Whether something in the way keeps the car where it is, and no light.
+    fn waits(&self, dash: &Dash) -> bool {
+        let is_open = dash.light.is_none_or(|light| light == LightPhase::Green);
+        is_open && self.room.stop_in_m().is_some_and(|stop_in_m| stop_in_m < IN_THE_WAY_M)
     }
 
     /// Takes in a new mask.
@@ -131,11 +153,14 @@ impl SemanticBot {
     }
 
     /// What stands in the way by the mask that was looked at last.
-    fn make_room(&mut self, arc: Arc, dash: &Dash) {
+    fn make_room(&mut self, sight: &Sight<'_>, arc: Arc, dash: &Dash) {
         self.looked_ticks = 0;
         let stands = speed::obstacle(&self.contacts, &self.tracks, arc, dash.speed_mps);
-        let walks = speed::crossing_m(&self.people, arc, dash.speed_mps).map(Ahead::standing);
-        self.room.look(stands.into_iter().chain(walks).reduce(Ahead::nearer));
+        let walks = crossing::walkers_m(&self.people, arc, dash.speed_mps);
+        let drives = crossing::vehicles_m(&self.tracks, arc, dash.speed_mps);
+        let crosses = walks.into_iter().chain(drives).map(Ahead::standing);
+        self.room.look(stands.into_iter().chain(crosses).reduce(Ahead::nearer));
+        self.squeeze.look(sight, &self.contacts, &self.tracks, arc);
     }
 }
 

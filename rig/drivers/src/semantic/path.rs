@@ -118,26 +118,3 @@ fn nearest_on_road(sight: &Sight<'_>, wanted: Arc, look_m: f32) -> Arc {
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map_or(wanted, |(_, arc)| arc)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn projecting_undoes_placing() {
-        for curvature in [-0.15, -0.02, 0.0, 0.05, 0.12] {
-            let arc = Arc { curvature };
-            for (s, left) in [(4.0, 0.0), (9.0, 1.5), (7.0, -2.0)] {
-                let (x, y) = arc.beside(s, left);
-                let (s2, left2) = arc.project(x, y);
-                assert!((s - s2).abs() < 1e-2 && (left - left2).abs() < 1e-2, "{curvature} {s} {left}: {s2} {left2}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_arc_to_a_point_meets_it() {
-        let (s, left) = Arc::to(11.0, 5.0).project(11.0, 5.0);
-        assert!(left.abs() < 1e-3 && s > 12.0);
-    }
-}

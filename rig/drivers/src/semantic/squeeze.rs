@@ -1,0 +1,237 @@
+//! A way out of stand-offs: after a while before something that stands in the way, at a walking pace along an arc beside it.
+
+use kernel::ego::FRONT_M;
+use kernel::ops;
+use kernel::time::TICK_S;
+
+use super::arc::{Arc, HALF_WIDTH_M, Point, SHARPEST};
+use super::moved::Moved;
+use super::sight::{Contact, Ground, Sight};
+use super::tracks::Tracks;
+
+/// So long the car stands before it tries, seconds.
+const WAITED_S: f32 = 30.0;
+/// Its speed then, m/s, and how far it goes like this, metres.
+pub const SQUEEZING_MPS: f32 = 1.5;
+const FARTHEST_M: f32 = 15.0;
+/// Arcs that are tried on each side of straight ahead.
+const TRIED: i16 = 40;
+/// Room beside vehicles and people, metres; less beside those whom the car already stands next to.
+const BESIDE_VEHICLE_M: f32 = 0.3;
+const BESIDE_WALKER_M: f32 = 0.6;
+const NEXT_TO_M: f32 = 0.1;
+/// Room before the car that makes an arc a way by, metres.
+const FREE_M: f32 = 5.5;
+/// What has left the picture is believed to stand there for this long, seconds.
+const REMEMBERED_S: f32 = 12.0;
+/// Who moves faster than this, within this distance, is let pass first, m/s and metres.
+const MOVING_MPS: f32 = 1.0;
+const LET_PASS_M: f32 = 15.0;
+
+/// Where something touches the ground.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    at: Point,
+    is_person: bool,
+    unseen_s: f32,
+}
+
+/// A way beside what stands there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// The arc that leads by.
+    pub arc: Arc,
+    /// Metres that are free before the front of the car.
+    pub free_m: f32,
+}
+
+/// How long the car has stood, and its way by, once it has one.
+#[derive(Clone, Debug, Default)]
+pub struct Squeeze {
+    stood_s: f32,
+    way: Option<Way>,
+    driven_m: f32,
+    since_look_m: f32,
+    /// What the last mask showed, and what left the picture while the car drove.
+    seen: Vec<Spot>,
+    gone: Vec<Spot>,
+}
+
+impl Squeeze {
+    /// The way that is to be driven now.
+    pub fn way(&self) -> Option<Way> {
+        self.way
+    }
+
+    /// Carries what is known along while the car moves; `waits` for something that stands in its way.
+    pub fn carry(&mut self, moved: Moved, waits: bool) {
+        for spot in self.seen.iter_mut().chain(&mut self.gone) {
+            spot.at = moved.shift(spot.at);
+        }
+        self.gone.iter_mut().for_each(|spot| spot.unseen_s += TICK_S);
+        self.gone.retain(|spot| spot.at.0 > 0.0 && spot.unseen_s < REMEMBERED_S);
+        self.since_look_m += moved.forward_m;
+        self.driven_m += moved.forward_m;
+        if let Some(way) = &mut self.way {
+            way.free_m -= moved.forward_m;
+        } else {
+            self.stood_s = if waits && moved.forward_m == 0.0 { self.stood_s + TICK_S } else { 0.0 };
+            self.driven_m = 0.0;
+        }
+        if self.driven_m > FARTHEST_M || !waits {
+            self.way = None;
+        }
+    }
+
+    /// Takes in a mask: the way beside what it shows that turns least from the wanted one.
+    pub fn look(&mut self, sight: &Sight<'_>, contacts: &[Contact], vehicles: &Tracks, wanted: Arc) {
+        let spot = |c: &Contact| Spot { at: (c.x_m, c.y_m), is_person: c.is_person, unseen_s: 0.0 };
+        let seen = std::mem::replace(&mut self.seen, contacts.iter().map(spot).collect());
+        // Who leaves the picture of a car that stands has driven off.
+        if std::mem::take(&mut self.since_look_m) > 0.0 {
+            self.gone.extend(seen.into_iter().filter(|spot| is_hidden(sight, spot.at)));
+        }
+        if self.stood_s < WAITED_S {
+            return;
+        }
+        let is_near = |at: Point| at.0 > 0.0 && ops::hypot(at.0, at.1) < LET_PASS_M;
+        self.way = if vehicles.moving(MOVING_MPS).any(|track| is_near(track.at)) {
+            self.way.map(|way| Way { free_m: 0.0, ..way })
+        } else {
+            self.best(sight, wanted)
+        };
+    }
+
+    fn best(&self, sight: &Sight<'_>, wanted: Arc) -> Option<Way> {
+        let arcs = (-TRIED..=TRIED).map(|step| Arc { curvature: SHARPEST * f32::from(step) / f32::from(TRIED) });
+        let ways = arcs.map(|arc| Way { arc, free_m: self.free_m(arc) });
+        let turns = |way: &Way| (way.arc.curvature - wanted.curvature).abs();
+        let open = ways.filter(|way| way.free_m >= FREE_M && is_road(sight, way.arc));
+        open.min_by(|a, b| turns(a).total_cmp(&turns(b)))
+    }
+
+    /// Metres before the front of the car along an arc until it would touch something.
+    fn free_m(&self, arc: Arc) -> f32 {
+        let touches_m = |spot: &Spot| {
+            let (s_m, left_m) = arc.project(spot.at.0, spot.at.1);
+            let beside_m = if spot.is_person { BESIDE_WALKER_M } else { BESIDE_VEHICLE_M };
+            let room_m = left_m.abs() - if s_m < FRONT_M { HALF_WIDTH_M } else { arc.swept_m(left_m) };
+            let least_m = if s_m < FRONT_M { NEXT_TO_M } else { beside_m };
+            (spot.at.0 > 0.0 && room_m < least_m).then_some((s_m - FRONT_M).max(0.0))
+        };
+        self.seen.iter().chain(&self.gone).filter_map(touches_m).fold(f32::INFINITY, f32::min)
+    }
+}
+
+fn is_hidden(sight: &Sight<'_>, at: Point) -> bool {
+    sight.ground(at.0, at.1) == Ground::Unseen
+}
+
+/// Whether the car stays on the road along an arc, as far as the ground is seen.
+fn is_road(sight: &Sight<'_>, arc: Arc) -> bool {
+    let stays = |s_m: f32| {
+        [-HALF_WIDTH_M, HALF_WIDTH_M].into_iter().all(|left_m| {
+            let (x_m, y_m) = arc.beside(s_m, left_m);
+            sight.ground(x_m, y_m) != Ground::Other
+        })
+    };
+    (0..=4).all(|metre| stays(FRONT_M + f32::from(metre as u8)))
+}
+
+#[cfg(test)]
+mod tests {
+    use kernel::ego;
+    use render::SemanticTag;
+
+    use super::*;
+    use crate::MaskView;
+
+    const WIDTH: usize = 256;
+    const HEIGHT: usize = 128;
+    const STRAIGHT: Arc = Arc { curvature: 0.0 };
+    const STILL: Moved = Moved { forward_m: 0.0, turned_rad: 0.0 };
+
+    fn on_asphalt<T>(act: impl FnOnce(&Sight<'_>) -> T) -> T {
+        let ids = vec![SemanticTag::Road as u8; WIDTH * HEIGHT];
+        act(&Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids }, 0.0))
+    }
+
+    fn contact((x_m, y_m): Point, is_person: bool) -> Contact {
+        Contact { x_m, y_m, depth_error_m: 0.0, is_person, on_road: true }
+    }
+
+    fn vehicle_rear(x_m: f32, right_m: f32, left_m: f32) -> Vec<Contact> {
+        let steps = ((left_m - right_m) / 0.1) as usize;
+        (0..=steps).map(|i| contact((x_m, right_m + 0.1 * i as f32), false)).collect()
+    }
+
+    /// What is found after so long before some contacts.
+    fn after_s(contacts: &[Contact], waited_s: f32) -> Option<Way> {
+        let mut squeeze = Squeeze::default();
+        (0..(waited_s / TICK_S) as usize).for_each(|_| squeeze.carry(STILL, true));
+        on_asphalt(|sight| squeeze.look(sight, contacts, &Tracks::default(), STRAIGHT));
+        squeeze.way()
+    }
+
+    #[test]
+    fn it_leads_by_on_the_side_that_is_free_but_not_at_once() {
+        let beside = |side: f32| {
+            let rear = vehicle_rear(8.0, -3.0, -0.5);
+            rear.into_iter().map(|c| Contact { y_m: side * c.y_m, ..c }).collect::<Vec<_>>()
+        };
+        assert_eq!(after_s(&beside(1.0), WAITED_S - 1.0), None);
+        let [left, right] = [1.0, -1.0].map(|side| after_s(&beside(side), WAITED_S + 1.0).expect("there is a way"));
+        assert!(left.arc.curvature > 0.01 && right.arc.curvature < -0.01, "{left:?} {right:?}");
+        assert_eq!(after_s(&vehicle_rear(6.5, -8.0, 8.0), WAITED_S + 1.0), None, "from side to side");
+    }
+
+    #[test]
+    fn it_leads_past_somebody_at_the_kerb_who_waits() {
+        let way = after_s(&[contact((9.0, -2.2), true)], WAITED_S + 1.0).expect("there is room");
+        assert!(way.arc.curvature.abs() < 0.02, "{way:?}");
+        let way = after_s(&[contact((9.0, -1.2), true)], WAITED_S + 1.0).expect("there is room on the left");
+        assert!(way.arc.curvature > 0.005, "{way:?}");
+    }
+
+    #[test]
+    fn it_lets_pass_who_moves() {
+        let mut vehicles = Tracks::default();
+        for look in 0..10 {
+            vehicles.look(&[contact((12.0 - 0.4 * look as f32, 3.0), false)]);
+            (0..6).for_each(|_| vehicles.carry(STILL));
+        }
+        let mut squeeze = Squeeze::default();
+        (0..2400).for_each(|_| squeeze.carry(STILL, true));
+        on_asphalt(|sight| squeeze.look(sight, &vehicle_rear(8.0, -3.0, -0.5), &vehicles, STRAIGHT));
+        assert_eq!(squeeze.way(), None);
+    }
+
+    /// A lorry stands in the way, 9 m long: most of its side is beside the picture while the car drives past.
+    #[test]
+    fn it_does_not_touch_what_it_no_longer_sees() {
+        let lorry: Vec<Point> = {
+            let rear = vehicle_rear(7.6, -2.8, -0.3).into_iter().map(|c| (c.x_m, c.y_m));
+            rear.chain((0..=90).map(|i| (7.6 + 0.1 * i as f32, -0.3))).collect()
+        };
+        let (mut squeeze, mut points, mut driven_m) = (Squeeze::default(), lorry, 0.0);
+        (0..1860).for_each(|_| squeeze.carry(STILL, true));
+        for tick in 0..900 {
+            if tick % 6 == 0 {
+                on_asphalt(|sight| {
+                    let seen = points.iter().filter(|at| !is_hidden(sight, **at));
+                    let contacts: Vec<Contact> = seen.map(|at| contact(*at, false)).collect();
+                    squeeze.look(sight, &contacts, &Tracks::default(), STRAIGHT);
+                });
+            }
+            let way = squeeze.way().filter(|way| way.free_m > 0.2);
+            let moved = way.map_or(STILL, |way| Moved::along(way.arc, SQUEEZING_MPS));
+            driven_m += moved.forward_m;
+            points.iter_mut().for_each(|at| *at = moved.shift(*at));
+            squeeze.carry(moved, true);
+            let rear_m = FRONT_M - ego::SIZE_M.x;
+            let is_hit = |at: &&Point| (rear_m..FRONT_M).contains(&at.0) && at.1.abs() < HALF_WIDTH_M;
+            assert_eq!(points.iter().find(is_hit), None, "after {driven_m} m");
+        }
+        assert!(driven_m > 10.0, "{driven_m} m");
+    }
+}
