@@ -11,8 +11,17 @@ import pytest
 
 Program = Callable[..., subprocess.CompletedProcess[str]]
 
-# Many people on foot, so that a takeover is not long in coming.
-CAMPAIGN = "campaign --checkpoint early --maps city --pedestrians 300 --seed 1 --cases 1 --max-time 40s"
+# Many people, who often step onto the road, and mistakes of others, so that a takeover is not long in coming.
+HASTY = """map = "city"
+
+[traffic]
+pedestrians = 300
+jaywalks_per_min = 60.0
+
+[hazards]
+level = "raised"
+"""
+CAMPAIGN = "campaign --checkpoint early --seed 1 --cases 1 --max-time 60s"
 
 
 @pytest.fixture(scope="session")
@@ -43,9 +52,11 @@ def drive(program: Program, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def case(program: Program, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A corner case."""
-    folder = tmp_path_factory.mktemp("campaign") / "drives"
-    program(*CAMPAIGN.split(), "--out", folder)
-    return next(folder.glob("*.case.mcap"))
+    folder = tmp_path_factory.mktemp("campaign")
+    scenario, drives = folder / "hasty.toml", folder / "drives"
+    scenario.write_text(HASTY)
+    program(*CAMPAIGN.split(), "--scenario", scenario, "--out", drives)
+    return next(drives.glob("*.case.mcap"))
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,6 @@ use base::output::{self, OutputFolder};
 use base::progress::Interrupt;
 use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
-use kernel::scenario::HazardLevel;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use render::AdapterChoice;
 use serde::Serialize;
@@ -25,11 +24,12 @@ use crate::verify::{self, Checked, verify};
 /// Corner cases that the demo waits for.
 const CASES: u32 = 3;
 /// Longest simulated time of a run, seconds.
-const RUN_SECONDS: u32 = 180;
-/// People on foot: more than by default, so that three cases do not take long.
-const PEDESTRIANS: u16 = 300;
-/// And more mistakes of others.
-const HAZARDS: HazardLevel = HazardLevel::Raised;
+const RUN_SECONDS: u32 = 60;
+/// Where people walk.
+const MAPS: [&str; 3] = ["city", "old_town", "suburb"];
+/// A scenario in which three cases do not take long, and the name of its file in the demo's folder.
+const SCENARIO: &str = include_str!("demo.toml");
+const SCENARIO_FILE: &str = "scenario.toml";
 
 /// What the demo is made from.
 #[derive(Clone, Debug)]
@@ -81,9 +81,11 @@ pub fn demo(options: &Options, onlooker: &mut impl Onlooker, interrupt: &Interru
     let (early, full) = (CheckpointChoice::Bundled("early"), CheckpointChoice::Bundled("full"));
     let drives = options.out.join("drives");
     say(format_args!(
-        "1/4 driving among {PEDESTRIANS} people through the early checkpoint until {CASES} corner cases have happened"
+        "1/4 driving among hasty people through the early checkpoint until {CASES} corner cases have happened"
     ));
-    let figures = campaign::drive(&campaign_options(options, early.clone(), &drives), interrupt)?;
+    let scenario = options.out.join(SCENARIO_FILE);
+    output::write_file(&scenario, SCENARIO.as_bytes())?;
+    let figures = campaign::drive(&campaign_options(options, early.clone(), scenario, &drives), interrupt)?;
     let (recordings, cases) = files(&drives, &figures);
     say("2/4 verifying every recording");
     verify_all([recordings, cases.clone()].concat(), options.jobs, onlooker)?;
@@ -111,15 +113,20 @@ fn verify_all(files: Vec<PathBuf>, jobs: Option<u16>, onlooker: &mut impl Onlook
     )
 }
 
-fn campaign_options(options: &Options, checkpoint: CheckpointChoice, out: &Path) -> campaign::Options {
+fn campaign_options(
+    options: &Options,
+    checkpoint: CheckpointChoice,
+    scenario: PathBuf,
+    out: &Path,
+) -> campaign::Options {
     campaign::Options {
         checkpoint: vec![checkpoint],
-        maps: vec!["all".into()],
+        maps: MAPS.map(str::to_owned).into(),
         embed_map: false,
-        scenario: None,
+        scenario: Some(scenario),
         goal: Until::Cases(CASES).into(),
-        pedestrians: Some(PEDESTRIANS),
-        hazards: Some(HAZARDS),
+        pedestrians: None,
+        hazards: None,
         weather: None,
         run_seconds: RUN_SECONDS,
         seed: options.seed,
