@@ -12,7 +12,7 @@ pub struct Frame {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Colour, 3 bytes a pixel: red, green, blue (sRGB).
+    /// Colour, 3 bytes a pixel: red, green, blue (sRGB); empty where it was left out.
     pub rgb: Vec<u8>,
     /// Class, one of the 23 tags of CARLA 0.9.10 a pixel ([`crate::tags::TAGS`]).
     pub class_ids: Vec<u8>,

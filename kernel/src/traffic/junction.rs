@@ -143,8 +143,8 @@ fn prevents(asking: &Member, other: &Member, conflict: &LaneConflict, there: &St
 }
 
 /// The order of two who ask, the same seen from both: who is in a roundabout first, or it would fill up, until those who
-/// want in have waited long; then the impatient; then the right of way, then the longer wait, then the smaller id. The ego
-/// car does not hear of how long others have waited.
+/// want in have waited long; then the impatient; then the right of way, then the longer wait, then the smaller id. Nobody
+/// takes the ego car's right of way because of impatience: it would not hear of it.
 fn goes_before(a: &Member, b: &Member, precedence: i8) -> bool {
     // Unless the map tells that those who drive round wait.
     let rounds =

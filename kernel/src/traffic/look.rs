@@ -29,7 +29,8 @@ use super::vehicle::Vehicle;
 use super::walk::{ASTRAY_M, Streets};
 use super::walker::{Walker, WalkerMode};
 
-/// The ego car is expected at a junction that it reaches within this time, s, and from this near it may speed up, m.
+/// The ego car is expected at a junction from as near as it comes within this time, s, and so much farther, since it may
+/// speed up, m.
 const EGO_EXPECTED_S: f32 = 4.0;
 const EGO_SPEEDS_UP_M: f32 = 8.0;
 /// Slower than this it lets others go, m/s, but before a light that is green, at most so far before the line, m.

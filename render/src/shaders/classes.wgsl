@@ -1,7 +1,7 @@
 // Classes and instances alone: where surfaces are is what `world.wgsl` says.
 
 struct Seen {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat) ids: u32,
 }
 

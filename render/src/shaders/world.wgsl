@@ -15,7 +15,8 @@ struct VertexIn {
 }
 
 struct Lit {
-    @builtin(position) clip: vec4f,
+    // As in `classes.wgsl`, to the last bit.
+    @builtin(position) @invariant clip: vec4f,
     // Colour in the shade and what the sun adds.
     @location(0) shade: vec3f,
     @location(1) sunlit: vec3f,

@@ -9,14 +9,14 @@ use kernel::{Keyframe, Scenario, Seat, World};
 use replay::{Annotation, Label, Manifest};
 
 use crate::crew::Crew;
-use crate::safety::BORING_TICKS;
+use crate::safety::QUEUE_TICKS;
 use crate::session::{Session, SessionState};
 use crate::temper::Temper;
 use crate::vision::{self, Eye, FRAME_TICKS, LATENCY_TICKS, Vision};
 
 /// A fork that bots drive starts at least this long before the intervention, so that nothing is decided yet.
 pub fn fork_before_ticks(label: Label) -> Tick {
-    if label == Label::Boredom { BORING_TICKS + CLIP_TICKS } else { CLIP_TICKS }
+    if label == Label::Boredom { QUEUE_TICKS + CLIP_TICKS } else { CLIP_TICKS }
 }
 /// A fork goes on for this long after the intervention; one that comes so far without harm did not need it. The one
 /// time for every such question: `perception_caused` of a recording, what would have happened without the

@@ -104,7 +104,8 @@ struct Running {
 impl Fleet {
     /// So many places, in which no episode runs yet.
     pub fn new(plan: Plan, eye: Eye, places: usize) -> Self {
-        let studio = Studio::new(eye, plan.images.is_some(), plan.jobs, places);
+        let with_colours = plan.images == Some(eye.size());
+        let studio = Studio::new(eye, with_colours, plan.jobs, places);
         Self { plan, studio, places: (0..places).map(|_| None).collect(), begun: 0 }
     }
 

@@ -38,7 +38,7 @@ pub const URGENT: f32 = 0.5;
 pub const BORING_TICKS: Tick = seconds(60);
 /// The same behind somebody who stands in the way, whom they see, so that they know what it waits for; and so far before the
 /// car that is, metres.
-const QUEUE_TICKS: Tick = seconds(180);
+pub const QUEUE_TICKS: Tick = seconds(180);
 const QUEUE_M: f32 = 8.0;
 /// Deceleration of the full brake is asked for at once.
 const BRAKE: f32 = 1.0;
@@ -61,6 +61,8 @@ pub struct SafetyBot {
     reason: Option<Hazard>,
     /// Since when the car stands with nothing to wait for.
     stands_since: Option<Tick>,
+    /// And since when with nobody before it.
+    free_since: Option<Tick>,
 }
 
 /// A hazard, and when it was first and last seen.
@@ -94,6 +96,7 @@ impl SafetyBot {
             feared: Vec::new(),
             reason: None,
             stands_since: None,
+            free_since: None,
         }
     }
 
@@ -120,7 +123,7 @@ impl SafetyBot {
             self.fear(hazard, world);
         }
         self.feared.retain(|feared| world.tick() < feared.last + FORGET_TICKS);
-        if self.is_bored(world) && self.reason.is_none() {
+        if self.is_bored(world, &scene) && self.reason.is_none() {
             let comment = "nothing moves".into();
             self.reason = Some(Hazard { label: Label::Boredom, comment, source: Source::Standstill, urgency: 0.0 });
         }
@@ -142,15 +145,21 @@ impl SafetyBot {
         }
     }
 
-    fn is_bored(&mut self, world: &World) -> bool {
+    fn is_bored(&mut self, world: &World, scene: &SceneSnapshot) -> bool {
         let hud = world.hud();
         let waits = hud.light.is_some_and(|light| light != kernel::signals::LightPhase::Green);
         if hud.speed_mps > 0.3 || waits {
-            self.stands_since = None;
+            (self.stands_since, self.free_since) = (None, None);
             return false;
         }
-        let patience_ticks = if is_blocked(&world.scene()) { QUEUE_TICKS } else { BORING_TICKS };
-        world.tick() >= *self.stands_since.get_or_insert(world.tick()) + patience_ticks
+        if is_blocked(scene) {
+            self.free_since = None;
+        } else {
+            self.free_since.get_or_insert(world.tick());
+        }
+        let lasts = |since: Option<Tick>, ticks| since.is_some_and(|since| world.tick() >= since + ticks);
+        self.stands_since.get_or_insert(world.tick());
+        lasts(self.free_since, BORING_TICKS) || lasts(self.stands_since, QUEUE_TICKS)
     }
 }
 

@@ -67,13 +67,13 @@ fn meets_m(track: &Track, arc: Arc, speed_mps: f32, foreseen_s: f32, half_m: f32
     let (s_m, _) = arc.project(track.at.0, track.at.1);
     let to_m = s_m - FRONT_M;
     let there_s = to_m / speed_mps.max(CREEPING_MPS);
-    let is_in_the_way = |t_s: f32| {
-        let (x_m, y_m) = track.after(t_s.max(0.0));
-        arc.project(x_m, y_m).1.abs() < half_m
-    };
+    if to_m <= 0.0 || s_m > FORESEEN_M || there_s > foreseen_s {
+        return None;
+    }
     let times_s = [there_s - MOMENT_S, there_s, there_s + MOMENT_S];
-    let is_ahead = to_m > 0.0 && s_m < FORESEEN_M && there_s < foreseen_s;
-    (is_ahead && times_s.into_iter().any(is_in_the_way)).then_some(to_m - STANDOFF_M)
+    let places = times_s.map(|t_s| track.after(t_s.max(0.0))).map(|(x_m, y_m)| arc.project(x_m, y_m));
+    let in_the_way = places.into_iter().filter(|(_, left_m)| left_m.abs() < half_m);
+    in_the_way.map(|(s_m, _)| s_m - FRONT_M - STANDOFF_M).reduce(f32::min)
 }
 
 /// Metres from the front of the car to where it lets others pass at a junction without lights: where
@@ -82,11 +82,12 @@ pub fn give_way_m(arc: Arc, dash: &Dash, vehicles: &Tracks) -> Option<f32> {
     if dash.junction_m > GIVE_WAY_M {
         return None;
     }
-    let meets = |track: Track| {
+    let meets = |(at, velocity_mps): (Point, Point)| {
+        let after = |t_s: f32| (at.0 + t_s * velocity_mps.0, at.1 + t_s * velocity_mps.1);
         (1..=GIVE_WAY_STEPS).find_map(|step| {
             let t_s = 0.25 * step as f32;
             let driven_m = drives_off_m(dash, t_s);
-            let near = |(x, y): Point, t_s: f32| ops::hypot(track.after(t_s).0 - x, track.after(t_s).1 - y) < MEET_M;
+            let near = |(x, y): Point, t_s: f32| ops::hypot(after(t_s).0 - x, after(t_s).1 - y) < MEET_M;
             let is_met = |s_m: &f32| {
                 let place = expected_way(arc, dash, *s_m);
                 [t_s - 0.75, t_s, t_s + 0.75].into_iter().any(|t_s| near(place, t_s))
@@ -96,21 +97,24 @@ pub fn give_way_m(arc: Arc, dash: &Dash, vehicles: &Tracks) -> Option<f32> {
             places_m.rev().find(is_met).map(|s_m| s_m - FRONT_M)
         })
     };
-    let same_way = |track: &Track| track.velocity_mps.0 > 2.0 * track.velocity_mps.1.abs();
-    let others = vehicles.known().map(|track| doubted(track, dash.limit_mps));
-    let moving = others.filter(|track| track.speed_mps() > DRIVING_MPS && !same_way(track));
+    let same_way = |(vx, vy): Point| vx > 2.0 * vy.abs();
+    let drives = |velocity_mps: Point| ops::hypot(velocity_mps.0, velocity_mps.1) > DRIVING_MPS;
+    let may = |track: &Track| [track.velocity_mps, fastest(track, dash.limit_mps)].map(|v| (track.at, v));
+    let moving = vehicles.known().flat_map(may).filter(|(_, v)| drives(*v) && !same_way(*v));
     let meeting_m = moving.filter_map(meets).reduce(f32::min)?;
     // Before the junction it waits at its border, inside right before the other's way.
     let border_m = dash.junction_m - 1.0;
     Some(if border_m > 0.0 { border_m } else { meeting_m - MEET_M })
 }
 
-/// Somebody as fast as it may be: from far away a row of pixels is many metres, so that who comes seems slow for long.
-fn doubted(track: &Track, limit_mps: f32) -> Track {
+/// The velocity of somebody who comes as fast as it may: from far away a row of pixels is many metres, so that who comes
+/// seems slow for long.
+fn fastest(track: &Track, limit_mps: f32) -> Point {
     let (vx, vy) = track.velocity_mps;
-    let is_known = track.at.0 < DOUBTED_FROM_M || vx > 0.0;
-    let comes_mps = if is_known { -vx } else { track.approaches_at_most_mps().min(limit_mps).max(-vx) };
-    track.with_velocity((-comes_mps, vy))
+    if track.at.0 < DOUBTED_FROM_M || vx > 0.0 {
+        return (vx, vy);
+    }
+    (-track.approaches_at_most_mps().min(limit_mps).max(-vx), vy)
 }
 
 /// The way of a car that goes on as fast as it is, or drives off, metres.
@@ -132,9 +136,10 @@ fn expected_way(arc: Arc, dash: &Dash, s_m: f32) -> Point {
         Turn::Left => LEFT_BEND.max(arc.curvature),
         Turn::Right => -RIGHT_BEND.max(-arc.curvature),
     };
-    let left_rad = if dash.turn == Turn::Straight { f32::INFINITY } else { (FRAC_PI_2 - dash.turned_rad).max(0.0) };
+    let left_rad =
+        if dash.turn == Turn::Straight { f32::INFINITY } else { (FRAC_PI_2 - dash.turned_rad).clamp(0.0, FRAC_PI_2) };
     let after_m = (s_m - straight_m).max(0.0);
-    let bend_m = after_m.min(left_rad / bend.abs().max(1e-3));
+    let bend_m = after_m.min(left_rad / bend.abs());
     let (x, y, heading_rad) = Arc { curvature: bend }.at(bend_m);
     let on_m = after_m - bend_m;
     (x + on_m * ops::cos(heading_rad) + straight_m.min(s_m), y + on_m * ops::sin(heading_rad))
@@ -225,8 +230,9 @@ mod tests {
         let ahead = Arc { curvature: 0.0 };
         let at_10_mps = |from, velocity_mps| vehicles_m(&seen(from, velocity_mps, false), ahead, 10.0);
         assert!(at_10_mps((24.0, -20.0), (0.0, 8.0)).is_some());
-        assert_eq!(at_10_mps((24.0, 3.5), (-8.0, 0.0)), None, "it comes along its own lane");
+        assert_eq!(at_10_mps((24.0, 2.0), (-8.0, 0.0)), None, "it comes along its own lane");
         assert_eq!(at_10_mps((24.0, 4.0), (0.0, 8.0)), None, "it has passed");
-        assert_eq!(at_10_mps((38.0, -20.0), (0.0, 8.0)), None, "it will have passed");
+        assert!(at_10_mps((27.0, -24.0), (0.0, 8.0)).is_some());
+        assert_eq!(at_10_mps((27.0, -16.0), (0.0, 8.0)), None, "it will have passed");
     }
 }

@@ -89,7 +89,7 @@ pub struct Dash {
     /// The way at the next junction, and metres to it: 0 inside, infinite where none is shown.
     pub turn: Turn,
     pub junction_m: f32,
-    /// The car has turned so far inside of it, to whichever side, radians.
+    /// The car has turned so far that way inside of it, radians.
     pub turned_rad: f32,
     /// Bearing of the route, degrees, positive to the right.
     pub bearing_deg: i16,
@@ -109,6 +109,7 @@ impl Default for Dash {
 pub struct Reading {
     light: Countdown,
     junction: Countdown,
+    turn: Option<Turn>,
     turned_rad: f32,
 }
 
@@ -116,7 +117,10 @@ impl Reading {
     /// What the HUD says now, after the car has moved.
     pub fn read(&mut self, hud: &Readout, moved: Moved) -> Dash {
         let junction_m = hud.junction_m.map_or(f32::INFINITY, |shown_m| self.junction.read(shown_m, moved));
-        self.turned_rad = if junction_m == 0.0 { self.turned_rad + moved.turned_rad } else { 0.0 };
+        let to_its_side_rad = if hud.turn == Turn::Right { -moved.turned_rad } else { moved.turned_rad };
+        let goes_on = junction_m == 0.0 && self.turn == Some(hud.turn);
+        self.turned_rad = if goes_on { self.turned_rad + to_its_side_rad } else { 0.0 };
+        self.turn = Some(hud.turn);
         Dash {
             speed_mps: hud.speed_mps(),
             limit_mps: hud.limit_mps(),
@@ -124,7 +128,7 @@ impl Reading {
             light_m: self.light.read(hud.light_m, moved),
             turn: hud.turn,
             junction_m,
-            turned_rad: self.turned_rad.abs(),
+            turned_rad: self.turned_rad,
             bearing_deg: hud.bearing_deg,
         }
     }

@@ -56,6 +56,8 @@ pub struct SemanticBot {
     patience: Patience,
     room: Room,
     squeeze: Squeeze,
+    /// Somebody or something stood in the way of the car when it looked last.
+    is_blocked: bool,
     has_lights: bool,
     /// The mask that was looked at last, how long ago, and where others stood in it.
     ids: Vec<u8>,
@@ -98,7 +100,7 @@ impl SemanticBot {
         self.tracks.carry(moved);
         self.people.carry(moved);
         self.room.carry(moved);
-        self.squeeze.carry(moved, self.waits(&dash));
+        self.squeeze.carry(moved, self.is_blocked && dash.light.is_none_or(|light| light == LightPhase::Green));
         let arc = path::choose(sight, &dash, &self.trail);
         self.looked_ticks += 1;
         // Nothing moves in the picture of a car that stands before a parked one, and yet it is a new picture.
@@ -123,15 +125,17 @@ impl SemanticBot {
             None => (arc, speed::wish(sight, arc, &dash, scene, vigour)),
             Some(Way { arc, free_m }) => {
                 let slow = Dash { limit_mps: SQUEEZING_MPS, ..dash };
-                (arc, speed::wish(sight, arc, &slow, Scene { obstacle_m: Some(free_m), ..scene }, vigour))
+                let obstacle_m = self.crosses_m(arc, SQUEEZING_MPS).into_iter().fold(free_m, f32::min);
+                (arc, speed::wish(sight, arc, &slow, Scene { obstacle_m: Some(obstacle_m), ..scene }, vigour))
             }
         }
     }
 
-    /// Whether something in the way keeps the car where it is, and no light.
-    fn waits(&self, dash: &Dash) -> bool {
-        let is_open = dash.light.is_none_or(|light| light == LightPhase::Green);
-        is_open && self.room.stop_in_m().is_some_and(|stop_in_m| stop_in_m < IN_THE_WAY_M)
+    /// Metres from the front of the car to where it must stand because of those who will be in its way.
+    fn crosses_m(&self, arc: Arc, speed_mps: f32) -> Option<f32> {
+        let walks = crossing::walkers_m(&self.people, arc, speed_mps);
+        let drives = crossing::vehicles_m(&self.tracks, arc, speed_mps);
+        walks.into_iter().chain(drives).reduce(f32::min)
     }
 
     /// Takes in a new mask.
@@ -156,11 +160,10 @@ impl SemanticBot {
     fn make_room(&mut self, sight: &Sight<'_>, arc: Arc, dash: &Dash) {
         self.looked_ticks = 0;
         let stands = speed::obstacle(&self.contacts, &self.tracks, arc, dash.speed_mps);
-        let walks = crossing::walkers_m(&self.people, arc, dash.speed_mps);
-        let drives = crossing::vehicles_m(&self.tracks, arc, dash.speed_mps);
-        let crosses = walks.into_iter().chain(drives).map(Ahead::standing);
+        self.is_blocked = stands.is_some_and(|ahead| ahead.stop_in_m < IN_THE_WAY_M);
+        let crosses = self.crosses_m(arc, dash.speed_mps).map(Ahead::standing);
         self.room.look(stands.into_iter().chain(crosses).reduce(Ahead::nearer));
-        self.squeeze.look(sight, &self.contacts, &self.tracks, arc);
+        self.squeeze.look(sight, &self.contacts, &[&self.tracks, &self.people], arc);
     }
 }
 

@@ -11,9 +11,9 @@ use super::tracks::Tracks;
 
 /// So long the car stands before it tries, seconds.
 const WAITED_S: f32 = 30.0;
-/// Its speed then, m/s, and how far it goes like this, metres.
-pub const SQUEEZING_MPS: f32 = 1.5;
-const FARTHEST_M: f32 = 15.0;
+/// Its speed then, m/s, and how far it goes like this, metres: until it is back in its lane.
+pub const SQUEEZING_MPS: f32 = 0.9;
+const FARTHEST_M: f32 = 14.0;
 /// Arcs that are tried on each side of straight ahead.
 const TRIED: i16 = 40;
 /// Room beside vehicles and people, metres; less beside those whom the car already stands next to.
@@ -22,8 +22,6 @@ const BESIDE_WALKER_M: f32 = 0.6;
 const NEXT_TO_M: f32 = 0.1;
 /// Room before the car that makes an arc a way by, metres.
 const FREE_M: f32 = 5.5;
-/// What has left the picture is believed to stand there for this long, seconds.
-const REMEMBERED_S: f32 = 12.0;
 /// Who moves faster than this, within this distance, is let pass first, m/s and metres.
 const MOVING_MPS: f32 = 1.0;
 const LET_PASS_M: f32 = 15.0;
@@ -33,7 +31,6 @@ const LET_PASS_M: f32 = 15.0;
 struct Spot {
     at: Point,
     is_person: bool,
-    unseen_s: f32,
 }
 
 /// A way beside what stands there.
@@ -68,8 +65,7 @@ impl Squeeze {
         for spot in self.seen.iter_mut().chain(&mut self.gone) {
             spot.at = moved.shift(spot.at);
         }
-        self.gone.iter_mut().for_each(|spot| spot.unseen_s += TICK_S);
-        self.gone.retain(|spot| spot.at.0 > 0.0 && spot.unseen_s < REMEMBERED_S);
+        self.gone.retain(|spot| spot.at.0 > 0.0);
         self.since_look_m += moved.forward_m;
         self.driven_m += moved.forward_m;
         if let Some(way) = &mut self.way {
@@ -78,14 +74,14 @@ impl Squeeze {
             self.stood_s = if waits && moved.forward_m == 0.0 { self.stood_s + TICK_S } else { 0.0 };
             self.driven_m = 0.0;
         }
-        if self.driven_m > FARTHEST_M || !waits {
-            self.way = None;
+        if self.driven_m > FARTHEST_M {
+            *self = Self::default();
         }
     }
 
     /// Takes in a mask: the way beside what it shows that turns least from the wanted one.
-    pub fn look(&mut self, sight: &Sight<'_>, contacts: &[Contact], vehicles: &Tracks, wanted: Arc) {
-        let spot = |c: &Contact| Spot { at: (c.x_m, c.y_m), is_person: c.is_person, unseen_s: 0.0 };
+    pub fn look(&mut self, sight: &Sight<'_>, contacts: &[Contact], others: &[&Tracks], wanted: Arc) {
+        let spot = |c: &Contact| Spot { at: (c.x_m, c.y_m), is_person: c.is_person };
         let seen = std::mem::replace(&mut self.seen, contacts.iter().map(spot).collect());
         // Who leaves the picture of a car that stands has driven off.
         if std::mem::take(&mut self.since_look_m) > 0.0 {
@@ -95,7 +91,8 @@ impl Squeeze {
             return;
         }
         let is_near = |at: Point| at.0 > 0.0 && ops::hypot(at.0, at.1) < LET_PASS_M;
-        self.way = if vehicles.moving(MOVING_MPS).any(|track| is_near(track.at)) {
+        let mut moving = others.iter().flat_map(|others| others.moving(MOVING_MPS));
+        self.way = if moving.any(|track| is_near(track.at)) {
             self.way.map(|way| Way { free_m: 0.0, ..way })
         } else {
             self.best(sight, wanted)
@@ -169,7 +166,7 @@ mod tests {
     fn after_s(contacts: &[Contact], waited_s: f32) -> Option<Way> {
         let mut squeeze = Squeeze::default();
         (0..(waited_s / TICK_S) as usize).for_each(|_| squeeze.carry(STILL, true));
-        on_asphalt(|sight| squeeze.look(sight, contacts, &Tracks::default(), STRAIGHT));
+        on_asphalt(|sight| squeeze.look(sight, contacts, &[], STRAIGHT));
         squeeze.way()
     }
 
@@ -202,7 +199,7 @@ mod tests {
         }
         let mut squeeze = Squeeze::default();
         (0..2400).for_each(|_| squeeze.carry(STILL, true));
-        on_asphalt(|sight| squeeze.look(sight, &vehicle_rear(8.0, -3.0, -0.5), &vehicles, STRAIGHT));
+        on_asphalt(|sight| squeeze.look(sight, &vehicle_rear(8.0, -3.0, -0.5), &[&vehicles], STRAIGHT));
         assert_eq!(squeeze.way(), None);
     }
 
@@ -220,7 +217,7 @@ mod tests {
                 on_asphalt(|sight| {
                     let seen = points.iter().filter(|at| !is_hidden(sight, **at));
                     let contacts: Vec<Contact> = seen.map(|at| contact(*at, false)).collect();
-                    squeeze.look(sight, &contacts, &Tracks::default(), STRAIGHT);
+                    squeeze.look(sight, &contacts, &[], STRAIGHT);
                 });
             }
             let way = squeeze.way().filter(|way| way.free_m > 0.2);

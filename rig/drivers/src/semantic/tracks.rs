@@ -56,14 +56,10 @@ impl Track {
         ops::hypot(self.velocity_mps.0, self.velocity_mps.1)
     }
 
-    /// The same at another velocity.
-    pub fn with_velocity(&self, velocity_mps: Point) -> Self {
-        Self { velocity_mps, ..self.clone() }
-    }
-
-    /// How fast it may have come towards the car, at most, by the rows of pixels in which it was seen, m/s over ground.
+    /// How fast it may have come towards the car, at most, by the rows of pixels in which it was seen, m/s over ground: where
+    /// it is not in the picture, as fast as it came before.
     pub fn approaches_at_most_mps(&self) -> f32 {
-        let Some(now) = self.seen.last() else { return f32::INFINITY };
+        let Some(now) = self.seen.last().filter(|_| self.unseen_s == 0.0) else { return -self.velocity_mps.0 };
         let bound_mps = |old: &Seen| {
             let nearer_m = old.at.0 + old.depth_error_m - (now.at.0 - now.depth_error_m);
             nearer_m / (old.ago_s - now.ago_s)
