@@ -8,6 +8,7 @@ use glam::Vec3;
 use super::crossroads::{Signs, crossroads};
 use super::{MINUTE, car_at, nowhere, start};
 use crate::map::{LaneId, MapData, RoadNetwork};
+use crate::ops;
 use crate::signals::{LightPhase, phase};
 use crate::time::Tick;
 use crate::traffic::{Obstacle, Surroundings, Vehicle};
@@ -58,7 +59,7 @@ fn who_enters_a_junction_sees_the_car_inside_beside_all_lanes() {
         .find(|(_, l)| l.name == "0->1")
         .expect("it is there");
     let middle = &from.points[from.points.len() / 2];
-    let aside = Vec3::new(middle.heading_rad.sin(), -middle.heading_rad.cos(), 0.0);
+    let aside = Vec3::new(ops::sin(middle.heading_rad), -ops::cos(middle.heading_rad), 0.0);
     let place = middle.position + aside * 2.2;
     assert!(inside.iter().all(|id| network.project(*id, place).distance_m > 1.8));
     let ego = Obstacle { velocity_mps: 2.0 * Vec3::X, ..car_at(place, middle.heading_rad) };
