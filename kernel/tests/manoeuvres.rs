@@ -4,11 +4,14 @@
 #[path = "common/svg.rs"]
 mod svg;
 
+use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use kernel::events::EventKind;
+use kernel::geometry::rectangles_overlap;
 use kernel::map::bake;
+use kernel::scene::ActorKind;
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, Manoeuvre, Obstacle, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::Conditions;
@@ -199,6 +202,51 @@ fn a_car_that_stands_is_passed_within_a_minute_where_the_other_lane_is_free() {
         println!("{name}: {} came by, the longest in {longest} s", waits.len());
         assert!(waits.len() > 40, "{name}: {} came by", waits.len());
         assert!(longest <= 60, "{name}: somebody waited {longest} s");
+    }
+}
+
+/// Lets somebody come the other way, who was not to be seen, when the first one that swings out has only `gap_m` left to
+/// the one that it passes, as long as a bus, which nobody may touch. Whether one has swung out.
+fn swings_past_untouched(network: &Arc<RoadNetwork>, stands: Vec3, gap_m: f32, seed: u64) -> bool {
+    const COMES: Vec3 = Vec3::new(-8.0, 0.0, 0.0);
+    let counts = TrafficCounts { cars: 6, ..TrafficCounts::NONE };
+    let mut traffic = Traffic::spawn(&counts, seed, network.ways(), stands);
+    let size_m = ActorKind::Bus.size_m();
+    let half = 0.5 * size_m.truncate();
+    let mut coming: Option<Obstacle> = None;
+    let mut ends = seconds(300);
+    for tick in 1..=seconds(300) {
+        if tick > ends {
+            break;
+        }
+        if let Some(obstacle) = &mut coming {
+            obstacle.position += COMES / 60.0;
+        }
+        let conditions = Conditions::default();
+        let ego = Obstacle { size_m, ..car_at(stands) };
+        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: coming.as_slice(), conditions });
+        for (vehicle, body) in traffic.state().vehicles.iter().zip(traffic.bodies()) {
+            let (way, their_half) = ((body.position - stands).truncate(), 0.5 * body.kind.size_m().truncate());
+            let axis = (body.rotation * Vec3::X).truncate();
+            assert!(!rectangles_overlap(half, way, axis, their_half), "{gap_m} m, seed {seed}: touched by {vehicle:?}");
+            let to_tail_m = -way.x - half.x - their_half.x;
+            if coming.is_none() && vehicle.manoeuvre == Manoeuvre::PassLeft && (0.0..gap_m).contains(&to_tail_m) {
+                let position = stands + Vec3::new(45.0, -2.0 * stands.y, 0.0);
+                ends = tick + seconds(20);
+                coming = Some(Obstacle { id: 60_000, heading_rad: PI, velocity_mps: COMES, ..car_at(position) });
+            }
+        }
+    }
+    coming.is_some()
+}
+
+#[test]
+fn who_has_swung_out_too_far_to_stop_stays_off_whom_it_passes() {
+    let stands = Vec3::new(700.0, -1.75, 0.0);
+    let network = straight(1, 1, 1500.0);
+    for gap_m in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0] {
+        let out = (1..=20).filter(|seed| swings_past_untouched(&network, stands, gap_m, *seed)).count();
+        assert!(out >= 10, "{gap_m} m: {out} of 20 swing out");
     }
 }
 

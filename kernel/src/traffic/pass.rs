@@ -78,8 +78,9 @@ pub(super) struct Passed {
     gap_m: f32,
     /// From its middle to the last one's front, metres.
     beyond_m: f32,
-    /// Speed of the fastest, m/s.
+    /// Speed of the fastest, m/s, and of the first one.
     speed_mps: f32,
+    first_mps: f32,
     /// They ride.
     ride: bool,
 }
@@ -106,6 +107,7 @@ impl Passed {
             gap_m: self.gap_m.min(next.gap_m),
             beyond_m: self.beyond_m.max(next.beyond_m),
             speed_mps: self.speed_mps.max(next.speed_mps),
+            first_mps: self.first_mps,
             ride: self.ride && next.ride,
         }
     }
@@ -150,6 +152,7 @@ impl View<'_> {
                     gap_m: seen.gap_m,
                     beyond_m: seen.gap_m + seeker.half.x + seen.length_m,
                     speed_mps: seen.speed_mps.max(0.0),
+                    first_mps: seen.speed_mps.max(0.0),
                     ride: false,
                 });
             }
@@ -181,6 +184,7 @@ impl View<'_> {
                 gap_m,
                 beyond_m: gap_m + seeker.half.x + 2.0 * entry.half_m,
                 speed_mps: them.speed_mps,
+                first_mps: them.speed_mps,
                 ride: true,
             };
             let other = entry.vehicle as usize != index && them.kind.is_pedalled();
@@ -250,8 +254,8 @@ impl View<'_> {
         catch_up(&self.drivers[index], self.vehicles[index].speed_mps, wish_mps, passed.speed_mps, gain_m)
     }
 
-    /// Where one who passes drives beside the others, metres to the left of the middle. None where it is still behind them
-    /// and gets back into its lane, since somebody comes, or they queue.
+    /// Where one who passes drives beside the others, metres to the left of the middle. None where it can still stop behind
+    /// them and gets back into its lane, since somebody comes, or they queue.
     pub(super) fn beside_m(
         &self,
         index: usize,
@@ -260,12 +264,19 @@ impl View<'_> {
         passed: &Passed,
         side: i8,
     ) -> Option<f32> {
-        if passed.gap_m < BEHIND_M {
+        if !self.stays_behind(index, passed) {
             return Some(passed.aim_m);
         }
         let (past_s, past_m) = self.past(index, seeker, passed, self.wish_mps(index));
         let way_is_free = || self.nobody_comes(index, past_m, past_s, side);
         (!self.has_to_wait(index, plan, seeker, passed) && way_is_free()).then_some(passed.aim_m)
+    }
+
+    /// Whether a vehicle can still fall in behind those whom it passes.
+    fn stays_behind(&self, index: usize, passed: &Passed) -> bool {
+        let closing_mps = (self.vehicles[index].speed_mps - passed.first_mps).max(0.0);
+        let stops_m = closing_mps * closing_mps / (2.0 * self.drivers[index].hardest_mps2);
+        passed.gap_m >= BEHIND_M + stops_m
     }
 
     /// Where one drives that would pass at `aim_m`: no farther over the border of its lane, where none for the other direction
@@ -294,7 +305,7 @@ impl View<'_> {
         let passed = if passes { self.passed(index, plan, seeker, vehicle.manoeuvre.side()) } else { None };
         // Who stands goes on only when the others do, or when this one has gone.
         let waits = |passed: &Passed| {
-            let beside = passed.gap_m < BEHIND_M && passed.speed_mps > 0.0;
+            let beside = !self.stays_behind(index, passed) && passed.speed_mps > 0.0;
             beside && self.has_to_wait(index, plan, seeker, passed)
         };
         let queue = passed.filter(waits);

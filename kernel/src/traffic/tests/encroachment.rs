@@ -1,6 +1,6 @@
 //! What mistakes come to: how often two are predicted to meet.
 //!
-//! As the rig's safety driver predicts it (Westhofen et al. 2022: an encroachment within 2 s is critical), with every
+//! As the rig's measures predict it (Westhofen et al. 2022: an encroachment within 2 s is critical), with every
 //! motor vehicle in the place of the ego car: all go on along their ways, at their speed or braking as they do.
 
 use std::collections::BTreeMap;
