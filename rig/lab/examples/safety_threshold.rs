@@ -1,26 +1,31 @@
-//! Fits the simulated safety driver's threshold: `safety_threshold CHECKPOINT MAP,... LEVEL SEED RUNS MINUTES` drives without
-//! a safety driver, while one of each threshold looks on and says when they would have taken over. What came after that
-//! moment is the verdict on it; who was hit without a word before is a miss. A drive ends with its first collision.
+//! Fits the simulated safety driver's threshold: `safety_threshold CHECKPOINT SCENARIO.toml MAP,... SEED RUNS` drives the
+//! scenario without a safety driver, with the seeds from SEED on and the maps in turn, while one of each threshold looks on
+//! and says when they would have taken over. What came after that moment is the verdict on it; who was hit without a word
+//! before is a miss. A drive ends with its first collision.
+//!
+//! `blind` in place of a checkpoint is the truth in which people and vehicles are painted over with what is to the left of
+//! them for some seconds now and then: it errs where it matters, and costs no inference.
 
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use anyhow::{Context, bail};
-use base::maps::Map;
+use anyhow::bail;
+use base::maps::{Map, ScenarioFile};
 use base::say::say;
-use drivers::Driver;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::crew::Bots;
 use drivers::safety::{Hazard, SafetyBot, URGENT};
 use drivers::vision::{Eye, Vision};
+use drivers::{Driver, MaskView};
 use kernel::arbiter::Phase;
 use kernel::events::EventKind;
-use kernel::scenario::HazardLevel;
+use kernel::rng::{self, Stream};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Scenario, Seat, TickInput, World};
 use lab::redrive::{EARLY_TICKS, is_near_miss};
 use measures::criticality::{SAMPLE_TICKS, Sample, Sampler};
-use render::{RenderOptions, Renderer};
+use render::{RenderOptions, Renderer, SemanticTag};
 
 /// Thresholds that look on.
 const TRIED: [f32; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
@@ -28,18 +33,21 @@ const TRIED: [f32; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const AGAIN_TICKS: Tick = seconds(5);
 /// A collision counts as foreseen by a takeover at most this long before.
 const FORESEEN_TICKS: Tick = seconds(5);
+/// What a blind eye does not see.
+const TRAFFIC: [SemanticTag; 2] = [SemanticTag::Pedestrian, SemanticTag::Vehicles];
 /// Runs after which the table so far is shown.
 const TOLD_EVERY: usize = 16;
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [checkpoint, maps, level, seed, runs, minutes] = &arguments[..] else {
-        bail!("expected CHECKPOINT MAP,... LEVEL SEED RUNS MINUTES")
+    let [checkpoint, scenario, maps, seed, runs] = &arguments[..] else {
+        bail!("expected CHECKPOINT SCENARIO.toml MAP,... SEED RUNS")
     };
+    let scenario = ScenarioFile::read(Path::new(scenario))?.scenario;
     let maps = Map::find_all(&maps.split(',').map(str::to_owned).collect::<Vec<_>>())?;
-    let level: HazardLevel = HazardLevel::named(level).context("expected none, natural or raised")?;
-    let (seed, runs, minutes): (u64, usize, u32) = (seed.parse()?, runs.parse()?, minutes.parse()?);
-    let choice = checkpoint.parse::<CheckpointChoice>().map_err(anyhow::Error::msg)?;
+    let (seed, runs): (u64, usize) = (seed.parse()?, runs.parse()?);
+    let is_blind = checkpoint == "blind";
+    let choice = if is_blind { "truth" } else { checkpoint }.parse::<CheckpointChoice>().map_err(anyhow::Error::msg)?;
     let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = || -> anyhow::Result<()> {
         loop {
@@ -48,16 +56,15 @@ fn main() -> anyhow::Result<()> {
                 return Ok(());
             }
             let map = &maps[run % maps.len()];
-            let mut scenario = Scenario::default_for(&map.network.name, seed + run as u64);
-            scenario.hazards = level.rates();
-            scenario.rules.max_seconds = 60 * minutes;
+            let scenario = Scenario { map: map.network.name.clone(), seed: seed + run as u64, ..scenario.clone() };
             let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, Eye::open(&choice)?);
-            let watched = watch(&scenario, map, vision, run as u64)?;
-            say(format_args!("run {run} on {}: {}", map.network.name, watched.words()));
+            let watched = watch(&scenario, map, vision, run as u64, is_blind)?;
             let mut found = found.lock().expect("no thread panics");
+            say(format_args!("run {run} on {}: {:.2} km", map.network.name, watched.km));
+            watched.words().iter().for_each(say);
             found.push(watched);
             if found.len() % TOLD_EVERY == 0 {
-                say(format_args!("{}", table(&found)));
+                table(&found).iter().for_each(say);
             }
         }
     };
@@ -66,7 +73,7 @@ fn main() -> anyhow::Result<()> {
         let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
         threads.into_iter().try_for_each(|thread| thread.join().expect("no thread panics"))
     })?;
-    say(format_args!("{}", table(&found.into_inner()?)));
+    table(&found.into_inner()?).iter().for_each(say);
     Ok(())
 }
 
@@ -81,7 +88,7 @@ struct Watched {
     takeovers: [Vec<(Tick, Hazard)>; TRIED.len()],
 }
 
-fn watch(scenario: &Scenario, map: &Map, mut vision: Vision, person: u64) -> anyhow::Result<Watched> {
+fn watch(scenario: &Scenario, map: &Map, mut vision: Vision, person: u64, is_blind: bool) -> anyhow::Result<Watched> {
     let mut world = World::new(scenario, &map.network)?;
     let mut driver = Bots::beside(Seat::Safety, scenario.seed);
     let bot = |urgent| SafetyBot::of_person(person).with_urgent(urgent);
@@ -92,6 +99,8 @@ fn watch(scenario: &Scenario, map: &Map, mut vision: Vision, person: u64) -> any
     while matches!(world.arbiter().phase, Phase::Arming | Phase::Driving) {
         let (mask, _) = vision.look(&world)?;
         let mut input = TickInput::default();
+        let blinded = (is_blind && is_blind_at(scenario.seed, world.tick())).then(|| without_traffic(mask));
+        let mask = MaskView { ids: blinded.as_deref().unwrap_or(mask.ids), ..mask };
         driver.act(&world, Some(mask), &mut input);
         for (at, (watcher, since)) in watchers.iter_mut().enumerate() {
             watcher.controls(&world);
@@ -127,6 +136,29 @@ fn watch(scenario: &Scenario, map: &Map, mut vision: Vision, person: u64) -> any
     Ok(watched)
 }
 
+/// Time is cut into stretches of [`BLIND_TICKS`], of which one in so many, drawn by the seed, is blind.
+const BLIND_ONE_IN: u64 = 4;
+const BLIND_TICKS: Tick = seconds(4);
+
+fn is_blind_at(seed: u64, tick: Tick) -> bool {
+    rng::bits(seed, Stream::Driver, u64::MAX, tick / BLIND_TICKS).is_multiple_of(BLIND_ONE_IN)
+}
+
+/// People and vehicles become what is to the left of them.
+fn without_traffic(mask: MaskView<'_>) -> Vec<u8> {
+    let mut ids = mask.ids.to_vec();
+    for row in ids.chunks_mut(mask.width) {
+        let mut left = SemanticTag::Unlabeled as u8;
+        for id in row {
+            if TRAFFIC.iter().any(|tag| *tag as u8 == *id) {
+                *id = left;
+            }
+            left = *id;
+        }
+    }
+    ids
+}
+
 /// Slower than this the ego car stands, m/s.
 const STANDS_MPS: f32 = 0.5;
 
@@ -157,7 +189,8 @@ impl Watched {
         Some(self.takeovers[at].iter().any(|(tick, _)| before.contains(tick)))
     }
 
-    fn words(&self) -> String {
+    fn words(&self) -> Vec<String> {
+        let at_s = |tick: Tick| tick as f64 / f64::from(TICK_HZ);
         let usual = TRIED.iter().position(|urgent| *urgent == URGENT).unwrap_or_default();
         let takeovers = self.takeovers[usual].iter().map(|(tick, hazard)| {
             let came = match self.after(*tick) {
@@ -165,24 +198,20 @@ impl Watched {
                 Came::NearMiss => "near miss",
                 Came::Nothing => "nothing",
             };
-            format!(
-                "\n  {:.1} s: {} {:.2} -> {came}",
-                *tick as f64 / f64::from(TICK_HZ),
-                hazard.comment,
-                hazard.urgency
-            )
+            format!("  {:.1} s: {} {:.2} -> {came}", at_s(*tick), hazard.comment, hazard.urgency)
         });
-        let harms =
-            self.harms.iter().map(|(tick, kind)| format!("\n  {:.1} s: {kind}", *tick as f64 / f64::from(TICK_HZ)));
-        format!("{:.2} km{}{}", self.km, takeovers.collect::<String>(), harms.collect::<String>())
+        let harms = self.harms.iter().map(|(tick, kind)| format!("  {:.1} s: {kind}", at_s(*tick)));
+        takeovers.chain(harms).collect()
     }
 }
 
-fn table(all: &[Watched]) -> String {
+fn table(all: &[Watched]) -> Vec<String> {
     let km: f64 = all.iter().map(|watched| watched.km).sum();
     let collisions = all.iter().filter(|watched| watched.collision.is_some()).count();
-    let mut text = format!("{km:.1} km, {collisions} collisions\n");
-    text += "threshold  takeovers  necessary  near miss  neither  precision  foreseen  recall\n";
+    let mut lines = vec![
+        format!("{km:.1} km, {collisions} collisions"),
+        "threshold  takeovers  necessary  near miss  neither  precision  foreseen  recall".into(),
+    ];
     for (at, urgent) in TRIED.iter().enumerate() {
         let came = |what| {
             let takeovers = all.iter().flat_map(|w| w.takeovers[at].iter().map(move |(tick, _)| w.after(*tick)));
@@ -191,11 +220,11 @@ fn table(all: &[Watched]) -> String {
         let (harm, near, nothing) = (came(Came::Harm), came(Came::NearMiss), came(Came::Nothing));
         let foreseen = all.iter().filter(|watched| watched.is_foreseen(at) == Some(true)).count();
         let takeovers = harm + near + nothing;
-        text += &format!(
-            "{urgent:9.2}  {takeovers:9}  {harm:9}  {near:9}  {nothing:7}  {:9.2}  {foreseen:8}  {:6.2}\n",
+        lines.push(format!(
+            "{urgent:9.2}  {takeovers:9}  {harm:9}  {near:9}  {nothing:7}  {:9.2}  {foreseen:8}  {:6.2}",
             (harm + near) as f64 / takeovers as f64,
             foreseen as f64 / collisions as f64,
-        );
+        ));
     }
-    text
+    lines
 }

@@ -49,16 +49,16 @@ impl Encroachment {
 
 /// The actor or parked car that the ego car is predicted to touch first, within 2 s.
 pub fn predicted_encroachment(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Encroachment> {
-    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
-    Others::near(world, scene, looks)?.encroachments(&way).next()
+    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2().min(0.0));
+    Others::near(world, scene, looks)?.on_the_road().encroachments(&way, CRITICAL_S).next()
 }
 
 /// Everyone whom the ego car is predicted to touch within 2 s, first contact first.
 pub fn encroachers(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Vec<Touched> {
-    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
+    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2().min(0.0));
     let mut found: Vec<Touched> = Vec::new();
-    let Some(others) = Others::near(world, scene, looks) else { return found };
-    for Encroachment { whom, .. } in others.encroachments(&way) {
+    let Some(others) = Others::near(world, scene, looks).map(Others::on_the_road) else { return found };
+    for Encroachment { whom, .. } in others.encroachments(&way, CRITICAL_S) {
         if !found.contains(&whom) {
             found.push(whom);
         }
@@ -95,7 +95,7 @@ impl<'a> Others<'a> {
             return None;
         }
         let near = |p: glam::Vec3| (p.truncate() - middle(&scene.ego)).length() < NEAR_M;
-        let actors = scene.actors.iter().filter(|a| near(a.position) && matters(world, scene, a)).collect();
+        let actors = scene.actors.iter().filter(|a| near(a.position) && matters(scene, a)).collect();
         let parked = world.network().props.iter().filter(|p| p.kind == PropKind::ParkedCar).enumerate();
         // Those that were pushed are among the actors.
         let gone = |n: usize| scene.actors.iter().any(|a| a.id == FIRST_PARKED_ID + n as u32);
@@ -104,20 +104,27 @@ impl<'a> Others<'a> {
         Some(Self { world, looks, actors, parked })
     }
 
+    /// Leaves out people beside the road, who may stop at the kerb.
+    fn on_the_road(mut self) -> Self {
+        let network = self.world.network();
+        self.actors.retain(|actor| !actor.kind.is_on_foot() || network.on_road(actor.position));
+        self
+    }
+
     /// Leaves out whom the safety driver has not seen.
     pub fn seen(mut self, is_seen: impl Fn(&ActorScene) -> bool) -> Self {
         self.actors.retain(|actor| is_seen(actor));
         self
     }
 
-    /// Who is touched within 2 s, and again with every step as long as the contact lasts.
-    pub fn encroachments(&self, way: &EgoWay) -> impl Iterator<Item = Encroachment> {
+    /// Who is touched within some seconds, and again with every step as long as the contact lasts.
+    pub fn encroachments(&self, way: &EgoWay, up_to_s: f32) -> impl Iterator<Item = Encroachment> {
         let at = move |after_s: f32| way.at(after_s).map(|ego| (after_s, ego));
         let touched = |(after_s, ego): (f32, Footprint)| {
             let touched: Vec<Touched> = self.touched(&ego, after_s).collect();
             touched.into_iter().map(move |whom| Encroachment { whom, after_s })
         };
-        steps(CRITICAL_S).filter_map(at).flat_map(touched)
+        steps(up_to_s).filter_map(at).flat_map(touched)
     }
 
     /// Whether somebody is touched within some seconds on a way, before the ego car stands.
@@ -130,7 +137,7 @@ impl<'a> Others<'a> {
     /// Who shares ground with the ego car in `t_s` seconds: actors, then parked cars.
     fn touched(&self, ego: &Footprint, t_s: f32) -> impl Iterator<Item = Touched> {
         let actor_at = move |actor: &ActorScene| {
-            let driven_m = driven_m(actor.speed_mps, self.looks.actor_mps2(actor), t_s);
+            let driven_m = driven_m(actor.speed_mps, self.looks.actor_mps2(actor).min(0.0), t_s);
             actor_after(self.world.network(), actor, driven_m)
         };
         let actors = self.actors.iter().filter(move |a| actor_at(a).overlaps(ego));
@@ -144,13 +151,13 @@ pub fn label_of(kind: ActorKind) -> Label {
     if kind.is_on_foot() { Label::Walker } else { Label::Vehicle }
 }
 
-/// Whether braking for an actor makes sense: people must be on the road, vehicles not follow, and nobody on a bridge.
-fn matters(world: &World, scene: &SceneSnapshot, actor: &ActorScene) -> bool {
+/// Whether braking for an actor makes sense: vehicles must not follow, and nobody may be on another level.
+fn matters(scene: &SceneSnapshot, actor: &ActorScene) -> bool {
     if !on_level(actor.position, scene.ego.position) {
         return false;
     }
     if actor.kind.is_on_foot() {
-        return world.network().on_road(actor.position);
+        return true;
     }
     let ahead_m = (actor.position.truncate() - middle(&scene.ego)).dot(forward(&scene.ego));
     let same_way = Footprint::of_actor(actor).forward.dot(forward(&scene.ego)) > 0.5;

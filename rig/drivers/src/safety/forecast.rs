@@ -10,6 +10,8 @@ use crate::footprint::{Footprint, middle};
 
 /// Room kept around the ego car on each side, metres.
 const MARGIN_M: f32 = 0.15;
+/// Who speeds up goes on for so long, seconds.
+const SPEEDS_UP_S: f32 = 1.0;
 /// An actor belongs to a lane whose middle is nearer than this, metres.
 const ON_LANE_M: f32 = 1.5;
 
@@ -23,7 +25,7 @@ pub struct EgoWay {
 }
 
 impl EgoWay {
-    /// From the present; a braking car goes on braking, any other keeps its speed.
+    /// From the present; a braking car goes on braking, one that speeds up does so for 1 s, any other keeps its speed.
     pub fn new(world: &World, car: &EgoScene, acceleration_mps2: f32) -> Self {
         let points: Vec<Vec2> = world.route_ahead(60.0).iter().map(|p| p.truncate()).collect();
         let middle = middle(car);
@@ -31,7 +33,7 @@ impl EgoWay {
             [first, second, ..] => (second - first).normalize_or(Vec2::X).perp_dot(middle - first),
             _ => 0.0,
         };
-        Self { points, left_m, speed_mps: car.speed_mps.max(0.0), acceleration_mps2: acceleration_mps2.min(0.0) }
+        Self { points, left_m, speed_mps: car.speed_mps.max(0.0), acceleration_mps2 }
     }
 
     /// The same from the present with this braking, m/s^2.
@@ -41,7 +43,8 @@ impl EgoWay {
 
     /// Speed in `t_s` seconds, m/s.
     pub fn speed_mps_at(&self, t_s: f32) -> f32 {
-        (self.speed_mps + self.acceleration_mps2 * t_s).max(0.0)
+        let changes_s = if self.acceleration_mps2 > 0.0 { t_s.min(SPEEDS_UP_S) } else { t_s };
+        (self.speed_mps + self.acceleration_mps2 * changes_s).max(0.0)
     }
 
     /// Metres driven in `t_s` seconds.
@@ -60,13 +63,14 @@ impl EgoWay {
     }
 }
 
-/// Metres driven in `t_s` seconds by one who goes on braking until he stands, or keeps his speed.
+/// Metres driven in `t_s` seconds by one who goes on braking until he stands, or speeds up for 1 s.
 pub fn driven_m(speed_mps: f32, acceleration_mps2: f32, t_s: f32) -> f32 {
-    if acceleration_mps2 > -0.1 {
-        return speed_mps * t_s;
+    if acceleration_mps2 <= -0.1 {
+        let t_s = t_s.min(-speed_mps / acceleration_mps2);
+        return speed_mps * t_s + 0.5 * acceleration_mps2 * t_s * t_s;
     }
-    let t_s = t_s.min(-speed_mps / acceleration_mps2);
-    speed_mps * t_s + 0.5 * acceleration_mps2 * t_s * t_s
+    let speeds_up_s = t_s.min(SPEEDS_UP_S);
+    speed_mps * t_s + acceleration_mps2.max(0.0) * speeds_up_s * (t_s - 0.5 * speeds_up_s)
 }
 
 /// Footprint of another actor after some metres: vehicles keep their lane, people their direction.
@@ -133,8 +137,10 @@ mod tests {
     }
 
     #[test]
-    fn who_brakes_comes_to_a_stand() {
-        assert_eq!(driven_m(6.0, 1.0, 2.0), 12.0);
+    fn who_brakes_comes_to_a_stand_and_who_speeds_up_does_so_for_a_second() {
+        assert_eq!(driven_m(6.0, 0.0, 2.0), 12.0);
+        assert_eq!(driven_m(6.0, 1.0, 0.5), 3.125);
+        assert_eq!(driven_m(6.0, 1.0, 3.0), 6.5 + 14.0);
         assert_eq!(driven_m(6.0, -2.0, 2.0), 8.0);
         assert_eq!(driven_m(6.0, -2.0, 9.0), 9.0);
     }

@@ -14,8 +14,10 @@ use super::forecast::EgoWay;
 use super::looks::Looks;
 use crate::footprint::{forward, middle};
 
-/// Contacts are looked for so long after somebody began to brake, seconds.
-const BRAKING_S: f32 = 4.0;
+/// Contacts are feared when they are so near, seconds.
+const FEARED_S: f32 = 3.0;
+/// They are looked for so long after somebody began to brake, who stops in twice the time that the way takes at full speed, seconds.
+const BRAKING_S: f32 = 2.0 * FEARED_S;
 /// Braking that is tried out, as shares of what the road allows.
 const TRIED: u32 = 20;
 /// Nothing but the full brake helps, or something else than braking.
@@ -90,7 +92,7 @@ fn contacts(
     let Some(others) = Others::near(world, scene, looks) else { return Vec::new() };
     let others = others.seen(|actor| eyes.know(actor.id));
     let mut first: Vec<Encroachment> = Vec::new();
-    for encroachment in others.encroachments(way) {
+    for encroachment in others.encroachments(way, FEARED_S) {
         if first.iter().all(|known| known.whom != encroachment.whom) {
             first.push(encroachment);
         }
@@ -153,4 +155,55 @@ fn distance_m(point: Vec2, from: Vec2, to: Vec2) -> f32 {
     let along = to - from;
     let share = ((point - from).dot(along) / along.length_squared().max(1e-6)).clamp(0.0, 1.0);
     (point - from - share * along).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+    use kernel::scene::{ActorKind, ActorScene};
+    use kernel::{Scenario, map};
+
+    use super::super::predicted_encroachment;
+    use super::*;
+
+    /// Somebody on foot 12 m ahead, so far beside the road that the car, at 8 m/s, and they meet in its lane.
+    fn walks_to_the_road(world: &World) -> ActorScene {
+        let way: Vec<_> = world.route_ahead(15.0);
+        let (here, along) = (way[12], (way[13] - way[12]).normalize());
+        let right = glam::Vec3::new(along.y, -along.x, 0.0);
+        let beside = |step: u32| here + 0.25 * step as f32 * right;
+        let off = (1..40).map(beside).find(|p| !world.network().on_road(*p)).expect("the road has a side");
+        let position = off + 0.3 * right;
+        let meet_s = (12.0 - 0.5 * ego::SIZE_M.x) / 8.0;
+        ActorScene {
+            id: 9_999,
+            kind: ActorKind::Pedestrian,
+            variant: 0,
+            position,
+            rotation: Quat::from_rotation_arc(glam::Vec3::X, -right),
+            speed_mps: position.distance(here) / meet_s,
+            phase_rad: 0.0,
+            lamps: 0,
+        }
+    }
+
+    #[test]
+    fn who_walks_towards_the_road_is_feared_and_in_no_measure() {
+        let network = map::bundled("city").expect("it is bundled");
+        let mut scenario = Scenario::default_for("city", 3);
+        scenario.traffic.pedestrians = 1;
+        let world = World::new(&scenario, &network).expect("it fits");
+        let mut scene = world.scene();
+        scene.ego.speed_mps = 8.0;
+        scene.actors = vec![walks_to_the_road(&world)];
+        let (mut looks, mut eyes) = (Looks::default(), Eyes::default());
+        for _ in 0..2 {
+            looks.look(&scene);
+            eyes.look(&network, &scene);
+        }
+        let whom = Touched::Actor(9_999, ActorKind::Pedestrian);
+        let feared = find(&world, &scene, &looks, &eyes);
+        assert!(feared.iter().any(|hazard| hazard.source == Source::Contact(whom)), "{feared:?}");
+        assert_eq!(predicted_encroachment(&world, &scene, &looks), None);
+    }
 }

@@ -14,8 +14,8 @@ const BELIEVED_MPS2: f32 = 4.0;
 /// Speeds at the last looks.
 #[derive(Clone, Debug, Default)]
 pub struct Looks {
-    /// Of the ego car, newest last, m/s.
-    ego_mps: [f32; Self::ENOUGH],
+    /// Of the ego car, newest last, m/s; none before the first look.
+    ego_mps: Option<[f32; Self::ENOUGH]>,
     /// Of the others by their id: speed, m/s, and acceleration, m/s^2.
     others: BTreeMap<u32, (f32, f32)>,
 }
@@ -26,8 +26,8 @@ impl Looks {
 
     /// Takes in what is to be seen now.
     pub fn look(&mut self, scene: &SceneSnapshot) {
-        self.ego_mps.rotate_left(1);
-        self.ego_mps[2] = scene.ego.speed_mps;
+        let now_mps = scene.ego.speed_mps;
+        self.ego_mps = Some(self.ego_mps.map_or([now_mps; Self::ENOUGH], |[_, before, last]| [before, last, now_mps]));
         let seen = |actor: &ActorScene| {
             let before = self.others.get(&actor.id).map_or(actor.speed_mps, |(speed_mps, _)| *speed_mps);
             (actor.id, (actor.speed_mps, (actor.speed_mps - before) / LOOK_S))
@@ -37,7 +37,7 @@ impl Looks {
 
     /// The ego car's acceleration as felt, m/s^2.
     pub fn ego_mps2(&self) -> f32 {
-        (self.ego_mps[2] - self.ego_mps[0]) / (2.0 * LOOK_S)
+        self.ego_mps.map_or(0.0, |[first, _, last]| (last - first) / (2.0 * LOOK_S))
     }
 
     /// Another's acceleration, m/s^2: a vehicle that brakes is seen to give way.
@@ -51,6 +51,19 @@ mod tests {
     use kernel::{Scenario, TickInput, World, map};
 
     use super::*;
+
+    #[test]
+    fn who_looks_up_in_a_car_that_drives_feels_no_push() {
+        let network = map::bundled("city").expect("it is bundled");
+        let mut scene = World::new(&Scenario::default_for("city", 3), &network).expect("it fits").scene();
+        let mut looks = Looks::default();
+        scene.ego.speed_mps = 10.0;
+        looks.look(&scene);
+        assert_eq!(looks.ego_mps2(), 0.0);
+        scene.ego.speed_mps = 9.0;
+        looks.look(&scene);
+        assert!((looks.ego_mps2() + 5.0).abs() < 1e-3);
+    }
 
     #[test]
     fn changes_of_speed_are_those_of_the_world() {

@@ -31,7 +31,9 @@ const REACTION_SIGMA: f32 = 0.35;
 /// Shortest and longest reaction, seconds.
 const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
 /// A hazard that is gone for this long is over.
-pub const FORGET_TICKS: Tick = 12;
+const FORGET_TICKS: Tick = 12;
+/// But who seemed in danger is watched for longer: when they are again, the foot is ready.
+const ALERT_TICKS: Tick = seconds(2);
 /// Share of the road's braking that has to be needed before it is no longer the semantic driver's turn.
 pub const URGENT: f32 = 0.5;
 /// Standing without a red light ahead gets boring after this time.
@@ -55,7 +57,7 @@ pub struct SafetyBot {
     urgent: f32,
     eyes: Eyes,
     looks: Looks,
-    /// The hazards of the moment.
+    /// The hazards of the moment, and those just over.
     feared: Vec<Feared>,
     /// Why it took over.
     reason: Option<Hazard>,
@@ -71,6 +73,13 @@ struct Feared {
     source: Source,
     since: Tick,
     last: Tick,
+}
+
+impl Feared {
+    /// How long it stays in mind.
+    fn lasts_ticks(&self) -> Tick {
+        if matches!(self.source, Source::Contact(_)) { ALERT_TICKS } else { FORGET_TICKS }
+    }
 }
 
 impl Default for SafetyBot {
@@ -122,14 +131,14 @@ impl SafetyBot {
         for hazard in hazard::find(world, &scene, &self.looks, &self.eyes) {
             self.fear(hazard, world);
         }
-        self.feared.retain(|feared| world.tick() < feared.last + FORGET_TICKS);
+        self.feared.retain(|feared| world.tick() < feared.last + feared.lasts_ticks());
         if self.is_bored(world, &scene) && self.reason.is_none() {
             let comment = "nothing moves".into();
             self.reason = Some(Hazard { label: Label::Boredom, comment, source: Source::Standstill, urgency: 0.0 });
         }
     }
 
-    /// Acts once a hazard has lasted for the reaction time, and presses. The foot is ready by then.
+    /// Acts once the reaction time is over and the hazard presses. The foot is ready by then.
     fn fear(&mut self, hazard: Hazard, world: &World) {
         let tick = world.tick();
         let feared = match self.feared.iter_mut().find(|feared| feared.source == hazard.source) {

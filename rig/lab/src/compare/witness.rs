@@ -34,7 +34,7 @@ pub struct Hazard {
 }
 
 /// Watches a replay, frame by frame. A frame is as long after the one before as the safety driver's looks
-/// are apart, so that both predict the same, once there were looks enough to feel whether the car brakes.
+/// are apart, once there were looks enough to feel whether the car brakes.
 #[derive(Default)]
 pub struct Witness {
     looks: Looks,
