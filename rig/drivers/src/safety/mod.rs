@@ -31,7 +31,7 @@ const REACTION_SIGMA: f32 = 0.35;
 /// Shortest and longest reaction, seconds.
 const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
 /// A hazard that is gone for this long is over.
-const FORGET_TICKS: Tick = 12;
+pub const FORGET_TICKS: Tick = 12;
 /// But who seemed in danger is watched for longer: when they are again, the foot is ready.
 const ALERT_TICKS: Tick = seconds(2);
 /// Share of the road's braking that has to be needed before it is no longer the semantic driver's turn.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use drivers::safety::{Encroachment, LOOK_TICKS, Looks, Touched, predicted_encroachment};
+use drivers::safety::{Encroachment, FORGET_TICKS, LOOK_TICKS, Looks, Touched, predicted_encroachment};
 use kernel::RoadNetwork;
 use kernel::time::Tick;
 use replay::{Error, Log, Replayer};
@@ -11,9 +11,6 @@ use serde::Serialize;
 use super::following::Following;
 use super::log::end_of_driving;
 use super::mistakes::{Mistake, Mistakes};
-
-/// A hazard that is gone for this long is over.
-const FORGET_TICKS: Tick = 12;
 
 /// An encroachment that is predicted for a shorter time is nobody's to react to.
 const LASTING_TICKS: Tick = 6;
