@@ -16,7 +16,7 @@ pub const CRITICAL_S: f32 = 2.0;
 const STEP_S: f32 = 0.1;
 /// How far around the car others matter, metres.
 pub const NEAR_M: f32 = 60.0;
-/// Slower than this the ego car touches nobody, m/s.
+/// Slower than this the ego car is not predicted to touch anybody, m/s.
 const STANDS_MPS: f32 = 0.5;
 
 /// Somebody who is predicted to be touched, and when.
@@ -49,15 +49,21 @@ impl Encroachment {
 
 /// The actor or parked car that the ego car is predicted to touch first, within 2 s.
 pub fn predicted_encroachment(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Option<Encroachment> {
+    if scene.ego.speed_mps < STANDS_MPS {
+        return None;
+    }
     let way = EgoWay::new(world, &scene.ego, looks.ego_mps2().min(0.0));
-    Others::near(world, scene, looks)?.on_the_road().encroachments(&way, CRITICAL_S).next()
+    Others::near(world, scene, looks).on_the_road().encroachments(&way, CRITICAL_S).next()
 }
 
 /// Everyone whom the ego car is predicted to touch within 2 s, first contact first.
 pub fn encroachers(world: &World, scene: &SceneSnapshot, looks: &Looks) -> Vec<Touched> {
-    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2().min(0.0));
     let mut found: Vec<Touched> = Vec::new();
-    let Some(others) = Others::near(world, scene, looks).map(Others::on_the_road) else { return found };
+    if scene.ego.speed_mps < STANDS_MPS {
+        return found;
+    }
+    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2().min(0.0));
+    let others = Others::near(world, scene, looks).on_the_road();
     for Encroachment { whom, .. } in others.encroachments(&way, CRITICAL_S) {
         if !found.contains(&whom) {
             found.push(whom);
@@ -89,11 +95,8 @@ pub struct Others<'a> {
 }
 
 impl<'a> Others<'a> {
-    /// `None` while the ego car stands, which touches nobody.
-    pub fn near(world: &'a World, scene: &'a SceneSnapshot, looks: &'a Looks) -> Option<Self> {
-        if scene.ego.speed_mps < STANDS_MPS {
-            return None;
-        }
+    /// Of a scene.
+    pub fn near(world: &'a World, scene: &'a SceneSnapshot, looks: &'a Looks) -> Self {
         let near = |p: glam::Vec3| (p.truncate() - middle(&scene.ego)).length() < NEAR_M;
         let actors = scene.actors.iter().filter(|a| near(a.position) && matters(scene, a)).collect();
         let parked = world.network().props.iter().filter(|p| p.kind == PropKind::ParkedCar).enumerate();
@@ -101,7 +104,7 @@ impl<'a> Others<'a> {
         let gone = |n: usize| scene.actors.iter().any(|a| a.id == FIRST_PARKED_ID + n as u32);
         let parked =
             parked.filter(|(n, p)| near(p.position) && !gone(*n)).map(|(n, p)| (n, Footprint::of_prop(p))).collect();
-        Some(Self { world, looks, actors, parked })
+        Self { world, looks, actors, parked }
     }
 
     /// Leaves out people beside the road, who may stop at the kerb.
@@ -127,11 +130,18 @@ impl<'a> Others<'a> {
         steps(up_to_s).filter_map(at).flat_map(touched)
     }
 
-    /// Whether somebody is touched within some seconds on a way, before the ego car stands.
-    pub fn touches(&self, whom: Touched, way: &EgoWay, up_to_s: f32) -> bool {
-        let moves = |t_s: &f32| way.speed_mps_at(*t_s) >= STANDS_MPS;
+    /// One of them alone.
+    pub fn only(&self, whom: Touched) -> Self {
+        let actors = self.actors.iter().filter(|a| whom == Touched::Actor(a.id, a.kind)).copied().collect();
+        let parked = self.parked.iter().filter(|(n, _)| whom == Touched::Parked(*n)).copied().collect();
+        Self { actors, parked, ..*self }
+    }
+
+    /// Whether anybody is touched within some seconds on a way, before the ego car stands.
+    pub fn touches(&self, way: &EgoWay, up_to_s: f32) -> bool {
+        let moves = |t_s: &f32| way.speed_mps_at(*t_s) > 0.0;
         let mut at = steps(up_to_s).take_while(moves).filter_map(|t_s| Some((t_s, way.at(t_s)?)));
-        at.any(|(t_s, ego)| self.touched(&ego, t_s).any(|touched| touched == whom))
+        at.any(|(t_s, ego)| self.touched(&ego, t_s).next().is_some())
     }
 
     /// Who shares ground with the ego car in `t_s` seconds: actors, then parked cars.

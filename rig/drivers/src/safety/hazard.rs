@@ -18,6 +18,8 @@ use crate::footprint::{forward, middle};
 const FEARED_S: f32 = 3.0;
 /// They are looked for so long after somebody began to brake, who stops in twice the time that the way takes at full speed, seconds.
 const BRAKING_S: f32 = 2.0 * FEARED_S;
+/// Slower than this the car stands, m/s.
+const CREEPS_MPS: f32 = 0.1;
 /// Braking that is tried out, as shares of what the road allows.
 const TRIED: u32 = 20;
 /// Nothing but the full brake helps, or something else than braking.
@@ -89,8 +91,10 @@ fn contacts(
     eyes: &Eyes,
     (way, grip_mps2): (&EgoWay, f32),
 ) -> Vec<Hazard> {
-    let Some(others) = Others::near(world, scene, looks) else { return Vec::new() };
-    let others = others.seen(|actor| eyes.know(actor.id));
+    if scene.ego.speed_mps < CREEPS_MPS {
+        return Vec::new();
+    }
+    let others = Others::near(world, scene, looks).seen(|actor| eyes.know(actor.id));
     let mut first: Vec<Encroachment> = Vec::new();
     for encroachment in others.encroachments(way, FEARED_S) {
         if first.iter().all(|known| known.whom != encroachment.whom) {
@@ -101,15 +105,15 @@ fn contacts(
         source: Source::Contact(encroachment.whom),
         label: encroachment.label(),
         comment: encroachment.comment(),
-        urgency: braking_share(&others, encroachment.whom, way, grip_mps2),
+        urgency: braking_share(&others.only(encroachment.whom), way, grip_mps2),
     };
     first.iter().map(hazard).collect()
 }
 
-/// The least braking from now on by which somebody is not touched, as a share of what the road allows.
-fn braking_share(others: &Others<'_>, whom: Touched, way: &EgoWay, grip_mps2: f32) -> f32 {
+/// The least braking from now on by which nobody is touched, as a share of what the road allows.
+fn braking_share(others: &Others<'_>, way: &EgoWay, grip_mps2: f32) -> f32 {
     let shares = (1..TRIED).map(|step| step as f32 / TRIED as f32);
-    let helps = |share: &f32| !others.touches(whom, &way.braking(share * grip_mps2), BRAKING_S);
+    let helps = |share: &f32| !others.touches(&way.braking(share * grip_mps2), BRAKING_S);
     shares.into_iter().find(helps).unwrap_or(PRESSING)
 }
 
@@ -161,7 +165,7 @@ fn distance_m(point: Vec2, from: Vec2, to: Vec2) -> f32 {
 mod tests {
     use glam::Quat;
     use kernel::scene::{ActorKind, ActorScene};
-    use kernel::{Scenario, map};
+    use kernel::{RoadNetwork, Scenario, map};
 
     use super::super::predicted_encroachment;
     use super::*;
@@ -187,6 +191,35 @@ mod tests {
         }
     }
 
+    /// After two looks at a scene.
+    fn looked(network: &RoadNetwork, scene: &SceneSnapshot) -> (Looks, Eyes) {
+        let (mut looks, mut eyes) = (Looks::default(), Eyes::default());
+        for _ in 0..2 {
+            looks.look(scene);
+            eyes.look(network, scene);
+        }
+        (looks, eyes)
+    }
+
+    /// However slowly the car begins to move.
+    #[test]
+    fn who_stands_before_a_car_that_pulls_away_is_feared() {
+        let network = map::bundled("city").expect("it is bundled");
+        let world = World::new(&Scenario::default_for("city", 3), &network).expect("it fits");
+        let mut scene = world.scene();
+        let mut person = walks_to_the_road(&world);
+        let front = middle(&scene.ego) + (0.5 * ego::SIZE_M.x + 0.5) * forward(&scene.ego);
+        (person.position, person.speed_mps) = (front.extend(scene.ego.position.z), 0.0);
+        scene.actors = vec![person];
+        for (speed_mps, is_feared) in [(0.0, false), (0.2, true)] {
+            scene.ego.speed_mps = speed_mps;
+            let (looks, eyes) = looked(&network, &scene);
+            let feared = find(&world, &scene, &looks, &eyes);
+            let source = Source::Contact(Touched::Actor(9_999, ActorKind::Pedestrian));
+            assert_eq!(feared.iter().any(|hazard| hazard.source == source), is_feared, "{speed_mps}: {feared:?}");
+        }
+    }
+
     #[test]
     fn who_walks_towards_the_road_is_feared_and_in_no_measure() {
         let network = map::bundled("city").expect("it is bundled");
@@ -196,11 +229,7 @@ mod tests {
         let mut scene = world.scene();
         scene.ego.speed_mps = 8.0;
         scene.actors = vec![walks_to_the_road(&world)];
-        let (mut looks, mut eyes) = (Looks::default(), Eyes::default());
-        for _ in 0..2 {
-            looks.look(&scene);
-            eyes.look(&network, &scene);
-        }
+        let (looks, eyes) = looked(&network, &scene);
         let whom = Touched::Actor(9_999, ActorKind::Pedestrian);
         let feared = find(&world, &scene, &looks, &eyes);
         assert!(feared.iter().any(|hazard| hazard.source == Source::Contact(whom)), "{feared:?}");

@@ -34,6 +34,9 @@ const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
 pub const FORGET_TICKS: Tick = 12;
 /// But who seemed in danger is watched for longer: when they are again, the foot is ready.
 const ALERT_TICKS: Tick = seconds(2);
+/// Share of the reaction time that the next contact takes meanwhile: the foot is over the brake. Expected signals are
+/// answered after 0.7 to 0.75 s, unexpected ones after 1.25 s (Green 2000).
+const EXPECTED: f32 = 0.6;
 /// Share of the road's braking that has to be needed before it is no longer the semantic driver's turn.
 pub const URGENT: f32 = 0.5;
 /// Standing without a red light ahead gets boring after this time.
@@ -67,12 +70,15 @@ pub struct SafetyBot {
     free_since: Option<Tick>,
 }
 
-/// A hazard, and when it was first and last seen.
+/// A hazard that was seen.
 #[derive(Clone, Copy, Debug)]
 struct Feared {
     source: Source,
+    /// When it was first and last seen.
     since: Tick,
     last: Tick,
+    /// When the reaction time is over.
+    ready: Tick,
 }
 
 impl Feared {
@@ -141,17 +147,29 @@ impl SafetyBot {
     /// Acts once the reaction time is over and the hazard presses. The foot is ready by then.
     fn fear(&mut self, hazard: Hazard, world: &World) {
         let tick = world.tick();
-        let feared = match self.feared.iter_mut().find(|feared| feared.source == hazard.source) {
-            Some(feared) => feared,
-            None => self.feared.push_mut(Feared { source: hazard.source, since: tick, last: tick }),
+        let feared = match self.feared.iter().position(|feared| feared.source == hazard.source) {
+            Some(at) => &mut self.feared[at],
+            None => {
+                let ready = tick + self.reaction_ticks(&hazard, world);
+                self.feared.push_mut(Feared { source: hazard.source, since: tick, last: tick, ready })
+            }
         };
         feared.last = tick;
-        let reaction_ticks = reaction_ticks(world.scenario().seed, self.person, feared.since) as f32;
-        let is_ready = tick >= feared.since + (self.temper.reaction_factor() * reaction_ticks) as Tick;
+        let is_ready = tick >= feared.ready;
         let is_worse = self.reason.as_ref().is_none_or(|reason| hazard.urgency > reason.urgency);
         if is_ready && hazard.urgency >= self.temper.vigour() * self.urgent && is_worse {
             self.reason = Some(hazard);
         }
+    }
+
+    /// From now until it can act against a hazard that it sees for the first time.
+    fn reaction_ticks(&self, hazard: &Hazard, world: &World) -> Tick {
+        let tick = world.tick();
+        let is_contact = |source| matches!(source, Source::Contact(_));
+        let is_alert = self.feared.iter().any(|feared| is_contact(feared.source) && feared.since < tick);
+        let share = if is_alert && is_contact(hazard.source) { EXPECTED } else { 1.0 };
+        let unexpected_ticks = reaction_ticks(world.scenario().seed, self.person, tick) as f32;
+        (share * self.temper.reaction_factor() * unexpected_ticks) as Tick
     }
 
     fn is_bored(&mut self, world: &World, scene: &SceneSnapshot) -> bool {
@@ -225,5 +243,25 @@ mod tests {
         assert!((mean - REACTION_MEAN_S).abs() < 0.04, "{mean}");
         assert_eq!(reaction_ticks(7, 0, 3), reaction_ticks(7, 0, 3));
         assert_ne!(reaction_ticks(7, 0, 3), reaction_ticks(7, 1, 3));
+    }
+
+    #[test]
+    fn the_next_contact_is_answered_sooner() {
+        let network = kernel::map::bundled("city").expect("it is bundled");
+        let mut world = World::new(&kernel::Scenario::default_for("city", 7), &network).expect("it fits");
+        (0..12).for_each(|_| drop(world.step(&kernel::TickInput::default())));
+        let contact = |id| Source::Contact(Touched::Actor(id, kernel::scene::ActorKind::Child));
+        let hazard = |source| Hazard { label: Label::Walker, comment: String::new(), source, urgency: 1.0 };
+        let feared = |source, since| Feared { source, since, last: 6, ready: 60 };
+        let ticks = |known: Vec<Feared>, source| {
+            SafetyBot { feared: known, ..SafetyBot::default() }.reaction_ticks(&hazard(source), &world)
+        };
+        let unexpected_ticks = reaction_ticks(world.scenario().seed, 0, world.tick());
+        let expected_ticks = (EXPECTED * unexpected_ticks as f32) as Tick;
+        assert_eq!(ticks(vec![], contact(1)), unexpected_ticks);
+        assert_eq!(ticks(vec![feared(contact(2), 6)], contact(1)), expected_ticks);
+        assert_eq!(ticks(vec![feared(contact(2), 12)], contact(1)), unexpected_ticks, "both at once");
+        assert_eq!(ticks(vec![feared(Source::RedLight, 6)], contact(1)), unexpected_ticks);
+        assert_eq!(ticks(vec![feared(contact(2), 6)], Source::LaneLeft), unexpected_ticks);
     }
 }
