@@ -130,6 +130,13 @@ impl<'a> Others<'a> {
         steps(up_to_s).filter_map(at).flat_map(touched)
     }
 
+    /// Whether somebody on foot is touched within some seconds.
+    pub fn touches_people(&self, way: &EgoWay, up_to_s: f32) -> bool {
+        let actors = self.actors.iter().filter(|a| a.kind.is_on_foot()).copied().collect();
+        let people = Self { actors, parked: Vec::new(), ..*self };
+        people.encroachments(way, up_to_s).next().is_some()
+    }
+
     /// One of them alone.
     pub fn only(&self, whom: Touched) -> Self {
         let actors = self.actors.iter().filter(|a| whom == Touched::Actor(a.id, a.kind)).copied().collect();

@@ -22,6 +22,8 @@ pub struct EgoWay {
     pub left_m: f32,
     speed_mps: f32,
     acceleration_mps2: f32,
+    /// Room kept on each side.
+    margin_m: f32,
 }
 
 impl EgoWay {
@@ -33,12 +35,18 @@ impl EgoWay {
             [first, second, ..] => (second - first).normalize_or(Vec2::X).perp_dot(middle - first),
             _ => 0.0,
         };
-        Self { points, left_m, speed_mps: car.speed_mps.max(0.0), acceleration_mps2 }
+        let speed_mps = car.speed_mps.max(0.0);
+        Self { points, left_m, speed_mps, acceleration_mps2, margin_m: MARGIN_M }
     }
 
     /// The same from the present with this braking, m/s^2.
     pub fn braking(&self, mps2: f32) -> Self {
         Self { acceleration_mps2: self.acceleration_mps2.min(-mps2), points: self.points.clone(), ..*self }
+    }
+
+    /// The same with this much more room on each side, metres.
+    pub fn wider(&self, by_m: f32) -> Self {
+        Self { margin_m: self.margin_m + by_m, points: self.points.clone(), ..*self }
     }
 
     /// Speed in `t_s` seconds, m/s.
@@ -59,7 +67,7 @@ impl EgoWay {
         let (from, to) = (*self.points.get(index)?, *self.points.get(index + 1)?);
         let forward = (to - from).normalize_or(Vec2::X);
         let centre = from.lerp(to, driven_m - index as f32) + self.left_m * forward.perp();
-        Some(Footprint { centre, forward, half: 0.5 * ego::SIZE_M.truncate() + MARGIN_M })
+        Some(Footprint { centre, forward, half: 0.5 * ego::SIZE_M.truncate() + self.margin_m })
     }
 }
 

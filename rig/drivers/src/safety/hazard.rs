@@ -18,8 +18,11 @@ use crate::footprint::{forward, middle};
 const FEARED_S: f32 = 3.0;
 /// They are looked for so long after somebody began to brake, who stops in twice the time that the way takes at full speed, seconds.
 const BRAKING_S: f32 = 2.0 * FEARED_S;
-/// Slower than this the car stands, m/s.
+/// Slower than this the car stands, m/s, and who is in its way is watched as if it pulled away so, m/s^2.
 const CREEPS_MPS: f32 = 0.1;
+const PULLS_AWAY_MPS2: f32 = 2.0;
+/// Whoever walks so near to the car's way may step into it, metres.
+const BESIDE_M: f32 = 1.0;
 /// Braking that is tried out, as shares of what the road allows.
 const TRIED: u32 = 20;
 /// Nothing but the full brake helps, or something else than braking.
@@ -73,28 +76,28 @@ impl Hazard {
     }
 }
 
-/// All hazards, by the present look and the ones before: contacts with those who were seen, first contact first, then
-/// breaches of rules.
-pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks, eyes: &Eyes) -> Vec<Hazard> {
-    let way = EgoWay::new(world, &scene.ego, looks.ego_mps2());
-    let grip_mps2 = world.friction() * GRAVITY_MPS2;
-    let mut found = contacts(world, scene, looks, eyes, (&way, grip_mps2));
-    found.extend(red_light(&world.hud(), &way, grip_mps2));
-    found.extend(leaving_lane(world, scene));
-    found
+/// What a look finds.
+pub struct Found {
+    /// Contacts with those who were seen, first contact first, then breaches of rules.
+    pub hazards: Vec<Hazard>,
+    /// Somebody will be touched, or is on foot beside the car's way.
+    pub is_alarming: bool,
 }
 
-fn contacts(
-    world: &World,
-    scene: &SceneSnapshot,
-    looks: &Looks,
-    eyes: &Eyes,
-    (way, grip_mps2): (&EgoWay, f32),
-) -> Vec<Hazard> {
-    if scene.ego.speed_mps < CREEPS_MPS {
-        return Vec::new();
-    }
+/// All hazards, by the present look and the ones before.
+pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks, eyes: &Eyes) -> Found {
+    let stands = scene.ego.speed_mps < CREEPS_MPS;
+    let way = EgoWay::new(world, &scene.ego, if stands { PULLS_AWAY_MPS2 } else { looks.ego_mps2() });
+    let grip_mps2 = world.friction() * GRAVITY_MPS2;
     let others = Others::near(world, scene, looks).seen(|actor| eyes.know(actor.id));
+    let mut hazards = contacts(&others, &way, grip_mps2);
+    let is_alarming = !hazards.is_empty() || others.touches_people(&way.wider(BESIDE_M), FEARED_S);
+    hazards.extend(red_light(&world.hud(), &way, grip_mps2));
+    hazards.extend(leaving_lane(world, scene));
+    Found { hazards, is_alarming }
+}
+
+fn contacts(others: &Others<'_>, way: &EgoWay, grip_mps2: f32) -> Vec<Hazard> {
     let mut first: Vec<Encroachment> = Vec::new();
     for encroachment in others.encroachments(way, FEARED_S) {
         if first.iter().all(|known| known.whom != encroachment.whom) {
@@ -201,9 +204,9 @@ mod tests {
         (looks, eyes)
     }
 
-    /// However slowly the car begins to move.
+    /// Before the car moves, so that nobody is surprised when it does.
     #[test]
-    fn who_stands_before_a_car_that_pulls_away_is_feared() {
+    fn who_stands_before_a_standing_car_is_watched_and_feared_when_it_moves() {
         let network = map::bundled("city").expect("it is bundled");
         let world = World::new(&Scenario::default_for("city", 3), &network).expect("it fits");
         let mut scene = world.scene();
@@ -211,13 +214,17 @@ mod tests {
         let front = middle(&scene.ego) + (0.5 * ego::SIZE_M.x + 0.5) * forward(&scene.ego);
         (person.position, person.speed_mps) = (front.extend(scene.ego.position.z), 0.0);
         scene.actors = vec![person];
-        for (speed_mps, is_feared) in [(0.0, false), (0.2, true)] {
+        let urgency = |speed_mps: f32, scene: &mut SceneSnapshot| {
             scene.ego.speed_mps = speed_mps;
-            let (looks, eyes) = looked(&network, &scene);
-            let feared = find(&world, &scene, &looks, &eyes);
+            let (looks, eyes) = looked(&network, scene);
+            let found = find(&world, scene, &looks, &eyes);
             let source = Source::Contact(Touched::Actor(9_999, ActorKind::Pedestrian));
-            assert_eq!(feared.iter().any(|hazard| hazard.source == source), is_feared, "{speed_mps}: {feared:?}");
-        }
+            found.hazards.iter().find(|hazard| hazard.source == source).map(|hazard| hazard.urgency)
+        };
+        let [stands, creeps, drives] = [0.0, 0.2, 3.0].map(|speed_mps| urgency(speed_mps, &mut scene));
+        assert!(stands.is_some_and(|urgency| urgency < 0.1), "{stands:?}");
+        assert!(creeps.is_some(), "{creeps:?}");
+        assert_eq!(drives, Some(PRESSING));
     }
 
     #[test]
@@ -231,7 +238,7 @@ mod tests {
         scene.actors = vec![walks_to_the_road(&world)];
         let (looks, eyes) = looked(&network, &scene);
         let whom = Touched::Actor(9_999, ActorKind::Pedestrian);
-        let feared = find(&world, &scene, &looks, &eyes);
+        let feared = find(&world, &scene, &looks, &eyes).hazards;
         assert!(feared.iter().any(|hazard| hazard.source == Source::Contact(whom)), "{feared:?}");
         assert_eq!(predicted_encroachment(&world, &scene, &looks), None);
     }

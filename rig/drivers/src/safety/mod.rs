@@ -32,13 +32,14 @@ const REACTION_SIGMA: f32 = 0.35;
 const REACTION_RANGE_S: [f32; 2] = [0.35, 2.5];
 /// A hazard that is gone for this long is over.
 pub const FORGET_TICKS: Tick = 12;
-/// But who seemed in danger is watched for longer: when they are again, the foot is ready.
+/// But who seemed in danger is watched for longer: when they are again, the foot is ready. So long after an alarming look the
+/// driver is alert, too.
 const ALERT_TICKS: Tick = seconds(2);
-/// Share of the reaction time that the next contact takes meanwhile: the foot is over the brake. Expected signals are
-/// answered after 0.7 to 0.75 s, unexpected ones after 1.25 s (Green 2000).
+/// Share of the reaction time that an alert driver takes for the next contact. Expected signals are answered after 0.7 to
+/// 0.75 s, unexpected ones after 1.25 s (Green 2000).
 const EXPECTED: f32 = 0.6;
 /// Share of the road's braking that has to be needed before it is no longer the semantic driver's turn.
-pub const URGENT: f32 = 0.5;
+pub const URGENT: f32 = 0.6;
 /// Standing without a red light ahead gets boring after this time.
 pub const BORING_TICKS: Tick = seconds(60);
 /// The same behind somebody who stands in the way, whom they see, so that they know what it waits for; and so far before the
@@ -62,6 +63,8 @@ pub struct SafetyBot {
     looks: Looks,
     /// The hazards of the moment, and those just over.
     feared: Vec<Feared>,
+    /// Until when the driver is alert.
+    alert_until: Tick,
     /// Why it took over.
     reason: Option<Hazard>,
     /// Since when the car stands with nothing to wait for.
@@ -74,8 +77,7 @@ pub struct SafetyBot {
 #[derive(Clone, Copy, Debug)]
 struct Feared {
     source: Source,
-    /// When it was first and last seen.
-    since: Tick,
+    /// When it was last seen.
     last: Tick,
     /// When the reaction time is over.
     ready: Tick,
@@ -109,6 +111,7 @@ impl SafetyBot {
             eyes: Eyes::default(),
             looks: Looks::default(),
             feared: Vec::new(),
+            alert_until: 0,
             reason: None,
             stands_since: None,
             free_since: None,
@@ -134,8 +137,12 @@ impl SafetyBot {
         let scene = world.scene();
         self.looks.look(&scene);
         self.eyes.look(world.network(), &scene);
-        for hazard in hazard::find(world, &scene, &self.looks, &self.eyes) {
+        let found = hazard::find(world, &scene, &self.looks, &self.eyes);
+        for hazard in found.hazards {
             self.fear(hazard, world);
+        }
+        if found.is_alarming {
+            self.alert_until = world.tick() + ALERT_TICKS;
         }
         self.feared.retain(|feared| world.tick() < feared.last + feared.lasts_ticks());
         if self.is_bored(world, &scene) && self.reason.is_none() {
@@ -151,7 +158,7 @@ impl SafetyBot {
             Some(at) => &mut self.feared[at],
             None => {
                 let ready = tick + self.reaction_ticks(&hazard, world);
-                self.feared.push_mut(Feared { source: hazard.source, since: tick, last: tick, ready })
+                self.feared.push_mut(Feared { source: hazard.source, last: tick, ready })
             }
         };
         feared.last = tick;
@@ -165,9 +172,8 @@ impl SafetyBot {
     /// From now until it can act against a hazard that it sees for the first time.
     fn reaction_ticks(&self, hazard: &Hazard, world: &World) -> Tick {
         let tick = world.tick();
-        let is_contact = |source| matches!(source, Source::Contact(_));
-        let is_alert = self.feared.iter().any(|feared| is_contact(feared.source) && feared.since < tick);
-        let share = if is_alert && is_contact(hazard.source) { EXPECTED } else { 1.0 };
+        let is_expected = tick < self.alert_until && matches!(hazard.source, Source::Contact(_));
+        let share = if is_expected { EXPECTED } else { 1.0 };
         let unexpected_ticks = reaction_ticks(world.scenario().seed, self.person, tick) as f32;
         (share * self.temper.reaction_factor() * unexpected_ticks) as Tick
     }
@@ -246,22 +252,17 @@ mod tests {
     }
 
     #[test]
-    fn the_next_contact_is_answered_sooner() {
+    fn who_is_alert_answers_the_next_contact_sooner() {
         let network = kernel::map::bundled("city").expect("it is bundled");
-        let mut world = World::new(&kernel::Scenario::default_for("city", 7), &network).expect("it fits");
-        (0..12).for_each(|_| drop(world.step(&kernel::TickInput::default())));
-        let contact = |id| Source::Contact(Touched::Actor(id, kernel::scene::ActorKind::Child));
+        let world = World::new(&kernel::Scenario::default_for("city", 7), &network).expect("it fits");
         let hazard = |source| Hazard { label: Label::Walker, comment: String::new(), source, urgency: 1.0 };
-        let feared = |source, since| Feared { source, since, last: 6, ready: 60 };
-        let ticks = |known: Vec<Feared>, source| {
-            SafetyBot { feared: known, ..SafetyBot::default() }.reaction_ticks(&hazard(source), &world)
+        let contact = Source::Contact(Touched::Actor(1, kernel::scene::ActorKind::Child));
+        let ticks = |alert_until, source| {
+            SafetyBot { alert_until, ..SafetyBot::default() }.reaction_ticks(&hazard(source), &world)
         };
-        let unexpected_ticks = reaction_ticks(world.scenario().seed, 0, world.tick());
-        let expected_ticks = (EXPECTED * unexpected_ticks as f32) as Tick;
-        assert_eq!(ticks(vec![], contact(1)), unexpected_ticks);
-        assert_eq!(ticks(vec![feared(contact(2), 6)], contact(1)), expected_ticks);
-        assert_eq!(ticks(vec![feared(contact(2), 12)], contact(1)), unexpected_ticks, "both at once");
-        assert_eq!(ticks(vec![feared(Source::RedLight, 6)], contact(1)), unexpected_ticks);
-        assert_eq!(ticks(vec![feared(contact(2), 6)], Source::LaneLeft), unexpected_ticks);
+        let unexpected_ticks = reaction_ticks(7, 0, world.tick());
+        assert_eq!(ticks(0, contact), unexpected_ticks);
+        assert_eq!(ticks(60, contact), (EXPECTED * unexpected_ticks as f32) as Tick);
+        assert_eq!(ticks(60, Source::LaneLeft), unexpected_ticks);
     }
 }

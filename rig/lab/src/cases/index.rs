@@ -67,12 +67,13 @@ impl Index {
 
     /// Refuses what is no index of this version; makes the tables of a new one.
     fn check(&mut self, access: Access) -> anyhow::Result<()> {
-        let mut found = self.read(schema::look)?;
+        // As of one moment: another process may be making it.
+        let look = |db: &Connection| schema::look(&*db.unchecked_transaction()?);
+        let mut found = self.read(look)?;
         if found == Found::Nothing && access == Access::Write {
             self.read(schema::lay_out)?;
-            // Another process may have made it meanwhile.
             self.write(|db| if schema::look(db)? == Found::Nothing { schema::create(db) } else { Ok(()) })?;
-            found = self.read(schema::look)?;
+            found = self.read(look)?;
         }
         let path = self.path.display();
         match found {
@@ -161,6 +162,24 @@ mod tests {
             let before = fs::read(at(name)).expect("readable");
             assert!(said(&at(name), Access::Write).contains("is no index of aeye cases"), "{name}");
             assert_eq!(fs::read(at(name)).expect("readable"), before);
+        }
+    }
+
+    /// Whoever looks while another makes the tables sees none of them, or all.
+    #[test]
+    fn an_index_is_made_by_several_at_once() {
+        let dir = tempfile::tempdir().expect("a folder");
+        for round in 0..100 {
+            let path = dir.path().join(format!("{round}.sqlite"));
+            let at_once = std::sync::Barrier::new(4);
+            let open = || {
+                at_once.wait();
+                Index::open(&path, Access::Write).map(drop).map_err(|error| format!("{error:#}"))
+            };
+            std::thread::scope(|scope| {
+                let threads: Vec<_> = (0..4).map(|_| scope.spawn(open)).collect();
+                threads.into_iter().for_each(|thread| assert_eq!(thread.join().expect("no panic"), Ok(())));
+            });
         }
     }
 
