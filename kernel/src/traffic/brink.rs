@@ -42,13 +42,13 @@ impl Brink<'_> {
 
 impl View<'_> {
     /// What is left of the acceleration that a driver wants, m/s²: who would touch somebody steers straight on, if that is
-    /// enough, and brakes else.
-    pub(super) fn last_look(&self, index: usize, next: &mut Vehicle, accel_mps2: f32) -> f32 {
+    /// enough, and brakes else. For the ego car too, unless that is seen to already.
+    pub(super) fn last_look(&self, index: usize, next: &mut Vehicle, accel_mps2: f32, heeds_ego: bool) -> f32 {
         let (driver, mps) = (&self.drivers[index], next.speed_mps);
         if mps > SLOW_MPS || (mps == 0.0 && accel_mps2 <= 0.0) {
             return accel_mps2;
         }
-        let brink = self.brink(index, next);
+        let brink = self.brink(index, next, heeds_ego);
         if brink.all().next().is_none() {
             return accel_mps2;
         }
@@ -65,14 +65,15 @@ impl View<'_> {
         }
     }
 
-    fn brink(&self, index: usize, next: &Vehicle) -> Brink<'_> {
+    fn brink(&self, index: usize, next: &Vehicle, heeds_ego: bool) -> Brink<'_> {
         let look_s = f32::from(DECIDE_TICKS) * TICK_S;
         let stop_s = next.speed_mps / self.drivers[index].hardest_mps2 + look_s;
         let ahead_m = START_M + next.speed_mps * 0.5 * (stop_s + look_s);
         let now = Hazard::of_body(&self.bodies[index]);
         let reach_m = now.half.length() + ahead_m + ROOM_M[0];
         let around = self.hazards.reaching(now.position, reach_m);
-        let other = |h: &&Hazard| h.vehicle != Some(index as u32) && h.is_level_with(now.position.z);
+        let is_heeded = |h: &Hazard| heeds_ego || !h.is_ego();
+        let other = |h: &&Hazard| h.vehicle != Some(index as u32) && h.is_level_with(now.position.z) && is_heeded(h);
         let on_pavements = if now.half.x * 2.0 > LONG_M { self.on_pavements(&now, reach_m) } else { Vec::new() };
         Brink { now, ahead_m, stop_s, others: around.filter(other).collect(), on_pavements }
     }
@@ -107,7 +108,7 @@ impl View<'_> {
     }
 
     /// A vehicle so far ahead on its way, that steers to a drift.
-    fn rolled(&self, index: usize, vehicle: &Vehicle, ahead_m: f32, aim: i8) -> Hazard {
+    pub(super) fn rolled(&self, index: usize, vehicle: &Vehicle, ahead_m: f32, aim: i8) -> Hazard {
         let driver = &self.drivers[index];
         let mut then = *vehicle;
         then.s_m += ahead_m;

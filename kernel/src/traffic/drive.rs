@@ -77,6 +77,8 @@ pub(super) struct View<'a> {
     /// Those who signal to another lane.
     pub asking: &'a [Asking],
     pub horn: Option<Horn>,
+    /// The ego car is in a junction or on no lane, or cannot stop before a junction any more.
+    pub ego_enters: bool,
     /// Buses whose doors are open.
     pub calls: &'a [Call],
     pub tick: Tick,
@@ -154,10 +156,11 @@ impl View<'_> {
         let halt_mps2 = self.lapse_mps2(next).min(self.call_mps2(index, plan, next));
         let halt_mps2 = halt_mps2.min(self.falls_back_mps2(index, plan, &seeker));
         let behind = self.behind_leader_mps2(index, plan, next).min(halt_mps2);
-        let accel =
-            self.acceleration(index, plan, next, &seeker, side).min(behind).max(-self.drivers[index].hardest_mps2);
+        let wanted = self.acceleration(index, plan, next, &seeker, side).min(behind);
+        let forbearance_mps2 = self.forbearance_mps2(index, plan, next);
+        let accel = wanted.min(forbearance_mps2.unwrap_or(f32::INFINITY)).max(-self.drivers[index].hardest_mps2);
         next.drift_aim = side.drift_aim(next);
-        let accel = self.last_look(index, next, accel);
+        let accel = self.last_look(index, next, accel, forbearance_mps2.is_none());
         let was_braking = next.flags & Vehicle::BRAKING != 0;
         let braking = next.speed_mps < 0.1 || accel < if was_braking { -0.3 } else { -0.8 };
         next.flags = if braking { next.flags | Vehicle::BRAKING } else { next.flags & !Vehicle::BRAKING };

@@ -81,6 +81,11 @@ impl Hazard {
         }
     }
 
+    /// Whether it is the ego car.
+    pub fn is_ego(&self) -> bool {
+        self.id == 0
+    }
+
     /// Whether it is a vehicle that stands.
     pub fn stands(&self) -> bool {
         !self.walker && self.velocity.length_squared() < STANDS_MPS * STANDS_MPS

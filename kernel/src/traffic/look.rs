@@ -8,7 +8,7 @@ use crate::time::{Tick, seconds};
 
 use super::actors::Actors;
 use super::asking::{self, Asking};
-use super::body::Surroundings;
+use super::body::{Obstacle, Surroundings};
 use super::calls::{self, Call};
 use super::crosswalk::{Claim, Gaps};
 use super::drive::View;
@@ -21,7 +21,7 @@ use super::junction::{EGO, Member, Members, swept_half_m};
 use super::lists::{Entry, Lists};
 use super::nearby::Nearby;
 use super::pass;
-use super::plan::{self, Plan};
+use super::plan::{self, Plan, braking_needed};
 use super::state::TrafficState;
 use super::step::Step;
 use super::turns::Turns;
@@ -36,6 +36,8 @@ const EGO_SPEEDS_UP_M: f32 = 8.0;
 /// Slower than this it lets others go, m/s, but before a light that is green, at most so far before the line, m.
 const EGO_WAITS_MPS: f32 = 1.0;
 const EGO_STARTS_M: f32 = 12.0;
+/// Braking with which the ego car is expected to stop before a junction if it has to, m/s².
+const EGO_STOPS_MPS2: f32 = 3.5;
 
 /// Buffers of a step.
 #[derive(Clone, Debug, Default)]
@@ -53,6 +55,8 @@ pub(super) struct Sight {
     claims: Vec<Claim>,
     asking: Vec<Asking>,
     horn: Option<Horn>,
+    /// As in [`View`].
+    ego_enters: bool,
     crowd: Nearby,
     /// Buses whose doors are open.
     pub calls: Vec<Call>,
@@ -82,6 +86,7 @@ impl Sight {
         asking::gather(actors, around, &mut self.asking);
         self.horn = Horn::of(around);
         self.gather_members(actors, around);
+        self.ego_enters = ego_enters(actors, around);
         self.jaywalker = jaywalk::starter(actors, around);
     }
 
@@ -106,6 +111,7 @@ impl Sight {
             claims: &self.claims,
             asking: &self.asking,
             horn: self.horn,
+            ego_enters: self.ego_enters,
             calls: &self.calls,
             tick: self.tick,
         }
@@ -281,8 +287,7 @@ impl Sight {
         let (map, ego) = (actors.map(), &around.ego);
         let speed = ego.velocity_mps.truncate().length();
         let stands = speed < EGO_WAITS_MPS;
-        let place = actors.ways.places.roads().nearest(ego.position, LaneKind::Driving, Some(ego.heading_rad), 4.0);
-        let Some(place) = place else { return };
+        let Some(place) = ego_place(actors, ego) else { return };
         let lane = &map.lanes[place.lane as usize];
         let half_m = ego.size_m.x * 0.5;
         let rounds = actors.ways.lanes[place.lane as usize].circle;
@@ -321,4 +326,22 @@ impl Sight {
             members.push(member(zone, false), lanes);
         }
     }
+}
+
+/// Where the ego car is on the lanes, if it is on one.
+fn ego_place(actors: &Actors, ego: &Obstacle) -> Option<Projection> {
+    actors.ways.places.roads().nearest(ego.position, LaneKind::Driving, Some(ego.heading_rad), 4.0)
+}
+
+/// Whether the ego car is in a junction or on no lane, or cannot stop before a junction any more.
+fn ego_enters(actors: &Actors, around: &Surroundings<'_>) -> bool {
+    let ego = &around.ego;
+    ego_place(actors, ego).is_none_or(|place| {
+        let (lane, ways) = (&actors.map().lanes[place.lane as usize], &actors.ways.lanes);
+        let mut onward = ways[place.lane as usize].onward.iter();
+        let to_end_m = lane.length_m - place.s_m - ego.size_m.x * 0.5;
+        let needed_mps2 = braking_needed(ego.velocity_mps.truncate().length(), to_end_m);
+        let leads_in = onward.any(|next| ways[next.lane as usize].zone.is_some());
+        lane.junction.is_some() || (leads_in && needed_mps2 > EGO_STOPS_MPS2)
+    })
 }

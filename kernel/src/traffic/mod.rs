@@ -24,6 +24,7 @@ mod crash;
 mod crosswalk;
 mod doors;
 mod drive;
+mod forbear;
 mod groups;
 mod hazard;
 mod hazards;

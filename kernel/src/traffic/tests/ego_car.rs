@@ -6,12 +6,13 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::crossroads::{Signs, crossroads};
-use super::{MINUTE, car_at, nowhere, start};
-use crate::map::{LaneId, MapData, RoadNetwork};
+use super::standing::body_of;
+use super::{MINUTE, boxes_meet, car_at, lone_car, nowhere, start};
+use crate::map::{Lane, LaneId, MapData, RoadNetwork};
 use crate::ops;
 use crate::signals::{LightPhase, phase};
 use crate::time::Tick;
-use crate::traffic::{Obstacle, Surroundings, Vehicle};
+use crate::traffic::{Body, Obstacle, Surroundings, Vehicle};
 use crate::weather::Conditions;
 
 /// So many vehicles begin to drive a lane in some minutes beside an ego car, at ticks that count.
@@ -67,4 +68,70 @@ fn who_enters_a_junction_sees_the_car_inside_beside_all_lanes() {
     let entered = |ego| enter(&network, ego, &crossed, 5, |_| true);
     assert_eq!(entered(ego), 0);
     assert!(entered(nowhere()) > 3, "{}", entered(nowhere()));
+}
+
+/// Where a car that has its grant is, tick by tick, beside an ego car.
+fn goes_in(network: &Arc<RoadNetwork>, ego_at: impl Fn(Tick) -> Obstacle) -> Vec<Body> {
+    let mut traffic = lone_car(network);
+    let car = &mut traffic.actors.state.vehicles[0];
+    (car.s_m, car.flags) = (network.lanes[0].length_m - 6.0, Vehicle::GRANTED);
+    let step = |tick| {
+        traffic.step(&Surroundings {
+            tick,
+            ego: ego_at(tick),
+            ego_flags: 0,
+            loose: &[],
+            conditions: Conditions::default(),
+        });
+        traffic.bodies()[0]
+    };
+    (1..600).map(step).collect()
+}
+
+/// The ego car comes out of the arm on the right or on the left, at 5 m/s, as if nobody else were there.
+#[test]
+fn who_has_a_grant_brakes_for_the_car_that_comes_across_all_the_same() {
+    let network = crossroads(Signs::Yield);
+    let alone = goes_in(&network, |_| nowhere());
+    let middle = alone.iter().position(|b| b.position.distance(alone[0].position) > 16.0).expect("it goes in");
+    let (place, ahead) = (alone[middle].position, alone[middle].rotation * Vec3::X);
+    let mut meet_alone = 0;
+    for side in [1.0, -1.0] {
+        let across = side * Vec3::new(-ahead.y, ahead.x, 0.0);
+        for late_ticks in (-90..=90).step_by(15) {
+            let ego_at = |tick: Tick| {
+                let way_m = 5.0 / 60.0 * (tick as f32 - (middle as i32 + late_ticks) as f32);
+                let heading_rad = ops::atan2(across.y, across.x);
+                Obstacle { velocity_mps: 5.0 * across, ..car_at(place + way_m * across, heading_rad) }
+            };
+            let meets = |bodies: &[Body]| (1..).zip(bodies).any(|(tick, car)| boxes_meet(car, &body_of(&ego_at(tick))));
+            meet_alone += u32::from(meets(&alone));
+            let with = goes_in(&network, ego_at);
+            assert!(!meets(&with), "side {side}, {late_ticks} ticks late");
+            let driven_m = with.last().map_or(0.0, |body| body.position.distance(with[0].position));
+            assert!(driven_m > 20.0, "side {side}, {late_ticks} ticks late: {driven_m} m in ten seconds");
+        }
+    }
+    assert!(meet_alone >= 10, "{meet_alone} of 26 would meet if nobody braked");
+}
+
+/// The ego car brakes with 3 m/s² from 8 m/s before the line of an arm whose way crosses.
+#[test]
+fn who_has_a_grant_does_not_brake_for_the_car_that_can_still_stop() {
+    let network = crossroads(Signs::Yield);
+    let arms = network.lanes.iter().filter(|lane| lane.junction.is_none() && !lane.successors.is_empty());
+    let across =
+        |lane: &&Lane| ops::sin(lane.points[0].heading_rad - network.lanes[0].points[0].heading_rad).abs() > 0.9;
+    let alone = goes_in(&network, |_| nowhere());
+    for arm in arms.filter(across) {
+        let stops = |tick: Tick| {
+            let mps = (8.0 - 3.0 / 60.0 * tick as f32).max(0.0);
+            let place = arm.straight_on(arm.length_m - 3.25 - mps * mps / 6.0);
+            let velocity_mps = mps * place.forward;
+            Obstacle { velocity_mps, ..car_at(place.position, arm.points[0].heading_rad) }
+        };
+        let with = goes_in(&network, stops);
+        let differs = with.iter().zip(&alone).position(|(with, alone)| with.position != alone.position);
+        assert_eq!(differs, None, "{}", arm.name);
+    }
 }

@@ -20,7 +20,7 @@ fn badly_parked(network: &RoadNetwork, share: f32, aside_m: f32, turned_rad: f32
     car_at(place.beside(aside_m), lane.at(s_m).heading_rad + turned_rad)
 }
 
-fn body_of(car: &Obstacle) -> Body {
+pub(super) fn body_of(car: &Obstacle) -> Body {
     Body {
         id: 0,
         kind: ActorKind::Car,

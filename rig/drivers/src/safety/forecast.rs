@@ -6,12 +6,15 @@ use kernel::map::RoadNetwork;
 use kernel::scene::{ActorScene, EgoScene};
 use kernel::{World, ego, ops};
 
-use crate::footprint::{Footprint, middle};
+use crate::footprint::{Footprint, forward, middle};
 
 /// Room kept around the ego car on each side, metres.
-const MARGIN_M: f32 = 0.15;
+pub const MARGIN_M: f32 = 0.15;
 /// Who speeds up goes on for so long, seconds.
 const SPEEDS_UP_S: f32 = 1.0;
+/// Who is turned away from the route turns back to its direction on this way, metres; by so much at most, radians.
+const TURNS_BACK_M: f32 = 6.0;
+const TURNED_RAD: f32 = 0.7;
 /// An actor belongs to a lane whose middle is nearer than this, metres.
 const ON_LANE_M: f32 = 1.5;
 
@@ -24,6 +27,8 @@ pub struct EgoWay {
     acceleration_mps2: f32,
     /// Room kept on each side.
     margin_m: f32,
+    /// How far the car is turned to the left of its route now, radians.
+    turned_rad: f32,
 }
 
 impl EgoWay {
@@ -36,12 +41,30 @@ impl EgoWay {
             _ => 0.0,
         };
         let speed_mps = car.speed_mps.max(0.0);
-        Self { points, left_m, speed_mps, acceleration_mps2, margin_m: MARGIN_M }
+        Self { points, left_m, speed_mps, acceleration_mps2, margin_m: MARGIN_M, turned_rad: 0.0 }
     }
 
     /// The same from the present with this braking, m/s^2.
     pub fn braking(&self, mps2: f32) -> Self {
         Self { acceleration_mps2: self.acceleration_mps2.min(-mps2), points: self.points.clone(), ..*self }
+    }
+
+    /// The same of a car that is turned as it is, and turns back to the direction of its route within [`TURNS_BACK_M`]; its
+    /// middle stays as far beside the route as it is.
+    pub fn turned_as(self, car: &EgoScene) -> Self {
+        let turned_rad = match self.points[..] {
+            [first, second, ..] => {
+                let (along, heading) = ((second - first).normalize_or(Vec2::X), forward(car));
+                ops::atan2(along.perp_dot(heading), along.dot(heading)).clamp(-TURNED_RAD, TURNED_RAD)
+            }
+            _ => 0.0,
+        };
+        Self { turned_rad, ..self }
+    }
+
+    /// The same with this room on each side, metres.
+    pub fn with_margin(self, margin_m: f32) -> Self {
+        Self { margin_m, ..self }
     }
 
     /// The same with this much more room on each side, metres.
@@ -65,8 +88,10 @@ impl EgoWay {
         let driven_m = self.driven_m(t_s);
         let index = driven_m as usize;
         let (from, to) = (*self.points.get(index)?, *self.points.get(index + 1)?);
-        let forward = (to - from).normalize_or(Vec2::X);
-        let centre = from.lerp(to, driven_m - index as f32) + self.left_m * forward.perp();
+        let along = (to - from).normalize_or(Vec2::X);
+        let turned_rad = self.turned_rad * (1.0 - driven_m / TURNS_BACK_M).max(0.0);
+        let forward = direction(turned_rad).rotate(along);
+        let centre = from.lerp(to, driven_m - index as f32) + self.left_m * along.perp();
         Some(Footprint { centre, forward, half: 0.5 * ego::SIZE_M.truncate() + self.margin_m })
     }
 }
@@ -141,6 +166,27 @@ mod tests {
                     assert!(moved.dot(direction(heading)) > 0.0, "{name}, lane {lane}: {moved}");
                 }
             }
+        }
+    }
+
+    /// Past somebody who stands beside its corner, not along the route.
+    #[test]
+    fn a_car_that_is_turned_comes_back_to_its_route() {
+        let network = map::bundled("city").expect("it is bundled");
+        let world = World::new(&kernel::Scenario::default_for("city", 3), &network).expect("it fits");
+        let mut car = world.scene().ego;
+        let along = EgoWay::new(&world, &car, 0.0).at(0.1).expect("there is a route").forward;
+        for turned_rad in [-0.4, 0.4] {
+            (car.rotation, car.speed_mps) = (Quat::from_rotation_z(turned_rad) * car.rotation, 3.0);
+            let way = EgoWay::new(&world, &car, 0.0).turned_as(&car);
+            let heading_rad = |t_s: f32| {
+                let forward = way.at(t_s).expect("there is a route").forward;
+                ops::atan2(along.perp_dot(forward), along.dot(forward))
+            };
+            assert!((heading_rad(0.0) - turned_rad).abs() < 0.02, "{turned_rad}: {}", heading_rad(0.0));
+            assert!((heading_rad(1.0) - 0.5 * turned_rad).abs() < 0.02, "{turned_rad}: {}", heading_rad(1.0));
+            assert!(heading_rad(2.1).abs() < 0.02, "{turned_rad}: {}", heading_rad(2.1));
+            car = world.scene().ego;
         }
     }
 

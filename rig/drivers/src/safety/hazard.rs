@@ -10,7 +10,7 @@ use replay::Label;
 
 use super::encounter::{Encroachment, Others, Touched};
 use super::eyes::Eyes;
-use super::forecast::EgoWay;
+use super::forecast::{EgoWay, MARGIN_M};
 use super::looks::Looks;
 use crate::footprint::{forward, middle};
 
@@ -21,6 +21,9 @@ const BRAKING_S: f32 = 2.0 * FEARED_S;
 /// Slower than this the car stands, m/s, and who is in its way is watched as if it pulled away so, m/s^2.
 const CREEPS_MPS: f32 = 0.1;
 const PULLS_AWAY_MPS2: f32 = 2.0;
+/// Room kept around a car that stands, metres, and speed from which it is [`MARGIN_M`], m/s.
+const CREEPING_MARGIN_M: f32 = 0.05;
+const MARGIN_AT_MPS: f32 = 2.0;
 /// Whoever walks so near to the car's way may step into it, metres.
 const BESIDE_M: f32 = 1.0;
 /// Braking that is tried out, as shares of what the road allows.
@@ -87,7 +90,8 @@ pub struct Found {
 /// All hazards, by the present look and the ones before.
 pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks, eyes: &Eyes) -> Found {
     let stands = scene.ego.speed_mps < CREEPS_MPS;
-    let way = EgoWay::new(world, &scene.ego, if stands { PULLS_AWAY_MPS2 } else { looks.ego_mps2() });
+    let ego_mps2 = if stands { PULLS_AWAY_MPS2 } else { looks.ego_mps2() };
+    let way = EgoWay::new(world, &scene.ego, ego_mps2).turned_as(&scene.ego).with_margin(margin_m(scene.ego.speed_mps));
     let grip_mps2 = world.friction() * GRAVITY_MPS2;
     let others = Others::near(world, scene, looks).seen(|actor| eyes.know(actor.id));
     let mut hazards = contacts(&others, &way, grip_mps2);
@@ -95,6 +99,11 @@ pub fn find(world: &World, scene: &SceneSnapshot, looks: &Looks, eyes: &Eyes) ->
     hazards.extend(red_light(&world.hud(), &way, grip_mps2));
     hazards.extend(leaving_lane(world, scene));
     Found { hazards, is_alarming }
+}
+
+/// Room that is kept on each side, metres: who creeps by sees that there is some.
+fn margin_m(speed_mps: f32) -> f32 {
+    CREEPING_MARGIN_M + (MARGIN_M - CREEPING_MARGIN_M) * (speed_mps / MARGIN_AT_MPS).clamp(0.0, 1.0)
 }
 
 fn contacts(others: &Others<'_>, way: &EgoWay, grip_mps2: f32) -> Vec<Hazard> {
@@ -225,6 +234,26 @@ mod tests {
         assert!(stands.is_some_and(|urgency| urgency < 0.1), "{stands:?}");
         assert!(creeps.is_some(), "{creeps:?}");
         assert_eq!(drives, Some(PRESSING));
+    }
+
+    #[test]
+    fn who_is_passed_by_a_hands_breadth_is_feared_of_a_car_that_drives() {
+        let network = map::bundled("city").expect("it is bundled");
+        let world = World::new(&Scenario::default_for("city", 3), &network).expect("it fits");
+        let mut scene = world.scene();
+        let mut person = walks_to_the_road(&world);
+        let forward = forward(&scene.ego);
+        let beside_m = 0.5 * (ego::SIZE_M.y + person.kind.size_m().y) + 0.1;
+        let place = middle(&scene.ego) + (0.5 * ego::SIZE_M.x + 1.0) * forward + beside_m * forward.perp();
+        (person.position, person.rotation) = (place.extend(scene.ego.position.z), scene.ego.rotation);
+        person.speed_mps = 0.0;
+        scene.actors = vec![person];
+        let is_feared = |speed_mps: f32, scene: &mut SceneSnapshot| {
+            scene.ego.speed_mps = speed_mps;
+            let (looks, eyes) = looked(&network, scene);
+            !find(&world, scene, &looks, &eyes).hazards.is_empty()
+        };
+        assert_eq!([0.5, 3.0].map(|speed_mps| is_feared(speed_mps, &mut scene)), [false, true]);
     }
 
     #[test]

@@ -126,7 +126,8 @@ impl SemanticBot {
             Some(Way { arc, free_m }) => {
                 let slow = Dash { limit_mps: SQUEEZING_MPS, ..dash };
                 let obstacle_m = self.crosses_m(arc, SQUEEZING_MPS).into_iter().fold(free_m, f32::min);
-                (arc, speed::wish(sight, arc, &slow, Scene { obstacle_m: Some(obstacle_m), ..scene }, vigour))
+                let wish = speed::wish(sight, arc, &slow, Scene { obstacle_m: Some(obstacle_m), ..scene }, vigour);
+                (arc, Wish { expects_others: true, ..wish })
             }
         }
     }

@@ -16,6 +16,8 @@ pub const SQUEEZING_MPS: f32 = 0.9;
 const FARTHEST_M: f32 = 14.0;
 /// Arcs that are tried on each side of straight ahead.
 const TRIED: i16 = 40;
+/// A way that is driven is kept as if turning away from it were so much of turning away from the wanted one.
+const STEADY: f32 = 0.5;
 /// Room beside vehicles and people, metres; less beside those whom the car already stands next to.
 const BESIDE_VEHICLE_M: f32 = 0.3;
 const BESIDE_WALKER_M: f32 = 0.6;
@@ -23,7 +25,7 @@ const NEXT_TO_M: f32 = 0.1;
 /// Room before the car that makes an arc a way by, metres.
 const FREE_M: f32 = 5.5;
 /// Who moves faster than this, within this distance, is let pass first, m/s and metres.
-const MOVING_MPS: f32 = 1.0;
+const MOVING_MPS: f32 = 0.5;
 const LET_PASS_M: f32 = 15.0;
 
 /// Where something touches the ground.
@@ -102,7 +104,9 @@ impl Squeeze {
     fn best(&self, sight: &Sight<'_>, wanted: Arc) -> Option<Way> {
         let arcs = (-TRIED..=TRIED).map(|step| Arc { curvature: SHARPEST * f32::from(step) / f32::from(TRIED) });
         let ways = arcs.map(|arc| Way { arc, free_m: self.free_m(arc) });
-        let turns = |way: &Way| (way.arc.curvature - wanted.curvature).abs();
+        let present = self.way.map_or(wanted, |way| way.arc);
+        let off = |way: &Way, arc: Arc| (way.arc.curvature - arc.curvature).abs();
+        let turns = |way: &Way| off(way, wanted) + STEADY * off(way, present);
         let open = ways.filter(|way| way.free_m >= FREE_M && is_road(sight, way.arc));
         open.min_by(|a, b| turns(a).total_cmp(&turns(b)))
     }
@@ -180,6 +184,18 @@ mod tests {
         let [left, right] = [1.0, -1.0].map(|side| after_s(&beside(side), WAITED_S + 1.0).expect("there is a way"));
         assert!(left.arc.curvature > 0.01 && right.arc.curvature < -0.01, "{left:?} {right:?}");
         assert_eq!(after_s(&vehicle_rear(6.5, -8.0, 8.0), WAITED_S + 1.0), None, "from side to side");
+    }
+
+    /// What stands there is nearer to the left edge than to the right one, and seems the other way round later.
+    #[test]
+    fn it_keeps_to_its_side() {
+        let mut squeeze = Squeeze::default();
+        (0..1860).for_each(|_| squeeze.carry(STILL, true));
+        let mut side = |right_m: f32, left_m: f32| {
+            on_asphalt(|sight| squeeze.look(sight, &vehicle_rear(9.0, right_m, left_m), &[], STRAIGHT));
+            squeeze.way().expect("there is a way").arc.curvature.signum()
+        };
+        assert_eq!([side(-1.0, 0.6), side(-0.7, 0.8), side(-0.2, 3.0)], [1.0, 1.0, -1.0]);
     }
 
     #[test]

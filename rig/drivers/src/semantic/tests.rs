@@ -168,15 +168,20 @@ fn it_brakes_for_a_person_but_not_for_specks() {
 /// The rear of a car that stands on a straight road, 1.8 m wide and 1.5 m high, in the picture of a camera that looks down
 /// by an angle.
 fn queue_ahead(gap_m: f32, down_rad: f32) -> Vec<u8> {
+    rear_ahead(gap_m, [-0.9, 0.9], down_rad)
+}
+
+/// The same from one place to another, metres to the left.
+fn rear_ahead(gap_m: f32, across_m: [f32; 2], down_rad: f32) -> Vec<u8> {
     let mut ids = Road { curvature: 0.0 }.mask_from(Pose { x: 0.0, y: 0.0, heading: 0.0 }, down_rad);
     let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
     let focal = 0.5 * WIDTH as f32 / ops::tan(0.5 * camera.fov_x_rad);
     let ahead_m = ego::FRONT_M + gap_m - camera.position.x;
     let row = |height_m: f32| 0.5 * HEIGHT as f32 + focal * ((camera.position.z - height_m) / ahead_m - down_rad);
-    let side = focal * 0.9 / ahead_m;
+    let column = |left_m: f32| (0.5 * WIDTH as f32 - focal * left_m / ahead_m).clamp(0.0, WIDTH as f32) as usize;
+    let [right, left] = across_m.map(column);
     for row in row(1.5).round() as usize..(row(0.0).round() as usize).min(HEIGHT) {
-        let columns = (0.5 * WIDTH as f32 - side).max(0.0) as usize..(0.5 * WIDTH as f32 + side) as usize;
-        ids[row * WIDTH + columns.start..row * WIDTH + columns.end.min(WIDTH)].fill(SemanticTag::Vehicles as u8);
+        ids[row * WIDTH + left..row * WIDTH + right].fill(SemanticTag::Vehicles as u8);
     }
     ids
 }
@@ -265,6 +270,23 @@ fn it_keeps_pace_with_who_drives_ahead_and_stands_behind_them_when_they_brake() 
         }
         assert!(car.speed_mps < 0.1 && nearest_m > 1.0, "{leader_mps}: {nearest_m} m behind it");
     }
+}
+
+/// The way past a car that stands ahead on the right closes while it is driven.
+#[test]
+fn it_stops_at_once_when_the_way_past_closes() {
+    let mut bot = SemanticBot::of_temper(Temper::Tired);
+    let mut drive = |ids: &[u8], speed_mps: f32, ticks: usize| {
+        let mask = MaskView { width: WIDTH, height: HEIGHT, ids };
+        (0..ticks).map(|_| bot.controls(&SemanticView { mask, hud: hud(speed_mps, 0) })).collect::<Vec<_>>()
+    };
+    let beside = rear_ahead(3.0, [-3.0, -0.4], 0.0);
+    assert!(drive(&beside, 0.0, 1780).iter().all(|controls| controls.throttle == 0));
+    assert!(drive(&beside, 0.0, 120).iter().any(|controls| controls.throttle > 0), "it takes the way past");
+    // Longer than its foot stays over the brake.
+    drive(&beside, 0.8, 150);
+    let closes = drive(&rear_ahead(0.5, [-6.0, 6.0], 0.0), 0.8, 12);
+    assert!(closes[6..].iter().all(|controls| controls.throttle == 0 && controls.brake > 0), "{closes:?}");
 }
 
 /// Before it stands, the room of what was in the way seems to be there still; a picture in which nothing moves frees it.
