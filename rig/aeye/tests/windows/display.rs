@@ -5,10 +5,14 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// Folder for pictures of the display; unset, none are kept.
 const KEEP: &str = "AEYE_SCREENSHOTS";
+
+/// One server looks for a number at a time: two could take the socket that a third one left behind.
+static STARTS: Mutex<()> = Mutex::new(());
 
 /// A display of its own; closed when dropped.
 pub struct Display {
@@ -21,8 +25,10 @@ pub struct Display {
 impl Display {
     /// Opens one with a number that is free, and keeps its pixels in a folder.
     pub fn open(folder: &Path) -> Self {
+        let starts = STARTS.lock().unwrap_or_else(PoisonError::into_inner);
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1300x960x24", "-nolisten", "tcp", "-fbdir"])
+            // A server that begins anew when its last client leaves refuses whoever comes just then.
+            .args(["-noreset", "-displayfd", "1", "-screen", "0", "1300x960x24", "-nolisten", "tcp", "-fbdir"])
             .arg(folder)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -31,6 +37,7 @@ impl Display {
         let mut number = String::new();
         let stdout = server.stdout.take().expect("piped");
         BufReader::new(stdout).read_line(&mut number).expect("the number of the display");
+        drop(starts);
         Self { server, name: format!(":{}", number.trim()), pixels: folder.join("Xvfb_screen0") }
     }
 
