@@ -169,15 +169,15 @@ mod tests {
         }
     }
 
-    /// Past somebody who stands beside its corner, not along the route.
     #[test]
     fn a_car_that_is_turned_comes_back_to_its_route() {
         let network = map::bundled("city").expect("it is bundled");
         let world = World::new(&kernel::Scenario::default_for("city", 3), &network).expect("it fits");
-        let mut car = world.scene().ego;
-        let along = EgoWay::new(&world, &car, 0.0).at(0.1).expect("there is a route").forward;
+        let straight = world.scene().ego;
+        let along = EgoWay::new(&world, &straight, 0.0).at(0.1).expect("there is a route").forward;
         for turned_rad in [-0.4, 0.4] {
-            (car.rotation, car.speed_mps) = (Quat::from_rotation_z(turned_rad) * car.rotation, 3.0);
+            let rotation = Quat::from_rotation_z(turned_rad) * straight.rotation;
+            let car = EgoScene { rotation, speed_mps: 3.0, ..straight };
             let way = EgoWay::new(&world, &car, 0.0).turned_as(&car);
             let heading_rad = |t_s: f32| {
                 let forward = way.at(t_s).expect("there is a route").forward;
@@ -186,7 +186,6 @@ mod tests {
             assert!((heading_rad(0.0) - turned_rad).abs() < 0.02, "{turned_rad}: {}", heading_rad(0.0));
             assert!((heading_rad(1.0) - 0.5 * turned_rad).abs() < 0.02, "{turned_rad}: {}", heading_rad(1.0));
             assert!(heading_rad(2.1).abs() < 0.02, "{turned_rad}: {}", heading_rad(2.1));
-            car = world.scene().ego;
         }
     }
 

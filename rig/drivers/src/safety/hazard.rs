@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn who_is_passed_by_a_hands_breadth_is_feared_of_a_car_that_drives() {
+    fn a_car_that_drives_fears_whom_it_passes_by_a_hands_breadth_and_one_that_creeps_does_not() {
         let network = map::bundled("city").expect("it is bundled");
         let world = World::new(&Scenario::default_for("city", 3), &network).expect("it fits");
         let mut scene = world.scene();
