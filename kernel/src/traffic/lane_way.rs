@@ -16,6 +16,10 @@ const CURVE_ACCEL_MPS2: f32 = 2.0;
 const CURVE_BRAKE_MPS2: f32 = 1.8;
 /// Nobody drives slower than this because of a curve, m/s.
 const CURVE_FLOOR_MPS: f32 = 2.5;
+/// Lanes whose middles are nearer than this leave a long vehicle that turns no room beside who waits there, metres.
+const NARROW_M: f32 = 3.1;
+/// On a shorter way the tails of those who wait farther back would stand in the junction before it, metres.
+const STRETCH_M: f32 = 40.0;
 /// Long vehicles sweep into lanes whose middles come within this, metres.
 const SWEPT_M: f32 = 5.0;
 
@@ -69,6 +73,8 @@ pub(super) struct LaneWay {
     pub conflicts: Vec<LaneConflict>,
     /// Lanes of the same junction beside it, into which a long vehicle sweeps.
     pub swept: Vec<LaneId>,
+    /// Whether who waits at its end stands in the way of long vehicles that turn into the street.
+    pub narrow: bool,
     /// Lanes that it meets outside junctions.
     pub meets: Vec<Meet>,
     /// Its zone: junctions without room to wait between them are one.
@@ -126,11 +132,11 @@ fn lane_way(places: &Places, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]
         let reachable = ops::sqrt(speed_mps[i + 1] * speed_mps[i + 1] + 2.0 * CURVE_BRAKE_MPS2 * ds.max(0.0));
         speed_mps[i] = speed_mps[i].min(reachable);
     }
-    let swept = swept(places, id);
+    let (swept, narrow) = (swept(places, id), is_narrow(map, lane));
     let conflicts = lane.conflicts.iter().filter_map(|c| lane_conflict(map, id, c)).collect();
     let forward = directions(lane.points.iter().map(|p| p.position));
     let ends_m = ends_beside(lane, &onward).then(|| wide_up_to_m(lane));
-    LaneWay { speed_mps, forward, onward, onward_wide, ends_m, conflicts, swept, ..LaneWay::default() }
+    LaneWay { speed_mps, forward, onward, onward_wide, ends_m, conflicts, swept, narrow, ..LaneWay::default() }
 }
 
 /// Where a lane becomes too narrow to drive on to its end, metres from its start.
@@ -200,6 +206,35 @@ fn swept(places: &Places, id: LaneId) -> Vec<LaneId> {
     found.sort_unstable();
     found.dedup();
     found
+}
+
+/// Whether one turns out of the junction ahead right beside the end of a lane, in the other direction.
+fn is_narrow(map: &MapData, lane: &Lane) -> bool {
+    let Some(end) = lane.points.last().filter(|_| lane.junction.is_none() && has_room_to_wait(map, lane)) else {
+        return false;
+    };
+    let junction = lane.successors.iter().find_map(|next| map.lanes[*next as usize].junction);
+    let inside = junction.map_or(&[][..], |junction| &map.junctions[junction as usize].lanes);
+    let turns = inside.iter().map(|id| &map.lanes[*id as usize]).filter(|inside| inside.turn != Turn::Straight);
+    let beside = |out: LaneId| {
+        let out = &map.lanes[out as usize].points[0];
+        let opposite = ops::cos(out.heading_rad - end.heading_rad) < -0.5;
+        opposite && out.position.distance(end.position) < NARROW_M
+    };
+    turns.flat_map(|turn| &turn.successors).any(|out| beside(*out))
+}
+
+/// Whether the way from the junction before a lane to its end is long enough for those who wait farther back.
+fn has_room_to_wait(map: &MapData, lane: &Lane) -> bool {
+    let (mut lane, mut length_m) = (lane, lane.length_m);
+    while let [before] = lane.predecessors[..] {
+        lane = &map.lanes[before as usize];
+        if length_m > STRETCH_M || lane.junction.is_some() {
+            break;
+        }
+        length_m += lane.length_m;
+    }
+    length_m > STRETCH_M
 }
 
 /// Directions from each point to the next.

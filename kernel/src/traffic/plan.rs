@@ -15,8 +15,9 @@ use super::zebra;
 const LOOK_BRAKE_MPS2: f32 = 2.0;
 /// Room beyond a junction that the plan covers, metres.
 const BEYOND_JUNCTION_M: f32 = 20.0;
-/// Long vehicles wait so far before the line of a roundabout, metres, so that others of them can leave it beside them.
-const BACK_M: f32 = 5.0;
+/// Long vehicles wait so far before the line of a roundabout, metres, so that others of them can leave it beside them; where
+/// the street is narrow, everybody does.
+const BACK_M: f32 = 7.5;
 /// Most lanes of a plan.
 const MAX_STEPS: usize = 256;
 
@@ -27,7 +28,7 @@ pub(super) struct Line {
     pub zone: u32,
     /// From the vehicle's front to the line, metres; negative when it reaches over it.
     pub ahead_m: f32,
-    /// It waits so far before the line, metres, because another needs the room to leave a roundabout.
+    /// It waits so far before the line, metres, because another needs the room to come out of the junction.
     pub back_m: f32,
     /// From the front to where it waits: there, or before a crosswalk where there is no room between that and the line.
     pub hold_m: f32,
@@ -125,7 +126,9 @@ pub(super) fn plan(
     if let Some(line) = &mut plan.line {
         line.inside.1 = line.inside.1.min(count);
         let steps = &out[first..];
-        line.back_m = if driver.is_long() && line.enters(ways, steps).is_some() { BACK_M } else { 0.0 };
+        let makes_room = driver.is_long() && line.enters(ways, steps).is_some();
+        let narrow = ways.lanes[steps[line.approach].lane as usize].narrow;
+        line.back_m = if makes_room || narrow { BACK_M } else { 0.0 };
         let before_m = line.ahead_m - line.back_m;
         let hold_m = zebra::kept_clear(ways, steps, driver, before_m - LINE_MARGIN_M);
         line.hold_m = before_m.min(hold_m + LINE_MARGIN_M);

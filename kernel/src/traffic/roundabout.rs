@@ -14,9 +14,11 @@ const SHARE: f32 = 0.6;
 /// The same for those who have waited for [`LET_IN_TICKS`].
 const LAST_SHARE: f32 = 0.7;
 /// Who has waited for so long to enter is let in by those who drive round, if these have not waited for so long themselves:
-/// the tail of one that waits keeps others out at the arm behind it.
+/// the tail of one that waits keeps others out at the arm behind it. In a jam these stand for longer than that.
 const LET_IN_TICKS: u16 = seconds(20) as u16;
 const LETS_IN_TICKS: u16 = seconds(5) as u16;
+const LET_IN_AT_LAST_TICKS: u16 = seconds(45) as u16;
+const LETS_IN_AT_LAST_TICKS: u16 = seconds(30) as u16;
 /// Who may enter is counted from so far before the junction on, metres: grants are given while one still rolls.
 const APPROACH_M: f32 = 80.0;
 
@@ -79,7 +81,9 @@ impl Roundabout {
 
 /// Whether one that drives round goes before one that wants in, by how long both have waited.
 pub(super) fn goes_round_first(waits_round_ticks: u16, waits_to_enter_ticks: u16) -> bool {
-    waits_to_enter_ticks < LET_IN_TICKS || waits_round_ticks >= LETS_IN_TICKS
+    let at_last = waits_to_enter_ticks >= LET_IN_AT_LAST_TICKS;
+    let lets_in_ticks = if at_last { LETS_IN_AT_LAST_TICKS } else { LETS_IN_TICKS };
+    waits_to_enter_ticks < LET_IN_TICKS || waits_round_ticks >= lets_in_ticks
 }
 
 /// Whether one that asks may follow one that comes in or drives round on the other lane of a merge, `half_m` long to both

@@ -21,6 +21,8 @@ const FACING_M: f32 = 32.0;
 
 /// Distances beyond the border of a lane at which one for the other direction may lie, metres.
 const MEDIANS_M: [f32; 4] = [1.0, 3.0, 6.0, 12.0];
+/// So far before and behind a point of its line a way turns, metres, or half as far as the next point is away.
+const BEND_M: f32 = 2.0;
 /// Lanes whose edges come within this of where another begins lie beside it, metres.
 const FROM_BEFORE_M: f32 = 2.0;
 
@@ -36,6 +38,25 @@ pub(super) struct EdgeWay {
     pub draw: Draw,
     /// Where buses halt beside it, at their front doors, metres along it.
     pub stops: Vec<f32>,
+}
+
+impl EdgeWay {
+    /// The direction at `s_m`, which is on segment `i`.
+    fn forward_at(&self, i: usize, s_m: f32) -> Vec3 {
+        let [from_m, to_m] = [s_m - self.s_m[i], self.s_m[i + 1] - s_m];
+        let within_m = (0.5 * (from_m + to_m)).min(BEND_M);
+        let here = self.forward[i];
+        let turned = |other: usize, away_m: f32| {
+            here.lerp(self.forward[other], 0.5 - 0.5 * (away_m / within_m).max(0.0)).normalize_or(here)
+        };
+        if i > 0 && from_m < within_m {
+            turned(i - 1, from_m)
+        } else if i + 1 < self.forward.len() && to_m < within_m {
+            turned(i + 1, to_m)
+        } else {
+            here
+        }
+    }
 }
 
 /// What traffic looks up in a map.
@@ -101,14 +122,15 @@ impl Ways {
         ways
     }
 
-    /// The place on an edge at `s_m`; beyond its ends the edge goes straight on.
+    /// The place on an edge at `s_m`; beyond its ends the edge goes straight on. Where it bends the direction turns smoothly:
+    /// whoever is far beside it would leap there else.
     pub(super) fn edge_place(&self, edge: WalkEdgeId, s_m: f32) -> Place {
         let (way, edge) = (&self.edges[edge as usize], &self.places.map.walk_edges[edge as usize]);
         let last = edge.points.len() - 2;
         let i = way.s_m[1..=last].partition_point(|s| *s <= s_m);
         let along = (s_m - way.s_m[i]) / (way.s_m[i + 1] - way.s_m[i]).max(1e-3);
         let position = edge.points[i] + (edge.points[i + 1] - edge.points[i]) * along;
-        Place { position, forward: way.forward[i], half_width_m: edge.half_width_m }
+        Place { position, forward: way.forward_at(i, s_m), half_width_m: edge.half_width_m }
     }
 
     /// Where a walker stands.

@@ -261,3 +261,58 @@ fn people_step_out_before_a_bus_that_stays_at_its_stop() {
     assert!(!before(-3.0, 150).1);
     assert_eq!(before(1.5, 20), (false, false));
 }
+
+#[test]
+fn nobody_leaps_where_a_way_bends() {
+    let network = bundled("suburb").expect("it is bundled");
+    let ways = network.ways();
+    for (edge, way) in network.walk_edges.iter().enumerate() {
+        let half_m = way.half_width_m + 3.0;
+        for offset_m in [-half_m, half_m] {
+            let place = |k: u32| ways.edge_place(edge as u32, 0.01 * k as f32).beside(offset_m);
+            for k in 0..(way.length_m * 100.0) as u32 {
+                let moved_m = place(k).distance(place(k + 1));
+                assert!(moved_m < 0.1, "{moved_m} m on edge {edge}, {offset_m} m beside it at {} m", 0.01 * k as f32);
+            }
+        }
+    }
+}
+
+/// Jaywalkers close to where their way bends, almost across the road.
+fn at_bends(network: &Arc<RoadNetwork>) -> Vec<Walker> {
+    let ways = network.ways();
+    let spawned = with_people(network, 1, 2101).state().walkers[0];
+    let bends = |edge: usize| {
+        let way = &ways.edges[edge];
+        let is_bend = move |i: &usize| way.forward[i - 1].dot(way.forward[*i]) < 0.995;
+        (1..way.forward.len()).filter(is_bend).flat_map(move |i| [-0.01, 0.01].map(|m| (edge as u32, way.s_m[i] + m)))
+    };
+    let jaywalks = |(edge, s_m)| {
+        let walker = Walker { edge, s_m, mode: WalkerMode::Jaywalk, ..spawned };
+        let walker = Walker { forward: jaywalk::road_is_left(network, ways, &walker), ..walker };
+        let goal = jaywalk::goal(network, ways, &walker)?;
+        let sign = if walker.forward { 1.0 } else { -1.0 };
+        Some(Walker { offset_m: sign * (goal.distance_m - 3.0), ..walker })
+    };
+    (0..network.walk_edges.len()).flat_map(bends).filter_map(jaywalks).collect()
+}
+
+#[test]
+fn a_jaywalker_beside_a_bend_gets_round_what_stands_before_it() {
+    let network = bundled("suburb").expect("it is bundled");
+    let walkers = at_bends(&network);
+    assert!(walkers.len() > 10, "{}", walkers.len());
+    for walker in walkers {
+        let place = network.ways().walker_place(&walker);
+        let (left, sign) = (place.left(), walker.offset_m.signum());
+        let ego = car_at(place.beside(walker.offset_m + sign * 1.7), crate::ops::atan2(-left.x, left.y));
+        let state = TrafficState { vehicles: Vec::new(), walkers: vec![walker] };
+        let mut traffic = Traffic::with(&counts(1), 2101, network.ways(), state);
+        let from = traffic.bodies()[0].position;
+        for tick in 1..40 * 60 {
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+        }
+        let away_m = traffic.bodies()[0].position.distance(from);
+        assert!(away_m > 3.0, "{away_m} m: {walker:?} is {:?}", traffic.state().walkers[0]);
+    }
+}
