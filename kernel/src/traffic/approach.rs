@@ -108,6 +108,18 @@ impl View<'_> {
         }
     }
 
+    /// The vehicle behind a junction that leaves one which waits before it no room.
+    pub(super) fn takes_room(&self, index: usize) -> Option<usize> {
+        let (plan, vehicle) = (&self.plans[index], &self.vehicles[index]);
+        let line = plan.line.filter(|_| vehicle.wait_ticks > 0 && vehicle.flags & Vehicle::GRANTED == 0)?;
+        let circulates = self.has_room_to_circulate(index, plan, &line, vehicle).is_some();
+        if circulates || self.has_room(index, plan, &line, vehicle, || f32::MAX) {
+            return None;
+        }
+        let ahead = self.steps_of(plan)[line.inside.0..].iter().flat_map(|step| self.lists.on(step.lane));
+        ahead.map(|entry| entry.vehicle as usize).find(|other| *other != index)
+    }
+
     fn wait(&self, index: usize, line: &Line, signal: Signal, steps: &[Step], next: &mut Vehicle) {
         let stop = self.map.lanes[steps[line.approach].lane as usize].stop;
         let sign = stop.is_some_and(|stop| stop.kind == StopKind::Stop);

@@ -14,6 +14,8 @@ use super::vehicle::{DECIDE_TICKS, Vehicle};
 
 /// Who is faster takes no last look, m/s.
 const SLOW_MPS: f32 = 7.0;
+/// Long vehicles, which sweep out of their lanes where these bend, do so up to here, but brake only.
+const LONG_MPS: f32 = 11.0;
 /// Room to others, metres: who has more keeps that.
 const ROOM_M: [f32; 3] = [0.12, 0.04, 0.0];
 /// Who starts looks so far ahead, metres.
@@ -45,7 +47,7 @@ impl View<'_> {
     /// enough, and brakes else. For the ego car too, unless that is seen to already.
     pub(super) fn last_look(&self, index: usize, next: &mut Vehicle, accel_mps2: f32, heeds_ego: bool) -> f32 {
         let (driver, mps) = (&self.drivers[index], next.speed_mps);
-        if mps > SLOW_MPS || (mps == 0.0 && accel_mps2 <= 0.0) {
+        if mps > if driver.is_long() { LONG_MPS } else { SLOW_MPS } || (mps == 0.0 && accel_mps2 <= 0.0) {
             return accel_mps2;
         }
         let brink = self.brink(index, next, heeds_ego);
@@ -54,6 +56,9 @@ impl View<'_> {
         }
         let turns = next.drift != 0 || next.drift_aim != 0;
         let free = |aim: i8, room_m: &[f32]| !self.touches(index, next, &brink, aim, room_m);
+        if mps > SLOW_MPS {
+            return if free(next.drift_aim, &ROOM_M[2..]) { accel_mps2 } else { -driver.hardest_mps2 };
+        }
         if free(next.drift_aim, &ROOM_M) {
             accel_mps2
         } else if turns && free(0, &ROOM_M[1..]) {

@@ -312,7 +312,9 @@ impl View<'_> {
         let mut wall_m = plan.dead_end_m.map_or(f32::MAX, |m| m - front_m - 1.0);
         if let Some(line) = plan.line.filter(|_| next.flags & Vehicle::GRANTED == 0) {
             let (line_m, back_m) = (line.ahead_m - LINE_MARGIN_M, line.back_m);
-            let stoppable = plan::braking_needed(next.speed_mps, line_m - back_m + 0.3) < CROSSWALK_BRAKE_MPS2;
+            // Who rolls over where it should wait stands there, and not at the line.
+            let stoppable =
+                plan::braking_needed(next.speed_mps, (line_m - back_m).max(0.0) + 0.3) < CROSSWALK_BRAKE_MPS2;
             wall_m = wall_m.min(if stoppable { line_m - back_m } else { line_m });
         }
         for step in steps {

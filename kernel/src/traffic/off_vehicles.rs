@@ -24,6 +24,8 @@ const OFF_VEHICLES_M: f32 = 0.1;
 const OFF_MOVING_M: f32 = 0.0;
 /// Whoever goes round one keeps off by so much more, metres.
 const ROUND_M: f32 = 0.1;
+/// Whoever comes by this near a vehicle does not drift back towards it, metres.
+const BESIDE_M: f32 = 0.1;
 /// What is this far ahead is right before somebody, metres.
 const TOE_M: f32 = 0.6;
 /// A step along one may lead nearer by so little, metres.
@@ -35,17 +37,19 @@ impl Streets<'_> {
         self.hazards.reaching(place, reach_m).filter(move |h| !h.walker && h.is_level_with(place.z))
     }
 
-    /// The vehicle that stands right before a walker who goes along `direction`.
-    pub(super) fn blocked(&self, index: usize, direction: Vec2) -> Option<&Hazard> {
+    /// The vehicle nearest before a walker who goes along `direction`, and how far that may step towards it, metres; less than
+    /// nothing if it stands right before.
+    pub(super) fn before(&self, index: usize, direction: Vec2) -> Option<(&Hazard, f32)> {
         let here = self.bodies[index].position;
         let outline = Outline::of(&self.bodies[index]);
         let toe_m = TOE_M + outline.half.length();
         let toe = here.truncate() + direction.normalize_or_zero() * toe_m;
         // Nobody stops early before what comes.
         let gap_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
-        let off_m = |block: &Hazard| outline.radius_m + gap_m(block);
-        let near = self.vehicles_near(here, toe_m + outline.radius_m + OFF_VEHICLES_M + ROUND_M);
-        nearest(toe, near.filter(|block| block.nearest_from(toe).length() < off_m(block)))
+        let room_m = |block: &Hazard| block.nearest_from(toe).length() - outline.radius_m - gap_m(block);
+        let near = self.vehicles_near(here, toe_m + outline.radius_m + OFF_VEHICLES_M + ROUND_M + BESIDE_M);
+        let found = near.map(|block| (block, room_m(block))).filter(|(_, room_m)| *room_m < BESIDE_M);
+        found.min_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
     /// The part of a step that leaves others room, and keeps off the vehicles that it is `hindered` by: it goes along what is in

@@ -56,6 +56,8 @@ const RIGHT_M: f32 = 0.3;
 const VERGE_M: f32 = 0.25;
 /// Whoever stands on a crosswalk no farther than this from its end looks again before going on, metres.
 const KERB_M: f32 = 0.8;
+/// Whoever walks farther from the middle of a pavement than this steps back from what sweeps over the kerb, metres.
+const AT_KERB_M: f32 = 0.2;
 /// Room to both sides of somebody who crosses the road, metres.
 const SIDE_ROOM_M: f32 = 2.0;
 /// Whoever has waited this long at a kerb goes another way.
@@ -216,12 +218,12 @@ impl Streets<'_> {
         let wants_mps = together.speed_mps.unwrap_or(pace_mps);
         let mut leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
         let held_up = leeway.most_mps < HELD_UP_MPS;
-        let blocks = edge.crosswalk.and_then(|_| self.blocked(index, ahead));
+        let before = edge.crosswalk.and_then(|_| self.before(index, ahead));
         let half_m = outline::half_m(self.bodies[index].kind);
         let begins = edge.crosswalk.filter(|_| next.speed_mps < HELD_UP_MPS && gone_m(edge, next) < KERB_M + half_m);
         if begins.is_some_and(|crosswalk| !self.may_cross(index, crosswalk, next)) {
             halt(next);
-        } else if let Some(block) = blocks {
+        } else if let Some((block, ..=0.0)) = before {
             halt(next);
             leeway.aside_m = Some(past_front_m(block, ahead));
         } else if held_up && self.joins_those_who_wait(index, near, edge, next) {
@@ -230,6 +232,9 @@ impl Streets<'_> {
             give_way(held_up, next);
             next.forward ^= together.back && !held_up;
             approach_speed(next, wants_mps.min(leeway.most_mps));
+            if before.is_some() {
+                leeway.aside_m = leeway.aside_m.or(Some(0.0));
+            }
         }
         let moved_m = next.speed_mps * TICK_S;
         next.s_m += direction * moved_m;
@@ -240,6 +245,8 @@ impl Streets<'_> {
         let left_m = if next.forward { edge.length_m - next.s_m } else { next.s_m };
         if left_m <= ends_m {
             self.turn_or_wait(index, near, next);
+        } else if edge.crosswalk.is_none() && next.offset_m.abs() > AT_KERB_M && self.looks(next) {
+            self.step_back(index, next);
         }
     }
 
@@ -332,7 +339,7 @@ impl Streets<'_> {
             next.mode = WalkerMode::Walk;
             return;
         };
-        let blocks = self.blocked(index, place.left() * sign);
+        let before = self.before(index, place.left() * sign);
         let pace_mps = jaywalk::pace(self.seed, next, &self.walker_traits[index]);
         let mut leeway = leeway(near, place.left() * sign, pace_mps, [-SIDE_ROOM_M, SIDE_ROOM_M]);
         let on_way = next.offset_m * sign < place.half_width_m;
@@ -343,7 +350,7 @@ impl Streets<'_> {
             next.mode = WalkerMode::Walk;
             return;
         }
-        if let Some(block) = blocks {
+        if let Some((block, ..=0.0)) = before {
             halt(next);
             leeway.aside_m = Some(past_front_m(block, place.left() * sign));
         } else {
@@ -402,7 +409,11 @@ fn drift(edge: &WalkEdge, direction: f32, likes_m: f32, leeway: &Leeway, moved_m
 
 /// Whoever has stood before others for long turns back.
 fn give_way(held_up: bool, next: &mut Walker) {
-    next.wait_ticks = if held_up { next.wait_ticks.saturating_add(1) } else { 0 };
+    if held_up {
+        next.wait_ticks = next.wait_ticks.saturating_add(1);
+    } else if next.speed_mps > HELD_UP_MPS {
+        next.wait_ticks = 0;
+    }
     if next.wait_ticks > GIVE_WAY_TICKS {
         next.wait_ticks = 0;
         next.forward = !next.forward;

@@ -1,8 +1,8 @@
 //! Who stands without a reason, and for how long.
 //!
-//! Once a second every vehicle that stands follows the queue before it to its head. It has a reason when
-//! that moves, waits for a light, or is held up by the ego car; otherwise the second counts. Who moves
-//! begins anew.
+//! Once a second every vehicle that stands follows the queue before it to its head; who waits at a junction for room behind it
+//! is one of the queue there. It has a reason when the head moves, waits for a light, or is held up by the ego car; otherwise
+//! the second counts. Who moves begins anew.
 
 use super::drive::View;
 use super::hazard::{Hazard, sight};
@@ -54,8 +54,7 @@ impl View<'_> {
             if self.has_reason(at) {
                 return None;
             }
-            let leader = self.plans[at].leader.filter(|leader| leader.gap_m < BEHIND_M);
-            let Some(leader) = leader.map(|leader| leader.vehicle as usize) else { return Some(at) };
+            let Some(leader) = self.stands_behind(at) else { return Some(at) };
             if self.vehicles[leader].speed_mps >= STANDS_MPS {
                 return None;
             }
@@ -66,6 +65,11 @@ impl View<'_> {
             least = if self.vehicles[at].id < self.vehicles[least].id { at } else { least };
         }
         Some(least)
+    }
+
+    fn stands_behind(&self, index: usize) -> Option<usize> {
+        let leader = self.plans[index].leader.filter(|leader| leader.gap_m < BEHIND_M);
+        leader.map(|leader| leader.vehicle as usize).or_else(|| self.takes_room(index))
     }
 
     fn has_reason(&self, index: usize) -> bool {

@@ -117,12 +117,9 @@ fn the_tail_of_a_bus_that_turns_stays_off_what_is_beside_it() {
 
 /// Whether a bus touches the post within ten seconds, and how far it comes.
 fn turn_beside_a_post(network: &Arc<RoadNetwork>, lane: u32, before: u32, outer: f32, gap_m: f32) -> (bool, f32) {
-    let mut traffic = Traffic::spawn(&TrafficCounts::NONE, 7, network.ways(), Vec3::new(1e4, 0.0, 0.0));
     let flags = Vehicle::CROSSING;
     let bus = Vehicle { id: 1, kind: ActorKind::Bus, flags, lane, before, s_m: 1.0, ..Vehicle::standing() };
-    traffic.actors.state.vehicles = vec![bus];
-    traffic.actors.know_drivers();
-    traffic.actors.place_bodies();
+    let mut traffic = with_vehicles(network, vec![bus]);
     let body = traffic.bodies()[0];
     let half = body.kind.size_m() * 0.5;
     let size_m = Vec3::new(POST_M, POST_M, 1.0);
@@ -140,4 +137,84 @@ fn turn_beside_a_post(network: &Arc<RoadNetwork>, lane: u32, before: u32, outer:
         }
     }
     (false, traffic.bodies()[0].position.distance(from))
+}
+
+/// A lane that goes straight over a crossroads, and those before and behind it.
+fn straight_over(network: &RoadNetwork) -> [u32; 3] {
+    let goes = |lane: &&crate::map_data::Lane| lane.junction.is_some() && lane.turn == Turn::Straight;
+    let inside = network.lanes.iter().find(goes).expect("there is one");
+    let id = network.lanes.iter().position(|lane| std::ptr::eq(lane, inside)).expect("it is there");
+    [inside.predecessors[0], id as u32, inside.successors[0]]
+}
+
+#[test]
+fn who_waits_for_room_behind_a_junction_has_the_reason_of_the_queue_there() {
+    let network = crossroads(Signs::Yield);
+    let [before, _, beyond] = straight_over(&network);
+    let to = network.lanes[beyond as usize].straight_on(10.0);
+    let heading_rad = crate::ops::atan2(to.forward.y, to.forward.x);
+    let ego = car_at(to.position, heading_rad);
+    // Nobody passes it on the other lane.
+    let loose = [Obstacle { id: 9, ..car_at(to.beside(3.5), heading_rad) }];
+    let waits_at_m = network.lanes[before as usize].length_m - 4.0;
+    let on = |id, lane, s_m| Vehicle { id, lane, before: lane, s_m, ..Vehicle::standing() };
+    let mut waited = 0;
+    // Some of its journeys lead straight on.
+    for trips in 0..40 {
+        let mut traffic =
+            with_vehicles(&network, vec![Vehicle { trips, ..on(1, before, waits_at_m) }, on(2, beyond, 3.0)]);
+        for tick in 1..=10 * 60 {
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &loose, conditions: Conditions::default() });
+        }
+        let waits = traffic.state().vehicles[0];
+        if waits.lane == before && waits.wait_ticks > 5 * 60 {
+            assert_eq!(waits.stuck_s, 0, "{waits:?}");
+            waited += 1;
+        }
+    }
+    assert!(waited > 0);
+}
+
+fn with_vehicles(network: &Arc<RoadNetwork>, vehicles: Vec<Vehicle>) -> Traffic {
+    let mut traffic = Traffic::spawn(&TrafficCounts::NONE, 7, network.ways(), Vec3::new(1e4, 0.0, 0.0));
+    traffic.actors.state.vehicles = vehicles;
+    traffic.actors.know_drivers();
+    traffic.actors.place_bodies();
+    traffic
+}
+
+/// Of somebody who rolls over the place where he should wait in a narrow street, so that others can turn into it, while
+/// somebody stands across his way: how far he goes, metres, if he waits.
+fn rolls_on_m(network: &Arc<RoadNetwork>, lane: u32, trips: u16) -> Option<f32> {
+    let lanes = &network.lanes;
+    let inside = lanes[lane as usize].successors[0];
+    let across = network.ways().lanes[inside as usize]
+        .conflicts
+        .iter()
+        .find(|c| !lanes[inside as usize].predecessors.iter().any(|b| lanes[c.lane as usize].predecessors.contains(b)))?
+        .lane;
+    let end_m = lanes[lane as usize].stop.map_or(lanes[lane as usize].length_m, |stop| stop.s_m);
+    let s_m = end_m - 2.25 - 6.5;
+    let rolls = Vehicle { id: 1, lane, before: lane, s_m, speed_mps: 0.4, trips, ..Vehicle::standing() };
+    let s_m = lanes[across as usize].length_m * 0.5;
+    let crosses = Vehicle { id: 2, lane: across, before: across, s_m, flags: Vehicle::CROSSING, ..Vehicle::standing() };
+    let mut traffic = with_vehicles(network, vec![rolls, crosses]);
+    let place = lanes[across as usize].straight_on(s_m + 5.0);
+    let ego = car_at(place.position, crate::ops::atan2(place.forward.y, place.forward.x));
+    for tick in 1..=5 * 60 {
+        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+    }
+    let now = traffic.state().vehicles[0];
+    (now.lane == lane && now.flags & Vehicle::GRANTED == 0).then_some(now.s_m - rolls.s_m)
+}
+
+#[test]
+fn who_rolls_over_where_it_should_wait_in_a_narrow_street_stands_there() {
+    let network = bundled("suburb").expect("it is bundled");
+    let narrow = (0..network.lanes.len() as u32).filter(|lane| network.ways().lanes[*lane as usize].narrow);
+    let rolled: Vec<f32> = narrow
+        .flat_map(|lane| (0..4).filter_map(move |trips| Some((lane, trips))))
+        .filter_map(|(lane, trips)| rolls_on_m(&network, lane, trips))
+        .collect();
+    assert!(rolled.len() > 4 && rolled.iter().all(|m| *m < 1.0), "{rolled:?}");
 }
