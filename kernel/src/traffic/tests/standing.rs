@@ -213,7 +213,7 @@ fn who_rolls_over_where_it_should_wait_in_a_narrow_street_stands_there() {
     let network = bundled("suburb").expect("it is bundled");
     let narrow = (0..network.lanes.len() as u32).filter(|lane| network.ways().lanes[*lane as usize].narrow);
     let rolled: Vec<f32> = narrow
-        .flat_map(|lane| (0..4).filter_map(move |trips| Some((lane, trips))))
+        .flat_map(|lane| (0..4).map(move |trips| (lane, trips)))
         .filter_map(|(lane, trips)| rolls_on_m(&network, lane, trips))
         .collect();
     assert!(rolled.len() > 4 && rolled.iter().all(|m| *m < 1.0), "{rolled:?}");
