@@ -47,7 +47,8 @@ impl View<'_> {
     /// enough, and brakes else. For the ego car too, unless that is seen to already.
     pub(super) fn last_look(&self, index: usize, next: &mut Vehicle, accel_mps2: f32, heeds_ego: bool) -> f32 {
         let (driver, mps) = (&self.drivers[index], next.speed_mps);
-        if mps > if driver.is_long() { LONG_MPS } else { SLOW_MPS } || (mps == 0.0 && accel_mps2 <= 0.0) {
+        let looks_up_to_mps = if driver.is_long() { LONG_MPS } else { SLOW_MPS };
+        if mps > looks_up_to_mps || (mps == 0.0 && accel_mps2 <= 0.0) {
             return accel_mps2;
         }
         let brink = self.brink(index, next, heeds_ego);

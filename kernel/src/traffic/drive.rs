@@ -187,6 +187,7 @@ impl View<'_> {
         let steps = self.steps_of(plan);
         let v = next.speed_mps;
         let mut accel = self.free_acceleration(next, driver, steps).min(self.zip(index, steps, next, seeker.horizon_m));
+        accel = accel.min(self.heed_bends(index, steps, next));
         let mut follow = |gap_m: f32, speed_mps: f32| accel = accel.min(follow_idm(driver, v, gap_m, speed_mps));
         self.heed_manoeuvres(index, plan, seeker, |m| side.after(seeker.offset_m, m), &mut follow);
         let mut room = f32::MAX;

@@ -6,6 +6,7 @@ use crate::map_data::{Conflict, Lane, LaneId, LaneKind, LanePoint, MapData, Plac
 use crate::ops;
 use crate::places::Places;
 
+use super::bends::{Bend, add_bends};
 use super::links::{LEAST_HALF_M, Onward, ends_beside, onward};
 use super::meets::{Meet, meets};
 use super::zones::zones;
@@ -77,6 +78,8 @@ pub(super) struct LaneWay {
     pub narrow: bool,
     /// Lanes that it meets outside junctions.
     pub meets: Vec<Meet>,
+    /// Bends that begin on it.
+    pub bends: Vec<Bend>,
     /// Its zone: junctions without room to wait between them are one.
     pub zone: Option<u32>,
     /// Its roundabout, an index of [`Ways::roundabouts`](super::ways::Ways).
@@ -120,7 +123,9 @@ pub(super) fn lane_ways(places: &Places, kerb: i8, circle: Vec<Option<u32>>) -> 
         circle,
         ..lane_way(places, id as LaneId, onward)
     };
-    ways.map(way).collect()
+    let mut ways = ways.map(way).collect::<Vec<_>>();
+    add_bends(places, &mut ways);
+    ways
 }
 
 fn lane_way(places: &Places, id: LaneId, [onward, onward_wide]: [Vec<Onward>; 2]) -> LaneWay {

@@ -9,6 +9,7 @@ mod actors;
 mod approach;
 mod asking;
 mod barge;
+mod bends;
 mod boarding;
 mod body;
 mod boxes;

@@ -99,8 +99,7 @@ impl Streets<'_> {
     fn may_turn(&self, index: usize, near: &[Near], step: Vec2, next: &Walker) -> bool {
         let was = Outline::of(&self.bodies[index]);
         let is = was.moved(step, next);
-        let off_vehicles = || !self.is_on_road(&self.walkers[index]) || !self.runs_into_vehicle(index, &is);
-        slack::may_turn(near, step, was.half, is.half) && off_vehicles()
+        slack::may_turn(near, step, was.half, is.half) && !self.runs_into_vehicle(index, &is)
     }
 
     /// The direction away from a vehicle that is about to sweep over where somebody stands; zero where

@@ -44,33 +44,50 @@ impl Actors {
     }
 }
 
+/// The middle of a long vehicle and its direction: both axles are on its way, which is asked for by the distance from its
+/// middle, metres.
+pub(super) fn on_axles(length_m: f32, mut way: impl FnMut(f32) -> Vec3) -> (Vec3, Vec3) {
+    let to_axle_m = AXLE * length_m;
+    let [rear, front] = [-to_axle_m, to_axle_m].map(&mut way);
+    ((rear + front) * 0.5, (front - rear).normalize_or(Vec3::X))
+}
+
 impl Ways {
     /// The middle of a vehicle and the direction of its way there. A long one has both axles on the way, so that in
     /// bends its middle is inside of it and its tail swings out little.
     fn vehicle_place(&self, seed: u64, vehicle: &Vehicle, driver: &Driver) -> (Vec3, Vec3) {
-        let to_axle_m = AXLE * driver.size_m.x;
         if driver.size_m.x < LONG_M {
             let place = self.lane_place(vehicle.lane, vehicle.s_m);
             return (place.beside(vehicle.offset_m), place.forward);
         }
-        let (rear_m, front_m) = (vehicle.s_m - to_axle_m, vehicle.s_m + to_axle_m);
-        let lanes = &self.places.map.lanes;
-        let rear = match lanes[vehicle.before as usize].length_m {
-            length_m if rear_m < 0.0 && vehicle.before != vehicle.lane => {
-                self.lane_place(vehicle.before, (length_m + rear_m).max(0.0))
+        on_axles(driver.size_m.x, |ahead_m| {
+            let place = if ahead_m < 0.0 { self.behind(vehicle, ahead_m) } else { self.before(seed, vehicle, ahead_m) };
+            place.beside(vehicle.offset_m)
+        })
+    }
+
+    /// The place on the way of a vehicle so far before its middle, metres, which is negative.
+    fn behind(&self, vehicle: &Vehicle, ahead_m: f32) -> Place {
+        let s_m = vehicle.s_m + ahead_m;
+        match self.places.map.lanes[vehicle.before as usize].length_m {
+            length_m if s_m < 0.0 && vehicle.before != vehicle.lane => {
+                self.lane_place(vehicle.before, (length_m + s_m).max(0.0))
             }
-            _ => self.lane_place(vehicle.lane, rear_m),
-        };
-        let over_m = front_m - lanes[vehicle.lane as usize].length_m;
+            _ => self.lane_place(vehicle.lane, s_m),
+        }
+    }
+
+    /// The same where it is positive.
+    fn before(&self, seed: u64, vehicle: &Vehicle, ahead_m: f32) -> Place {
+        let s_m = vehicle.s_m + ahead_m;
+        let over_m = s_m - self.places.map.lanes[vehicle.lane as usize].length_m;
         let next = || Journey::of(self, seed, vehicle).next_lane(vehicle.lane);
-        let front = match if over_m > 0.0 { next() } else { None } {
+        match if over_m > 0.0 { next() } else { None } {
             Some(next) if self.lane_end(vehicle.lane).joins(&self.lane_place(next.lane, next.at_m)) => {
                 self.lane_place(next.lane, next.at_m + over_m)
             }
-            _ => self.lane_place(vehicle.lane, front_m),
-        };
-        let [rear, front] = [rear, front].map(|place| place.beside(vehicle.offset_m));
-        ((rear + front) * 0.5, (front - rear).normalize_or(Vec3::X))
+            _ => self.lane_place(vehicle.lane, s_m),
+        }
     }
 
     fn lane_end(&self, lane: LaneId) -> Place {

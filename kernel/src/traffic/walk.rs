@@ -158,9 +158,10 @@ impl Streets<'_> {
             (place, place.beside(next.offset_m).truncate() - before)
         };
         let (mut place, mut step) = step_to(&next);
-        let on_road = self.is_on_road(was);
+        // What has wheels reaches over the kerb while it turns, where long vehicles sweep over it, too.
+        let keeps_off = self.is_on_road(was) || self.bodies[index].kind.is_wheeled_on_foot();
         let then = |step: Vec2| Outline { middle: before + step, ..Outline::of(&self.bodies[index]) };
-        let hinders = |step: Vec2| on_road && self.runs_into_vehicle(index, &then(step));
+        let hinders = |step: Vec2| keeps_off && self.runs_into_vehicle(index, &then(step));
         let mut hindered = hinders(step);
         let free = self.free_step(index, near, step, hindered);
         if free != step {

@@ -1,8 +1,8 @@
 //! Who stands without a reason, and for how long.
 //!
 //! Once a second every vehicle that stands follows the queue before it to its head; who waits at a junction for room behind it
-//! is one of the queue there. It has a reason when the head moves, waits for a light, or is held up by the ego car; otherwise
-//! the second counts. Who moves begins anew.
+//! is one of the queue there, and who waits before a narrow bend stands behind who goes through it. It has a reason when the
+//! head moves, waits for a light, or is held up by the ego car; otherwise the second counts. Who moves begins anew.
 
 use super::drive::View;
 use super::hazard::{Hazard, sight};
@@ -69,7 +69,11 @@ impl View<'_> {
 
     fn stands_behind(&self, index: usize) -> Option<usize> {
         let leader = self.plans[index].leader.filter(|leader| leader.gap_m < BEHIND_M);
-        leader.map(|leader| leader.vehicle as usize).or_else(|| self.takes_room(index))
+        let leader = leader.map(|leader| leader.vehicle as usize);
+        leader.or_else(|| self.takes_room(index)).or_else(|| {
+            let steps = self.steps_of(&self.plans[index]);
+            self.bend_to_wait_at(index, steps, &self.vehicles[index]).map(|(_, first)| first)
+        })
     }
 
     fn has_reason(&self, index: usize) -> bool {

@@ -83,7 +83,9 @@ impl Approach<'_> {
     fn waits(&self, other: &Entry) -> Option<f32> {
         let theirs_m = self.meet.there[0] - other.s_m - other.half_m;
         let comes = other.speed_mps > 0.5 || theirs_m < AT_LINE_M;
-        let first = (theirs_m.max(0.0), other.id) < (self.line_m.max(0.0), self.vehicle.id);
+        // Measured as for the other, so that both say the same.
+        let mine_m = self.line_m + LINE_MARGIN_M;
+        let first = (theirs_m.max(0.0), other.id) < (mine_m.max(0.0), self.vehicle.id);
         (self.line_m > -LINE_MARGIN_M && comes && first).then(|| self.stop())
     }
 

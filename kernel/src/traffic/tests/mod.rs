@@ -1,5 +1,6 @@
 //! Invariants of traffic, on a crossroads built in code and on the bundled maps.
 
+mod bends;
 mod buses;
 mod crossroads;
 mod ego_car;

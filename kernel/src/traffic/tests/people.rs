@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::crossroads::{Signs, crossroads};
+use super::standing::body_of;
 use super::{MINUTE, behind, car_at, counts, nowhere, run};
 use glam::Vec3;
 
@@ -10,8 +11,11 @@ use crate::actor::ActorKind;
 use crate::controls::Controls;
 use crate::map::{RoadNetwork, WalkEdge, bundled};
 use crate::time::Tick;
+use crate::traffic::hazard::Hazard;
+use crate::traffic::outline::Outline;
 use crate::traffic::{
-    Lapse, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, Walker, WalkerMode, cover, jaywalk,
+    Body, Lapse, Obstacle, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, Walker, WalkerMode, cover,
+    jaywalk,
 };
 use crate::weather::Conditions;
 
@@ -314,5 +318,35 @@ fn a_jaywalker_beside_a_bend_gets_round_what_stands_before_it() {
         }
         let away_m = traffic.bodies()[0].position.distance(from);
         assert!(away_m > 3.0, "{away_m} m: {walker:?} is {:?}", traffic.state().walkers[0]);
+    }
+}
+
+/// Somebody with a pram on a pavement who turns round right beside a bus that sweeps over the kerb.
+#[test]
+fn prams_on_the_pavement_turn_into_nothing_that_stands_there() {
+    let network = crossroads(Signs::Yield);
+    let spawned = with_people(&network, 1, 2101).state().walkers[0];
+    let (edge, _) = long_pavement(&network);
+    let with = |walker: Walker| {
+        Traffic::with(&counts(1), 2101, network.ways(), TrafficState { vehicles: Vec::new(), walkers: vec![walker] })
+    };
+    let pushes = |id: &u16| with(Walker { id: *id, ..spawned }).bodies()[0].kind == ActorKind::Pram;
+    let id = (1..2000).find(pushes).expect("somebody has a pram");
+    for beside_m in [0.45, 0.6, 0.75] {
+        let mut traffic = with(Walker { id, edge, s_m: 40.0, offset_m: 0.0, forward: true, ..spawned });
+        run(&mut traffic, 1..120, |_, _| {});
+        let walker = traffic.state().walkers[0];
+        traffic.actors.state.walkers[0].forward = !walker.forward;
+        let place = network.ways().walker_place(&walker);
+        let to = place.beside(walker.offset_m + beside_m + 1.25);
+        let ego = Obstacle { size_m: Vec3::new(11.0, 2.5, 3.1), ..car_at(to, 0.0) };
+        let ego = Obstacle { heading_rad: crate::ops::atan2(place.forward.y, place.forward.x), ..ego };
+        let bus = Hazard::of_body(&Body { kind: ActorKind::Bus, ..body_of(&ego) });
+        for tick in 120..600 {
+            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+            let outline = Outline::of(&traffic.bodies()[0]);
+            let off_m = bus.nearest_from_any(outline.places()).length() - outline.radius_m;
+            assert!(off_m > 0.0, "{beside_m} m beside it, tick {tick}: {off_m} m, {:?}", traffic.state().walkers[0]);
+        }
     }
 }

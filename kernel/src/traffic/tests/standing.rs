@@ -139,18 +139,17 @@ fn turn_beside_a_post(network: &Arc<RoadNetwork>, lane: u32, before: u32, outer:
     (false, traffic.bodies()[0].position.distance(from))
 }
 
-/// A lane that goes straight over a crossroads, and those before and behind it.
-fn straight_over(network: &RoadNetwork) -> [u32; 3] {
+/// The lanes before and behind one that goes straight over a crossroads.
+fn straight_over(network: &RoadNetwork) -> [u32; 2] {
     let goes = |lane: &&crate::map_data::Lane| lane.junction.is_some() && lane.turn == Turn::Straight;
     let inside = network.lanes.iter().find(goes).expect("there is one");
-    let id = network.lanes.iter().position(|lane| std::ptr::eq(lane, inside)).expect("it is there");
-    [inside.predecessors[0], id as u32, inside.successors[0]]
+    [inside.predecessors[0], inside.successors[0]]
 }
 
 #[test]
 fn who_waits_for_room_behind_a_junction_has_the_reason_of_the_queue_there() {
     let network = crossroads(Signs::Yield);
-    let [before, _, beyond] = straight_over(&network);
+    let [before, beyond] = straight_over(&network);
     let to = network.lanes[beyond as usize].straight_on(10.0);
     let heading_rad = crate::ops::atan2(to.forward.y, to.forward.x);
     let ego = car_at(to.position, heading_rad);
@@ -175,7 +174,7 @@ fn who_waits_for_room_behind_a_junction_has_the_reason_of_the_queue_there() {
     assert!(waited > 0);
 }
 
-fn with_vehicles(network: &Arc<RoadNetwork>, vehicles: Vec<Vehicle>) -> Traffic {
+pub(super) fn with_vehicles(network: &Arc<RoadNetwork>, vehicles: Vec<Vehicle>) -> Traffic {
     let mut traffic = Traffic::spawn(&TrafficCounts::NONE, 7, network.ways(), Vec3::new(1e4, 0.0, 0.0));
     traffic.actors.state.vehicles = vehicles;
     traffic.actors.know_drivers();
