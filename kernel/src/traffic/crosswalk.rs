@@ -24,6 +24,8 @@ const CARELESS: f32 = 0.06;
 const CREEP_MPS: f32 = 1.2;
 /// Braking that careless people expect of vehicles, m/s².
 const CARELESS_BRAKE_MPS2: f32 = 3.5;
+/// Until a driver sees that somebody careless has stepped out, s.
+const CARELESS_SEEN_S: f32 = 0.5;
 /// Time that people want to have left when the vehicle arrives, s.
 const SPARE_S: f32 = 0.5;
 /// Vehicles that have stood for this long heed those who wait no more, s, who then let them go, if they stand so near, metres.
@@ -105,7 +107,8 @@ impl Gaps<'_> {
         let early = self.lists.on(lane).iter().any(|entry| {
             let gap_m = s_m - half_width_m - entry.s_m - entry.half_m;
             let gone = entry.s_m - entry.half_m > s_m + half_width_m;
-            !gone && gap_m < entry.speed_mps * entry.speed_mps / (2.0 * CARELESS_BRAKE_MPS2) + 1.5
+            let stops_m = entry.speed_mps * (CARELESS_SEEN_S + entry.speed_mps / (2.0 * CARELESS_BRAKE_MPS2));
+            !gone && gap_m < stops_m + 1.5
         });
         let further =
             |p: &LaneId| self.overruns(*p, s_m + self.map.lanes[*p as usize].length_m, half_width_m, depth + 1);
