@@ -151,8 +151,10 @@ impl View<'_> {
 
     /// Whether a vehicle wants to enter the junction before it now.
     fn asks(&self, index: usize, plan: &Plan, line: &Line, signal: Signal, next: &Vehicle) -> bool {
-        let room = || self.has_room(index, plan, line, next, || self.standing_m(index, self.steps_of(plan)));
-        junction::near_enough(next, line, 0.0) && signal == Signal::Open && self.leads(plan, line) && room()
+        let steps = self.steps_of(plan);
+        let room = || self.has_room(index, plan, line, next, || self.standing_m(index, steps));
+        let free = || room() && self.comes_out_of_bend(index, &steps[line.inside.1..]).is_none();
+        junction::near_enough(next, line, 0.0) && signal == Signal::Open && self.leads(plan, line) && free()
     }
 
     /// From a vehicle's middle to the nearest thing that stands in its way and cannot be passed, metres. Who passes somebody

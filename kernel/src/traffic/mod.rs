@@ -62,6 +62,7 @@ mod spawn;
 mod state;
 mod step;
 mod stop_ways;
+mod through_bends;
 mod together;
 mod traits;
 mod turns;

@@ -61,13 +61,17 @@ impl Ways {
             return (place.beside(vehicle.offset_m), place.forward);
         }
         on_axles(driver.size_m.x, |ahead_m| {
-            let place = if ahead_m < 0.0 { self.behind(vehicle, ahead_m) } else { self.before(seed, vehicle, ahead_m) };
+            let place = if ahead_m < 0.0 {
+                self.place_behind(vehicle, ahead_m)
+            } else {
+                self.place_ahead(seed, vehicle, ahead_m)
+            };
             place.beside(vehicle.offset_m)
         })
     }
 
-    /// The place on the way of a vehicle so far before its middle, metres, which is negative.
-    fn behind(&self, vehicle: &Vehicle, ahead_m: f32) -> Place {
+    /// The place on the way of a vehicle at a distance from its middle, metres, negative behind it.
+    fn place_behind(&self, vehicle: &Vehicle, ahead_m: f32) -> Place {
         let s_m = vehicle.s_m + ahead_m;
         match self.places.map.lanes[vehicle.before as usize].length_m {
             length_m if s_m < 0.0 && vehicle.before != vehicle.lane => {
@@ -77,8 +81,8 @@ impl Ways {
         }
     }
 
-    /// The same where it is positive.
-    fn before(&self, seed: u64, vehicle: &Vehicle, ahead_m: f32) -> Place {
+    /// The same ahead of it.
+    fn place_ahead(&self, seed: u64, vehicle: &Vehicle, ahead_m: f32) -> Place {
         let s_m = vehicle.s_m + ahead_m;
         let over_m = s_m - self.places.map.lanes[vehicle.lane as usize].length_m;
         let next = || Journey::of(self, seed, vehicle).next_lane(vehicle.lane);

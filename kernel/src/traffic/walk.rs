@@ -219,7 +219,8 @@ impl Streets<'_> {
         let wants_mps = together.speed_mps.unwrap_or(pace_mps);
         let mut leeway = leeway(near, ahead, wants_mps, room_m(edge, next, direction));
         let held_up = leeway.most_mps < HELD_UP_MPS;
-        let before = edge.crosswalk.and_then(|_| self.before(index, ahead));
+        let wheeled = self.bodies[index].kind.is_wheeled_on_foot();
+        let before = if edge.crosswalk.is_some() || wheeled { self.before(index, ahead) } else { None };
         let half_m = outline::half_m(self.bodies[index].kind);
         let begins = edge.crosswalk.filter(|_| next.speed_mps < HELD_UP_MPS && gone_m(edge, next) < KERB_M + half_m);
         if begins.is_some_and(|crosswalk| !self.may_cross(index, crosswalk, next)) {

@@ -8,6 +8,7 @@ use super::drive::View;
 use super::hazard::{Hazard, sight};
 use super::junction::{Signal, signal};
 use super::plan::Plan;
+use super::vehicle::Vehicle;
 
 /// A vehicle that has stood this long without a reason is told, s.
 pub(super) const STUCK_S: u8 = 60;
@@ -70,10 +71,17 @@ impl View<'_> {
     fn stands_behind(&self, index: usize) -> Option<usize> {
         let leader = self.plans[index].leader.filter(|leader| leader.gap_m < BEHIND_M);
         let leader = leader.map(|leader| leader.vehicle as usize);
-        leader.or_else(|| self.takes_room(index)).or_else(|| {
-            let steps = self.steps_of(&self.plans[index]);
-            self.bend_to_wait_at(index, steps, &self.vehicles[index]).map(|(_, first)| first)
-        })
+        leader.or_else(|| self.takes_room(index)).or_else(|| self.lets_through_bend(index))
+    }
+
+    /// The vehicle which one lets through a narrow bend, right before that or before the junction at it.
+    fn lets_through_bend(&self, index: usize) -> Option<usize> {
+        let (plan, vehicle) = (&self.plans[index], &self.vehicles[index]);
+        let steps = self.steps_of(plan);
+        let bend = self.bend_to_wait_at(index, steps, vehicle).filter(|(bend_m, _)| *bend_m < BEHIND_M);
+        let waits = plan.line.filter(|_| vehicle.flags & Vehicle::GRANTED == 0);
+        let beyond = || self.comes_out_of_bend(index, &steps[waits?.inside.1..]);
+        bend.map(|(_, first)| first).or_else(beyond)
     }
 
     fn has_reason(&self, index: usize) -> bool {

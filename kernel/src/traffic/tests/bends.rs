@@ -45,6 +45,77 @@ fn long_vehicles_let_each_other_through_narrow_bends() {
     }
 }
 
+/// A road of 100 m into a junction that leads straight on, and right behind it a narrow bend to the left, then 100 m more.
+fn bend_behind_a_junction() -> Arc<RoadNetwork> {
+    let lane = |id: i32| {
+        format!(
+            "<lane id=\"{id}\" type=\"driving\"><link><predecessor id=\"{id}\"/><successor id=\"{id}\"/></link>\
+             <width sOffset=\"0\" a=\"2.85\" b=\"0\" c=\"0\" d=\"0\"/></lane>"
+        )
+    };
+    let road = |id: u32, length_m: f64, junction: i32, link: &str, geometry: &str| {
+        format!(
+            "<road id=\"{id}\" length=\"{length_m}\" junction=\"{junction}\"><link>{link}</link><planView>{geometry}</planView>\
+             <lanes><laneSection s=\"0\"><left>{}</left><center><lane id=\"0\" type=\"none\"/></center><right>{}</right>\
+             </laneSection></lanes></road>",
+            lane(1),
+            lane(-1)
+        )
+    };
+    let line = |s: f64, [x, y]: [f64; 2], heading: f64, length: f64| {
+        format!("<geometry s=\"{s}\" x=\"{x}\" y=\"{y}\" hdg=\"{heading}\" length=\"{length}\"><line/></geometry>")
+    };
+    let (radius_m, quarter_m) = (12.0, 12.0 * std::f64::consts::FRAC_PI_2);
+    let arc = format!(
+        "<geometry s=\"0\" x=\"112\" y=\"0\" hdg=\"0\" length=\"{quarter_m}\"><arc curvature=\"{}\"/></geometry>",
+        1.0 / radius_m
+    );
+    let beyond = line(quarter_m, [112.0 + radius_m, radius_m], std::f64::consts::FRAC_PI_2, 100.0);
+    let joint = |end: &str, kind: &str, id: u32, at: &str| {
+        let at = if at.is_empty() { String::new() } else { format!(" contactPoint=\"{at}\"") };
+        format!("<{end} elementType=\"{kind}\" elementId=\"{id}\"{at}/>")
+    };
+    let connects = |id: u32, from: u32, at: &str, lane: i32| {
+        format!(
+            "<connection id=\"{id}\" incomingRoad=\"{from}\" connectingRoad=\"2\" contactPoint=\"{at}\">\
+             <laneLink from=\"{lane}\" to=\"{lane}\"/></connection>"
+        )
+    };
+    let text = format!(
+        "<?xml version=\"1.0\"?><OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/>{}{}{}\
+         <junction id=\"9\" name=\"\">{}{}</junction></OpenDRIVE>",
+        road(0, 100.0, -1, &joint("successor", "junction", 9, ""), &line(0.0, [0.0, 0.0], 0.0, 100.0)),
+        road(
+            2,
+            12.0,
+            9,
+            &(joint("predecessor", "road", 0, "end") + &joint("successor", "road", 1, "start")),
+            &line(0.0, [100.0, 0.0], 0.0, 12.0)
+        ),
+        road(1, quarter_m + 100.0, -1, &joint("predecessor", "junction", 9, ""), &(arc + &beyond)),
+        connects(0, 0, "start", -1),
+        connects(1, 1, "end", 1),
+    );
+    Arc::new(crate::map::bake("bend", &text).expect("it bakes"))
+}
+
+#[test]
+fn who_could_not_wait_between_a_junction_and_a_bend_waits_before_the_junction() {
+    let network = bend_behind_a_junction();
+    let [out, back] = ["0/", "1/"].map(|road| {
+        let leads_in = |lane: &crate::map::Lane| lane.name.starts_with(road) && !lane.successors.is_empty();
+        network.lanes.iter().position(leads_in).expect("one leads to the junction") as u32
+    });
+    let ends_m = network.lanes[back as usize].length_m;
+    let mut stood = 0;
+    for out_m in [10.0, 30.0, 50.0, 70.0, 85.0] {
+        for back_m in [8.0, 25.0, 45.0, 60.0, 75.0, ends_m - 8.0] {
+            stood += u32::from(meet(&network, [(out, out_m), (back, back_m)], 6.0) > 60);
+        }
+    }
+    assert!(stood > 5, "{stood}");
+}
+
 /// Where there is room for both nobody waits.
 #[test]
 fn wide_streets_have_no_bends_to_wait_at() {
