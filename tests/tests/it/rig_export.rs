@@ -194,3 +194,73 @@ fn what_cannot_be_exported_is_refused_in_one_sentence_and_nothing_is_left() {
     }
     assert_eq!((fs::read(recording).unwrap(), fs::read(case).unwrap()), bytes);
 }
+
+/// The pictures of an animated PNG, 3 bytes a pixel.
+fn animated(file: &Path) -> (u32, u32, Vec<Vec<u8>>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(fs::read(file).unwrap())).read_info().unwrap();
+    let (width, height) = (reader.info().width, reader.info().height);
+    let frames = reader.info().animation_control().expect("it is animated").num_frames;
+    let mut next = || {
+        let mut bytes = vec![0; width as usize * height as usize * 3];
+        reader.next_frame(&mut bytes).unwrap();
+        bytes
+    };
+    (width, height, (0..frames).map(|_| next()).collect())
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn moving_pictures_are_those_of_the_driver_with_the_masks_beside_them() {
+    let dir = tempfile::tempdir().unwrap();
+    let (_, case) = files(dir.path());
+    let (case, out) = (case.to_str().unwrap(), dir.path().join("a.png"));
+    let arguments = [case, "--checkpoint", "truth", "--size", "64x32", "--last", "1s", "--out", out.to_str().unwrap()];
+    assert_eq!(export(&arguments), (0, String::new()));
+    let (width, height, pictures) = animated(&out);
+    assert_eq!((width, height, pictures.len()), (128, 32, 11));
+    // Beside what `rerender` draws of the same ticks.
+    let drawn = dir.path().join("drawn");
+    let again = ["--checkpoint", "truth", "--size", "64x32", "--last", "1s"];
+    let (code, said) = tests::command::aeye(&format!("rerender {}", again.join(" ")), &[Path::new(case)], &drawn);
+    assert_eq!(code, 0, "{said}");
+    let mut files: Vec<_> = fs::read_dir(drawn.join("a.case/rgb")).unwrap().map(|f| f.unwrap().path()).collect();
+    files.sort();
+    assert_eq!(files.len(), 11);
+    for (file, picture) in files.iter().zip(&pictures) {
+        let (_, rgb) = base::png::read(file, 3).unwrap();
+        let left: Vec<u8> = picture.chunks(3 * 128).flat_map(|row| &row[..3 * 64]).copied().collect();
+        assert!(left == rgb, "{}", file.display());
+        let tick = file.file_name().unwrap();
+        let (_, ids) = base::png::read(&drawn.join("a.case/labels").join(tick), 1).unwrap();
+        let right: Vec<u8> = picture.chunks(3 * 128).flat_map(|row| &row[3 * 64..]).copied().collect();
+        assert!(right == render::tags::colours(&ids), "{}", file.display());
+    }
+    // The same again is kept, other options make it anew, and what is none is not touched.
+    let (before, written) = (fs::read(&out).unwrap(), |out: &Path| fs::metadata(out).unwrap().modified().unwrap());
+    let at = written(&out);
+    assert_eq!(export(&arguments).0, 0);
+    assert_eq!((written(&out), fs::read(&out).unwrap() == before), (at, true));
+    let from_above = [case, "--camera", "top", "--size", "64x32", "--last", "1s", "--out", out.to_str().unwrap()];
+    assert_eq!(export(&from_above).0, 0);
+    assert_eq!(animated(&out).0, 64);
+    fs::write(&out, "mine").unwrap();
+    assert!(export(&from_above).1.contains("exists already and is no export"));
+    assert_eq!(fs::read(&out).unwrap(), b"mine");
+}
+
+#[test]
+fn moving_pictures_say_what_they_cannot_be() {
+    let dir = tempfile::tempdir().unwrap();
+    let (_, case) = files(dir.path());
+    let case = case.to_str().unwrap();
+    let says = |arguments: &[&str], expected: &str| {
+        let (code, said) = export(&[&[case], arguments].concat());
+        assert!(code != 0 && said.contains(expected), "{arguments:?}: {code}, {said}");
+    };
+    let gif = dir.path().join("a.gif");
+    let gif = gif.to_str().unwrap();
+    says(&["--camera", "top", "--out", "a.mcap"], "expected --format apng, gif or mp4");
+    says(&["--camera", "top", "--checkpoint", "truth", "--out", gif], "networks see the driver's view");
+    says(&["--format", "apng", "--out", gif], "expected a folder, or a file *.png");
+    assert!(!Path::new(gif).exists());
+}

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use base::failure::sentence;
 use base::progress::Interrupt;
+use drivers::film::Viewpoint;
 use lab::export;
 use replay::Recording;
 use tests::command::aeye;
@@ -119,6 +120,8 @@ fn an_export_that_is_interrupted_leaves_no_empty_folder() {
     let out = dir.path().join("new/out");
     let options = export::Options {
         files: vec![cases],
+        format: export::Format::Mcap,
+        camera: Viewpoint::Driver,
         checkpoint: vec![],
         last: None,
         from: None,

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::film::Viewpoint;
 use kernel::time::{CLIP_FPS, Tick};
 use lab::compare::Gate;
+use lab::export::Format;
 use lab::redrive::Need;
 use lab::share::Share;
 
@@ -47,12 +49,19 @@ pub struct RerenderArgs {
 
 /// Arguments of `export`.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = "aeye export <FILE|DIR>... [--checkpoint <C,...>] --out <OUT.mcap|DIR> [OPTIONS]")]
+#[command(override_usage = "aeye export <FILE|DIR>... [--checkpoint <C,...>] --out <OUT|DIR> [OPTIONS]")]
 pub struct ExportArgs {
     /// Recordings or cases, or folders with cases anywhere below.
     #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
-    /// Checkpoints whose masks come along with the ground truth.
+    /// As what: messages for viewers of robot logs, or moving pictures, which but for apng take `ffmpeg` on the PATH
+    /// (default: by the ending of --out, else mcap).
+    #[arg(long, value_name = "mcap|apng|gif|mp4")]
+    pub format: Option<Format>,
+    /// From where moving pictures are taken: as both drivers see, from behind the car, or from above, north up.
+    #[arg(long, default_value = "driver", value_name = "driver|chase|top")]
+    pub camera: Viewpoint,
+    /// Checkpoints whose masks come along: with the ground truth, or on the right of a moving picture.
     #[arg(long, value_delimiter = ',', value_name = CHECKPOINTS)]
     pub checkpoint: Vec<CheckpointChoice>,
     /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
@@ -75,9 +84,9 @@ pub struct ExportArgs {
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
-    /// File of the export, with its layout for viewers beside it; or a folder, for several files. What is whole
-    /// there and follows from the same files, checkpoints and options is kept.
-    #[arg(long, value_name = "OUT.mcap|DIR")]
+    /// File of the export, `*.mcap` with its layout for viewers beside it, `*.png` (apng), `*.gif` or `*.mp4`; or a folder, for
+    /// several files. What is whole there and follows from the same files, checkpoints and options is kept.
+    #[arg(long, value_name = "OUT|DIR")]
     pub out: PathBuf,
 }
 

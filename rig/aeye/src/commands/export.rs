@@ -1,8 +1,8 @@
-//! Recordings and cases as files for viewers of robot logs.
+//! Recordings and cases as files for the programs of others.
 
 use base::failure::Failed;
 use base::progress::Interrupt;
-use lab::export::{Options, export};
+use lab::export::{Format, Options, export};
 
 use crate::cli::ExportArgs;
 use crate::exit::Verdict;
@@ -10,8 +10,9 @@ use crate::print;
 
 /// Runs `aeye export`.
 pub fn run(args: &ExportArgs, json: bool) -> anyhow::Result<Verdict> {
-    let ExportArgs { files, checkpoint, last, from, to, fps, size, jobs, out } = args.clone();
-    let options = Options { files, checkpoint, last, from, to, fps, size, jobs, out };
+    let ExportArgs { files, format, camera, checkpoint, last, from, to, fps, size, jobs, out } = args.clone();
+    let format = format.unwrap_or_else(|| Format::of_file(&out));
+    let options = Options { files, format, camera, checkpoint, last, from, to, fps, size, jobs, out };
     let summary = export(&options, &Interrupt::listen())?;
     print::result(json, &summary)?;
     Failed::check(&summary.failed, summary.exports.len())?;

@@ -1,5 +1,6 @@
 //! Puts a window of a log into a file: simulates it again, comparing every tick, and draws.
 
+use std::fmt;
 use std::io::Write;
 use std::sync::Arc;
 
@@ -34,6 +35,17 @@ pub struct Counts {
     pub poses: usize,
     /// Happenings.
     pub events: usize,
+}
+
+impl fmt::Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frames, poses, events } = self;
+        write!(f, "{frames} frames")?;
+        match (poses, events) {
+            (0, 0) => Ok(()),
+            _ => write!(f, ", {poses} poses, {events} events"),
+        }
+    }
 }
 
 impl Counts {

@@ -1,41 +1,45 @@
-//! Recordings and cases for viewers of robot logs (Foxglove, Lichtblick, Rerun): an MCAP file of
-//! Foxglove's protobuf messages, and a layout that shows them.
+//! Recordings and cases for the programs of others: for viewers of robot logs (Foxglove, Lichtblick, Rerun) an MCAP file
+//! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures.
 //!
-//! Message times are simulated time, so that the same export gives the same bytes. An export that is there
-//! already is kept: its file says what it was made from.
+//! An export that is there already is kept: its file says what it was made from.
 
 mod criticality;
 mod film;
+mod format;
 mod happenings;
 mod layout;
+mod robot_log;
 mod sink;
 mod topics;
+mod video;
 
-use std::collections::BTreeMap;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use anyhow::bail;
 use base::failure::{Failed, Failure, Usage};
 use base::json::Typed;
 use base::library::{self, Entry, Found, Kind};
-use base::output::{self, OutputFolder, PendingFile};
+use base::output::{self, OutputFolder};
 use base::progress::{self, Interrupt};
 use base::spread::{in_order, jobs};
+use base::words::count;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::film::Viewpoint;
 use drivers::vision::Eye;
-use kernel::RoadNetwork;
 use kernel::time::Tick;
-use measures::footage::{Asked, Window};
-use replay::{Exported, Recording, exported};
+use replay::Recording;
 use serde::Serialize;
 
-use super::looks::{Size, open_eyes};
+use super::looks::open_eyes;
 use super::pipeline::Studios;
+use super::shots::Workshop;
 
 use film::Camera;
 pub use film::Counts;
-use sink::Sink;
+pub use format::Format;
+use video::Screen;
 
 /// The layout for viewers, in a folder of several exports.
 const LAYOUT: &str = "layout.json";
@@ -43,8 +47,9 @@ const LAYOUT: &str = "layout.json";
 /// What was written.
 #[derive(Debug, Serialize)]
 pub struct Exports {
-    /// A layout for viewers.
-    pub layout: PathBuf,
+    /// A layout for viewers; absent where moving pictures were written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layout: Option<PathBuf>,
     /// The files.
     pub exports: Vec<Export>,
     /// Files that were left out, and why.
@@ -79,7 +84,11 @@ pub struct Export {
 pub struct Options {
     /// Recordings or cases, or folders with cases anywhere below.
     pub files: Vec<PathBuf>,
-    /// Checkpoints whose masks come along with the ground truth.
+    /// As what.
+    pub format: Format,
+    /// From where moving pictures are taken; viewers of robot logs have the driver's view.
+    pub camera: Viewpoint,
+    /// Checkpoints whose masks come along: with the ground truth, or beside a moving picture.
     pub checkpoint: Vec<CheckpointChoice>,
     /// Only a window of this length that ends at the intervention (or at the end), as in `3s`; without a
     /// window everything is exported.
@@ -101,31 +110,36 @@ pub struct Options {
 impl fmt::Display for Exports {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Export { out, from, to, kept, counts, .. } in &self.exports {
-            let Counts { frames, poses, events } = counts;
             let kept = if *kept { ", kept" } else { "" };
-            let out = out.display();
-            writeln!(f, "{out}: ticks {from} to {to}, {frames} frames, {poses} poses, {events} events{kept}")?;
+            writeln!(f, "{}: ticks {from} to {to}, {counts}{kept}", out.display())?;
         }
-        write!(f, "{}: a layout for the viewer", self.layout.display())
+        match &self.layout {
+            Some(layout) => write!(f, "{}: a layout for the viewer", layout.display()),
+            None => write!(f, "{}", count(self.exports.len(), "moving picture")),
+        }
     }
 }
 
 /// Exports what is asked for; what is whole already is kept.
 pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> {
+    args.format.check(args.camera, &args.checkpoint)?;
     let Places { layout, files, mut failed, folder } = places(args)?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
-    let studios = Studios::default();
+    let (studios, workshop) = (Studios::default(), Arc::new(Workshop::default()));
     let bar = progress::bar("files", files.len() as u64);
     let work = |index: usize| {
         let (file, out) = &files[index];
-        studios.with(size, |studio| {
-            let mut camera = Camera { studio, eyes: &mut eyes.clone() };
-            let recording = Recording::open(file)?;
-            if let (Some(folder), Some(below)) = (&folder, out.parent()) {
-                folder.make(below)?;
-            }
-            export_one((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
-        })
+        if let (Some(folder), Some(below)) = (&folder, out.parent()) {
+            folder.make(below)?;
+        }
+        let eyes = &mut eyes.clone();
+        match args.format {
+            Format::Mcap => studios.with(size, |studio| {
+                let (recording, mut camera) = (Recording::open(file)?, Camera { studio, eyes });
+                robot_log::export((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
+            }),
+            _ => video::export(args, file, out.clone(), Screen { workshop: &workshop, size, eyes }, interrupt),
+        }
     };
     let mut exports = Vec::new();
     in_order(jobs(args.jobs), files.len(), work, |index, export| {
@@ -142,14 +156,17 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
     if exports.is_empty() {
         return Err(Failed::new(failed).into());
     }
-    let panels = layout::layout(eyes.iter().map(Eye::name));
-    output::write_file(&layout, &serde_json::to_vec_pretty(&panels)?)?;
+    if let Some(layout) = &layout {
+        let panels = layout::layout(eyes.iter().map(Eye::name));
+        output::write_file(layout, &serde_json::to_vec_pretty(&panels)?)?;
+    }
     Ok(Exports { layout, exports, failed })
 }
 
 /// Where everything goes.
 struct Places {
-    layout: PathBuf,
+    /// Where viewers want one.
+    layout: Option<PathBuf>,
     /// What is exported, and to where.
     files: Vec<(PathBuf, PathBuf)>,
     failed: Vec<Failure>,
@@ -157,10 +174,16 @@ struct Places {
     folder: Option<OutputFolder>,
 }
 
-/// One file goes to `OUT.mcap`, or into a folder as several do.
+/// One file goes to `OUT.mcap` (or another ending, by the format), or into a folder as several do.
 fn places(args: &Options) -> anyhow::Result<Places> {
     let Found { files: given, failed } = library::find(&args.files, Kind::Cases).apart_from(LAYOUT).or_failed()?;
-    let is_file = args.out.extension().is_some_and(|ending| ending == "mcap") && !args.out.is_dir();
+    let ending = args.format.ending();
+    let others = Format::of_file(&args.out);
+    if others != args.format && others != Format::Mcap && !args.out.is_dir() {
+        let sentence = format!("{}: expected a folder, or a file *.{ending}", args.out.display());
+        return Err(Usage(sentence).into());
+    }
+    let is_file = args.out.extension().is_some_and(|of_out| of_out == ending) && !args.out.is_dir();
     if is_file && given.len() > 1 {
         let sentence = format!("{}: is one file; expected a folder for several", args.out.display());
         return Err(Usage(sentence).into());
@@ -171,68 +194,10 @@ fn places(args: &Options) -> anyhow::Result<Places> {
     if is_file {
         output::check_file(&args.out)?;
     }
-    let to = |file: &Entry| if is_file { args.out.clone() } else { args.out.join(format!("{}.mcap", file.name)) };
+    let to = |file: &Entry| if is_file { args.out.clone() } else { args.out.join(format!("{}.{ending}", file.name)) };
     let layout = if is_file { args.out.with_extension("layout.json") } else { args.out.join(LAYOUT) };
+    let layout = (args.format == Format::Mcap).then_some(layout);
     let files = given.into_iter().map(|file| (file.path.clone(), to(&file))).collect();
     let folder = if is_file { None } else { Some(OutputFolder::open(&args.out)?) };
     Ok(Places { layout, files, failed, folder })
-}
-
-fn export_one(
-    (args, size): (&Options, Size),
-    (file, recording): (&Path, &Recording),
-    out: PathBuf,
-    camera: &mut Camera<'_>,
-    interrupt: &Interrupt,
-) -> anyhow::Result<Export> {
-    let there = exported(&out);
-    if there.is_none() && out.exists() {
-        bail!("{}: exists already and is no export; expected another place", out.display());
-    }
-    let (log, network) = (recording.log(), recording.network()?);
-    let window = Window::of(log, &Asked { last: args.last, from: args.from, to: args.to, fps: args.fps })?;
-    let mut about = about(recording, &window, (args, size), camera.eyes);
-    about.extend(origin(&network));
-    let counts = Counts::of(log, &window);
-    let (from, to) = window.ticks.clone().into_inner();
-    let kept = there == Some(Exported { about: about.clone(), is_whole: true });
-    let export = Export { file: file.to_owned(), out, from, to, kept, counts };
-    if kept {
-        return Ok(export);
-    }
-    let mut sink = Sink::new(PendingFile::new(&export.out)?, about)?;
-    film::shoot((log, &network), &window, camera, &mut sink, || {
-        if interrupt.is_raised() {
-            bail!("interrupted; nothing of its export is kept");
-        }
-        Ok(())
-    })?;
-    sink.finish()?.finish()?;
-    Ok(export)
-}
-
-/// What the export was made from.
-fn about(
-    recording: &Recording,
-    window: &Window,
-    (args, size): (&Options, Size),
-    eyes: &[Eye],
-) -> BTreeMap<String, String> {
-    let eyes: Vec<String> = eyes.iter().map(|eye| format!("{} {}", eye.name(), eye.digest())).collect();
-    let entries = [
-        ("source", blake3::Hash::from_bytes(recording.digest()).to_hex().to_string()),
-        ("ticks", format!("{} to {}", window.ticks.start(), window.ticks.end())),
-        ("fps", args.fps.to_string()),
-        ("size", format!("{}x{}", size.0, size.1)),
-        ("checkpoints", eyes.join(", ")),
-        ("adapter", drivers::vision::adapter()),
-        ("program", env!("CARGO_PKG_VERSION").to_owned()),
-    ];
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
-}
-
-/// What to add to coordinates to have those of the map's file, where they differ: metres to the east and to the north.
-fn origin(network: &RoadNetwork) -> Option<(String, String)> {
-    let [east_m, north_m] = network.origin_m;
-    ([east_m, north_m] != [0.0; 2]).then(|| ("origin_m".to_owned(), format!("{east_m} {north_m}")))
 }

@@ -1,0 +1,73 @@
+//! As what a recording can be exported.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use base::failure::Usage;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::film::Viewpoint;
+
+/// As what a recording is exported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// Messages for viewers of robot logs.
+    #[default]
+    Mcap,
+    /// An animated PNG.
+    Apng,
+    /// A GIF, by `ffmpeg`.
+    Gif,
+    /// An MP4 (H.264), by `ffmpeg`.
+    Mp4,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Mcap, Self::Apng, Self::Gif, Self::Mp4];
+
+    /// What it is called on a command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mcap => "mcap",
+            Self::Apng => "apng",
+            Self::Gif => "gif",
+            Self::Mp4 => "mp4",
+        }
+    }
+
+    /// How its files end; an animated PNG is one to all who show PNGs.
+    pub fn ending(self) -> &'static str {
+        if self == Self::Apng { "png" } else { self.name() }
+    }
+
+    /// That of a file by its ending; messages for viewers, where that tells none.
+    pub fn of_file(path: &Path) -> Self {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        Self::ALL.into_iter().find(|format| ending == Some(format.ending())).unwrap_or_default()
+    }
+
+    /// Refuses what it cannot show.
+    pub fn check(self, camera: Viewpoint, checkpoints: &[CheckpointChoice]) -> Result<(), Usage> {
+        if camera == Viewpoint::Driver {
+            return Ok(());
+        }
+        if self == Self::Mcap {
+            return Err(Usage("--camera is for moving pictures; expected --format apng, gif or mp4 with it".into()));
+        }
+        if !checkpoints.is_empty() {
+            return Err(Usage(
+                "networks see the driver's view; expected --checkpoint or another --camera, not both".into(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for Format {
+    type Err = Usage;
+
+    fn from_str(text: &str) -> Result<Self, Usage> {
+        let named = Self::ALL.into_iter().find(|format| format.name() == text);
+        named.ok_or_else(|| Usage(format!("no such format: {text:?}; expected mcap, apng, gif or mp4")))
+    }
+}
