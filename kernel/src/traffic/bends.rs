@@ -10,8 +10,7 @@ use crate::map_data::{LaneId, LaneKind, MapData};
 use crate::ops;
 use crate::places::Places;
 
-use super::lane_way::LaneWay;
-use super::poses::on_axles;
+use super::axles::on_axles;
 use super::step::LINE_MARGIN_M;
 
 /// Half the length and half the width of the longest vehicle, metres.
@@ -79,10 +78,11 @@ struct Touch {
     touches: bool,
 }
 
-/// Adds the bends to the lanes on which they begin.
-pub(super) fn add_bends(places: &Places, ways: &mut [LaneWay]) {
+/// For each lane the bends that begin on it; `place` tells where on a lane so many metres from its start are.
+pub(super) fn bends(places: &Places, place: impl Fn(LaneId, f32) -> Vec3) -> Vec<Vec<Bend>> {
     let map = &*places.map;
-    let streets = streets(map, ways);
+    let mut found = vec![Vec::new(); map.lanes.len()];
+    let streets = streets(map, &place);
     let mut street_of = vec![None; map.lanes.len()];
     for (index, street) in streets.iter().enumerate() {
         street.lanes.iter().for_each(|(lane, start_m)| street_of[*lane as usize] = Some((index, *start_m)));
@@ -94,11 +94,12 @@ pub(super) fn add_bends(places: &Places, ways: &mut [LaneWay]) {
             let (one, other) = (&streets[index], &streets[bend[0].street]);
             let [here, there] = widened(bend, &near);
             if [here, there].iter().all(|[from_m, to_m]| to_m - from_m < LONGEST_STRETCH_M) {
-                one.add_bend(map, ways, here, (other, there));
-                other.add_bend(map, ways, there, (one, here));
+                one.add_bend(map, &mut found, here, (other, there));
+                other.add_bend(map, &mut found, there, (one, here));
             }
         }
     }
+    found
 }
 
 /// The stretches of two streets in which vehicles touch, and those around them in which they leave each other little room,
@@ -131,9 +132,9 @@ impl Street {
         self.leaves_junction && s_m - LINE_MARGIN_M < CLOSE_M
     }
 
-    fn add_bend(&self, map: &MapData, ways: &mut [LaneWay], here: [f32; 2], (other, there): (&Self, [f32; 2])) {
+    fn add_bend(&self, map: &MapData, found: &mut [Vec<Bend>], here: [f32; 2], (other, there): (&Self, [f32; 2])) {
         let (lane, start_m) = self.lane_at(here[0]);
-        ways[lane as usize].bends.push(Bend {
+        found[lane as usize].push(Bend {
             here: here.map(|m| m - start_m),
             is_close: self.is_close(here[0]),
             there: other.comes(map, there),
@@ -173,7 +174,7 @@ impl Street {
 }
 
 /// All driving lanes outside junctions, in the order in which they follow each other.
-fn streets(map: &MapData, ways: &[LaneWay]) -> Vec<Street> {
+fn streets(map: &MapData, place: &impl Fn(LaneId, f32) -> Vec3) -> Vec<Street> {
     let is_street = |id: LaneId| {
         let lane = &map.lanes[id as usize];
         lane.kind == LaneKind::Driving && lane.junction.is_none()
@@ -194,21 +195,21 @@ fn streets(map: &MapData, ways: &[LaneWay]) -> Vec<Street> {
             next = after(id).filter(|next| before(*next) == Some(id));
         }
         if !lanes.is_empty() {
-            found.push(street(map, ways, lanes, start_m));
+            found.push(street(map, place, lanes, start_m));
         }
     }
     found
 }
 
-fn street(map: &MapData, ways: &[LaneWay], lanes: Vec<(LaneId, f32)>, length_m: f32) -> Street {
+fn street(map: &MapData, place: &impl Fn(LaneId, f32) -> Vec3, lanes: Vec<(LaneId, f32)>, length_m: f32) -> Street {
     let before = &map.lanes[lanes[0].0 as usize].predecessors;
     let leaves_junction = before.iter().any(|lane| map.lanes[*lane as usize].junction.is_some());
     let mut street = Street { lanes, poses: Vec::new(), leaves_junction };
-    let place = |s_m: f32| {
+    let at = |s_m: f32| {
         let (lane, start_m) = street.lane_at(s_m);
-        ways[lane as usize].pose(&map.lanes[lane as usize], s_m - start_m).position
+        place(lane, s_m - start_m)
     };
-    let pose = |k: u32| on_axles(2.0 * LONGEST.x, |ahead_m| place(k as f32 * PROBE_M + ahead_m));
+    let pose = |k: u32| on_axles(2.0 * LONGEST.x, |ahead_m| at(k as f32 * PROBE_M + ahead_m));
     street.poses = (0..=(length_m / PROBE_M) as u32).map(pose).collect();
     street
 }

@@ -6,7 +6,7 @@ use crate::map_data::{Conflict, Lane, LaneId, LaneKind, LanePoint, MapData, Plac
 use crate::ops;
 use crate::places::Places;
 
-use super::bends::{Bend, add_bends};
+use super::bends::{Bend, bends};
 use super::links::{LEAST_HALF_M, Onward, ends_beside, onward};
 use super::meets::{Meet, meets};
 use super::zones::zones;
@@ -124,7 +124,9 @@ pub(super) fn lane_ways(places: &Places, kerb: i8, circle: Vec<Option<u32>>) -> 
         ..lane_way(places, id as LaneId, onward)
     };
     let mut ways = ways.map(way).collect::<Vec<_>>();
-    add_bends(places, &mut ways);
+    let place = |lane: LaneId, s_m: f32| ways[lane as usize].pose(&map.lanes[lane as usize], s_m).position;
+    let bends = bends(places, place);
+    ways.iter_mut().zip(bends).for_each(|(way, bends)| way.bends = bends);
     ways
 }
 

@@ -8,6 +8,7 @@
 mod actors;
 mod approach;
 mod asking;
+mod axles;
 mod barge;
 mod bends;
 mod boarding;

@@ -7,6 +7,7 @@ use crate::ops;
 use crate::scene::lamps;
 
 use super::actors::Actors;
+use super::axles::{AXLE, on_axles};
 use super::body::Body;
 use super::journey::Journey;
 use super::traits::{Driver, WalkerTraits};
@@ -16,8 +17,6 @@ use super::ways::Ways;
 
 /// Vehicles longer than this have their axles on the way, metres; shorter ones their middle.
 const LONG_M: f32 = 5.0;
-/// From the middle to an axle, as a share of the length.
-const AXLE: f32 = 0.28;
 
 /// How much farther to the left the middle of a vehicle is than its rear axle, which does not slip sideways, metres.
 pub(super) fn leads_m(vehicle: &Vehicle, driver: &Driver) -> f32 {
@@ -42,14 +41,6 @@ impl Actors {
         self.bodies = bodies;
         self.know_seen();
     }
-}
-
-/// The middle of a long vehicle and its direction: both axles are on its way, which is asked for by the distance from its
-/// middle, metres.
-pub(super) fn on_axles(length_m: f32, mut way: impl FnMut(f32) -> Vec3) -> (Vec3, Vec3) {
-    let to_axle_m = AXLE * length_m;
-    let [rear, front] = [-to_axle_m, to_axle_m].map(&mut way);
-    ((rear + front) * 0.5, (front - rear).normalize_or(Vec3::X))
 }
 
 impl Ways {

@@ -217,7 +217,7 @@ fn moving_pictures_are_those_of_the_driver_with_the_masks_beside_them() {
     let arguments = [case, "--checkpoint", "truth", "--size", "64x32", "--last", "1s", "--out", out.to_str().unwrap()];
     assert_eq!(export(&arguments), (0, String::new()));
     let (width, height, pictures) = animated(&out);
-    assert_eq!((width, height, pictures.len()), (128, 32, 11));
+    assert_eq!((width, height, pictures.len()), (128, 32, 10));
     // Beside what `rerender` draws of the same ticks.
     let drawn = dir.path().join("drawn");
     let again = ["--checkpoint", "truth", "--size", "64x32", "--last", "1s"];
@@ -225,7 +225,7 @@ fn moving_pictures_are_those_of_the_driver_with_the_masks_beside_them() {
     assert_eq!(code, 0, "{said}");
     let mut files: Vec<_> = fs::read_dir(drawn.join("a.case/rgb")).unwrap().map(|f| f.unwrap().path()).collect();
     files.sort();
-    assert_eq!(files.len(), 11);
+    assert_eq!(files.len(), 10);
     for (file, picture) in files.iter().zip(&pictures) {
         let (_, rgb) = base::png::read(file, 3).unwrap();
         let left: Vec<u8> = picture.chunks(3 * 128).flat_map(|row| &row[..3 * 64]).copied().collect();

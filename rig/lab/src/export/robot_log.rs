@@ -12,8 +12,8 @@ use measures::footage::{Asked, Window};
 use replay::{Exported, Recording, exported};
 
 use super::film::{self, Camera, Counts};
+use super::options::{Export, Options};
 use super::sink::Sink;
-use super::{Export, Options};
 use crate::looks::Size;
 
 /// Writes the file, unless it is there.

@@ -17,7 +17,7 @@ use render::{Frame, tags};
 
 use self::encoder::Encoder;
 use super::film::Counts;
-use super::{Export, Options};
+use super::options::{Export, Options};
 use crate::looks::{Size, look};
 use crate::shots::{Shots, Stage, Workshop};
 

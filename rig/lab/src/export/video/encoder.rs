@@ -9,7 +9,7 @@ use anyhow::{Context, bail};
 use png::text_metadata::TEXtChunk;
 use tempfile::TempDir;
 
-use crate::export::Format;
+use crate::export::format::Format;
 
 /// Name of the file in its folder.
 const VIDEO: &str = "video";
