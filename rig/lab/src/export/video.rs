@@ -10,7 +10,6 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use base::output;
 use base::progress::Interrupt;
-use drivers::film::Viewpoint;
 use drivers::vision::Eye;
 use measures::footage::Asked;
 use render::{Frame, tags};
@@ -72,8 +71,7 @@ pub fn export(
 fn source(stage: &Stage, shots: &Shots, args: &Options, screen: &Screen<'_>) -> String {
     let eyes: Vec<String> = screen.eyes.iter().map(Eye::digest).collect();
     let recording = blake3::Hash::from_bytes(stage.recording().digest()).to_hex();
-    let camera = if args.camera == Viewpoint::Driver { "driver" } else { args.camera.name() };
-    let (adapter, version) = (drivers::vision::adapter(), env!("CARGO_PKG_VERSION"));
+    let (camera, adapter, version) = (args.camera.name(), drivers::vision::adapter(), env!("CARGO_PKG_VERSION"));
     let all = (recording.as_str(), shots.ticks(), args.fps, screen.size, camera, eyes, adapter, version);
     blake3::hash(format!("{all:?}").as_bytes()).to_hex().to_string()
 }

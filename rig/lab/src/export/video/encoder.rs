@@ -17,7 +17,7 @@ const VIDEO: &str = "video";
 const COMMENT: &str = "aeye export ";
 /// The comment is within so many bytes of the end of a file.
 const END_BYTES: usize = 256;
-/// A GIF has a palette of its own; an MP4 has even sides, the last row or column twice.
+/// A GIF has a palette of its own; an MP4 has even sides, with black on the right and below where that takes it.
 const OF_GIF: &[&str] =
     &["-vf", "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=none", "-f", "gif"];
 const OF_MP4: &[&str] = &[
