@@ -99,7 +99,7 @@ impl View<'_> {
 
     /// Whether there is room beyond the junction, as far as something stands in the way `stands_m` from a vehicle's middle.
     fn has_room(&self, index: usize, plan: &Plan, line: &Line, next: &Vehicle, stands_m: impl Fn() -> f32) -> bool {
-        let known = (self.map, self.ways, self.lists);
+        let known = (self.map, self.ways, self.lists, self.vehicles);
         let (steps, driver) = (self.steps_of(plan), &self.drivers[index]);
         let beyond = || junction::has_room(known, plan, line, steps, index, driver, stands_m());
         match self.has_room_to_circulate(index, plan, line, next) {

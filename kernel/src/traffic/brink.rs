@@ -13,11 +13,14 @@ use super::outline::half_m;
 use super::vehicle::{DECIDE_TICKS, Vehicle};
 
 /// Who is faster takes no last look, m/s.
-const SLOW_MPS: f32 = 7.0;
+pub(super) const SLOW_MPS: f32 = 7.0;
 /// Long vehicles, which sweep out of their lanes where these bend, do so up to here, but brake only.
 const LONG_MPS: f32 = 11.0;
 /// Room to others, metres: who has more keeps that.
 const ROOM_M: [f32; 3] = [0.12, 0.04, 0.0];
+/// Who leaves vehicles less than the most of that creeps by them, m/s, and takes up that speed in such a time, s.
+const CREEP_MPS: f32 = 1.5;
+const ADAPT_S: f32 = 0.5;
 /// Who starts looks so far ahead, metres.
 const START_M: f32 = 0.12;
 /// Longer vehicles sweep over pavements, metres.
@@ -37,6 +40,12 @@ struct Brink<'a> {
 }
 
 impl Brink<'_> {
+    /// The same without vehicles that are driven.
+    fn but_driven(&self) -> Self {
+        let others = self.others.iter().copied().filter(|other| other.vehicle.is_none()).collect();
+        Self { others, on_pavements: self.on_pavements.clone(), ..*self }
+    }
+
     fn all(&self) -> impl Iterator<Item = &Hazard> {
         self.others.iter().copied().chain(&self.on_pavements)
     }
@@ -65,6 +74,9 @@ impl View<'_> {
         } else if turns && free(0, &ROOM_M[1..]) {
             next.drift_aim = 0;
             accel_mps2
+        } else if !turns && free(0, &ROOM_M[2..]) && !self.touches(index, next, &brink.but_driven(), 0, &ROOM_M) {
+            // Both on their ways, long ones come by each other in narrow bends by less than a hand's breadth.
+            accel_mps2.min((CREEP_MPS - mps) / ADAPT_S).max(-driver.hardest_mps2)
         } else {
             next.drift_aim = if free(0, &ROOM_M[2..]) { 0 } else { next.drift_aim };
             -driver.hardest_mps2

@@ -6,6 +6,7 @@ use crate::geometry::direction;
 use crate::map_data::{MapData, Place};
 
 use super::body::{Body, Obstacle};
+use super::brink::SLOW_MPS;
 use super::step::Step;
 
 /// Nothing farther than this from the middle of the way matters, metres.
@@ -225,7 +226,14 @@ fn sight_near(map: &MapData, steps: &[Step], seeker: &Seeker, hazard: &Hazard) -
         return None;
     }
     let time_s = gap_m.max(0.0) / seeker.speed_mps.max(1.0);
-    let foresight_s = time_s.min(if hazard.walker { WALKER_FORESIGHT_S } else { VEHICLE_FORESIGHT_S });
+    let foresight_s = match hazard.walker {
+        // Nobody shall walk into the side of one who takes no last look.
+        true if seeker.speed_mps > SLOW_MPS => {
+            WALKER_FORESIGHT_S.min(time_s + 2.0 * (seeker.half.x + half_along_m) / seeker.speed_mps)
+        }
+        true => WALKER_FORESIGHT_S.min(time_s),
+        false => VEHICLE_FORESIGHT_S.min(time_s),
+    };
     let now_m = offset.dot(left);
     let then_m = now_m + hazard.velocity.dot(left) * foresight_s;
     Some(Sighted {

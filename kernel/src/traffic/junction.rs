@@ -12,10 +12,10 @@ use crate::map_data::{MapData, StopKind};
 use crate::time::{TICK_S, Tick};
 
 use super::lane_way::{ConflictKind, LaneConflict};
-use super::lists::Lists;
+use super::lists::{Entry, Lists};
 use super::plan::{Line, Plan, braking_needed};
 use super::roundabout::{goes_round_first, is_followed};
-use super::step::Step;
+use super::step::{LINE_MARGIN_M, Step};
 use super::traits::{Driver, LONG_HALF_M};
 use super::vehicle::Vehicle;
 use super::ways::Ways;
@@ -222,9 +222,10 @@ pub(super) fn stopping_m(speed_mps: f32) -> f32 {
 }
 
 /// Whether the way out of the junction has room for the vehicle behind everyone who is before it,
-/// wherever they come to a stand; `stands_m` is where something stands in its way, from its middle.
+/// wherever they come to a stand, at the line of the next junction but for those that may enter that; `stands_m` is where
+/// something stands in its way, from its middle.
 pub(super) fn has_room(
-    view: (&MapData, &Ways, &Lists),
+    view: (&MapData, &Ways, &Lists, &[Vehicle]),
     plan: &Plan,
     line: &Line,
     steps: &[Step],
@@ -232,11 +233,13 @@ pub(super) fn has_room(
     driver: &Driver,
     stands_m: f32,
 ) -> bool {
-    let (map, ways, lists) = view;
+    let (map, ways, lists, vehicles) = view;
+    let enters = |other: u32| vehicles[other as usize].flags & (Vehicle::GRANTED | Vehicle::CROSSING) != 0;
     let last = steps[line.inside.1 - 1];
     let end_m = last.start_m + map.lanes[last.lane as usize].length_m;
     let end_m = zebra::beyond(ways, &steps[line.inside.1..], driver, end_m);
-    let mut needed_m = driver.size_m.x + driver.gap_m;
+    // A tail that sweeps over the junction still holds it.
+    let mut needed_m = 0.5 * driver.size_m.x + swept_half_m(driver.size_m) + driver.gap_m;
     for step in &steps[line.approach..] {
         for entry in lists.on(step.lane) {
             let at_m = step.start_m + entry.s_m;
@@ -244,7 +247,12 @@ pub(super) fn has_room(
                 continue;
             }
             if at_m - entry.half_m > end_m {
-                return (at_m - entry.half_m + stopping_m(entry.speed_mps)).min(stands_m) - end_m > needed_m;
+                let at_line_m = next_line_m(map, ways, step).filter(|_| !enters(entry.vehicle));
+                let at_bend_m = next_bend_m(ways, step, entry);
+                let stops_m = at_m + stopping_m(entry.speed_mps);
+                let stops_m =
+                    at_line_m.map_or(stops_m, |line_m| stops_m.min(line_m - entry.half_m)).min(at_bend_m).max(at_m);
+                return (stops_m - entry.half_m).min(stands_m) - end_m > needed_m;
             }
             if entry.speed_mps < 0.5 {
                 return false;
@@ -253,6 +261,22 @@ pub(super) fn has_room(
         }
     }
     plan.dead_end_m.unwrap_or(f32::MAX).min(stands_m) - end_m > needed_m
+}
+
+/// From a vehicle's middle to where others stop on a lane of its way because that leads into a junction, metres.
+fn next_line_m(map: &MapData, ways: &Ways, step: &Step) -> Option<f32> {
+    let lane = &map.lanes[step.lane as usize];
+    let leads_in =
+        ways.lanes[step.lane as usize].onward.iter().any(|next| ways.lanes[next.lane as usize].zone.is_some());
+    let line_m = || step.start_m + lane.stop.map_or(lane.length_m, |stop| stop.s_m) - LINE_MARGIN_M;
+    (lane.junction.is_none() && leads_in).then(line_m)
+}
+
+/// The same to where the middle of a long one is that waits before the next bend of its lane; infinite where it does not.
+fn next_bend_m(ways: &Ways, step: &Step, entry: &Entry) -> f32 {
+    let bends = ways.lanes[step.lane as usize].bends.iter().filter(|bend| bend.here[0] > entry.s_m);
+    let nearest_m = bends.map(|bend| step.start_m + bend.here[0] - LINE_MARGIN_M).fold(f32::INFINITY, f32::min);
+    if entry.half_m > LONG_HALF_M { nearest_m } else { f32::INFINITY }
 }
 
 #[cfg(test)]

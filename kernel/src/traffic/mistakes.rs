@@ -173,7 +173,7 @@ impl View<'_> {
     }
 
     pub(super) fn has_room_beyond(&self, index: usize, plan: &Plan, line: &Line) -> bool {
-        let known = (self.map, self.ways, self.lists);
+        let known = (self.map, self.ways, self.lists, self.vehicles);
         junction::has_room(known, plan, line, self.steps_of(plan), index, &self.drivers[index], f32::MAX)
     }
 

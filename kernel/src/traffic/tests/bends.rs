@@ -6,12 +6,12 @@ use crate::actor::ActorKind;
 
 /// Drives two buses for a minute, one before a bend and one before the same on its side, so far from it, metres. How long
 /// somebody stood, ticks.
-fn meet(network: &Arc<RoadNetwork>, [a, b]: [(u32, f32); 2], speed_mps: f32) -> u32 {
-    let bus = |id, (lane, s_m)| {
+fn meet(network: &Arc<RoadNetwork>, [a, b]: [(u32, f32); 2], speeds_mps: [f32; 2]) -> u32 {
+    let bus = |id, (lane, s_m), speed_mps| {
         let flags = if s_m < 6.0 { Vehicle::CROSSING } else { 0 };
         Vehicle { id, kind: ActorKind::Bus, lane, before: lane, s_m, speed_mps, flags, ..Vehicle::standing() }
     };
-    let mut traffic = with_vehicles(network, vec![bus(1, a), bus(2, b)]);
+    let mut traffic = with_vehicles(network, vec![bus(1, a, speeds_mps[0]), bus(2, b, speeds_mps[1])]);
     let mut stood = 0;
     for tick in 1..=MINUTE {
         let conditions = Conditions::default();
@@ -36,12 +36,28 @@ fn long_vehicles_let_each_other_through_narrow_bends() {
                     let places = [(lane, bend_m - mine_m), (other, other_m - theirs_m)];
                     if places.iter().all(|(_, s_m)| *s_m > 0.0) {
                         met += 1;
-                        stood += u32::from(meet(&network, places, 5.0) > 0);
+                        stood += u32::from(meet(&network, places, [5.0; 2]) > 0);
                     }
                 }
             }
         }
         assert!(met > 4 && stood > 0, "{name}: {met} met, {stood} times somebody stood");
+    }
+}
+
+/// Who waits a little nearer to a bend than it should leaves less room: the other comes by slowly.
+#[test]
+fn who_waits_right_before_a_bend_lets_the_other_out() {
+    for name in ["old_town", "suburb"] {
+        let network = bundled(name).expect("it is bundled");
+        for lane in 0..network.lanes.len() as u32 {
+            for (bend_m, (other, other_m)) in network.ways().lanes[lane as usize].bends.iter().map(|bend| bend.begins())
+            {
+                for waits_m in [0.3, 0.75] {
+                    meet(&network, [(lane, bend_m - waits_m), (other, other_m + 2.0)], [0.0, 5.0]);
+                }
+            }
+        }
     }
 }
 
@@ -110,7 +126,7 @@ fn who_could_not_wait_between_a_junction_and_a_bend_waits_before_the_junction() 
     let mut stood = 0;
     for out_m in [10.0, 30.0, 50.0, 70.0, 85.0] {
         for back_m in [8.0, 25.0, 45.0, 60.0, 75.0, ends_m - 8.0] {
-            stood += u32::from(meet(&network, [(out, out_m), (back, back_m)], 6.0) > 60);
+            stood += u32::from(meet(&network, [(out, out_m), (back, back_m)], [6.0; 2]) > 60);
         }
     }
     assert!(stood > 5, "{stood}");
