@@ -4,6 +4,8 @@ use glam::Vec3;
 
 use crate::state_enum;
 
+/// Those who play a story are actors with ids from here on: this plus the number of the role. Traffic has lower ids.
+pub const FIRST_STORY_ID: u32 = 1 << 15;
 /// Parked cars that were pushed are actors with ids from here on: this plus the car's number among those of the map, in
 /// the order of its props. Others have lower ids.
 pub const FIRST_PARKED_ID: u32 = 1 << 16;

@@ -33,6 +33,7 @@ pub mod scenario;
 pub mod scene;
 pub mod signals;
 pub mod state;
+pub mod story;
 pub mod time;
 pub mod traffic;
 pub mod watch;

@@ -58,9 +58,9 @@ pub struct LightAhead {
 }
 
 impl Route {
-    /// A route that starts at a place.
-    pub fn from(network: &RoadNetwork, seed: u64, lane: LaneId, s_m: f32) -> Self {
-        let mut route = Self { lanes: vec![lane], s_m, drawn: 0 };
+    /// A route along some lanes, and then on; it starts on the first of them.
+    pub fn along(network: &RoadNetwork, seed: u64, lanes: Vec<LaneId>, s_m: f32) -> Self {
+        let mut route = Self { lanes, s_m, drawn: 0 };
         route.extend(network, seed);
         route
     }

@@ -60,7 +60,14 @@ fn ring(lanes: i32, length_m: f64) -> Arc<RoadNetwork> {
 }
 
 fn car_at(position: Vec3) -> Obstacle {
-    Obstacle { id: 0, position, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m: kernel::ego::SIZE_M }
+    Obstacle {
+        id: 0,
+        position,
+        heading_rad: 0.0,
+        velocity_mps: Vec3::ZERO,
+        size_m: kernel::ego::SIZE_M,
+        on_foot: false,
+    }
 }
 
 fn drive(traffic: &mut Traffic, ego: Obstacle, ticks: Tick, mut each: impl FnMut(&Traffic, Tick)) {

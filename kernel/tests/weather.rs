@@ -22,7 +22,7 @@ fn preset(name: &str) -> Weather {
 fn drive(network: &Arc<RoadNetwork>, counts: &TrafficCounts, weather: &Weather, ticks: Tick) -> Traffic {
     let mut traffic = Traffic::spawn(counts, 4, network.ways(), FAR);
     let size_m = kernel::ego::SIZE_M;
-    let ego = Obstacle { id: 0, position: FAR, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m };
+    let ego = Obstacle { id: 0, position: FAR, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m, on_foot: false };
     let conditions = Conditions::of(weather);
     for tick in 1..=ticks {
         traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions });
@@ -103,7 +103,7 @@ fn traffic_flows_in_a_downpour() {
     let driven_km = |weather: &Weather| {
         let mut traffic = Traffic::spawn(&counts, 9, network.ways(), FAR);
         let size_m = kernel::ego::SIZE_M;
-        let ego = Obstacle { id: 0, position: FAR, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m };
+        let ego = Obstacle { id: 0, position: FAR, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m, on_foot: false };
         let conditions = Conditions::of(weather);
         let mut driven_m = 0.0;
         for tick in 1..=seconds(300) {

@@ -471,6 +471,7 @@ def campaign(
     out: str | PathLike[str],
     *,
     runs: int | None = None,
+    vary: int | None = None,
     km: float | None = None,
     cases: int | None = None,
     pedestrian_cases: int | None = None,
@@ -490,7 +491,8 @@ def campaign(
     and `campaign.json` go to the folder `out`. Ctrl-C ends it; what was driven stays, and the same call goes on there.
 
     `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
-    scenario's, or all bundled ones), `weather` is one of CARLA's names. A run takes at most `max_time` simulated seconds.
+    scenario's, or all bundled ones), `weather` is one of CARLA's names. `vary` are as many runs, each with values drawn for those
+    parameters of the scenario's story that have ranges. A run takes at most `max_time` simulated seconds.
     `jobs` worlds are simulated at the same time (None: one a core); the results do not depend on it.
 
     With `shard`, (i, n), it drives every n-th run alone, up to `runs`, into a folder for `collect`, and gives what `aeye

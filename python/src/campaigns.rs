@@ -31,11 +31,11 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 #[pyfunction]
 #[pyo3(
     signature = (
-        checkpoint, out, *, runs = None, km = None, cases = None, pedestrian_cases = None, maps = None, scenario = None,
+        checkpoint, out, *, runs = None, vary = None, km = None, cases = None, pedestrian_cases = None, maps = None, scenario = None,
         pedestrians = None, hazards = None, weather = None, max_time = Given::of(240.0), seed = Given::of(Whole(1)),
         jobs = None, shard = None
     ),
-    text_signature = "(checkpoint, out, *, runs=None, km=None, cases=None, pedestrian_cases=None, maps=None, \
+    text_signature = "(checkpoint, out, *, runs=None, vary=None, km=None, cases=None, pedestrian_cases=None, maps=None, \
                       scenario=None, pedestrians=None, hazards=None, weather=None, max_time=240.0, seed=1, jobs=None, \
                       shard=None)"
 )]
@@ -45,6 +45,7 @@ pub fn campaign<'py>(
     checkpoint: Given<OneOrMore<Checkpoint<'py>>>,
     out: PathBuf,
     runs: Option<Given<Whole>>,
+    vary: Option<Given<Whole>>,
     km: Option<Given<f64>>,
     cases: Option<Given<Whole>>,
     pedestrian_cases: Option<Given<Whole>>,
@@ -60,6 +61,10 @@ pub fn campaign<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let count = |given, name| within(given, name, 1..=u32::MAX);
     let (runs, km, pedestrians) = (count(runs, "runs")?, named(km, "km")?, people(pedestrians)?);
+    let vary = count(vary, "vary")?;
+    if vary.is_some() && runs.is_some() {
+        return Err(input("both runs and vary; expected one of them".to_owned()));
+    }
     let (cases, pedestrian_cases) = (count(cases, "cases")?, count(pedestrian_cases, "pedestrian_cases")?);
     if pedestrian_cases.is_some() && pedestrians == Some(0) {
         return Err(input("pedestrian_cases with pedestrians=0; expected more than 0".to_owned()));
@@ -70,7 +75,8 @@ pub fn campaign<'py>(
         maps: named(maps, "maps")?.map_or_else(Vec::new, OneOrMore::list).iter().map(|path| text(path)).collect(),
         embed_map: false,
         scenario,
-        goal: Goal::of(runs, km, [cases, pedestrian_cases]).ok_or_else(|| input(GOAL.to_owned()))?,
+        vary: vary.is_some(),
+        goal: Goal::of(runs.or(vary), km, [cases, pedestrian_cases]).ok_or_else(|| input(GOAL.to_owned()))?,
         pedestrians,
         hazards: level(hazards)?,
         weather: preset(weather)?,

@@ -24,7 +24,7 @@ const TEXTS: [&str; BUNDLED.len()] = [
 /// # Errors
 /// When the text is not well-formed XML, or holds no lane to drive on.
 pub fn bake(name: &str, xodr: &str) -> Result<RoadNetwork, BakeError> {
-    baking::bake(name, xodr).map(RoadNetwork::from)
+    baking::bake(name, xodr).map(|map| RoadNetwork::from(map).of_text(xodr))
 }
 
 /// The OpenDRIVE text of a bundled map by name.

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
+use crate::baking::Survey;
 use crate::map_data::{LaneKind, MapData, Projection};
 use crate::physics::Statics;
 use crate::places::{Ground, Places};
@@ -22,11 +23,21 @@ pub struct RoadNetwork {
     places: OnceLock<Arc<Places>>,
     statics: OnceLock<Arc<Statics>>,
     ways: OnceLock<Arc<Ways>>,
+    /// The text that it was baked from; nothing where it was made otherwise.
+    text: Arc<str>,
+    survey: OnceLock<Option<Arc<Survey>>>,
 }
 
 impl From<MapData> for RoadNetwork {
     fn from(map: MapData) -> Self {
-        Self { map: Arc::new(map), places: OnceLock::new(), statics: OnceLock::new(), ways: OnceLock::new() }
+        Self {
+            map: Arc::new(map),
+            places: OnceLock::new(),
+            statics: OnceLock::new(),
+            ways: OnceLock::new(),
+            text: Arc::from(""),
+            survey: OnceLock::new(),
+        }
     }
 }
 
@@ -45,6 +56,16 @@ impl fmt::Debug for RoadNetwork {
 }
 
 impl RoadNetwork {
+    /// The same with the text that it was baked from.
+    pub(crate) fn of_text(self, text: &str) -> Self {
+        Self { text: Arc::from(text), ..self }
+    }
+
+    /// Its roads by their ids in the file, along their reference lines, to which other formats refer.
+    pub(crate) fn survey(&self) -> Option<&Survey> {
+        self.survey.get_or_init(|| Survey::of(&self.text).map(Arc::new)).as_deref()
+    }
+
     /// Where its lanes and its ground are.
     pub(crate) fn places(&self) -> &Arc<Places> {
         self.places.get_or_init(|| Arc::new(Places::new(&self.map)))

@@ -88,7 +88,7 @@ fn who_passes_on_the_lane_of_the_other_direction_keeps_the_route() {
         if beside.is_empty() || !beside.iter().all(comes) {
             continue;
         }
-        let mut route = Route::from(&network, 1, lane_id, 20.0);
+        let mut route = Route::along(&network, 1, vec![lane_id], 20.0);
         let before = route.lanes.clone();
         assert!(!route.follow(&network, 1, oncoming, heading_rad), "lane {id}");
         assert_eq!(route.lanes[..before.len()], before, "lane {id}");
@@ -113,7 +113,7 @@ fn a_light_is_shown_as_soon_as_people_have_to_see_it() {
                 let rotation = Quat::from_rotation_z(heading_rad);
                 let position = middle - rotation * Vec3::new(ego::CENTRE_M.x, 0.0, 0.0);
                 let motion = Motion { position, rotation, velocity_mps: Vec3::ZERO, spin_radps: Vec3::ZERO };
-                let route = Route::from(&network, 1, id as LaneId, s_m);
+                let route = Route::along(&network, 1, vec![id as LaneId], s_m);
                 let hud = route.hud(&network, &scenario, 5, &ego::Ego::new(motion));
                 let to_line_m = away_m as f32 - NOSE_M;
                 let phase = match stop.kind {
@@ -155,7 +155,7 @@ fn a_route_leaves_a_lane_that_ends_for_the_one_beside_it_and_tells_where_the_roa
     let network = lane_drop();
     let (mut beside, mut ended) = (0, 0);
     for (id, _) in network.lanes.iter().enumerate().filter(|(_, lane)| lane.kind == LaneKind::Driving) {
-        let mut route = Route::from(&network, 1, id as LaneId, 0.0);
+        let mut route = Route::along(&network, 1, vec![id as LaneId], 0.0);
         for (place, pair) in route.lanes.windows(2).enumerate() {
             let at_m = network.ways().enters_at_m(pair[0], pair[1]);
             beside += usize::from(at_m > 0.0);

@@ -55,6 +55,7 @@ impl Scenario {
                 least_intervention_kmh: 0.0,
                 takeover_s: TAKEOVER_S,
             },
+            story: None,
         }
     }
 }

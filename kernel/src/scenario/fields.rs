@@ -1,7 +1,11 @@
 //! What a scenario holds.
 
+use std::sync::Arc;
+
 use crate::car::CarSetup;
 use crate::state;
+use crate::state::State;
+use crate::story::Story;
 use crate::time::Tick;
 use crate::traffic::{HazardRates, TrafficCounts};
 use crate::weather::{Weather, WeatherChange, WeatherPreset};
@@ -39,32 +43,51 @@ state! {
     }
 }
 
-state! {
-    /// A validated scenario.
-    #[derive(Clone, Debug, PartialEq)]
-    pub struct Scenario {
-        /// Name of a bundled map, or of the foreign map that goes with it.
-        pub map: String,
-        /// Seed of every random number of the run.
-        pub seed: u64,
-        /// Other road users.
-        pub traffic: TrafficCounts,
-        /// How often people at the wheel endanger others.
-        pub hazards: HazardRates,
-        /// Weather at the start; [`Scenario::weather_at`] any tick.
-        pub weather: Weather,
-        /// What it becomes, if it changes.
-        pub later: Option<WeatherChange>,
-        /// Start of the ego car.
-        pub ego: EgoStart,
-        /// Which helpers of the ego car are on.
-        pub car: CarSetup,
-        /// Rules.
-        pub rules: Rules,
-    }
+/// A validated scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Name of a bundled map, or of the foreign map that goes with it.
+    pub map: String,
+    /// Seed of every random number of the run.
+    pub seed: u64,
+    /// Other road users.
+    pub traffic: TrafficCounts,
+    /// How often people at the wheel endanger others.
+    pub hazards: HazardRates,
+    /// Weather at the start; [`Scenario::weather_at`] any tick.
+    pub weather: Weather,
+    /// What it becomes, if it changes.
+    pub later: Option<WeatherChange>,
+    /// Start of the ego car.
+    pub ego: EgoStart,
+    /// Which helpers of the ego car are on.
+    pub car: CarSetup,
+    /// Rules.
+    pub rules: Rules,
+    /// What others do to whom when, if the scenario says so.
+    pub story: Option<Arc<Story>>,
 }
 
 impl Scenario {
+    /// The canonical bytes. Those of a scenario without a story say nothing of stories.
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let Self { map, seed, traffic, hazards, weather, later, ego, car, rules, story } = self;
+        let mut bytes = Vec::new();
+        map.write(&mut bytes);
+        seed.write(&mut bytes);
+        traffic.write(&mut bytes);
+        hazards.write(&mut bytes);
+        weather.write(&mut bytes);
+        later.write(&mut bytes);
+        ego.write(&mut bytes);
+        car.write(&mut bytes);
+        rules.write(&mut bytes);
+        if let Some(story) = story {
+            story.write(&mut bytes);
+        }
+        bytes
+    }
+
     /// The weather at a tick.
     pub fn weather_at(&self, tick: Tick) -> Weather {
         self.later.map_or(self.weather, |later| later.at(&self.weather, tick))

@@ -3,6 +3,7 @@
 use crate::ego;
 use crate::map::{Lane, LaneId, LaneKind, RoadNetwork};
 use crate::rng::{self, Stream};
+use crate::story::Stage;
 
 use super::fields::Scenario;
 
@@ -26,6 +27,10 @@ pub struct StartError {
 impl Scenario {
     /// Where the ego car starts on a map: lane, and distance along it of the middle of the car, metres.
     pub fn start_on(&self, network: &RoadNetwork) -> Result<(LaneId, f32), StartError> {
+        if let Some(story) = &self.story {
+            let refused = |reason| StartError { key: Some("story"), reason };
+            return Stage::new(story, network).and_then(|stage| stage.ego_road(network)).map_err(refused);
+        }
         match self.ego.lane {
             Some(lane) => given(network, lane, self.ego.s_m),
             None => drawn(self.seed, network).ok_or_else(|| {

@@ -1,6 +1,9 @@
 //! Scenarios as text.
 
+use std::sync::Arc;
+
 use crate::car::CarSetup;
+use crate::story::Story;
 use crate::traffic::TrafficCounts;
 
 use super::fields::{EgoStart, MOST_OF_A_KIND, Rules, Scenario, ScenarioError};
@@ -37,6 +40,7 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     read_ego(&mut root, &mut scenario.ego)?;
     read_car(&mut root, &mut scenario.car)?;
     read_rules(&mut root, &mut scenario.rules)?;
+    read_story(&mut root, &mut scenario)?;
     root.end()?;
     Ok(scenario)
 }
@@ -82,14 +86,25 @@ fn read_rules(root: &mut Section<'_>, to: &mut Rules) -> Result<(), ScenarioErro
     })
 }
 
+/// What is wrong in a story is told by the story's own lines.
+fn read_story(root: &mut Section<'_>, to: &mut Scenario) -> Result<(), ScenarioError> {
+    let expected = || "a text in OpenSCENARIO XML".to_owned();
+    let Some(text) = root.named("story", expected, |text| Some(text.to_owned()))? else { return Ok(()) };
+    let story = Story::read(&text).map_err(|error| ScenarioError(format!("story, {error}")))?;
+    to.story = Some(Arc::new(story));
+    Ok(())
+}
+
 /// Every key, so that the text still says the same when a default changes.
 fn print(scenario: &Scenario) -> String {
-    let Scenario { map, seed, traffic, hazards, weather, later, ego, car, rules } = scenario;
+    let Scenario { map, seed, traffic, hazards, weather, later, ego, car, rules, story } = scenario;
+    // Keys of the whole text stand before its sections.
+    let story = story.as_ref().map_or(String::new(), |story| format!("story = {}\n", toml::Value::from(story.text())));
     let hazards = print_hazards(hazards);
     let map = toml::Value::from(map.as_str());
     let lane = ego.lane.map_or(String::new(), |lane| format!("lane = {lane}\n"));
     format!(
-        "map = {map}\nseed = {seed}\n\n\
+        "map = {map}\nseed = {seed}\n{story}\n\
          [traffic]\ncars = {}\nmotorcycles = {}\nbicycles = {}\npedestrians = {}\njaywalks_per_min = {:?}\n\
          speed_share = {:?}\nheadway_s = {:?}\npoliteness = {:?}\n\n\
          {hazards}\n\

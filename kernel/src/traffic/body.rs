@@ -19,6 +19,8 @@ pub struct Obstacle {
     pub velocity_mps: Vec3,
     /// Length, width and height, metres.
     pub size_m: Vec3,
+    /// It is somebody on foot.
+    pub on_foot: bool,
 }
 
 /// What traffic sees of the rest of the world, as it was at the end of the previous tick.
@@ -31,7 +33,7 @@ pub struct Surroundings<'a> {
     /// Its controls' flags: traffic sees the indicators and hears the horn.
     pub ego_flags: u8,
     /// Actors that physics has made loose, by ascending id: they decide nothing, their state stays
-    /// as it was, and others see them at these poses.
+    /// as it was, and others see them at these poses. Those who play a story are among them.
     pub loose: &'a [Obstacle],
     /// What the weather asks of everybody.
     pub conditions: Conditions,

@@ -8,12 +8,10 @@ use crate::time::TICK_S;
 
 use super::body::Body;
 use super::drive::{View, turns_in_m};
-use super::hazard::Hazard;
+use super::hazard::{Hazard, SLOW_MPS};
 use super::outline::half_m;
 use super::vehicle::{DECIDE_TICKS, Vehicle};
 
-/// Who is faster takes no last look, m/s.
-pub(super) const SLOW_MPS: f32 = 7.0;
 /// Long vehicles, which sweep out of their lanes where these bend, do so up to here, but brake only.
 const LONG_MPS: f32 = 11.0;
 /// Room to others, metres: who has more keeps that.

@@ -6,7 +6,6 @@ use crate::geometry::direction;
 use crate::map_data::{MapData, Place};
 
 use super::body::{Body, Obstacle};
-use super::brink::SLOW_MPS;
 use super::step::Step;
 
 /// Nothing farther than this from the middle of the way matters, metres.
@@ -26,6 +25,8 @@ const VERGE_M: f32 = 0.4;
 const STEERED_M: f32 = 0.05;
 /// How far ahead the crossing of a walker is expected to go on, seconds.
 const WALKER_FORESIGHT_S: f32 = 2.5;
+/// Who is faster takes no last look, m/s.
+pub(super) const SLOW_MPS: f32 = 7.0;
 /// The same for a vehicle.
 const VEHICLE_FORESIGHT_S: f32 = 0.8;
 /// What stands is passed from so far before it on, metres.
@@ -54,14 +55,14 @@ pub(super) struct Hazard {
 
 impl Hazard {
     /// A box that physics moves.
-    pub fn of(obstacle: &Obstacle, walker: bool) -> Self {
+    pub fn of(obstacle: &Obstacle) -> Self {
         Self {
             id: obstacle.id,
             position: obstacle.position,
             velocity: obstacle.velocity_mps.truncate(),
             forward: direction(obstacle.heading_rad),
             half: obstacle.size_m.truncate() * 0.5,
-            walker,
+            walker: obstacle.on_foot,
             vehicle: None,
             clearance_m: CLEARANCE_M,
         }

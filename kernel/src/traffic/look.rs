@@ -1,6 +1,5 @@
 //! What everybody sees in a tick, gathered once for all.
 
-use crate::actor::FIRST_PARKED_ID;
 use crate::controls::Controls;
 use crate::map_data::{LaneKind, Place, Projection, Turn};
 use crate::signals::{self, LightPhase};
@@ -176,12 +175,10 @@ impl Sight {
     fn gather_hazards(&mut self, actors: &Actors, around: &Surroundings<'_>) {
         let vehicles = &actors.state.vehicles;
         let (driven, walked) = actors.bodies.split_at(vehicles.len());
-        let first_walker = walked.first().map_or(u32::MAX, |body| body.id);
-        let is_walker = |id: u32| (first_walker..FIRST_PARKED_ID).contains(&id);
-        let loose = around.loose.iter().map(|o| Hazard::of(o, is_walker(o.id)));
+        let loose = around.loose.iter().map(Hazard::of);
         let there = vehicles.iter().zip(driven).enumerate().filter(|(_, (v, _))| !around.holds(v.id));
         let aside = there.clone().filter(|(_, (v, _))| v.is_aside()).map(|(_, (_, body))| Hazard::of_body(body));
-        let free = std::iter::once(Hazard::of(&around.ego, false)).chain(loose).chain(aside);
+        let free = std::iter::once(Hazard::of(&around.ego)).chain(loose).chain(aside);
         let drives = there.filter(|(_, (v, _))| !v.is_aside());
         let drives = drives.map(|(i, (_, body))| Hazard { vehicle: Some(i as u32), ..Hazard::of_body(body) });
         let edge = |walker: &Walker| &actors.map().walk_edges[walker.edge as usize];

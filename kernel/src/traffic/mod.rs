@@ -116,7 +116,12 @@ impl Traffic {
     /// Fills a map with the actors that are asked for, none inside another or within 20 m of
     /// `ego_start`; fewer where the map has no room ([`Traffic::missing`] says so).
     pub fn spawn(counts: &TrafficCounts, seed: u64, ways: &Arc<Ways>, ego_start: Vec3) -> Self {
-        Self::with(counts, seed, ways, spawn::spawn(counts, seed, ways, ego_start))
+        Self::spawn_clear_of(counts, seed, ways, &[ego_start])
+    }
+
+    /// The same within 20 m of none of some places.
+    pub(crate) fn spawn_clear_of(counts: &TrafficCounts, seed: u64, ways: &Arc<Ways>, taken: &[Vec3]) -> Self {
+        Self::with(counts, seed, ways, spawn::spawn(counts, seed, ways, taken))
     }
 
     /// The same with people at the wheel who make mistakes at these rates; by itself nobody does.

@@ -56,16 +56,14 @@ impl Actors {
         let stays = |spot: &DoorSpot| !around.is_loose(FIRST_PARKED_ID + spot.parked);
         self.open_spots(around.tick).filter(move |(_, spot)| stays(spot)).map(|(_, spot)| {
             let leaf = spot.leaf(OPEN_RAD);
-            Hazard::of(
-                &Obstacle {
-                    id: FIRST_DOOR_ID + spot.parked,
-                    position: spot.middle(leaf),
-                    heading_rad: ops::atan2(leaf.y, leaf.x),
-                    velocity_mps: Vec3::ZERO,
-                    size_m: ActorKind::Door.size_m(),
-                },
-                false,
-            )
+            Hazard::of(&Obstacle {
+                id: FIRST_DOOR_ID + spot.parked,
+                position: spot.middle(leaf),
+                heading_rad: ops::atan2(leaf.y, leaf.x),
+                velocity_mps: Vec3::ZERO,
+                size_m: ActorKind::Door.size_m(),
+                on_foot: false,
+            })
         })
     }
 

@@ -111,7 +111,7 @@ impl Actors {
         let vehicles =
             self.state.vehicles.iter().zip(&self.drivers).filter(|(v, _)| v.id != bus && !around.holds(v.id));
         let mut driven = vehicles.map(|(v, driver)| Hazard::of_body(&self.ways.vehicle_body(self.seed, v, driver)));
-        let free = |o: &Obstacle| keeps_off(&Hazard::of(o, false), place, own_m);
+        let free = |o: &Obstacle| keeps_off(&Hazard::of(o), place, own_m);
         people.all(|(i, (w, there))| there.beside(w.offset_m).truncate().distance(place) > own_m + half_m(i))
             && driven.all(|hazard| keeps_off(&hazard, place, own_m))
             && free(&around.ego)

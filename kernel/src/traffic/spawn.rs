@@ -111,10 +111,10 @@ impl Taken {
 }
 
 /// Everybody who is asked for, as far as the map has room.
-pub(super) fn spawn(counts: &TrafficCounts, seed: u64, ways: &Ways, ego: Vec3) -> TrafficState {
-    let (map, ego) = (&*ways.places.map, ego.truncate());
-    let mut spawner =
-        Spawner { counts, seed, map, ways, ego, taken: Vec::new(), next_id: 1, state: TrafficState::default() };
+pub(super) fn spawn(counts: &TrafficCounts, seed: u64, ways: &Ways, clear_of: &[Vec3]) -> TrafficState {
+    let map = &*ways.places.map;
+    let state = TrafficState::default();
+    let mut spawner = Spawner { counts, seed, map, ways, clear_of, taken: Vec::new(), next_id: 1, state };
     spawner.vehicles();
     spawner.walkers();
     spawner.state
@@ -125,7 +125,8 @@ struct Spawner<'a> {
     seed: u64,
     map: &'a MapData,
     ways: &'a Ways,
-    ego: Vec2,
+    /// Nobody enters near these places.
+    clear_of: &'a [Vec3],
     taken: Vec<Taken>,
     /// Of whom is looked for room next; what somebody is follows from it.
     next_id: u16,
@@ -135,7 +136,8 @@ struct Spawner<'a> {
 impl Spawner<'_> {
     fn take(&mut self, place: Taken) -> bool {
         let free = self.taken.iter().all(|other| !other.meets(&place));
-        let clear = self.ego.distance(place.middle) > EGO_CLEARANCE_M + place.half.length();
+        let least_m = EGO_CLEARANCE_M + place.half.length();
+        let clear = self.clear_of.iter().all(|other| other.truncate().distance(place.middle) > least_m);
         if free && clear {
             self.taken.push(place);
         }

@@ -79,6 +79,7 @@ impl Loose {
             heading_rad: ops::atan2(forward.y, forward.x),
             velocity_mps: self.motion.velocity_mps,
             size_m: self.kind.size_m(),
+            on_foot: self.kind.is_on_foot(),
         }
     }
 }

@@ -19,6 +19,7 @@ pub fn ego_obstacle(car: &Ego) -> Obstacle {
         heading_rad: car.heading_rad(),
         velocity_mps: car.motion.velocity_mps,
         size_m: ego::SIZE_M,
+        on_foot: false,
     }
 }
 

@@ -4,10 +4,12 @@ use std::fmt;
 
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::actor::FIRST_STORY_ID;
 use crate::car::{RunningGear, Wheel};
 use crate::map::RoadNetwork;
 use crate::motion::Motion;
 use crate::state::{State, StateHash, first_difference};
+use crate::story::Stage;
 use crate::time::Tick;
 use crate::traffic::TrafficState;
 
@@ -82,6 +84,7 @@ pub(super) fn difference(
     let walker = |at: usize| left_traffic.walkers.get(at).map(|w| u32::from(w.id));
     let loose = |at: usize| left.bodies.loose.get(at).map(|l| l.id);
     let none = |_| None;
+    let actor = |at: usize| Some(FIRST_STORY_ID + at as u32);
     let in_part = |part| {
         let (path, expected, got, actor) = match part {
             0 => named(&left.input, &right.input, none),
@@ -90,7 +93,7 @@ pub(super) fn difference(
             3 => named(&left_traffic.walkers, &right_traffic.walkers, walker),
             4 => named(&left.bodies, &right.bodies, loose),
             5 => named(&left.run, &right.run, none),
-            _ => named(&left.output, &right.output, none),
+            _ => named(&left.output, &right.output, none).or_else(|| named(&left.story, &right.story, actor)),
         }?;
         Some(FieldDifference { part: PARTS[part].to_owned(), actor, field: path, expected, got })
     };
@@ -99,10 +102,11 @@ pub(super) fn difference(
 
 type Named = (String, String, String, Option<u32>);
 
-/// The first difference of a part. An index of `[]` or `loose[]` becomes the actor's id.
+/// The first difference of a part. An index of `[]`, `loose[]` or `actors[]` becomes the actor's id.
 fn named<T: State>(left: &T, right: &T, actor_at: impl Fn(usize) -> Option<u32>) -> Option<Named> {
     let (path, expected, got) = first_difference(left, right)?;
     let listed = path.strip_prefix('[').or_else(|| path.strip_prefix("loose["));
+    let listed = listed.or_else(|| path.strip_prefix("actors["));
     let split = listed.and_then(|rest| rest.split_once(']'));
     let actor = split.and_then(|(index, _)| actor_at(index.parse().ok()?));
     let field = match (actor, split) {
@@ -160,5 +164,15 @@ pub(super) fn check(parts: &Parts, network: &RoadNetwork) -> Result<(), String> 
     match bodies.loose.iter().find(|loose| !fits(&loose.motion)) {
         Some(loose) => Err(format!("motion of actor {} is {:?}, expected a possible motion", loose.id, loose.motion)),
         None => Ok(()),
+    }
+}
+
+/// Refuses a story's state without that story, and the other way round.
+pub(super) fn check_story(parts: &Parts, stage: Option<&Stage>, network: &RoadNetwork) -> Result<(), String> {
+    match (stage, &parts.story) {
+        (Some(stage), Some(story)) => stage.check(story, network),
+        (None, None) => Ok(()),
+        (Some(_), None) => Err("its run has no story, expected that of the scenario".to_owned()),
+        (None, Some(_)) => Err("its run has a story, expected none".to_owned()),
     }
 }

@@ -14,6 +14,7 @@ use crate::route::Route;
 use crate::scenario::Scenario;
 use crate::state;
 use crate::state::{DecodeError, Reader, State};
+use crate::story::StoryState;
 use crate::time::Tick;
 use crate::traffic::{TrafficState, Vehicle, Walker};
 use crate::watch::Watch;
@@ -96,6 +97,9 @@ pub(super) struct Parts {
     pub bodies: Bodies,
     pub run: RunPart,
     pub output: OutputPart,
+    /// How far the story has come, if there is one. Its bytes are the last ones, of the part output; without a story there
+    /// are none, and states are as they were before there were stories.
+    pub story: Option<StoryState>,
 }
 
 /// Appends the canonical bytes of one part.
@@ -112,7 +116,10 @@ impl Parts {
             &|out| traffic.walkers.write(out),
             &|out| self.bodies.write(out),
             &|out| self.run.write(out),
-            &|out| self.output.write(out),
+            &|out| {
+                self.output.write(out);
+                self.story.iter().for_each(|story| story.write(out));
+            },
         ];
         for (part, end) in parts.iter().zip(&mut ends) {
             part(out);
@@ -126,7 +133,9 @@ impl Parts {
         let r = &mut Reader::new(bytes);
         let (input, ego) = (InputPart::read(r)?, EgoPart::read(r)?);
         let traffic = TrafficState { vehicles: Vec::<Vehicle>::read(r)?, walkers: Vec::<Walker>::read(r)? };
-        let parts = Self { input, ego, bodies: Bodies::read(r)?, run: RunPart::read(r)?, output: OutputPart::read(r)? };
+        let (bodies, run, output) = (Bodies::read(r)?, RunPart::read(r)?, OutputPart::read(r)?);
+        let story = if r.remaining() > 0 { Some(StoryState::read(r)?) } else { None };
+        let parts = Self { input, ego, bodies, run, output, story };
         if r.remaining() > 0 { Err(r.error("the end")) } else { Ok((parts, traffic)) }
     }
 }

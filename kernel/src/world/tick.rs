@@ -13,8 +13,9 @@ use crate::physics::{Physics, Touched};
 use crate::scenario::Scenario;
 use crate::signals;
 use crate::state::StateHash;
+use crate::story::{Around, Stage};
 use crate::time::{KEYFRAME_TICKS, Tick, seconds};
-use crate::traffic::{Obstacle, Surroundings, Traffic};
+use crate::traffic::{Body, Obstacle, Surroundings, Traffic};
 use crate::watch::{self, Log};
 use crate::weather::{Conditions, Water};
 
@@ -37,6 +38,7 @@ pub struct World {
     pub(super) network: Arc<RoadNetwork>,
     pub(super) parts: Parts,
     pub(super) traffic: Traffic,
+    pub(super) stage: Option<Arc<Stage>>,
     physics: Physics,
     pub(super) bytes: Vec<u8>,
     pub(super) ends: [usize; PARTS.len()],
@@ -47,6 +49,7 @@ pub struct World {
 #[derive(Clone, Default)]
 struct Scratch {
     obstacles: Vec<Obstacle>,
+    bodies: Vec<Body>,
     near: Vec<u32>,
     touched: Touched,
 }
@@ -54,8 +57,9 @@ struct Scratch {
 impl World {
     /// A world at tick 0. The scenario's map is refused when it has another name than `network`.
     pub fn new(scenario: &Scenario, network: &Arc<RoadNetwork>) -> Result<Self, WorldError> {
-        let (parts, traffic) = start::begin(scenario, network)?;
-        Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
+        let stage = start::stage(scenario, network)?;
+        let (parts, traffic) = start::begin(scenario, network, stage.as_deref())?;
+        Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, (traffic, stage)))
     }
 
     /// The world as it was at a keyframe, bit for bit. Refuses another map as [`World::new`] does, and a
@@ -73,24 +77,40 @@ impl World {
     /// whose log begins with [`World::initial_keyframe`].
     pub fn fork(scenario: &Scenario, network: &Arc<RoadNetwork>, keyframe: &Keyframe) -> Result<Self, WorldError> {
         start::check_map(scenario, network)?;
+        let stage = start::stage(scenario, network)?;
         let (mut parts, traffic) = keyframe.read()?;
         parts.input.origin = origin(scenario, network);
         let wrong = |reason| WorldError::State { tick: keyframe.tick, reason };
         keyframe::check(&parts, network).map_err(wrong)?;
+        keyframe::check_story(&parts, stage.as_deref(), network).map_err(wrong)?;
         let counts = &scenario.traffic;
         let traffic = Traffic::resume(counts, scenario.seed, network.ways(), traffic).map_err(wrong)?;
         let traffic = traffic.with_hazards(&scenario.hazards);
-        Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, traffic))
+        Ok(Self::assemble(Arc::new(scenario.clone()), network, parts, (traffic, stage)))
     }
 
-    fn assemble(scenario: Arc<Scenario>, network: &Arc<RoadNetwork>, parts: Parts, traffic: Traffic) -> Self {
-        let mut traffic = traffic;
+    fn assemble(
+        scenario: Arc<Scenario>,
+        network: &Arc<RoadNetwork>,
+        parts: Parts,
+        (mut traffic, stage): (Traffic, Option<Arc<Stage>>),
+    ) -> Self {
         traffic.know_doors(parts.input.tick);
         let mut physics = Physics::new(network.statics(), &parts.ego.car.motion);
-        parts.bodies.insert_all(traffic.bodies(), &mut physics);
+        let mut all = Vec::new();
+        parts.bodies.insert_all(everybody(&traffic, stage.as_deref(), &parts, &mut all), &mut physics);
         let (network, ends) = (network.clone(), Default::default());
-        let mut world =
-            Self { scenario, network, parts, traffic, physics, bytes: Vec::new(), ends, scratch: Scratch::default() };
+        let mut world = Self {
+            scenario,
+            network,
+            parts,
+            traffic,
+            stage,
+            physics,
+            bytes: Vec::new(),
+            ends,
+            scratch: Scratch::default(),
+        };
         world.encode();
         world
     }
@@ -137,19 +157,33 @@ impl World {
 
     /// Traffic decides from the state of the previous tick, then physics moves what is near.
     fn move_everyone(&mut self) {
-        let Scratch { obstacles, near, .. } = &mut self.scratch;
-        let (car, bodies) = (&mut self.parts.ego.car, &mut self.parts.bodies);
+        let Scratch { obstacles, near, bodies: all, .. } = &mut self.scratch;
         obstacles.clear();
-        obstacles.extend(bodies.loose.iter().map(bodies::Loose::obstacle));
-        let ego = doors::ego_obstacle(car);
+        obstacles.extend(self.parts.bodies.loose.iter().map(bodies::Loose::obstacle));
+        let ego = doors::ego_obstacle(&self.parts.ego.car);
         let (tick, ego_flags) = (self.parts.input.tick, self.parts.output.applied.controls.flags);
+        let before = self.stage.as_ref().zip(self.parts.story.clone());
+        if let (Some(stage), Some(story)) = (&self.stage, &mut self.parts.story) {
+            let (network, touching) = (&*self.network, self.parts.run.watch.touching.as_slice());
+            let ego_on_road = !self.parts.run.watch.off_road;
+            stage.step(story, &Around { tick, network, ego, loose: obstacles, touching, ego_on_road });
+        }
+        if let Some((stage, story)) = &before {
+            // Traffic decides from where they were.
+            let held = |o: &Obstacle| obstacles.binary_search_by_key(&o.id, |loose| loose.id).is_ok();
+            let playing: Vec<Obstacle> = stage.obstacles(story).filter(|o| !held(o)).collect();
+            obstacles.extend(playing);
+            obstacles.sort_unstable_by_key(|o| o.id);
+        }
         // People notice the weather once a second.
         let conditions = Conditions::of(&self.scenario.weather_at(tick - tick % seconds(1)));
         self.traffic.step(&Surroundings { tick, ego, ego_flags, loose: obstacles, conditions });
-        let mut log = Log { events: &mut self.parts.output.events, speed_mps: car.speed_mps() };
+        let mut log = Log { events: &mut self.parts.output.events, speed_mps: self.parts.ego.car.speed_mps() };
         self.traffic.told_near(ego.position).for_each(|(kind, actor)| log.with(kind, actor));
         let parked = &self.network.places().parked;
-        bodies.prepare(self.traffic.bodies(), parked, car, &mut self.physics, near);
+        let all = everybody(&self.traffic, self.stage.as_deref(), &self.parts, all);
+        let (car, bodies) = (&mut self.parts.ego.car, &mut self.parts.bodies);
+        bodies.prepare(all, parked, car, &mut self.physics, near);
         let water = Water::of(&self.scenario.weather_at(tick));
         self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car, &water);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
@@ -221,4 +255,13 @@ impl World {
     pub fn odometer_mm(&self) -> u64 {
         self.parts.ego.car.odometer_um / 1000
     }
+}
+
+/// Traffic and those who play a story, by ascending id; `all` is working memory.
+fn everybody<'a>(traffic: &'a Traffic, stage: Option<&Stage>, parts: &Parts, all: &'a mut Vec<Body>) -> &'a [Body] {
+    let Some((stage, story)) = stage.zip(parts.story.as_ref()) else { return traffic.bodies() };
+    all.clear();
+    all.extend_from_slice(traffic.bodies());
+    all.extend(stage.bodies(story));
+    all
 }

@@ -76,7 +76,8 @@ impl World {
 
     fn actors(&self, lit: bool) -> impl Iterator<Item = ActorScene> + '_ {
         let lights = move |body: &Body| if lit && !body.kind.is_on_foot() { lamps::HEADLIGHTS } else { 0 };
-        self.traffic.bodies().iter().map(move |body| {
+        let playing = self.stage.iter().zip(&self.parts.story).flat_map(|(stage, story)| stage.bodies(story));
+        self.traffic.bodies().iter().copied().chain(playing).map(move |body| {
             let loose = self.parts.bodies.loose(body.id).map(|loose| loose.motion);
             let (position, rotation) = loose.map_or((body.position, body.rotation), |m| (m.position, m.rotation));
             let velocity = loose.map_or(body.velocity_mps, |m| m.velocity_mps);
@@ -88,7 +89,7 @@ impl World {
                 rotation,
                 speed_mps: velocity.dot(rotation * Vec3::X),
                 phase_rad: body.phase_rad,
-                lamps: if loose.is_none() { body.lamps | lights(body) } else { 0 },
+                lamps: if loose.is_none() { body.lamps | lights(&body) } else { 0 },
             }
         })
     }
@@ -172,6 +173,19 @@ impl World {
     /// Events of the last tick.
     pub fn last_events(&self) -> &[Event] {
         &self.parts.output.events
+    }
+}
+
+#[cfg(test)]
+impl World {
+    /// How far the story has come.
+    pub fn parts_of_story(&self) -> Option<&crate::story::StoryState> {
+        self.parts.story.as_ref()
+    }
+
+    /// The canonical bytes of the state.
+    pub fn state_of_now(&self) -> Vec<u8> {
+        self.bytes.clone()
     }
 }
 

@@ -112,7 +112,8 @@ impl Drive {
     /// Drives it around a car that stands at a place, facing east.
     pub fn census_around(&self, place: Vec3) -> Census {
         let size_m = kernel::ego::SIZE_M;
-        let ego = Obstacle { id: 0, position: place, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m };
+        let ego =
+            Obstacle { id: 0, position: place, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m, on_foot: false };
         let mut traffic = Traffic::spawn(&self.counts, self.seed, self.network.ways(), place);
         traffic = traffic.with_hazards(&self.hazards);
         let mut watcher = Watcher::new(self, &traffic);

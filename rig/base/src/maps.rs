@@ -6,11 +6,14 @@ use std::sync::Arc;
 
 use anyhow::{Context, anyhow};
 use kernel::map::{BUNDLED, bake, bundled, bundled_text};
+use kernel::scenario::{HazardRates, TrafficCounts};
+use kernel::story::Story;
 use kernel::{RoadNetwork, Scenario};
 use replay::ForeignMap;
 
 use crate::failure::Usage;
 use crate::files::{self, check_name, most};
+use crate::say::say;
 use crate::{output, toml_text};
 
 /// A map to drive on.
@@ -97,9 +100,12 @@ impl ScenarioFile {
     /// Reads one; a map file is looked for beside it.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let text = files::read_text(path, most::TEXT)?;
-        let mut scenario = Scenario::from_toml(&text).map_err(|e| usage_in(path, &e.to_string()))?;
+        let is_story = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xosc"));
+        let read = if is_story { of_story(path, &text) } else { Scenario::from_toml(&text).map_err(|e| e.to_string()) };
+        let mut scenario = read.map_err(|reason| usage_in(path, &reason))?;
         let map = map_of(&scenario, path).map_err(|error| {
-            let place = toml_text::line_of(&text, "map").map_or("map".into(), |line| format!("line {line}: map"));
+            let line = if is_story { line_of_map(&text) } else { toml_text::line_of(&text, "map") };
+            let place = line.map_or("map".into(), |line| format!("line {line}: map"));
             match error.downcast::<Usage>() {
                 Ok(usage) => usage_in(path, &format!("{place}: {usage}")),
                 Err(error) => error.context(format!("{}: {place}", path.display())),
@@ -107,6 +113,11 @@ impl ScenarioFile {
         })?;
         scenario.map = map.network.name.clone();
         Ok(Self { scenario, map, path: path.to_owned(), text })
+    }
+
+    /// A refusal of the file.
+    pub fn refusal(&self, reason: &str) -> anyhow::Error {
+        usage_in(&self.path, reason)
     }
 
     /// Refuses a map on which the ego car cannot start where the file says.
@@ -121,9 +132,32 @@ impl ScenarioFile {
 
 /// The map of a scenario in a file, beside which a map file is looked for, too.
 fn map_of(scenario: &Scenario, file: &Path) -> anyhow::Result<Map> {
-    let beside: PathBuf = file.parent().unwrap_or(Path::new("")).join(&scenario.map);
-    let name = if beside.is_file() { beside.to_string_lossy().into_owned() } else { scenario.map.clone() };
-    Map::find(&name)
+    let folder = file.parent().unwrap_or(Path::new(""));
+    // Files of stories name maps in folders that nobody else has.
+    let plain = Path::new(&scenario.map).file_name().filter(|_| scenario.story.is_some());
+    let beside = [Some(folder.join(&scenario.map)), plain.map(|name| folder.join(name))];
+    let found = beside.into_iter().flatten().find(|path| path.is_file());
+    Map::find(&found.map_or(scenario.map.clone(), |path| path.to_string_lossy().into_owned()))
+}
+
+/// What a story in OpenSCENARIO XML begins with: nobody but those who play, who make no mistakes of their own.
+fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
+    let story = Story::read(text).map_err(|error| error.to_string())?;
+    for (line, element) in story.passed_over() {
+        say(format!("{}: line {line}: <{element}> is passed over", path.display()));
+    }
+    let file = story.map_file().to_owned();
+    // Maps that come with A-Eye need no file.
+    let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
+    let is_there = path.parent().unwrap_or(Path::new("")).join(&file).is_file();
+    let map = if !is_there && bundled_text(&stem).is_some() { stem.into_owned() } else { file };
+    let (traffic, hazards) = (TrafficCounts::NONE, HazardRates::NONE);
+    Ok(Scenario { map: map.clone(), traffic, hazards, story: Some(Arc::new(story)), ..Scenario::default_for(&map, 1) })
+}
+
+/// The line on which a story names its map.
+fn line_of_map(text: &str) -> Option<usize> {
+    text.lines().position(|line| line.contains("<LogicFile")).map(|at| at + 1)
 }
 
 fn usage_in(path: &Path, reason: &str) -> anyhow::Error {

@@ -125,6 +125,7 @@ fn campaign_options(
         embed_map: false,
         scenario: Some(scenario),
         goal: Until::Cases(CASES).into(),
+        vary: false,
         pedestrians: None,
         hazards: None,
         weather: None,

@@ -19,6 +19,7 @@ fn plan(out: &Path) -> Plan {
     Plan {
         maps,
         scenario: None,
+        vary: false,
         pedestrians: None,
         hazards: None,
         weather: None,

@@ -41,7 +41,7 @@ const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows
 const NAMED_ONCE: [(&str, &[&str]); 17] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
-    ("roxmltree::", &["kernel/src/baking/limits/"]),
+    ("roxmltree::", &["kernel/src/baking/limits/", "kernel/src/story/reader/"]),
     ("tract_onnx", &["perception/src/onnx/"]),
     ("tract_cuda", &["perception/src/onnx/"]),
     ("bincode::", &["replay/src/wire.rs"]),

@@ -39,7 +39,8 @@ fn counts(actors: u16) -> TrafficCounts {
 }
 
 fn car_at(position: Vec3, heading_rad: f32) -> Obstacle {
-    Obstacle { id: 0, position, heading_rad, velocity_mps: Vec3::ZERO, size_m: Vec3::new(4.5, 1.9, 1.5) }
+    let size_m = Vec3::new(4.5, 1.9, 1.5);
+    Obstacle { id: 0, position, heading_rad, velocity_mps: Vec3::ZERO, size_m, on_foot: false }
 }
 
 /// The ego car, parked far away.

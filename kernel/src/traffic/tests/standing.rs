@@ -126,7 +126,7 @@ fn turn_beside_a_post(network: &Arc<RoadNetwork>, lane: u32, before: u32, outer:
     let place = body.position + body.rotation * Vec3::new(0.4 - half.x, outer * (half.y + gap_m + POST_M * 0.5), 0.0);
     let ahead = body.rotation * Vec3::X;
     let heading_rad = crate::ops::atan2(ahead.y, ahead.x);
-    let post = Obstacle { id: 0, position: place, heading_rad, velocity_mps: Vec3::ZERO, size_m };
+    let post = Obstacle { id: 0, position: place, heading_rad, velocity_mps: Vec3::ZERO, size_m, on_foot: false };
     let from = body.position;
     for tick in 1..=600 {
         traffic.step(&Surroundings { tick, ego: post, ego_flags: 0, loose: &[], conditions: Conditions::default() });

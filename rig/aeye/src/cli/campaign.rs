@@ -12,15 +12,16 @@ use lab::share::Share;
 use super::values::{CHECKPOINTS, MAPS, file, hazards, jobs, people, preset, seconds, weather};
 
 /// What says when a campaign is over, or that there is none.
-const ENDS: [&str; 6] = ["runs", "km", "cases", "pedestrian_cases", "print_scenario", "collect"];
+const ENDS: [&str; 7] = ["runs", "vary", "km", "cases", "pedestrian_cases", "print_scenario", "collect"];
 
 /// What decides which runs are driven.
-const DRIVES: [&str; 15] = [
+const DRIVES: [&str; 16] = [
     "checkpoint",
     "maps",
     "embed_map",
     "scenario",
     "runs",
+    "vary",
     "km",
     "cases",
     "pedestrian_cases",
@@ -54,12 +55,15 @@ pub struct CampaignArgs {
     /// Put the files of maps that are not bundled into the recordings, instead of once beside them.
     #[arg(long)]
     pub embed_map: bool,
-    /// A scenario file; its seed and length are replaced for each run.
-    #[arg(long, value_name = "FILE.toml")]
+    /// A scenario file, or a story in OpenSCENARIO XML; its seed and length are replaced for each run.
+    #[arg(long, value_name = "FILE.toml|FILE.xosc")]
     pub scenario: Option<PathBuf>,
     /// Number of runs of each checkpoint; beside another goal, how many runs must come to that.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub runs: Option<u32>,
+    /// As many runs, for each of which values are drawn for those parameters of the story that have ranges.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), requires = "scenario", conflicts_with = "runs")]
+    pub vary: Option<u32>,
     /// Kilometres of each checkpoint.
     #[arg(long)]
     pub km: Option<f64>,

@@ -8,7 +8,7 @@ use crate::cli::CampaignArgs;
 use crate::exit::Verdict;
 use crate::print;
 
-const GOAL: &str = "expected --runs, or one of --km (more than 0), --cases and --pedestrian-cases";
+const GOAL: &str = "expected --runs, --vary, or one of --km (more than 0), --cases and --pedestrian-cases";
 
 /// Runs `aeye campaign`.
 pub fn run(args: &CampaignArgs, json: bool) -> anyhow::Result<Verdict> {
@@ -41,7 +41,7 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
         return Err(Usage("--pedestrian-cases without people on foot; expected --pedestrians above 0".into()).into());
     }
     // Only the first run is printed.
-    let runs = args.runs.or(args.print_scenario.then_some(1));
+    let runs = args.runs.or(args.vary).or(args.print_scenario.then_some(1));
     let goal = Goal::of(runs, args.km, [args.cases, args.pedestrian_cases]).ok_or_else(|| Usage(GOAL.into()))?;
     let CampaignArgs {
         checkpoint,
@@ -64,6 +64,7 @@ fn options(args: &CampaignArgs) -> anyhow::Result<Options> {
         maps,
         embed_map,
         scenario,
+        vary: args.vary.is_some(),
         goal,
         pedestrians,
         hazards,

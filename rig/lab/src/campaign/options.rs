@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use base::failure::Usage;
 use base::maps::{Map, ScenarioFile};
 use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
@@ -21,6 +22,8 @@ pub struct Options {
     pub embed_map: bool,
     /// A scenario file; its seed and length are replaced for each run.
     pub scenario: Option<PathBuf>,
+    /// Whether each run draws values for those parameters of the scenario's story that have ranges.
+    pub vary: bool,
     /// When each checkpoint has driven enough.
     pub goal: Goal,
     /// People on foot, instead of as many as the scenario or the map's default has.
@@ -39,6 +42,15 @@ pub struct Options {
     pub out: PathBuf,
 }
 
+/// Refuses a scenario of which nothing could be drawn.
+fn check_varies(file: Option<&ScenarioFile>) -> anyhow::Result<()> {
+    let expected = "expected a story whose parameters have ranges (<ConstraintGroup>)";
+    let Some(file) = file else { return Err(Usage(format!("--vary without --scenario; {expected}")).into()) };
+    let story = file.scenario.story.as_ref();
+    let varies = story.map_or(Ok(false), |story| story.varies()).map_err(|error| file.refusal(&error.to_string()))?;
+    if varies { Ok(()) } else { Err(file.refusal(&format!("nothing varies; {expected}"))) }
+}
+
 /// What the options come to.
 pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let file = options.scenario.as_deref().map(ScenarioFile::read).transpose()?;
@@ -51,7 +63,11 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     if let Some(file) = &file {
         maps.iter().try_for_each(|map| file.check_start(map))?;
     }
+    if options.vary {
+        check_varies(file.as_ref())?;
+    }
     let scenario = file.map(|file| file.scenario);
-    let Options { goal, pedestrians, hazards, weather, run_seconds, seed, .. } = *options;
-    Ok(Plan { maps, scenario, pedestrians, hazards, weather, run_seconds, seed, goal, out: options.out.clone() })
+    let Options { vary, goal, pedestrians, hazards, weather, run_seconds, seed, .. } = *options;
+    let out = options.out.clone();
+    Ok(Plan { maps, scenario, vary, pedestrians, hazards, weather, run_seconds, seed, goal, out })
 }

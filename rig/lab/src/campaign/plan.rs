@@ -1,6 +1,7 @@
 //! What a campaign drives.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use base::maps::Map;
 use kernel::Scenario;
@@ -17,6 +18,8 @@ pub struct Plan {
     pub maps: Vec<Map>,
     /// What every run has in common, if not the default of its map and seed.
     pub scenario: Option<Scenario>,
+    /// Whether each run draws values for those parameters of the scenario's story that have ranges.
+    pub vary: bool,
     /// People on foot, if not as many as the scenario says.
     pub pedestrians: Option<u16>,
     /// How often people at the wheel endanger others, if not as the scenario says.
@@ -46,6 +49,12 @@ impl Plan {
         let mut scenario = self.scenario.clone().unwrap_or_else(|| map.scenario(seed));
         scenario.map = map.network.name.clone();
         scenario.seed = seed;
+        if let Some(story) = scenario.story.as_mut().filter(|_| self.vary)
+            && let Ok(varied) = story.varied(seed)
+        {
+            // Both ends of the ranges play: `plan` looked.
+            *story = Arc::new(varied);
+        }
         scenario.rules.max_seconds = self.run_seconds;
         self.weather.iter().for_each(|preset| scenario.take_weather(preset));
         scenario.traffic.pedestrians = self.pedestrians.unwrap_or(scenario.traffic.pedestrians);

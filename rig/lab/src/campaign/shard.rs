@@ -48,6 +48,9 @@ pub struct ShardPlan {
     pub embed_map: bool,
     /// BLAKE3 of the scenario that all runs have in common, if there is one.
     pub scenario: Option<String>,
+    /// Whether each run draws values for parameters of its story.
+    #[serde(default)]
+    pub vary: bool,
     /// People on foot, if not as many as the scenario says.
     pub pedestrians: Option<u16>,
     /// How often people at the wheel endanger others, if not as the scenario says.
@@ -89,6 +92,7 @@ impl ShardPlan {
             maps: plan.maps.iter().map(map).collect(),
             embed_map: plan.maps.iter().filter_map(|map| map.foreign.as_ref()).any(|map| map.embedded),
             scenario,
+            vary: plan.vary,
             pedestrians: plan.pedestrians,
             hazards: plan.hazards.map(|level| level.name().to_owned()),
             weather: plan.weather.map(|preset| preset.name.to_owned()),

@@ -221,6 +221,7 @@ impl Stages<'_> {
             embed_map: false,
             scenario: None,
             goal: until.into(),
+            vary: false,
             pedestrians,
             hazards: None,
             weather: None,

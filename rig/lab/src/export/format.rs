@@ -19,11 +19,13 @@ pub enum Format {
     Gif,
     /// An MP4 (H.264), by `ffmpeg`.
     Mp4,
+    /// A story in OpenSCENARIO XML, with its map in OpenDRIVE beside it.
+    OpenScenario,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Mcap, Self::Apng, Self::Gif, Self::Mp4];
+    pub const ALL: [Self; 5] = [Self::Mcap, Self::Apng, Self::Gif, Self::Mp4, Self::OpenScenario];
 
     /// What it is called on a command line.
     pub fn name(self) -> &'static str {
@@ -32,12 +34,17 @@ impl Format {
             Self::Apng => "apng",
             Self::Gif => "gif",
             Self::Mp4 => "mp4",
+            Self::OpenScenario => "openscenario",
         }
     }
 
     /// How its files end; an animated PNG is one to all who show PNGs.
     pub fn ending(self) -> &'static str {
-        if self == Self::Apng { "png" } else { self.name() }
+        match self {
+            Self::Apng => "png",
+            Self::OpenScenario => "xosc",
+            Self::Mcap | Self::Gif | Self::Mp4 => self.name(),
+        }
     }
 
     /// That of a file by its ending; messages for viewers, where that tells none.
@@ -48,10 +55,15 @@ impl Format {
 
     /// Refuses what it cannot show.
     pub fn check(self, camera: Viewpoint, checkpoints: &[CheckpointChoice]) -> Result<(), Usage> {
+        if self == Self::OpenScenario && !checkpoints.is_empty() {
+            return Err(Usage(
+                "a story holds no masks; expected --checkpoint or --format openscenario, not both".into(),
+            ));
+        }
         if camera == Viewpoint::Driver {
             return Ok(());
         }
-        if self == Self::Mcap {
+        if matches!(self, Self::Mcap | Self::OpenScenario) {
             return Err(Usage("--camera is for moving pictures; expected --format apng, gif or mp4 with it".into()));
         }
         if !checkpoints.is_empty() {
@@ -68,6 +80,6 @@ impl FromStr for Format {
 
     fn from_str(text: &str) -> Result<Self, Usage> {
         let named = Self::ALL.into_iter().find(|format| format.name() == text);
-        named.ok_or_else(|| Usage(format!("no such format: {text:?}; expected mcap, apng, gif or mp4")))
+        named.ok_or_else(|| Usage(format!("no such format: {text:?}; expected mcap, apng, gif, mp4 or openscenario")))
     }
 }

@@ -1,5 +1,5 @@
 //! Recordings and cases for the programs of others: for viewers of robot logs (Foxglove, Lichtblick, Rerun) an MCAP file
-//! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures.
+//! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures, or as stories in OpenSCENARIO XML.
 //!
 //! An export that is there already is kept: its file says what it was made from.
 
@@ -11,6 +11,7 @@ mod layout;
 mod options;
 mod robot_log;
 mod sink;
+mod story;
 mod topics;
 mod video;
 
@@ -46,7 +47,7 @@ const LAYOUT: &str = "layout.json";
 /// What was written.
 #[derive(Debug, Serialize)]
 pub struct Exports {
-    /// A layout for viewers; absent where moving pictures were written.
+    /// A layout for viewers; absent where something else was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layout: Option<PathBuf>,
     /// The files.
@@ -68,7 +69,7 @@ impl fmt::Display for Exports {
         }
         match &self.layout {
             Some(layout) => write!(f, "{}: a layout for the viewer", layout.display()),
-            None => write!(f, "{}", count(self.exports.len(), "moving picture")),
+            None => write!(f, "{}", count(self.exports.len(), "file")),
         }
     }
 }
@@ -91,7 +92,10 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
                 let (recording, mut camera) = (Recording::open(file)?, Camera { studio, eyes });
                 robot_log::export((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
             }),
-            _ => video::export(args, file, out.clone(), Screen { workshop: &workshop, size, eyes }, interrupt),
+            Format::OpenScenario => story::export(args, file, out.clone(), interrupt),
+            Format::Apng | Format::Gif | Format::Mp4 => {
+                video::export(args, file, out.clone(), Screen { workshop: &workshop, size, eyes }, interrupt)
+            }
         }
     };
     let mut exports = Vec::new();

@@ -1,0 +1,135 @@
+//! Along lanes: which comes next, and which way leads to a place.
+
+use std::collections::BTreeMap;
+
+use crate::map::RoadNetwork;
+use crate::map_data::{LaneId, Turn};
+use crate::ops;
+
+use super::spot::OnLane;
+
+/// Most lanes that a way is looked for over.
+const LOOKED_AT: usize = 20_000;
+
+/// The lane after one, and where on it one comes, metres from its start: the next of a route if that goes on there, or else
+/// the one that leads most nearly straight on.
+fn next(network: &RoadNetwork, lane: LaneId, route: &[LaneId]) -> Option<(LaneId, f32)> {
+    let here = &network.lanes[lane as usize];
+    let listed = network.ways().onward(lane).iter().map(|next| (next.lane, next.at_m));
+    let mut onward: Vec<_> = listed.collect();
+    if onward.is_empty() {
+        onward.extend(here.successors.iter().map(|next| (*next, 0.0)));
+    }
+    if let Some(asked) = route.first().and_then(|asked| onward.iter().find(|(next, _)| next == asked)) {
+        return Some(*asked);
+    }
+    let bend = |next: LaneId| {
+        let next = &network.lanes[next as usize];
+        let turns = if next.turn == Turn::Straight { 0.0 } else { 1.0 };
+        turns + ops::wrap_angle(next.end().heading_rad - here.end().heading_rad).abs()
+    };
+    onward.into_iter().min_by(|a, b| bend(a.0).total_cmp(&bend(b.0)).then(a.0.cmp(&b.0)))
+}
+
+/// The lane before one, as straight as may be.
+fn previous(network: &RoadNetwork, lane: LaneId) -> Option<LaneId> {
+    let here = &network.lanes[lane as usize];
+    let bend = |before: LaneId| {
+        let before = &network.lanes[before as usize];
+        let turns = if before.turn == Turn::Straight { 0.0 } else { 1.0 };
+        turns + ops::wrap_angle(before.start().heading_rad - here.start().heading_rad).abs()
+    };
+    here.predecessors.iter().copied().min_by(|a, b| bend(*a).total_cmp(&bend(*b)).then(a.cmp(b)))
+}
+
+/// Moves a place on along its lanes by so many metres, as who is there faces; of a route those lanes are taken that are
+/// reached. `false` when the road ends before.
+pub fn advance(network: &RoadNetwork, on: &mut OnLane, by_m: f32, route: &mut Vec<LaneId>) -> bool {
+    let ahead_m = if on.against { -by_m } else { by_m };
+    on.s_m += ahead_m;
+    // A tick is not longer than some lanes.
+    for _ in 0..16 {
+        let length_m = network.lanes[on.lane as usize].length_m;
+        if on.s_m > length_m || (on.s_m == length_m && !on.against) {
+            let Some((lane, at_m)) = next(network, on.lane, route) else {
+                on.s_m = length_m;
+                return false;
+            };
+            if route.first() == Some(&lane) {
+                route.remove(0);
+            }
+            (on.s_m, on.lane) = (on.s_m - length_m + at_m, lane);
+        } else if on.s_m < 0.0 || (on.s_m == 0.0 && on.against) {
+            let Some(lane) = previous(network, on.lane) else {
+                on.s_m = 0.0;
+                return false;
+            };
+            (on.s_m, on.lane) = (on.s_m + network.lanes[lane as usize].length_m, lane);
+        } else {
+            break;
+        }
+    }
+    true
+}
+
+/// So many metres on, over as many lanes as it takes.
+pub fn ahead(network: &RoadNetwork, from: OnLane, by_m: f32) -> OnLane {
+    let (mut on, mut left_m) = (from, by_m);
+    while left_m.abs() > 0.0 {
+        let step_m = left_m.clamp(-10.0, 10.0);
+        if !advance(network, &mut on, step_m, &mut Vec::new()) {
+            break;
+        }
+        left_m -= step_m;
+    }
+    on
+}
+
+/// The lanes after the first on the shortest way from one to another; neighbours count as following each other.
+pub fn way(network: &RoadNetwork, from: OnLane, to: OnLane) -> Option<Vec<LaneId>> {
+    if from.lane == to.lane && from.s_m <= to.s_m {
+        return Some(Vec::new());
+    }
+    let tenths = |m: f32| (m * 10.0) as u64;
+    let mut open = BTreeMap::from([((0_u64, from.lane), None)]);
+    let mut came: BTreeMap<LaneId, Option<LaneId>> = BTreeMap::new();
+    while let Some(((cost, lane), before)) = open.pop_first() {
+        if came.len() > LOOKED_AT {
+            return None;
+        }
+        // Who starts behind the place on its own lane comes back to it.
+        let first = before.is_none() && lane == from.lane;
+        if came.contains_key(&lane) {
+            continue;
+        }
+        if !first {
+            came.insert(lane, before);
+        }
+        if lane == to.lane && !first {
+            return Some(back(&came, from.lane, lane));
+        }
+        let here = &network.lanes[lane as usize];
+        let length_m = if first { (here.length_m - from.s_m).max(0.0) } else { here.length_m };
+        for next in network.ways().onward(lane) {
+            open.insert((cost + tenths(length_m) + 1, next.lane), Some(lane));
+        }
+        for beside in [here.left, here.right].into_iter().flatten() {
+            open.insert((cost + tenths(50.0), beside), Some(lane));
+        }
+    }
+    None
+}
+
+fn back(came: &BTreeMap<LaneId, Option<LaneId>>, from: LaneId, to: LaneId) -> Vec<LaneId> {
+    let mut lanes = vec![to];
+    let mut at = to;
+    while let Some(Some(before)) = came.get(&at) {
+        if *before == from || lanes.len() > LOOKED_AT {
+            break;
+        }
+        lanes.push(*before);
+        at = *before;
+    }
+    lanes.reverse();
+    lanes
+}

@@ -1,0 +1,33 @@
+//! Stories: what others do to whom when, as OpenSCENARIO XML tells it.
+//!
+//! A [`Story`] is a text that was read; a [`Stage`] is it on a map; a [`StoryState`] is how far it has come, a part of the
+//! world's state. Who plays moves as the story says and else on along its lane at its speed; nobody who plays looks out for
+//! others, but traffic sees all of them. The ego car plays what its drivers do.
+
+mod actor;
+mod cues;
+mod deeds;
+mod error;
+mod facts;
+mod lanes;
+mod moves;
+mod places;
+mod plan;
+mod reader;
+mod relative;
+mod script;
+mod spot;
+mod stage;
+mod state;
+mod text;
+
+pub use crate::actor::FIRST_STORY_ID;
+pub use error::StoryError;
+pub use reader::{ELEMENTS, Row, Support};
+pub use script::Script;
+pub(crate) use stage::{Around, Stage};
+pub use state::StoryState;
+pub use text::Story;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,231 @@
+//! How somebody who plays comes on in a tick.
+
+use glam::Vec2;
+
+use crate::geometry::direction;
+use crate::map_data::LaneKind;
+use crate::ops;
+use crate::time::TICK_S;
+
+use super::actor::StoryActor;
+use super::cues::Seen;
+use super::plan::stations_m;
+use super::script::{Action, Dynamics, Path, Position, RoleId, Shape, SpeedTarget, Takes};
+use super::spot::{OnLane, Spot};
+use super::state::{Change, Deed, StoryState};
+use super::{deeds, facts, lanes, relative};
+
+/// A place is reached so near to it, metres.
+const REACHED_M: f32 = 1.0;
+
+/// Moves a role by one tick.
+pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
+    let was = seen.before.actors[role].clone();
+    set_speed(state, role, seen);
+    let follows = state.actors[role].way_by.map(|deed| deed as usize);
+    let path = follows.and_then(|deed| match &seen.plan.deeds[deed].action {
+        Action::Follow(path) => Some((deed, path)),
+        _ => None,
+    });
+    let at_end = match path {
+        Some((deed, path)) => {
+            follow(state, role, (deed, path), seen);
+            false
+        }
+        None => drive_on(state, role, seen),
+    };
+    if let Some((deed, Action::Acquire(place))) = follows.map(|deed| (deed, &seen.plan.deeds[deed].action)) {
+        arrive(state, role, (deed, place), seen);
+    }
+    let script = seen.script;
+    let on_road = is_on_road(seen, &state.actors[role]);
+    state.actors[role].came(&was, script.cast[role].kind, on_road, at_end);
+}
+
+fn is_on_road(seen: &Seen<'_>, actor: &StoryActor) -> bool {
+    let kind = |on: OnLane| seen.network.lanes[on.lane as usize].kind;
+    actor.spot.on.is_some_and(|on| matches!(kind(on), LaneKind::Driving | LaneKind::Biking | LaneKind::Shoulder))
+}
+
+/// How far a change has come, [0, 1].
+fn share(deed: &Deed, dynamics: Dynamics, seen: &Seen<'_>) -> f32 {
+    let gone = match dynamics.takes {
+        Takes::Distance(_) => deed.gone_m,
+        Takes::Time(_) | Takes::Rate(_) => (seen.tick + 1).saturating_sub(deed.mark.at) as f32 * TICK_S,
+    };
+    // Half a tick before the end is the end.
+    if gone + 0.5 * TICK_S >= deed.takes { 1.0 } else { (gone / deed.takes).clamp(0.0, 1.0) }
+}
+
+fn course(shape: Shape, share: f32) -> f32 {
+    match shape {
+        Shape::Linear => share,
+        Shape::Cubic => share * share * (3.0 - 2.0 * share),
+        Shape::Sinusoidal => 0.5 - 0.5 * ops::cos(core::f32::consts::PI * share),
+        Shape::Step => 1.0,
+    }
+}
+
+fn set_speed(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
+    let Some(number) = state.actors[role].speed_by.map(|deed| deed as usize) else { return };
+    let Action::Speed(dynamics, target) = &seen.plan.deeds[number].action else { return };
+    let goes_on = matches!(target, SpeedTarget::Faster(.., true) | SpeedTarget::Times(.., true));
+    if goes_on {
+        let speeds: Vec<f32> = seen.before.actors.iter().map(|actor| actor.speed_mps).collect();
+        state.deeds[number].to = deeds::speed_of(*target, &speeds);
+    }
+    let deed = &mut state.deeds[number];
+    let share = share(deed, *dynamics, seen);
+    let speed_mps = deed.from + (deed.to - deed.from) * course(dynamics.shape, share);
+    deed.gone_m += speed_mps.abs() * TICK_S;
+    let most_mps = seen.script.cast[role].most_mps;
+    state.actors[role].speed_mps = speed_mps.clamp(-most_mps, most_mps);
+    if share >= 1.0 && !goes_on {
+        deeds::end(state, number, Change::Ended, seen.tick);
+    }
+}
+
+/// Along its lane, or straight on where there is none; `true` where its road ends.
+fn drive_on(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) -> bool {
+    let StoryActor { spot, speed_mps, .. } = state.actors[role];
+    let by_m = speed_mps * TICK_S;
+    let Some(mut on) = spot.on else {
+        let to = spot.position + (direction(spot.heading_rad) * by_m).extend(0.5);
+        let position = Spot::grounded(seen.network, to);
+        let position = if position == to { spot.position + (to - spot.position).with_z(0.0) } else { position };
+        state.actors[role].spot = Spot::at(seen.network, position, spot.heading_rad);
+        return false;
+    };
+    let goes_on = lanes::advance(seen.network, &mut on, by_m, &mut state.actors[role].route);
+    let before_m = on.offset_m;
+    if let Some(offset_m) = aside(state, role, by_m, seen) {
+        on.offset_m = offset_m;
+    }
+    let actor = &mut state.actors[role];
+    actor.drift_mps = (on.offset_m - before_m) / TICK_S * if on.against { -1.0 } else { 1.0 };
+    let there = Spot::on(seen.network, on);
+    // Who moves across faces where it goes.
+    let slant_rad = if speed_mps.abs() > 1.0 { ops::atan2(actor.drift_mps, speed_mps.abs()) } else { 0.0 };
+    actor.spot = there.facing(there.heading_rad + slant_rad * speed_mps.signum());
+    if !goes_on {
+        actor.speed_mps = 0.0;
+    }
+    !goes_on
+}
+
+/// Where across its lane somebody is who moves across it, metres to the left of the middle.
+fn aside(state: &mut StoryState, role: RoleId, by_m: f32, seen: &Seen<'_>) -> Option<f32> {
+    let number = state.actors[role].side_by? as usize;
+    let (Action::LaneChange(dynamics, ..) | Action::LaneOffset(dynamics, ..)) = seen.plan.deeds[number].action else {
+        return None;
+    };
+    let deed = &mut state.deeds[number];
+    deed.gone_m += by_m.abs();
+    let share = share(deed, dynamics, seen);
+    let offset_m = deed.from + (deed.to - deed.from) * course(dynamics.shape, share);
+    if share >= 1.0 {
+        deeds::end(state, number, Change::Ended, seen.tick);
+    }
+    Some(offset_m)
+}
+
+/// Ends the way to a place where that is reached.
+fn arrive(state: &mut StoryState, role: RoleId, (deed, place): (usize, &Position), seen: &Seen<'_>) {
+    let actor = &state.actors[role];
+    let spot = relative::spot(seen.network, seen.before, place);
+    let step_m = actor.speed_mps.abs() * TICK_S;
+    if spot.is_none_or(|spot| spot.plan().distance(actor.spot.plan()) <= REACHED_M + step_m) {
+        deeds::end(state, deed, Change::Ended, seen.tick);
+    }
+}
+
+/// Along a line.
+fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), seen: &Seen<'_>) {
+    let speed_mps = state.actors[role].speed_mps;
+    let deed = &mut state.deeds[number];
+    let (at, over) = if path.timed {
+        let since = if path.absolute { 0 } else { deed.mark.at };
+        by_time(path, seen.tick.saturating_sub(since) as f32 * TICK_S)
+    } else {
+        deed.gone_m += speed_mps.max(0.0) * TICK_S;
+        let line: Vec<Position> = deed.line.iter().copied().map(Position::Known).collect();
+        let own = stations_m(line.iter());
+        let stations_m = if own.is_empty() { &seen.plan.deeds[number].stations_m } else { &own };
+        by_way(path, stations_m, deed.gone_m)
+    };
+    let line = std::mem::take(&mut state.deeds[number].line);
+    let part = segment(path, &line, at);
+    let last_mps = last_mps(path, &line);
+    state.deeds[number].line = line;
+    let Some((from, to, share)) = part else {
+        return deeds::end(state, number, Change::Ended, seen.tick);
+    };
+    let position = from.position.lerp(to.position, share);
+    let along = to.plan() - from.plan();
+    let actor = &mut state.actors[role];
+    let heading_rad = if path.headings {
+        ops::wrap_angle(from.heading_rad + facts::turn_rad(from.heading_rad, to.heading_rad) * share)
+    } else if along == Vec2::ZERO {
+        actor.spot.heading_rad
+    } else {
+        ops::atan2(along.y, along.x)
+    };
+    if path.timed {
+        let step = (position - actor.spot.position).truncate();
+        actor.speed_mps = step.dot(direction(heading_rad)) / TICK_S;
+        if over {
+            actor.speed_mps = last_mps;
+        }
+    }
+    actor.drift_mps = 0.0;
+    actor.spot = Spot::at(seen.network, position, heading_rad);
+    if over {
+        deeds::end(state, number, Change::Ended, seen.tick);
+    }
+}
+
+/// A place between the corners of a line: as `1.25`, a quarter of the way from the second corner to the third.
+fn by_time(path: &Path, time_s: f32) -> (f32, bool) {
+    let time = |k: usize| path.corners[k].1.unwrap_or(0.0);
+    let last = path.corners.len() - 1;
+    let next = path.corners.partition_point(|(_, at_s)| at_s.unwrap_or(0.0) <= time_s);
+    match next {
+        0 => (0.0, false),
+        next if next > last => (last as f32, true),
+        next => {
+            let span_s = (time(next) - time(next - 1)).max(1e-6);
+            let share = (time_s - time(next - 1)) / span_s;
+            // Within a hundredth of a tick of the end it is there.
+            ((next - 1) as f32 + share, next == last && time(last) - time_s < 0.01 * TICK_S)
+        }
+    }
+}
+
+fn by_way(path: &Path, stations_m: &[f32], gone_m: f32) -> (f32, bool) {
+    let last = path.corners.len() - 1;
+    let next = stations_m.partition_point(|station_m| *station_m <= gone_m);
+    if next > last {
+        return (last as f32, true);
+    }
+    let next = next.max(1);
+    let span_m = (stations_m[next] - stations_m[next - 1]).max(1e-6);
+    ((next - 1) as f32 + ((gone_m - stations_m[next - 1]) / span_m).max(0.0), false)
+}
+
+/// The part of a line on which somebody is, and the share of it that is behind; `line` are corners that were found when it began.
+fn segment(path: &Path, line: &[Spot], at: f32) -> Option<(Spot, Spot, f32)> {
+    let corner = |k: usize| match path.corners.get(k)?.0 {
+        Position::Known(spot) if line.is_empty() => Some(spot),
+        _ => line.get(k).copied(),
+    };
+    let first = (at as usize).min(path.corners.len() - 2);
+    Some((corner(first)?, corner(first + 1)?, at - first as f32))
+}
+
+/// How fast the last part of a timed line is followed, m/s.
+fn last_mps(path: &Path, line: &[Spot]) -> f32 {
+    let last = path.corners.len() - 1;
+    let span_s = path.corners[last].1.unwrap_or(0.0) - path.corners[last - 1].1.unwrap_or(0.0);
+    let way = segment(path, line, last as f32).map_or(Vec2::ZERO, |(from, to, _)| to.plan() - from.plan());
+    if span_s > 1e-6 { way.length() / span_s } else { 0.0 }
+}

@@ -1,0 +1,117 @@
+//! Places in the words of a text, found on a map.
+
+use glam::Vec3;
+
+use crate::baking::Survey;
+use crate::map::{Projection, RoadNetwork};
+use crate::map_data::LaneId;
+use crate::ops;
+
+use super::script::{Action, Event, Facing, OfRole, Position, Script, Trigger, When};
+use super::spot::{OnLane, Spot};
+
+/// What is told so near to the ground is on it, metres: pavements are raised.
+const ABOUT_M: f32 = 0.5;
+
+/// Replaces all places of a script that do not depend on where somebody is.
+pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
+    let mut places = Vec::new();
+    script.init.iter_mut().for_each(|(_, action)| of_action(action, &mut places));
+    of_trigger(&mut script.stop, &mut places);
+    for act in &mut script.acts {
+        of_trigger(&mut act.start, &mut places);
+        of_trigger(&mut act.stop, &mut places);
+        act.groups.iter_mut().flat_map(|group| &mut group.events).for_each(|event| of_event(event, &mut places));
+    }
+    places.into_iter().try_for_each(|place| {
+        if let Some(spot) = spot(place, network)? {
+            *place = Position::Known(spot);
+        }
+        Ok(())
+    })
+}
+
+fn of_event<'a>(event: &'a mut Event, out: &mut Vec<&'a mut Position>) {
+    of_trigger(&mut event.start, out);
+    event.actions.iter_mut().for_each(|(_, _, action)| of_action(action, out));
+}
+
+fn of_trigger<'a>(trigger: &'a mut Trigger, out: &mut Vec<&'a mut Position>) {
+    for condition in trigger.groups.iter_mut().flatten() {
+        if let When::Role { what: OfRole::Reaches(place, _) | OfRole::Distance(_, _, _, place), .. } =
+            &mut condition.when
+        {
+            out.push(place);
+        }
+    }
+}
+
+fn of_action<'a>(action: &'a mut Action, out: &mut Vec<&'a mut Position>) {
+    match action {
+        Action::Teleport(place) | Action::Acquire(place) => out.push(place),
+        Action::Route(places) => out.extend(places),
+        Action::Follow(path) => out.extend(path.corners.iter_mut().map(|(place, _)| place)),
+        Action::Speed(..) | Action::LaneChange(..) | Action::LaneOffset(..) | Action::Leave => {}
+    }
+}
+
+/// Where a place is, if that does not depend on anybody.
+fn spot(place: &Position, network: &RoadNetwork) -> Result<Option<Spot>, String> {
+    match place {
+        Position::World { at_m: [x, y], z_m, heading_rad } => {
+            let [east, north] = network.origin_m;
+            let top = network.bounds[1].z + 1.0;
+            let given = Vec3::new((x - east) as f32, (y - north) as f32, z_m.map_or(top, |z| z as f32 + 0.5));
+            let below = if network.ground(given).is_some() { given } else { given.with_z(top) };
+            let ground = Spot::grounded(network, below);
+            // Feet and wheels are where the file has them, if that is about the ground.
+            let told = z_m.map(|z| ground.with_z(z as f32)).filter(|told| (told.z - ground.z).abs() < ABOUT_M);
+            let position = told.unwrap_or(ground);
+            let facing = heading_rad.unwrap_or_else(|| lane_heading(network, position));
+            Ok(Some(Spot::at(network, position, facing)))
+        }
+        Position::Lane { road, lane, s_m, offset_m, facing } => {
+            let point = survey(network)?.on_lane(road, *lane, *s_m, *offset_m)?;
+            let found = nearest(network, &format!("{road}/{lane}"), point);
+            let found = found.ok_or_else(|| format!("nobody can be on lane {lane} of road {road}"))?;
+            let on = OnLane { lane: found.lane, s_m: found.s_m, offset_m: found.lateral_m, against: false };
+            Ok(Some(turned(Spot::on(network, on), *facing)))
+        }
+        Position::Road { road, s_m, t_m, facing } => {
+            let (point, along_rad) = survey(network)?.on_road(road, *s_m, *t_m)?;
+            let heading_rad = match facing {
+                Facing::Absolute(heading_rad) => *heading_rad,
+                Facing::Relative(by_rad) => along_rad + by_rad,
+            };
+            Ok(Some(Spot::at(network, point, ops::wrap_angle(heading_rad))))
+        }
+        Position::Known(_) | Position::Beside { .. } | Position::BesideLane { .. } => Ok(None),
+    }
+}
+
+/// A place on a lane, faced as the text says: who is turned round drives against it.
+pub fn turned(spot: Spot, facing: Facing) -> Spot {
+    let heading_rad = match facing {
+        Facing::Absolute(heading_rad) => heading_rad,
+        Facing::Relative(by_rad) => spot.heading_rad + by_rad,
+    };
+    let away = ops::cos(heading_rad - spot.heading_rad) < 0.0;
+    let on = spot.on.map(|on| OnLane { against: on.against != away, ..on });
+    Spot { on, ..spot }.facing(heading_rad)
+}
+
+/// How traffic on the lane under a place faces.
+fn lane_heading(network: &RoadNetwork, position: Vec3) -> f32 {
+    let under = Spot::at(network, position, 0.0).on;
+    under.map_or(0.0, |on| network.lane_point(on.lane, on.s_m).heading_rad)
+}
+
+fn survey(network: &RoadNetwork) -> Result<&Survey, String> {
+    network.survey().ok_or_else(|| format!("map {} has no roads with ids", network.name))
+}
+
+/// The nearest place on the lanes of a name: a road has some of it in each of its sections.
+pub fn nearest(network: &RoadNetwork, name: &str, position: Vec3) -> Option<Projection> {
+    let named = (0..network.lanes.len() as LaneId).filter(|lane| network.lanes[*lane as usize].name == name);
+    named.map(|lane| network.project(lane, position)).min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
+}

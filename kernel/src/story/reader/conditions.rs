@@ -1,0 +1,168 @@
+//! What begins and ends the elements of a story.
+
+use crate::story::error::StoryError;
+use crate::story::script::{Along, Condition, Edge, ElementKind, ElementState, Measure, OfRole, Rule, Trigger, When};
+use crate::time::{TICK_HZ, Tick};
+
+use super::document::Element;
+use super::names::Names;
+use super::positions;
+
+/// Most conditions of a trigger.
+const CONDITIONS: usize = 100;
+
+const RULES: &[(&str, Rule)] = &[
+    ("greaterThan", Rule::Greater),
+    ("greaterOrEqual", Rule::GreaterOrEqual),
+    ("lessThan", Rule::Less),
+    ("lessOrEqual", Rule::LessOrEqual),
+    ("equalTo", Rule::Equal),
+    ("notEqualTo", Rule::NotEqual),
+];
+const EDGES: &[(&str, Edge)] =
+    &[("none", Edge::None), ("rising", Edge::Rising), ("falling", Edge::Falling), ("risingOrFalling", Edge::Either)];
+const KINDS: &[(&str, ElementKind)] = &[
+    ("act", ElementKind::Act),
+    ("maneuverGroup", ElementKind::Group),
+    ("maneuver", ElementKind::Manoeuvre),
+    ("event", ElementKind::Event),
+    ("action", ElementKind::Action),
+];
+const STATES: &[(&str, ElementState)] = &[
+    ("standbyState", ElementState::Standby),
+    ("runningState", ElementState::Running),
+    ("completeState", ElementState::Complete),
+    ("startTransition", ElementState::Started),
+    ("endTransition", ElementState::Ended),
+    ("stopTransition", ElementState::Stopped),
+    ("skipTransition", ElementState::Skipped),
+];
+
+/// Seconds as ticks.
+fn ticks(seconds: f32) -> Tick {
+    // At most what a run can last.
+    (seconds.min(1e6) * TICK_HZ as f32 + 0.5) as Tick
+}
+
+/// The conditions in an element, if it is there.
+pub fn trigger(element: Option<Element<'_>>, names: &Names<'_>) -> Result<Trigger, StoryError> {
+    let mut trigger = Trigger::default();
+    let mut count = 0;
+    for group in element.into_iter().flat_map(|element| element.all("ConditionGroup")) {
+        let mut conditions = Vec::new();
+        for condition in group.all("Condition") {
+            count += 1;
+            if count > CONDITIONS {
+                return Err(condition.wrong(format!("expected at most {CONDITIONS} conditions of a trigger")));
+            }
+            conditions.push(self::condition(condition, names)?);
+        }
+        if conditions.is_empty() {
+            return Err(group.wrong("<ConditionGroup> has no <Condition>"));
+        }
+        trigger.groups.push(conditions);
+    }
+    Ok(trigger)
+}
+
+fn condition(element: Element<'_>, names: &Names<'_>) -> Result<Condition, StoryError> {
+    let delay_s = if element.given("delay")?.is_some() { element.amount("delay")? } else { 0.0 };
+    let edge = element.word("conditionEdge", EDGES)?;
+    let what = element.choice()?;
+    let when = match what.tag() {
+        "ByValueCondition" => by_value(what.choice()?)?,
+        "ByEntityCondition" => by_entity(what, names)?,
+        _ => return Err(what.unsupported()),
+    };
+    Ok(Condition { delay_ticks: ticks(delay_s), edge, when })
+}
+
+fn by_value(value: Element<'_>) -> Result<When, StoryError> {
+    match value.tag() {
+        "SimulationTimeCondition" => Ok(When::Time(value.word("rule", RULES)?, value.float("value")?)),
+        "StoryboardElementStateCondition" => Ok(When::Element(
+            value.word("storyboardElementType", KINDS)?,
+            value.text("storyboardElementRef")?,
+            value.word("state", STATES)?,
+        )),
+        _ => Err(value.unsupported()),
+    }
+}
+
+fn by_entity(element: Element<'_>, names: &Names<'_>) -> Result<When, StoryError> {
+    let triggering = element.need("TriggeringEntities")?;
+    let all = triggering.word("triggeringEntitiesRule", &[("any", false), ("all", true)])?;
+    let roles = triggering.all("EntityRef").map(|entity| names.role(entity, "entityRef"));
+    let roles = roles.collect::<Result<Vec<_>, _>>()?;
+    if roles.is_empty() {
+        return Err(triggering.wrong("<TriggeringEntities> has no <EntityRef>"));
+    }
+    let what = of_role(element.need("EntityCondition")?.choice()?, names)?;
+    Ok(When::Role { all, roles, what })
+}
+
+fn of_role(it: Element<'_>, names: &Names<'_>) -> Result<OfRole, StoryError> {
+    let rule = || it.word("rule", RULES);
+    match it.tag() {
+        "SpeedCondition" => {
+            it.given("direction")?
+                .map_or(Ok(()), |_| Err(it.wrong("direction of <SpeedCondition> is not supported")))?;
+            Ok(OfRole::Speed(rule()?, it.float("value")?))
+        }
+        "RelativeSpeedCondition" => {
+            Ok(OfRole::RelativeSpeed(rule()?, it.float("value")?, names.role(it, "entityRef")?))
+        }
+        "AccelerationCondition" => Ok(OfRole::Acceleration(rule()?, it.float("value")?)),
+        "StandStillCondition" => Ok(OfRole::Stands(ticks(it.amount("duration")?))),
+        "EndOfRoadCondition" => Ok(OfRole::EndOfRoad(ticks(it.amount("duration")?))),
+        "OffroadCondition" => Ok(OfRole::OffRoad(ticks(it.amount("duration")?))),
+        "TraveledDistanceCondition" => Ok(OfRole::Travelled(it.amount("value")?)),
+        "ReachPositionCondition" => {
+            let tolerance_m = it.amount("tolerance")?;
+            Ok(OfRole::Reaches(positions::read(it.need("Position")?, names)?, tolerance_m))
+        }
+        "DistanceCondition" => {
+            let place = positions::read(it.need("Position")?, names)?;
+            Ok(OfRole::Distance(rule()?, it.float("value")?, measure(it)?, place))
+        }
+        "RelativeDistanceCondition" => {
+            Ok(OfRole::RelativeDistance(rule()?, it.float("value")?, measure(it)?, names.role(it, "entityRef")?))
+        }
+        "TimeHeadwayCondition" => {
+            Ok(OfRole::Headway(rule()?, it.float("value")?, measure(it)?, names.role(it, "entityRef")?))
+        }
+        "TimeToCollisionCondition" => {
+            let target = it.need("TimeToCollisionConditionTarget")?.choice()?;
+            match target.tag() {
+                "EntityRef" => {
+                    let role = names.role(target, "entityRef")?;
+                    Ok(OfRole::TimeToCollision(rule()?, it.float("value")?, measure(it)?, role))
+                }
+                _ => Err(target.unsupported()),
+            }
+        }
+        "CollisionCondition" => match it.child("EntityRef") {
+            Some(entity) => Ok(OfRole::Collides(Some(names.role(entity, "entityRef")?))),
+            None => Ok(OfRole::Collides(None)),
+        },
+        _ => Err(it.unsupported()),
+    }
+}
+
+/// How a distance is measured: by `relativeDistanceType` and `coordinateSystem`, and by what 1.0 has for them.
+fn measure(it: Element<'_>) -> Result<Measure, StoryError> {
+    let free = it.switch("freespace")?.unwrap_or(false);
+    let kinds = [
+        ("longitudinal", Along::Forward),
+        ("lateral", Along::Sideways),
+        ("cartesianDistance", Along::Straight),
+        ("euclidianDistance", Along::Straight),
+    ];
+    let kind = it.word_given("relativeDistanceType", &kinds)?;
+    let by_road = it.switch("alongRoute")?.unwrap_or(false);
+    let systems = [("entity", false), ("lane", true), ("road", true), ("trajectory", true), ("world", false)];
+    let by_road = it.word_given("coordinateSystem", &systems)?.unwrap_or(by_road);
+    let is_time = matches!(it.tag(), "TimeHeadwayCondition" | "TimeToCollisionCondition");
+    let usual = if by_road || is_time { Along::Forward } else { Along::Straight };
+    Ok(Measure { free, along: kind.unwrap_or(usual) })
+}

@@ -1,0 +1,246 @@
+//! A text as a tree that knows which of its elements were read.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use roxmltree::{Document, Error, Node, ParsingOptions};
+
+use super::coverage::{self, Support};
+use super::value;
+use crate::story::error::StoryError;
+
+/// Longest text, bytes.
+const BYTES: usize = 16 << 20;
+/// Most elements, texts and comments.
+const NODES: u32 = 400_000;
+
+/// What all elements share.
+pub struct Shared {
+    parameters: BTreeMap<String, String>,
+    read: RefCell<BTreeSet<usize>>,
+}
+
+/// An element of the text.
+#[derive(Clone, Copy)]
+pub struct Element<'a> {
+    node: Node<'a, 'a>,
+    shared: &'a Shared,
+}
+
+/// Parses a text into a tree.
+pub fn parse(text: &str) -> Result<Document<'_>, StoryError> {
+    if text.len() > BYTES {
+        let mib = text.len() >> 20;
+        return Err(StoryError::at(1, format!("expected at most {} MiB, but it has {mib}", BYTES >> 20)));
+    }
+    let options = ParsingOptions { nodes_limit: NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|error| match error {
+        Error::NodesLimitReached => StoryError::at(1, format!("expected at most {NODES} elements and texts")),
+        error => {
+            StoryError::at(error.pos().row, format!("expected well-formed OpenSCENARIO XML, but {}", said(&error)))
+        }
+    })
+}
+
+/// What the parser says, on one line and not too long.
+fn said(error: &Error) -> String {
+    error.to_string().chars().filter(|c| !c.is_control()).take(200).collect()
+}
+
+impl Shared {
+    /// With the parameters that the text declares.
+    pub fn of(document: &Document<'_>) -> Self {
+        // Stories and manoeuvres have parameters of their own. Some programs write the sign of a reference as part of the name.
+        let declared = document.descendants().filter(|n| n.has_tag_name("ParameterDeclaration"));
+        let name = |n: &Node<'_, '_>| Some(n.attribute("name")?.trim_start_matches('$').to_owned());
+        let value = |n: Node<'_, '_>| Some((name(&n)?, n.attribute("value")?.to_owned()));
+        Self { parameters: declared.filter_map(value).collect(), read: RefCell::default() }
+    }
+
+    /// Refuses what was not read and is not harmless; gives what is harmless, each once, by line.
+    pub fn leftovers(&self, document: &Document<'_>) -> Result<Vec<(u32, String)>, StoryError> {
+        let read = self.read.borrow();
+        let mut passed: Vec<(u32, String)> = Vec::new();
+        let mut rest = vec![document.root_element()];
+        while let Some(node) = rest.pop() {
+            let (line, tag) = (line_of(node), node.tag_name().name());
+            match coverage::support(tag) {
+                None => return Err(StoryError::at(line, format!("<{tag}> is no element of OpenSCENARIO 1.0 to 1.2"))),
+                Some(Support::No) => return Err(StoryError::at(line, format!("<{tag}> is not supported"))),
+                Some(Support::Ignored) => {
+                    passed.push((line, tag.to_owned()));
+                    continue;
+                }
+                Some(Support::Yes | Support::Partly) if !read.contains(&node.id().get_usize()) => {
+                    let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
+                    return Err(StoryError::at(line, format!("<{tag}> is not supported in <{parent}>")));
+                }
+                Some(_) => {}
+            }
+            rest.extend(node.children().filter(Node::is_element));
+        }
+        passed.sort();
+        passed.dedup_by(|a, b| a.1 == b.1);
+        Ok(passed)
+    }
+}
+
+fn line_of(node: Node<'_, '_>) -> u32 {
+    node.document().text_pos_at(node.range().start).row
+}
+
+impl<'a> Element<'a> {
+    /// The root of a text.
+    pub fn root(document: &'a Document<'a>, shared: &'a Shared) -> Result<Self, StoryError> {
+        let root = Self { node: document.root_element(), shared };
+        shared.read.borrow_mut().insert(root.node.id().get_usize());
+        match root.tag() {
+            "OpenSCENARIO" => Ok(root),
+            tag => Err(root.wrong(format!("expected <OpenSCENARIO>, but it is <{tag}>"))),
+        }
+    }
+
+    /// Its name.
+    pub fn tag(&self) -> &'a str {
+        self.node.tag_name().name()
+    }
+
+    /// A refusal at its line.
+    pub fn wrong(&self, reason: impl Into<String>) -> StoryError {
+        StoryError::at(line_of(self.node), reason.into())
+    }
+
+    fn read(&self, node: Node<'a, 'a>) -> Self {
+        self.shared.read.borrow_mut().insert(node.id().get_usize());
+        Self { node, shared: self.shared }
+    }
+
+    /// Its children of a name, which count as read.
+    pub fn all(self, tag: &'static str) -> impl Iterator<Item = Self> {
+        self.node.children().filter(move |n| n.has_tag_name(tag)).map(move |n| self.read(n))
+    }
+
+    /// The first child of a name.
+    pub fn child(self, tag: &'static str) -> Option<Self> {
+        self.all(tag).next()
+    }
+
+    /// Counts the declarations of its parameters as read: all are known from the beginning.
+    pub fn pass_parameters(self) {
+        let declared = self.all("ParameterDeclarations").flat_map(|all| all.all("ParameterDeclaration"));
+        declared
+            .flat_map(|one| one.all("ConstraintGroup"))
+            .flat_map(|group| group.all("ValueConstraint"))
+            .for_each(drop);
+    }
+
+    /// The same, which must be there.
+    pub fn need(self, tag: &'static str) -> Result<Self, StoryError> {
+        self.child(tag).ok_or_else(|| self.wrong(format!("<{}> has no <{tag}>", self.tag())))
+    }
+
+    /// Reads a choice: its only child but for those that it asked for before, and counts it as read.
+    pub fn choice(self) -> Result<Self, StoryError> {
+        let unread = |n: &Node<'a, 'a>| n.is_element() && !self.shared.read.borrow().contains(&n.id().get_usize());
+        let first = self.node.children().find(unread);
+        first.map(|n| self.read(n)).ok_or_else(|| self.wrong(format!("<{}> is empty", self.tag())))
+    }
+
+    /// The refusal of a choice that is not supported here.
+    pub fn unsupported(&self) -> StoryError {
+        let parent = self.node.parent_element().map_or("", |parent| parent.tag_name().name());
+        match coverage::support(self.tag()) {
+            None => self.wrong(format!("<{}> is no element of OpenSCENARIO 1.0 to 1.2", self.tag())),
+            Some(Support::No) => self.wrong(format!("<{}> is not supported", self.tag())),
+            Some(_) => self.wrong(format!("<{}> is not supported in <{parent}>", self.tag())),
+        }
+    }
+
+    /// An attribute with its parameters' values, if it is there.
+    pub fn given(&self, name: &str) -> Result<Option<String>, StoryError> {
+        let Some(text) = self.node.attribute(name) else { return Ok(None) };
+        let value = value::of(text.trim(), &self.shared.parameters);
+        value.map(Some).map_err(|why| self.wrong(format!("{name} of <{}> is {}: {why}", self.tag(), shown(text))))
+    }
+
+    /// An attribute that must be there.
+    pub fn text(&self, name: &str) -> Result<String, StoryError> {
+        self.given(name)?.ok_or_else(|| self.wrong(format!("<{}> has no {name}", self.tag())))
+    }
+
+    fn misfit(&self, name: &str, text: &str, expected: &str) -> StoryError {
+        self.wrong(format!("{name} of <{}> is {}, expected {expected}", self.tag(), shown(text)))
+    }
+
+    /// A number, if it is there. Infinity, which the standard calls INF, is a very large one.
+    pub fn number_given(&self, name: &str) -> Result<Option<f64>, StoryError> {
+        const MOST: f64 = 1e9;
+        let Some(text) = self.given(name)? else { return Ok(None) };
+        let number = match text.as_str() {
+            "INF" | "inf" | "Infinity" => Some(MOST),
+            "-INF" | "-inf" | "-Infinity" => Some(-MOST),
+            other => other.parse::<f64>().ok().filter(|number| number.is_finite()),
+        };
+        let number = number.ok_or_else(|| self.misfit(name, &text, "a number"))?;
+        Ok(Some(number.clamp(-MOST, MOST)))
+    }
+
+    /// A number that must be there.
+    pub fn number(&self, name: &str) -> Result<f64, StoryError> {
+        self.number_given(name)?.ok_or_else(|| self.wrong(format!("<{}> has no {name}", self.tag())))
+    }
+
+    /// The same for what is not exact.
+    pub fn float(&self, name: &str) -> Result<f32, StoryError> {
+        Ok(self.number(name)? as f32)
+    }
+
+    /// A number that is 0 where it is not there.
+    pub fn or_zero(&self, name: &str) -> Result<f64, StoryError> {
+        Ok(self.number_given(name)?.unwrap_or(0.0))
+    }
+
+    /// A number that is not negative.
+    pub fn amount(&self, name: &str) -> Result<f32, StoryError> {
+        let number = self.number(name)?;
+        if number < 0.0 { Err(self.misfit(name, &number.to_string(), "a number from 0 on")) } else { Ok(number as f32) }
+    }
+
+    /// A whole number of a lane.
+    pub fn whole(&self, name: &str) -> Result<i32, StoryError> {
+        let text = self.text(name)?;
+        text.parse().map_err(|_| self.misfit(name, &text, "a whole number"))
+    }
+
+    /// Yes or no, if it is there.
+    pub fn switch(&self, name: &str) -> Result<Option<bool>, StoryError> {
+        let Some(text) = self.given(name)? else { return Ok(None) };
+        match text.as_str() {
+            "true" | "1" => Ok(Some(true)),
+            "false" | "0" => Ok(Some(false)),
+            _ => Err(self.misfit(name, &text, "true or false")),
+        }
+    }
+
+    /// One of some words, if it is there.
+    pub fn word_given<T: Copy>(&self, name: &str, words: &[(&str, T)]) -> Result<Option<T>, StoryError> {
+        let Some(text) = self.given(name)? else { return Ok(None) };
+        let found = words.iter().find(|(word, _)| *word == text).map(|(_, meant)| *meant);
+        let expected = || words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(" or ");
+        found.map(Some).ok_or_else(|| self.misfit(name, &text, &expected()))
+    }
+
+    /// One of some words.
+    pub fn word<T: Copy>(&self, name: &str, words: &[(&str, T)]) -> Result<T, StoryError> {
+        self.word_given(name, words)?.ok_or_else(|| self.wrong(format!("<{}> has no {name}", self.tag())))
+    }
+}
+
+/// A value as a refusal shows it.
+fn shown(text: &str) -> String {
+    let mut shown: String = text.chars().filter(|c| !c.is_control()).take(40).collect();
+    if text.chars().count() > 40 {
+        shown.push_str("...");
+    }
+    format!("{shown:?}")
+}

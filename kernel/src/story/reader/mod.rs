@@ -1,0 +1,50 @@
+//! OpenSCENARIO XML, 1.0 to 1.2, to a [`Script`]. `coverage` says which elements are read.
+
+mod actions;
+mod conditions;
+mod coverage;
+mod document;
+mod entities;
+mod names;
+mod positions;
+mod storyboard;
+mod value;
+mod vary;
+
+pub use coverage::{ELEMENTS, Row, Support};
+pub use vary::{varied, with_shares};
+
+use super::error::StoryError;
+use super::script::Script;
+use document::{Element, Shared};
+use names::Names;
+
+/// What a text says besides its script.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Read {
+    /// What it says of who plays, and what happens.
+    pub script: Script,
+    /// The file of the map, as it is called in the text.
+    pub map: String,
+    /// What was passed over, by line: harmless, and of each element the first one only.
+    pub passed: Vec<(u32, String)>,
+}
+
+/// Reads a text.
+///
+/// # Errors
+/// One sentence with the line of what is no OpenSCENARIO, or is not supported.
+pub fn read(text: &str) -> Result<Read, StoryError> {
+    let document = document::parse(text)?;
+    let shared = Shared::of(&document);
+    let root = Element::root(&document, &shared)?;
+    root.pass_parameters();
+    let network = root.need("RoadNetwork")?;
+    let map = network.need("LogicFile")?.text("filepath")?;
+    let cast = entities::read(root.need("Entities")?)?;
+    let names = Names { cast: &cast };
+    let board = storyboard::read(root.need("Storyboard")?, &names)?;
+    let passed = shared.leftovers(&document)?;
+    let script = Script { init: board.init, acts: board.acts, stop: board.stop, cast };
+    Ok(Read { script, map, passed })
+}

@@ -1,0 +1,58 @@
+//! Places, in the words of the text.
+
+use crate::story::error::StoryError;
+use crate::story::script::{Facing, Position};
+
+use super::document::Element;
+use super::names::Names;
+
+/// The place in an element `<Position>`.
+pub fn read(position: Element<'_>, names: &Names<'_>) -> Result<Position, StoryError> {
+    let place = position.choice()?;
+    match place.tag() {
+        "WorldPosition" => Ok(Position::World {
+            at_m: [place.number("x")?, place.number("y")?],
+            z_m: place.number_given("z")?,
+            heading_rad: place.number_given("h")?.map(|heading_rad| heading_rad as f32),
+        }),
+        "LanePosition" => Ok(Position::Lane {
+            road: place.text("roadId")?,
+            lane: place.whole("laneId")?,
+            s_m: place.number("s")?,
+            offset_m: place.or_zero("offset")?,
+            facing: facing(place)?,
+        }),
+        "RoadPosition" => Ok(Position::Road {
+            road: place.text("roadId")?,
+            s_m: place.number("s")?,
+            t_m: place.number("t")?,
+            facing: facing(place)?,
+        }),
+        "RelativeWorldPosition" | "RelativeObjectPosition" => Ok(Position::Beside {
+            role: names.role(place, "entityRef")?,
+            by_m: [place.float("dx")?, place.float("dy")?],
+            own_axes: place.tag() == "RelativeObjectPosition",
+            facing: facing(place)?,
+        }),
+        "RelativeLanePosition" => Ok(Position::BesideLane {
+            role: names.role(place, "entityRef")?,
+            lanes: place.whole("dLane")?,
+            ahead_m: match place.number_given("ds")? {
+                Some(ahead_m) => ahead_m as f32,
+                None => place.float("dsLane")?,
+            },
+            offset_m: place.or_zero("offset")? as f32,
+            facing: facing(place)?,
+        }),
+        _ => Err(place.unsupported()),
+    }
+}
+
+/// What `<Orientation>` says; who says nothing faces as traffic, the road or the role does.
+fn facing(place: Element<'_>) -> Result<Facing, StoryError> {
+    let Some(orientation) = place.child("Orientation") else { return Ok(Facing::Relative(0.0)) };
+    let heading_rad = orientation.or_zero("h")? as f32;
+    let is_relative = orientation.word_given("type", &[("relative", true), ("absolute", false)])?;
+    // The standard's default is absolute.
+    Ok(if is_relative.unwrap_or(false) { Facing::Relative(heading_rad) } else { Facing::Absolute(heading_rad) })
+}

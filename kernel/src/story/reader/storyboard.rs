@@ -1,0 +1,133 @@
+//! What happens: how it begins, acts, groups, manoeuvres and events.
+
+use crate::story::error::StoryError;
+use crate::story::script::{Act, Action, Event, Group, Priority, RoleId, Trigger};
+
+use super::document::Element;
+use super::names::Names;
+use super::{actions, conditions};
+
+/// Most events of a text, and most actions of an event.
+const EVENTS: usize = 5_000;
+const ACTIONS: usize = 100;
+/// Most roles times actions of all events: each is remembered in the state of a run.
+const DEEDS: usize = 20_000;
+
+const PRIORITIES: &[(&str, Priority)] = &[
+    ("overwrite", Priority::Override),
+    ("override", Priority::Override),
+    ("skip", Priority::Skip),
+    ("parallel", Priority::Parallel),
+];
+
+/// What happens.
+pub struct Board {
+    pub init: Vec<(RoleId, Action)>,
+    pub acts: Vec<Act>,
+    pub stop: Trigger,
+}
+
+pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> {
+    let init = match board.child("Init") {
+        Some(init) => self::init(init.need("Actions")?, names)?,
+        None => Vec::new(),
+    };
+    let mut acts = Vec::new();
+    for story in board.all("Story") {
+        story.pass_parameters();
+        for act in story.all("Act") {
+            acts.push(self::act(act, names)?);
+        }
+    }
+    let events = || acts.iter().flat_map(|act| &act.groups).flat_map(|g| g.events.iter().map(move |e| (g, e)));
+    if events().count() > EVENTS {
+        return Err(board.wrong(format!("expected at most {EVENTS} events")));
+    }
+    if events().map(|(group, event)| group.actors.len() * event.actions.len()).sum::<usize>() > DEEDS {
+        return Err(board.wrong(format!("expected at most {DEEDS} actions of all actors")));
+    }
+    Ok(Board { init, acts, stop: conditions::trigger(board.child("StopTrigger"), names)? })
+}
+
+fn init(actions: Element<'_>, names: &Names<'_>) -> Result<Vec<(RoleId, Action)>, StoryError> {
+    let mut init = Vec::new();
+    for global in actions.all("GlobalAction") {
+        init.push(actions::global(global, names)?);
+    }
+    for private in actions.all("Private") {
+        let role = names.role(private, "entityRef")?;
+        for action in private.all("PrivateAction") {
+            init.extend(actions::private(action, names)?.map(|action| (role, action)));
+        }
+    }
+    Ok(init)
+}
+
+fn act(act: Element<'_>, names: &Names<'_>) -> Result<Act, StoryError> {
+    let mut groups = Vec::new();
+    for group in act.all("ManeuverGroup") {
+        groups.push(self::group(group, names)?);
+    }
+    Ok(Act {
+        name: act.given("name")?.unwrap_or_default(),
+        groups,
+        start: conditions::trigger(act.child("StartTrigger"), names)?,
+        stop: conditions::trigger(act.child("StopTrigger"), names)?,
+    })
+}
+
+fn times(element: Element<'_>) -> Result<u16, StoryError> {
+    if element.given("maximumExecutionCount")?.is_none() {
+        return Ok(1);
+    }
+    let count = element.number("maximumExecutionCount")?;
+    if (1.0..=1e9).contains(&count) {
+        return Ok(count.min(60_000.0) as u16);
+    }
+    Err(element.wrong(format!("maximumExecutionCount of <{}> is {count}, expected 1 or more", element.tag())))
+}
+
+fn group(group: Element<'_>, names: &Names<'_>) -> Result<Group, StoryError> {
+    let actors = group.need("Actors")?;
+    if actors.switch("selectTriggeringEntities")?.unwrap_or(false) {
+        return Err(actors.wrong("selectTriggeringEntities of <Actors> is true, which is not supported"));
+    }
+    let roles = actors.all("EntityRef").map(|entity| names.role(entity, "entityRef"));
+    let roles = roles.collect::<Result<Vec<_>, _>>()?;
+    let mut events = Vec::new();
+    for (number, manoeuvre) in group.all("Maneuver").enumerate() {
+        manoeuvre.pass_parameters();
+        let name = manoeuvre.given("name")?.unwrap_or_default();
+        for event in manoeuvre.all("Event") {
+            events.push(self::event(event, (number, name.clone()), names)?);
+        }
+    }
+    Ok(Group { name: group.given("name")?.unwrap_or_default(), most: times(group)?, actors: roles, events })
+}
+
+fn event(event: Element<'_>, manoeuvre: (usize, String), names: &Names<'_>) -> Result<Event, StoryError> {
+    let mut actions = Vec::new();
+    for action in event.all("Action") {
+        if actions.len() == ACTIONS {
+            return Err(action.wrong(format!("expected at most {ACTIONS} actions of an event")));
+        }
+        let name = action.given("name")?.unwrap_or_default();
+        let kind = action.choice()?;
+        match kind.tag() {
+            "PrivateAction" => actions.extend(actions::private(kind, names)?.map(|done| (name, None, done))),
+            "GlobalAction" => {
+                let (role, done) = actions::global(kind, names)?;
+                actions.push((name, Some(role), done));
+            }
+            _ => return Err(kind.unsupported()),
+        }
+    }
+    Ok(Event {
+        name: event.given("name")?.unwrap_or_default(),
+        manoeuvre,
+        priority: event.word("priority", PRIORITIES)?,
+        most: times(event)?,
+        start: conditions::trigger(event.child("StartTrigger"), names)?,
+        actions,
+    })
+}

@@ -1,0 +1,401 @@
+//! What a story says: who plays, how it begins, and what happens when. Times are ticks, angles radians; places are told
+//! in the words of the text and found on a map by [`Stage`](super::Stage).
+
+use crate::actor::ActorKind;
+use crate::time::Tick;
+
+use super::spot::Spot;
+
+/// Index of a role in [`Script::cast`].
+pub type RoleId = usize;
+
+/// Everything that a text says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Script {
+    /// Who plays, the ego car among them.
+    pub cast: Vec<Role>,
+    /// What is done before the first tick, in this order.
+    pub init: Vec<(RoleId, Action)>,
+    /// What happens.
+    pub acts: Vec<Act>,
+    /// Ends the whole story.
+    pub stop: Trigger,
+}
+
+/// Somebody who plays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Role {
+    /// Its name in the text.
+    pub name: String,
+    /// What it is; nothing for the ego car.
+    pub kind: Option<ActorKind>,
+    /// Fastest it goes, m/s.
+    pub most_mps: f32,
+}
+
+/// An act: it begins by its trigger, and its groups play at the same time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Act {
+    /// Its name.
+    pub name: String,
+    /// Those who play together.
+    pub groups: Vec<Group>,
+    /// Begins it; without conditions it begins at once.
+    pub start: Trigger,
+    /// Ends it.
+    pub stop: Trigger,
+}
+
+/// Those who do the same things.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// Its name.
+    pub name: String,
+    /// How many times it plays.
+    pub most: u16,
+    /// Who plays.
+    pub actors: Vec<RoleId>,
+    /// What they do, of all manoeuvres.
+    pub events: Vec<Event>,
+}
+
+/// What somebody does when something happens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Its name.
+    pub name: String,
+    /// Which manoeuvre of its group it is in, and the name of that.
+    pub manoeuvre: (usize, String),
+    /// What becomes of others of the manoeuvre.
+    pub priority: Priority,
+    /// How many times it happens.
+    pub most: u16,
+    /// Begins it.
+    pub start: Trigger,
+    /// What is done: the name of the action, and of whom, if not of each who plays.
+    pub actions: Vec<(String, Option<RoleId>, Action)>,
+}
+
+/// What an event that begins does to others of its manoeuvre that go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Priority {
+    /// It ends them.
+    Override,
+    /// It does not happen.
+    Skip,
+    /// Nothing.
+    Parallel,
+}
+
+/// Holds when all conditions of one of its groups do.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trigger {
+    /// The groups.
+    pub groups: Vec<Vec<Condition>>,
+}
+
+/// A condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Condition {
+    /// It counts so long after it was met.
+    pub delay_ticks: Tick,
+    /// Which change of what it says counts.
+    pub edge: Edge,
+    /// What it says.
+    pub when: When,
+}
+
+/// Which change of a condition counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// That it holds.
+    None,
+    /// That it begins to hold.
+    Rising,
+    /// That it ends to hold.
+    Falling,
+    /// Both.
+    Either,
+}
+
+/// How two numbers compare.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// More.
+    Greater,
+    /// As much or more.
+    GreaterOrEqual,
+    /// Less.
+    Less,
+    /// As much or less.
+    LessOrEqual,
+    /// As much: since the tick before, one became the other.
+    Equal,
+    /// Not as much.
+    NotEqual,
+}
+
+/// What a condition says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum When {
+    /// Seconds since the start.
+    Time(Rule, f32),
+    /// An element of the story is in a state, or just came there.
+    Element(ElementKind, String, ElementState),
+    /// Something of one or all of some roles.
+    Role {
+        /// All of them, or any.
+        all: bool,
+        /// The roles.
+        roles: Vec<RoleId>,
+        /// What of each.
+        what: OfRole,
+    },
+}
+
+/// What a condition says of a role.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OfRole {
+    /// Its speed, m/s.
+    Speed(Rule, f32),
+    /// How much faster it is than another, m/s.
+    RelativeSpeed(Rule, f32, RoleId),
+    /// Its acceleration along its way, m/s².
+    Acceleration(Rule, f32),
+    /// It has stood so long.
+    Stands(Tick),
+    /// It has come so far, metres.
+    Travelled(f32),
+    /// It is so near to a place, metres.
+    Reaches(Position, f32),
+    /// Distance to a place, metres.
+    Distance(Rule, f32, Measure, Position),
+    /// Distance to a role, metres.
+    RelativeDistance(Rule, f32, Measure, RoleId),
+    /// Time until it is where another is now, s.
+    Headway(Rule, f32, Measure, RoleId),
+    /// Time until it meets another if both go on, s.
+    TimeToCollision(Rule, f32, Measure, RoleId),
+    /// It touches another, or anybody.
+    Collides(Option<RoleId>),
+    /// It has stood where its road ends so long.
+    EndOfRoad(Tick),
+    /// It has been beside the road so long.
+    OffRoad(Tick),
+}
+
+/// How a distance is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Measure {
+    /// Between outlines, not between middles.
+    pub free: bool,
+    /// Along what.
+    pub along: Along,
+}
+
+/// Along what a distance is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// The straight line.
+    Straight,
+    /// The heading of who measures, or its road.
+    Forward,
+    /// Across that.
+    Sideways,
+}
+
+/// Kinds of elements of a story.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ElementKind {
+    /// An act.
+    Act,
+    /// A group that plays together.
+    Group,
+    /// A manoeuvre: all its events.
+    Manoeuvre,
+    /// An event.
+    Event,
+    /// An action of an event.
+    Action,
+}
+
+/// A state of an element, or a change of that in the tick before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementState {
+    /// It waits for its trigger.
+    Standby,
+    /// It goes on.
+    Running,
+    /// It will not happen any more.
+    Complete,
+    /// It just began.
+    Started,
+    /// It just came to its end.
+    Ended,
+    /// It was just ended by others.
+    Stopped,
+    /// It would have begun, but was skipped.
+    Skipped,
+}
+
+/// A place in the words of the text. Headings are absolute unless they are turned against that of the road or role.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Position {
+    /// Metres in the coordinates of the map's file.
+    World {
+        /// East and north.
+        at_m: [f64; 2],
+        /// Height; nothing for that of the road.
+        z_m: Option<f64>,
+        /// Heading; nothing where the file does not say.
+        heading_rad: Option<f32>,
+    },
+    /// On a lane.
+    Lane {
+        /// OpenDRIVE id of the road.
+        road: String,
+        /// OpenDRIVE id of the lane.
+        lane: i32,
+        /// Along the road's reference line, metres.
+        s_m: f64,
+        /// To the left of the lane's middle, seen along the reference line, metres.
+        offset_m: f64,
+        /// How it faces.
+        facing: Facing,
+    },
+    /// On a road.
+    Road {
+        /// OpenDRIVE id of the road.
+        road: String,
+        /// Along its reference line, metres.
+        s_m: f64,
+        /// To the left of that, metres.
+        t_m: f64,
+        /// How it faces.
+        facing: Facing,
+    },
+    /// Found on the map.
+    Known(Spot),
+    /// So far from a role, along the axes of the world or of the role, metres.
+    Beside {
+        /// The role.
+        role: RoleId,
+        /// Along and to the left, metres.
+        by_m: [f32; 2],
+        /// Along the role's axes, not east and north.
+        own_axes: bool,
+        /// How it faces.
+        facing: Facing,
+    },
+    /// So many lanes to the left of a role and so far ahead of it.
+    BesideLane {
+        /// The role.
+        role: RoleId,
+        /// Lanes to the left, seen from the role.
+        lanes: i32,
+        /// Ahead along the lane, metres.
+        ahead_m: f32,
+        /// To the left of the lane's middle, metres.
+        offset_m: f32,
+        /// How it faces.
+        facing: Facing,
+    },
+}
+
+/// How somebody faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Facing {
+    /// Counter-clockwise from east, radians.
+    Absolute(f32),
+    /// Counter-clockwise from how traffic, the road or the role does, radians.
+    Relative(f32),
+}
+
+/// What somebody does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Is at a place from now on.
+    Teleport(Position),
+    /// Changes its speed.
+    Speed(Dynamics, SpeedTarget),
+    /// Changes to another lane.
+    LaneChange(Dynamics, LaneTarget, f32),
+    /// Moves within its lane, or beyond: to so far to the left of its middle, metres, of its own or of a role's.
+    LaneOffset(Dynamics, f32, Option<RoleId>),
+    /// Follows a line.
+    Follow(Path),
+    /// Goes a way through some places.
+    Route(Vec<Position>),
+    /// Goes to a place, and is done there.
+    Acquire(Position),
+    /// Leaves the map.
+    Leave,
+}
+
+/// Which speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpeedTarget {
+    /// Metres a second.
+    Absolute(f32),
+    /// So much faster than a role, m/s; `true` as long as the event lasts.
+    Faster(RoleId, f32, bool),
+    /// So many times as fast as a role.
+    Times(RoleId, f32, bool),
+}
+
+/// Which lane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LaneTarget {
+    /// OpenDRIVE id of a lane of the same road.
+    Absolute(i32),
+    /// So many lanes to the left of a role's, seen from that.
+    Relative(RoleId, i32),
+}
+
+/// How something changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dynamics {
+    /// The course of it.
+    pub shape: Shape,
+    /// How long it takes.
+    pub takes: Takes,
+}
+
+/// The course of a change from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// Even.
+    Linear,
+    /// With level ends, 3 x² - 2 x³.
+    Cubic,
+    /// With level ends, half of a cosine.
+    Sinusoidal,
+    /// At once.
+    Step,
+}
+
+/// How long a change takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Takes {
+    /// Seconds.
+    Time(f32),
+    /// Metres on the way.
+    Distance(f32),
+    /// Units a second, on average.
+    Rate(f32),
+}
+
+/// A line to follow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// Its corners; each has a time, seconds from the beginning, or none has.
+    pub corners: Vec<(Position, Option<f32>)>,
+    /// Times count from the start of the run, not of the action.
+    pub absolute: bool,
+    /// Times decide how fast it is followed; else the speed of who follows does.
+    pub timed: bool,
+    /// The line begins so far from its first corner, metres.
+    pub from_m: f32,
+    /// Headings of corners are kept; else who follows faces along the line.
+    pub headings: bool,
+}

@@ -1,0 +1,207 @@
+//! What those who play do.
+
+use super::*;
+
+fn position(x: f32, y: f32, h: &str, time: &str) -> String {
+    format!(r#"<Vertex {time}><Position><WorldPosition x="{x}" y="{y}" z="0" {h}/></Position></Vertex>"#)
+}
+
+fn follow(timing: &str, corners: &str) -> String {
+    format!(
+        r#"<PrivateAction><RoutingAction><FollowTrajectoryAction>
+<Trajectory name="line" closed="false"><Shape><Polyline>{corners}</Polyline></Shape></Trajectory>
+<TimeReference>{timing}</TimeReference><TrajectoryFollowingMode followingMode="position"/>
+</FollowTrajectoryAction></RoutingAction></PrivateAction>"#
+    )
+}
+
+fn lane_change(target: &str, shape: &str, value: f32, dimension: &str) -> String {
+    format!(
+        r#"<PrivateAction><LateralAction><LaneChangeAction>
+<LaneChangeActionDynamics dynamicsShape="{shape}" value="{value}" dynamicsDimension="{dimension}"/>
+<LaneChangeTarget>{target}</LaneChangeTarget></LaneChangeAction></LateralAction></PrivateAction>"#
+    )
+}
+
+#[test]
+fn who_is_asked_for_nothing_keeps_lane_and_speed() {
+    let mut world = played("");
+    go_on(&mut world, 3.0);
+    let other = other(&world);
+    assert!((other.position.x - 130.0).abs() < 0.05 && (other.position.y + 1.75).abs() < 0.01, "{other:?}");
+    assert!((other.speed_mps - 10.0).abs() < 0.02);
+}
+
+#[test]
+fn speeds_change_as_their_shapes_say() {
+    // (shape, value, dimension, share of the change half-way)
+    for (shape, value, dimension, takes_s) in [
+        ("linear", 4.0, "time", 4.0),
+        ("sinusoidal", 4.0, "time", 4.0),
+        ("cubic", 4.0, "time", 4.0),
+        ("linear", 2.5, "rate", 4.0),
+        ("step", 0.0, "time", 0.0),
+    ] {
+        let mut world = played(&event("e", &speed(shape, value, dimension, 20.0), &after(1.0)));
+        go_on(&mut world, 1.0);
+        assert!((other(&world).speed_mps - 10.0).abs() < 0.1, "{shape}");
+        go_on(&mut world, takes_s / 2.0);
+        let half_mps = if shape == "step" { 10.0 } else { 15.0 };
+        assert!((other(&world).speed_mps - half_mps).abs() < 0.2, "{shape} {dimension}: {}", other(&world).speed_mps);
+        go_on(&mut world, takes_s / 2.0 + 0.1);
+        assert!((other(&world).speed_mps - 20.0).abs() < 0.02, "{shape} {dimension}: {}", other(&world).speed_mps);
+    }
+}
+
+#[test]
+fn a_parameter_and_an_expression_are_values() {
+    let action = speed("step", 0.0, "time", 0.0)
+        .replace(r#"<AbsoluteTargetSpeed value="0"/>"#, r#"<AbsoluteTargetSpeed value="${$fast / 2 + 3}"/>"#);
+    let mut world = played(&event("e", &action, &after(0.0)));
+    go_on(&mut world, 0.2);
+    assert!((other(&world).speed_mps - 13.0).abs() < 0.02);
+}
+
+#[test]
+fn lanes_are_changed_in_the_time_and_on_the_way_that_are_asked_for() {
+    for (target, y) in [
+        (r#"<RelativeTargetLane entityRef="Other" value="-1"/>"#, -5.25),
+        (r#"<AbsoluteTargetLane value="-2"/>"#, -5.25),
+        (r#"<RelativeTargetLane entityRef="Other" value="1"/>"#, 1.75),
+        (r#"<RelativeTargetLane entityRef="Ego" value="2"/>"#, 1.75),
+        (r#"<AbsoluteTargetLane value="2"/>"#, 5.25),
+    ] {
+        for (value, dimension) in [(2.0, "time"), (20.0, "distance")] {
+            let mut world = played(&event("e", &lane_change(target, "sinusoidal", value, dimension), &after(1.0)));
+            go_on(&mut world, 2.0);
+            let half = other(&world);
+            assert!((half.position.y - (y - 1.75) * 0.5).abs() < 0.15, "{target} {dimension}: {half:?}");
+            go_on(&mut world, 1.2);
+            let there = other(&world);
+            assert!((there.position.y - y).abs() < 0.02 && there.speed_mps > 9.9, "{target} {dimension}: {there:?}");
+            // On the other side of the road it goes on the way it faced.
+            assert!((there.position.x - 132.0).abs() < 0.6, "{target}: {there:?}");
+        }
+    }
+}
+
+#[test]
+fn who_moves_aside_comes_no_harder_than_is_asked_for() {
+    let action = r#"<PrivateAction><LateralAction><LaneOffsetAction continuous="false">
+<LaneOffsetActionDynamics dynamicsShape="sinusoidal" maxLateralAcc="1"/>
+<LaneOffsetTarget><AbsoluteTargetLaneOffset value="1.2"/></LaneOffsetTarget></LaneOffsetAction></LateralAction></PrivateAction>"#;
+    let mut world = played(&event("e", action, &after(0.0)));
+    let (mut across, mut hardest_mps2) = (Vec::new(), 0.0_f32);
+    for _ in 0..240 {
+        go_on(&mut world, 1.1 / 60.0);
+        across.push(other(&world).position.y);
+    }
+    for y in across.windows(13).step_by(6) {
+        hardest_mps2 = hardest_mps2.max((y[12] - 2.0 * y[6] + y[0]).abs() / (0.1 * 0.1));
+    }
+    assert!((across[239] + 0.55).abs() < 0.01, "{}", across[239]);
+    assert!((0.8..1.15).contains(&hardest_mps2), "{hardest_mps2}");
+}
+
+#[test]
+fn a_line_is_followed_to_the_millimetre_in_time() {
+    let corners: String = (0..=40)
+        .map(|k| {
+            let (t, s) = (k as f32 * 0.1, k as f32);
+            position(100.0 + s, -1.75 + 0.05 * s, "h=\"0.3\"", &format!("time=\"{t}\""))
+        })
+        .collect();
+    let timing = r#"<Timing domainAbsoluteRelative="absolute" scale="1" offset="0"/>"#;
+    let mut world = played(&event("e", &follow(timing, &corners), &after(0.0)));
+    for tick in 1..=240 {
+        go_on(&mut world, 1.1 / 60.0);
+        let (at, s) = (other(&world), tick as f32 / 6.0);
+        let way = at.position.truncate() - glam::Vec2::new(100.0 + s, -1.75 + 0.05 * s);
+        // Pictures and recordings of scenes know places to 2^-10 m.
+        assert!(way.length() < 2e-3, "tick {tick}: {at:?}");
+    }
+    let faces = other(&world).rotation * glam::Vec3::X;
+    assert!((faces.y - crate::ops::sin(0.3)).abs() < 0.01, "{faces}");
+    // Then it goes on along its road.
+    go_on(&mut world, 1.0);
+    let then = other(&world);
+    assert!((then.position.x - 150.0).abs() < 0.2 && then.speed_mps > 9.9, "{then:?}");
+}
+
+#[test]
+fn without_times_a_line_is_followed_at_the_own_speed() {
+    let corners = position(100.0, -1.75, "", "") + &position(120.0, -1.75, "", "") + &position(120.0, 20.0, "", "");
+    let mut world = played(&event("e", &follow("<None/>", &corners), &after(0.0)));
+    go_on(&mut world, 3.0);
+    let at = other(&world);
+    assert!((at.position.truncate() - glam::Vec2::new(120.0, 8.25)).length() < 0.3, "{at:?}");
+    assert!((at.rotation * glam::Vec3::X).y > 0.99);
+}
+
+#[test]
+fn who_is_deleted_is_gone_and_who_is_told_to_jump_is_there() {
+    let gone = r#"<GlobalAction><EntityAction entityRef="Other"><DeleteEntityAction/></EntityAction></GlobalAction>"#;
+    let mut world = played(&event("e", gone, &after(1.0)));
+    go_on(&mut world, 2.0);
+    assert_eq!(world.scene().actors.len(), 1);
+    let jump = r#"<PrivateAction><TeleportAction><Position><RelativeLanePosition entityRef="Ego" dLane="1" ds="50"/></Position></TeleportAction></PrivateAction>"#;
+    let mut world = played(&event("e", jump, &after(1.0)));
+    go_on(&mut world, 1.05);
+    let at = other(&world).position;
+    assert!((at.x - 550.0).abs() < 1.0 && (at.y + 1.75).abs() < 0.01, "{at}");
+}
+
+#[test]
+fn a_place_is_come_to() {
+    let acquire = r#"<PrivateAction><RoutingAction><AcquirePositionAction><Position>
+<LanePosition roadId="7" laneId="-2" s="140"/></Position></AcquirePositionAction></RoutingAction></PrivateAction>"#;
+    let stop = r#"<ConditionGroup><Condition name="" delay="0" conditionEdge="none"><ByValueCondition>
+<StoryboardElementStateCondition storyboardElementType="action" storyboardElementRef="of go" state="completeState"/>
+</ByValueCondition></Condition></ConditionGroup>"#;
+    let acquire = acquire.replace("laneId=\"-2\"", "laneId=\"-1\"");
+    let events = event("go", &acquire, &after(0.0)) + &event("stop", &speed("step", 0.0, "time", 0.0), stop);
+    let mut world = played(&events);
+    go_on(&mut world, 6.0);
+    let at = other(&world);
+    assert!((at.position.x - 139.0).abs() < 0.7 && at.speed_mps == 0.0, "{at:?}");
+}
+
+#[test]
+fn who_begins_turned_round_drives_against_traffic() {
+    let init = begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 400.0, 10.0);
+    let turned = r#"laneId="-1" s="400"><Orientation type="relative" h="3.14159265"/></LanePosition>"#;
+    let mut world = world(&text(&init.replace(r#"laneId="-1" s="400"/>"#, turned), ""));
+    go_on(&mut world, 2.0);
+    let at = other(&world);
+    assert!((at.position.x - 380.0).abs() < 0.1 && (at.rotation * glam::Vec3::X).x < -0.99, "{at:?}");
+    assert!((at.speed_mps - 10.0).abs() < 0.02);
+}
+
+#[test]
+fn where_the_road_ends_one_stands() {
+    let init = begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 980.0, 10.0);
+    let ended = when("Other", "none", r#"<EndOfRoadCondition duration="1"/>"#);
+    let gone = r#"<GlobalAction><EntityAction entityRef="Other"><DeleteEntityAction/></EntityAction></GlobalAction>"#;
+    let mut world = world(&text(&init, &event("e", gone, &ended)));
+    go_on(&mut world, 2.5);
+    assert!((other(&world).position.x - 1000.0).abs() < 0.2 && other(&world).speed_mps == 0.0);
+    go_on(&mut world, 1.0);
+    assert_eq!(world.scene().actors.len(), 1);
+}
+
+#[test]
+fn a_line_beside_another_lies_where_that_is_when_it_begins() {
+    let corner = |ds: f32, offset: f32, time: f32| {
+        format!(
+            r#"<Vertex time="{time}"><Position><RelativeLanePosition entityRef="Other" dLane="0" ds="{ds}" offset="{offset}"/></Position></Vertex>"#
+        )
+    };
+    let corners = corner(0.0, 0.0, 0.0) + &corner(20.0, 1.0, 1.0) + &corner(60.0, -1.0, 3.0);
+    let timing = r#"<Timing domainAbsoluteRelative="relative" scale="1" offset="0"/>"#;
+    let mut world = played(&event("e", &follow(timing, &corners), &after(1.0)));
+    go_on(&mut world, 2.0);
+    let at = other(&world);
+    assert!((at.position.truncate() - glam::Vec2::new(130.0, -0.75)).length() < 0.5, "{at:?}");
+    go_on(&mut world, 1.0);
+    assert!((other(&world).position.x - 150.0).abs() < 0.5, "{:?}", other(&world));
+}

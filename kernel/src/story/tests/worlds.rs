@@ -1,0 +1,113 @@
+//! Stories as a part of worlds: keyframes, forks, collisions, traffic.
+
+use super::*;
+use crate::state::State;
+
+fn busy() -> String {
+    let lane = r#"<PrivateAction><LateralAction><LaneChangeAction>
+<LaneChangeActionDynamics dynamicsShape="cubic" value="3" dynamicsDimension="time"/>
+<LaneChangeTarget><AbsoluteTargetLane value="-2"/></LaneChangeTarget></LaneChangeAction></LateralAction></PrivateAction>"#;
+    event("lane", lane, &after(11.0))
+        + &event("fast", &speed("linear", 2.0, "rate", 20.0), &after(10.0)).replace("overwrite", "parallel")
+        + &event("late", &speed("linear", 2.0, "rate", 2.0), &after(13.0).replace("delay=\"0\"", "delay=\"1\""))
+}
+
+#[test]
+fn a_world_goes_on_from_a_keyframe_as_it_did() {
+    let mut world = played(&busy());
+    let mut keyframe = None;
+    let mut hashes = Vec::new();
+    for _ in 0..18 * 60 {
+        let output = world.step(&TickInput::default());
+        if let Some(made) = output.keyframe {
+            (keyframe, hashes) = (Some(made), Vec::new());
+        } else {
+            hashes.push(output.hash);
+        }
+    }
+    let keyframe = keyframe.expect("one is made every 12 s");
+    let mut resumed = World::resume(world.scenario(), road(), &keyframe).expect("it is its own");
+    let again: Vec<_> = hashes.iter().map(|_| resumed.step(&TickInput::default()).hash).collect();
+    assert_eq!(again, hashes);
+    let mut plain = scenario(&text(&(begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 100.0, 10.0)), ""));
+    let said = World::fork(&plain, road(), &keyframe).err().expect("it has other events").to_string();
+    assert!(said.contains("its story has other elements"), "{said}");
+    plain.story = None;
+    let said = World::fork(&plain, road(), &keyframe).err().expect("it has no story").to_string();
+    assert!(said.contains("its run has a story, expected none"), "{said}");
+}
+
+#[test]
+fn every_field_of_a_story_is_in_the_hash() {
+    let mut world = played(&busy());
+    go_on(&mut world, 11.5);
+    let state = world.parts_of_story().expect("it has a story").clone();
+    let bytes = state.to_bytes();
+    let mut named = Vec::new();
+    state.name("", &mut named);
+    for wanted in
+        ["actors[1].spot.on.s_m", "actors[1].speed_by", "deeds[0].from", "events[1].at", "conditions[2].since"]
+    {
+        assert!(named.iter().any(|value| value.path.starts_with(wanted)), "{wanted}: {named:?}");
+    }
+    // Every byte of it counts.
+    for at in (0..bytes.len()).step_by(7) {
+        let mut other = bytes.clone();
+        other[at] ^= 1;
+        if let Ok(read) = crate::story::StoryState::from_bytes(&other) {
+            assert_ne!(read, state, "byte {at}");
+        }
+    }
+}
+
+#[test]
+fn scenarios_with_stories_come_back_from_their_text() {
+    let scenario = scenario(&text(&(begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 100.0, 10.0)), &busy()));
+    let printed = scenario.to_toml();
+    assert_eq!(Scenario::from_toml(&printed).as_ref(), Ok(&scenario));
+    let broken = printed.replacen("AbsoluteTargetLane", "AbsoluteLane", 2);
+    let error = Scenario::from_toml(&broken).expect_err("it is broken").to_string();
+    assert!(error.starts_with("story, line ") && error.contains("<AbsoluteLane> is no element"), "{error}");
+}
+
+#[test]
+fn who_is_hit_is_pushed_and_plays_no_more() {
+    let init = begins("Ego", -1, 200.0, 0.0) + &begins("Other", -1, 150.0, 20.0);
+    let mut world = world(&text(&init, ""));
+    let mut collided = false;
+    for _ in 0..600 {
+        let output = world.step(&TickInput::default());
+        collided |= output.events.iter().any(|e| e.kind == crate::events::EventKind::CollisionActor);
+    }
+    assert!(collided);
+    let other = other(&world);
+    assert!(other.position.x < 240.0 && other.speed_mps.abs() < 0.5, "{other:?}");
+    // Everything of it comes back from a keyframe.
+    let last = crate::Keyframe { tick: world.tick(), bytes: world.state_of_now() };
+    World::resume(world.scenario(), road(), &last).expect("it is its own");
+}
+
+#[test]
+fn the_ego_car_begins_as_fast_as_the_story_says() {
+    let init = begins("Ego", -1, 200.0, 15.0) + &begins("Other", -2, 150.0, 0.0);
+    let world = world(&text(&init, ""));
+    assert!((world.scene().ego.speed_mps - 15.0).abs() < 0.01);
+    assert!((world.scene().ego.position.y + 1.75).abs() < 0.01);
+}
+
+#[test]
+fn traffic_drives_behind_who_plays_and_does_not_touch_it() {
+    let init = begins("Ego", 2, 500.0, 0.0) + &begins("Other", -2, 300.0, 3.0);
+    let mut scenario = scenario(&text(&init, ""));
+    scenario.traffic = TrafficCounts { cars: 12, ..TrafficCounts::NONE };
+    let mut world = World::new(&scenario, road()).expect("it fits");
+    for _ in 0..60 {
+        go_on(&mut world, 1.0);
+        let scene = world.scene();
+        let me = other(&world);
+        for actor in scene.actors.iter().filter(|actor| actor.id != me.id) {
+            let way = (actor.position - me.position).abs();
+            assert!(way.x > 4.5 || way.y > 1.85, "{actor:?} is in {me:?}");
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! A story as a text.
+
+use crate::state::{DecodeError, NamedValue, Reader, State};
+
+use super::error::StoryError;
+use super::reader;
+use super::script::Script;
+
+/// A text in OpenSCENARIO XML that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Story {
+    text: String,
+    read: reader::Read,
+}
+
+impl Story {
+    /// Reads a text: one file, without catalogs.
+    ///
+    /// # Errors
+    /// When it is no OpenSCENARIO XML, or has elements that are not supported, by element and line.
+    pub fn read(text: &str) -> Result<Self, StoryError> {
+        Ok(Self { text: text.to_owned(), read: reader::read(text)? })
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The same with values drawn by a seed for those of its parameters that have ranges (`<ConstraintGroup>`).
+    ///
+    /// # Errors
+    /// When it cannot be played with these values.
+    pub fn varied(&self, seed: u64) -> Result<Self, StoryError> {
+        reader::varied(&self.text, seed).map_or_else(|| Ok(self.clone()), |text| Self::read(&text))
+    }
+
+    /// Whether some of its parameters have ranges.
+    ///
+    /// # Errors
+    /// When it cannot be played with all of them at one end or the other.
+    pub fn varies(&self) -> Result<bool, StoryError> {
+        let [low, high] = [0.0, 1.0].map(|share| reader::with_shares(&self.text, |_| share));
+        for text in low.iter().chain(&high) {
+            Self::read(text)?;
+        }
+        Ok(low.is_some())
+    }
+
+    /// What it says.
+    pub fn script(&self) -> &Script {
+        &self.read.script
+    }
+
+    /// The file of its map, as the text calls it.
+    pub fn map_file(&self) -> &str {
+        &self.read.map
+    }
+
+    /// Elements that were passed over since they change nothing, each once, with the line of the first one.
+    pub fn passed_over(&self) -> &[(u32, String)] {
+        &self.read.passed
+    }
+}
+
+/// Its bytes are those of its text.
+impl State for Story {
+    fn write(&self, out: &mut Vec<u8>) {
+        self.text.write(out);
+    }
+
+    fn read(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let text = String::read(r)?;
+        Story::read(&text).map_err(|_| r.error("a story in OpenSCENARIO XML"))
+    }
+
+    fn name(&self, path: &str, out: &mut Vec<NamedValue>) {
+        self.text.name(path, out);
+    }
+}
