@@ -79,8 +79,9 @@ impl Shared {
             }
             rest.extend(node.children().filter(Node::is_element));
         }
-        passed.sort();
+        passed.sort_by(|a, b| (&a.1, a.0).cmp(&(&b.1, b.0)));
         passed.dedup_by(|a, b| a.1 == b.1);
+        passed.sort();
         Ok(passed)
     }
 }
