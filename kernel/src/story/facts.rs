@@ -3,7 +3,6 @@
 use glam::Vec2;
 
 use crate::geometry::{direction, rectangles_overlap};
-use crate::ops;
 
 use super::actor::{self, StoryActor};
 use super::script::{Along, Measure, Role};
@@ -100,9 +99,4 @@ impl Outline {
         let closing_mps = self.closing_mps(other, measure);
         (closing_mps > 0.01).then(|| self.distance_m(other, measure) / closing_mps)
     }
-}
-
-/// The mean of two angles' difference, within half a turn.
-pub fn turn_rad(from_rad: f32, to_rad: f32) -> f32 {
-    ops::wrap_angle(to_rad - from_rad)
 }

@@ -13,7 +13,7 @@ use super::plan::stations_m;
 use super::script::{Action, Dynamics, Path, Position, RoleId, Shape, SpeedTarget, Takes};
 use super::spot::{OnLane, Spot};
 use super::state::{Change, Deed, StoryState};
-use super::{deeds, facts, lanes, relative};
+use super::{deeds, lanes, relative};
 
 /// A place is reached so near to it, metres.
 const REACHED_M: f32 = 1.0;
@@ -164,7 +164,7 @@ fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), 
     let along = to.plan() - from.plan();
     let actor = &mut state.actors[role];
     let heading_rad = if path.headings {
-        ops::wrap_angle(from.heading_rad + facts::turn_rad(from.heading_rad, to.heading_rad) * share)
+        ops::wrap_angle(from.heading_rad + ops::wrap_angle(to.heading_rad - from.heading_rad) * share)
     } else if along == Vec2::ZERO {
         actor.spot.heading_rad
     } else {

@@ -129,7 +129,7 @@ pub enum Rule {
     Less,
     /// As much or less.
     LessOrEqual,
-    /// As much: since the tick before, one became the other.
+    /// As much, within a hundredth; of times, within half a tick.
     Equal,
     /// Not as much.
     NotEqual,
