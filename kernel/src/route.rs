@@ -7,8 +7,8 @@ use crate::events::{Hud, RouteArrow};
 use crate::map::{LaneId, LaneKind, LightGroupId, Projection, RoadNetwork, Turn};
 use crate::rng::{self, Stream};
 use crate::scenario::Scenario;
-use crate::time::Tick;
-use crate::{ops, signals, state};
+use crate::signals::LightPhase;
+use crate::{ops, state};
 
 /// The route is known at least this far ahead, metres (less before a dead end).
 pub const HORIZON_M: f32 = 250.0;
@@ -184,17 +184,23 @@ impl Route {
     }
 
     /// What the HUD shows to a driver at `middle`.
-    pub fn hud(&self, network: &RoadNetwork, scenario: &Scenario, tick: Tick, car: &ego::Ego) -> Hud {
+    pub fn hud(
+        &self,
+        network: &RoadNetwork,
+        scenario: &Scenario,
+        shown: impl Fn(LightGroupId) -> LightPhase,
+        car: &ego::Ego,
+    ) -> Hud {
         let limit_mps = self.limit_mps(network, scenario);
         let read_m = limit_mps * READ_S + limit_mps * limit_mps / (2.0 * READ_BRAKE_MPS2);
-        let shown = |light: &LightAhead| {
+        let is_read = |light: &LightAhead| {
             light.distance_m <= LIGHT_M || light.distance_m <= read_m && self.is_in_sight(network, light, car)
         };
-        let light = self.light_ahead(network).filter(shown);
+        let light = self.light_ahead(network).filter(is_read);
         Hud {
             speed_mps: car.speed_mps(),
             limit_mps,
-            light: light.map(|light| signals::phase(network, scenario.seed, light.group, tick).0),
+            light: light.map(|light| shown(light.group)),
             light_distance_m: light.map_or(0, |light| light.distance_m as u16),
             arrow: self.arrow(network, car),
         }

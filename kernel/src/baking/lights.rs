@@ -78,6 +78,11 @@ impl Groups {
         groups
     }
 
+    /// The group of each signal that governs a lane; none of a sign.
+    pub fn each(&self) -> impl Iterator<Item = Option<LightGroupId>> + '_ {
+        self.of.iter().copied()
+    }
+
     /// Finds what holds whom before each junction.
     fn hold(&mut self, lanes: &[Lane], governed: &[Governed]) {
         let mut there: BTreeMap<LaneId, Vec<(&Governed, LightGroupId)>> = BTreeMap::new();

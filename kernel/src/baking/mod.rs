@@ -36,6 +36,7 @@ mod warnings;
 pub use error::BakeError;
 pub use marks::Mark;
 pub use notes::{Passed, PassedOver};
+pub(crate) use steps::lights_by_id;
 pub use steps::{Baked, bake, bake_with_notes};
 pub(crate) use survey::Survey;
 pub use told::{Control, Told};

@@ -13,7 +13,7 @@ use super::{
     bus_stops, crosswalks, dressing, flat, junctions, lanes, lights, marks, priority, props, signs, speeds, stops,
     structures, surfaces, terrain, walkways,
 };
-use crate::map_data::{Lane, MapData};
+use crate::map_data::{Lane, LightGroupId, MapData};
 use crate::places::LaneGrid;
 
 /// A map, and what else its file says.
@@ -44,6 +44,24 @@ pub fn bake_with_notes(name: &str, xodr: &str) -> Result<Baked, BakeError> {
     let (map, Rest { source, governed, named_props }) = map(name, xodr, &mut notes)?;
     let told = Told::of(&source, &map, &governed, named_props);
     Ok(Baked { map, told, passed_over: notes.finish() })
+}
+
+/// The signals of a text that bakes which are traffic lights: the id of each in the file, with its group.
+pub(crate) fn lights_by_id(xodr: &str) -> Option<Vec<(String, LightGroupId)>> {
+    let mut notes = Notes::unwanted();
+    let (source, lanes) = lanes::bake(Source::read(xodr, &mut notes).ok()?, &mut notes).ok()?;
+    let lanes = speeds::bake(&source, lanes, &mut notes);
+    let grid = LaneGrid::new(&lanes);
+    let (lanes, junctions) = junctions::bake(&source, lanes, &grid);
+    let governed = signs::governed(&source, &lanes, &mut notes);
+    let groups = lights::Groups::new(&source, &lanes, &junctions, &governed);
+    let of = |(g, group): (&Governed, Option<LightGroupId>)| {
+        Some((source.provenance.signals.get(g.signal)?.od_id.clone(), group?))
+    };
+    let mut ids: Vec<_> = governed.iter().zip(groups.each()).filter_map(of).collect();
+    ids.sort();
+    ids.dedup();
+    Some(ids)
 }
 
 /// What is left of baking.

@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
-use crate::baking::Survey;
-use crate::map_data::{LaneKind, MapData, Projection};
+use crate::baking::{Survey, lights_by_id};
+use crate::map_data::{LaneKind, LightGroupId, MapData, Projection};
 use crate::physics::Statics;
 use crate::places::{Ground, Places};
 use crate::traffic::Ways;
@@ -26,6 +26,7 @@ pub struct RoadNetwork {
     /// The text that it was baked from; nothing where it was made otherwise.
     text: Arc<str>,
     survey: OnceLock<Option<Arc<Survey>>>,
+    lights_by_id: OnceLock<Vec<(String, LightGroupId)>>,
 }
 
 impl From<MapData> for RoadNetwork {
@@ -37,6 +38,7 @@ impl From<MapData> for RoadNetwork {
             ways: OnceLock::new(),
             text: Arc::from(""),
             survey: OnceLock::new(),
+            lights_by_id: OnceLock::new(),
         }
     }
 }
@@ -64,6 +66,17 @@ impl RoadNetwork {
     /// Its roads by their ids in the file, along their reference lines, to which other formats refer.
     pub(crate) fn survey(&self) -> Option<&Survey> {
         self.survey.get_or_init(|| Survey::of(&self.text).map(Arc::new)).as_deref()
+    }
+
+    /// Its traffic lights by the ids of their signals in the file.
+    pub(crate) fn lights_of(&self, signal: &str) -> impl Iterator<Item = LightGroupId> + '_ {
+        let all = self.lights_by_id.get_or_init(|| lights_by_id(&self.text).unwrap_or_default());
+        let from = all.partition_point(|(id, _)| id.as_str() < signal);
+        let named = all[from..].iter().take_while({
+            let signal = signal.to_owned();
+            move |(id, _)| *id == signal
+        });
+        named.map(|(_, group)| *group)
     }
 
     /// Where its lanes and its ground are.

@@ -8,11 +8,12 @@ use rapier3d::prelude::*;
 use super::build::{ACTORS, EGO, GROUND, PROPS, free, groups, mass, parameters};
 use super::statics::{Statics, is_soft};
 use crate::actor::{ActorKind, FIRST_PARKED_ID};
-use crate::car::{self, CarSetup, Footing, Footprint, WHEELS};
+use crate::car::{self, CarSetup, Footing, Footprint, RunningGear, WHEELS};
 use crate::controls::Controls;
 use crate::ego::Ego;
 use crate::map_data::SurfaceKind;
 use crate::motion::Motion;
+use crate::time::TICK_S;
 use crate::weather::Water;
 
 const GRAVITY: Vec3 = Vec3::new(0.0, 0.0, -car::GRAVITY_MPS2);
@@ -201,9 +202,8 @@ impl Physics {
         }
     }
 
-    /// Advances by one tick, the ego car under the controls of its driver, with water on the ground.
-    pub fn step(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup, water: &Water) {
-        self.drive(ego, controls, setup, water);
+    /// Advances by one tick, after [`Physics::drive`] or [`Physics::carry`].
+    pub fn step(&mut self, ego: &mut Ego) {
         self.pipeline.step(
             GRAVITY,
             &self.parameters,
@@ -222,8 +222,25 @@ impl Physics {
         ego.moved(motion(&self.bodies[self.ego]));
     }
 
-    /// The body gets the velocities that its wheels give it. What it runs into is for the engine.
-    fn drive(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup, water: &Water) {
+    /// The ego car gets the velocities that bring the middle of its footprint to a place in the next step.
+    pub fn carry(&mut self, ego: &mut Ego, middle: Vec3, rotation: Quat) {
+        let now = &ego.motion;
+        let position = middle - rotation * Vec3::new(car::CENTRE_M.x, 0.0, 0.0);
+        let way = position + rotation * car::CENTRE_OF_MASS_M - now.position - now.rotation * car::CENTRE_OF_MASS_M;
+        let turn = rotation * now.rotation.conjugate();
+        // The shorter way round, and small: twice its vector part is the angle.
+        let turn = Vec3::new(turn.x, turn.y, turn.z) * (2.0 * turn.w.signum());
+        (self.off_road, self.footprints) = (false, Default::default());
+        let body = &mut self.bodies[self.ego];
+        body.set_linvel(way / TICK_S, true);
+        body.set_angvel(turn / TICK_S, true);
+        let speed_mps = way.dot(rotation * Vec3::X) / TICK_S;
+        ego.gear = RunningGear::rolling(speed_mps);
+    }
+
+    /// The ego car gets the velocities that its wheels give it under the controls of its driver, with water on the ground. What
+    /// it runs into is for the engine.
+    pub fn drive(&mut self, ego: &mut Ego, controls: &Controls, setup: &CarSetup, water: &Water) {
         let ground = self.ground(&ego.motion, water);
         self.off_road = ground.iter().flatten().any(|footing| is_soft(footing.kind));
         let (velocity, spin, footprints) = ego.gear.advance(&ego.motion, controls, setup, &ground);

@@ -8,6 +8,7 @@ use super::*;
 use crate::map::StopKind;
 use crate::map::bundled;
 use crate::motion::Motion;
+use crate::signals;
 
 /// A place on the way of a car, and its heading.
 fn at(network: &RoadNetwork, lane: LaneId, s_m: f32, aside_m: f32) -> (Vec3, f32) {
@@ -114,7 +115,12 @@ fn a_light_is_shown_as_soon_as_people_have_to_see_it() {
                 let position = middle - rotation * Vec3::new(ego::CENTRE_M.x, 0.0, 0.0);
                 let motion = Motion { position, rotation, velocity_mps: Vec3::ZERO, spin_radps: Vec3::ZERO };
                 let route = Route::along(&network, 1, vec![id as LaneId], s_m);
-                let hud = route.hud(&network, &scenario, 5, &ego::Ego::new(motion));
+                let hud = route.hud(
+                    &network,
+                    &scenario,
+                    |group| signals::phase(&network, scenario.seed, group, 5).0,
+                    &ego::Ego::new(motion),
+                );
                 let to_line_m = away_m as f32 - NOSE_M;
                 let phase = match stop.kind {
                     StopKind::Light(group) => signals::phase(&network, scenario.seed, group, 5).0,

@@ -93,6 +93,12 @@ impl Scenario {
         self.later.map_or(self.weather, |later| later.at(&self.weather, tick))
     }
 
+    /// Takes a story, and the weather as far as that says.
+    pub fn play(&mut self, story: Story) {
+        story.script().environment.change(&mut self.weather);
+        self.story = Some(Arc::new(story));
+    }
+
     /// Takes the weather of a preset, which stays, with the sun in the direction that it had.
     pub fn take_weather(&mut self, preset: &WeatherPreset) {
         self.weather = preset.weather(self.weather.sun_azimuth_deg);

@@ -1,7 +1,5 @@
 //! Scenarios as text.
 
-use std::sync::Arc;
-
 use crate::car::CarSetup;
 use crate::story::Story;
 use crate::traffic::TrafficCounts;
@@ -34,13 +32,14 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     let map = map.ok_or_else(|| ScenarioError(format!("the key map is missing, expected {MAP}")))?;
     let seed = root.whole("seed", 0..=u64::MAX)?.unwrap_or_default();
     let mut scenario = Scenario::default_for(&map, seed);
+    // What the text itself says of the weather goes before what its story does.
+    read_story(&mut root, &mut scenario)?;
     read_traffic(&mut root, &mut scenario.traffic)?;
     read_hazards(&mut root, &mut scenario.hazards)?;
     read_weather(&mut root, &mut scenario)?;
     read_ego(&mut root, &mut scenario.ego)?;
     read_car(&mut root, &mut scenario.car)?;
     read_rules(&mut root, &mut scenario.rules)?;
-    read_story(&mut root, &mut scenario)?;
     root.end()?;
     Ok(scenario)
 }
@@ -91,7 +90,7 @@ fn read_story(root: &mut Section<'_>, to: &mut Scenario) -> Result<(), ScenarioE
     let expected = || "a text in OpenSCENARIO XML".to_owned();
     let Some(text) = root.named("story", expected, |text| Some(text.to_owned()))? else { return Ok(()) };
     let story = Story::read(&text).map_err(|error| ScenarioError(format!("story, {error}")))?;
-    to.story = Some(Arc::new(story));
+    to.play(story);
     Ok(())
 }
 

@@ -117,7 +117,7 @@ impl StoryActor {
     }
 
     /// Level across, as steep along as it goes.
-    fn rotation(&self) -> Quat {
+    pub fn rotation(&self) -> Quat {
         let ahead = crate::geometry::direction(self.spot.heading_rad);
         let along_mps = self.velocity_mps.truncate().dot(ahead);
         let rise = if along_mps.abs() > 1.0 { (self.velocity_mps.z / along_mps).clamp(-0.3, 0.3) } else { 0.0 };

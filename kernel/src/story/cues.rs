@@ -1,15 +1,15 @@
 //! Whether what begins and ends elements holds.
 
 use crate::map::RoadNetwork;
-use crate::time::{TICK_S, Tick};
+use crate::time::{TICK_HZ, TICK_S, Tick};
 
 use super::actor::StoryActor;
 use super::facts::Outline;
 use super::plan::{Plan, Trigger};
-use super::relative;
 use super::script::{Condition, Edge, ElementKind, ElementState, OfRole, RoleId, Rule, Script, When};
 use super::spot::Spot;
 use super::state::{Change, Mark, Met, Progress, StoryState};
+use super::{lights, relative};
 
 /// As near as this two numbers are equal.
 const EQUAL: f32 = 0.01;
@@ -23,6 +23,8 @@ pub struct Seen<'a> {
     pub before: &'a StoryState,
     /// The tick that is computed.
     pub tick: Tick,
+    /// The seed of the run.
+    pub seed: u64,
     /// Roles that the ego car touches.
     pub touching: &'a [RoleId],
 }
@@ -72,8 +74,10 @@ impl Seen<'_> {
 
     fn holds(&self, when: &When) -> bool {
         match when {
-            When::Time(rule, than) => compares(*rule, self.tick as f32 * TICK_S, *than, 0.5 * TICK_S),
+            When::Time(rule, than) => compares(*rule, self.tick as f32 / TICK_HZ as f32, *than, 0.5 * TICK_S),
             When::Element(kind, name, state) => self.element(*kind, name, *state),
+            When::Light(light) => lights::shows(light, self),
+            When::Programme(number, phase) => usize::from(self.before.cycles[*number].phase) == *phase,
             When::Role { all, roles, what } => {
                 let mut each = roles.iter().map(|role| self.of_role(*role, what));
                 if *all { each.all(|holds| holds) } else { each.any(|holds| holds) }

@@ -10,7 +10,7 @@ use super::cues::Seen;
 use super::script::{Action, Dynamics, LaneTarget, Path, Position, RoleId, Script, Shape, SpeedTarget, Takes};
 use super::spot::{OnLane, Spot};
 use super::state::{Change, Progress, StoryState};
-use super::{lanes, places, relative};
+use super::{lanes, lights, places, relative};
 
 /// Where everybody begins, as the first actions of a script say.
 pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, String> {
@@ -34,13 +34,16 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
     let actors = placed.into_iter().enumerate().map(|(role, actor)| actor.ok_or_else(|| missing(role)));
     let mut actors = actors.collect::<Result<Vec<_>, _>>()?;
     for (role, action) in &script.init {
-        let speeds: Vec<f32> = actors.iter().map(|actor| actor.speed_mps).collect();
         let name = &script.cast[*role].name;
+        let asked_mps = match action {
+            Action::Speed(_, target) => speed_of(*target, |role| actors[role].speed_mps),
+            _ => 0.0,
+        };
         let actor = &mut actors[*role];
         match action {
             Action::Teleport(_) => {}
-            Action::Speed(_, target) => {
-                actor.speed_mps = speed_of(*target, &speeds).min(script.cast[*role].most_mps);
+            Action::Speed(..) => {
+                actor.speed_mps = asked_mps.min(script.cast[*role].most_mps);
                 actor.velocity_mps = (direction(actor.spot.heading_rad) * actor.speed_mps).extend(0.0);
             }
             Action::Route(via) => actor.route = route(network, actor.spot, via).unwrap_or_default(),
@@ -54,7 +57,15 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
                 }
             }
             Action::Leave => actor.gone = true,
-            Action::LaneChange(..) | Action::LaneOffset(..) | Action::Follow(_) => {
+            Action::HandOver => {}
+            Action::LaneChange(..)
+            | Action::LaneOffset(..)
+            | Action::Follow(_)
+            | Action::SpeedProfile(_)
+            | Action::Gap(_)
+            | Action::Meet(_)
+            | Action::Light(_)
+            | Action::Programme(..) => {
                 return Err(format!("what {name} does in <Init> is supported in events only"));
             }
         }
@@ -74,11 +85,11 @@ fn route(network: &RoadNetwork, from: Spot, via: &[Position]) -> Option<Vec<u32>
 }
 
 /// The speed that is asked for, m/s.
-pub fn speed_of(target: SpeedTarget, speeds: &[f32]) -> f32 {
+pub fn speed_of(target: SpeedTarget, speed_mps: impl Fn(RoleId) -> f32) -> f32 {
     match target {
         SpeedTarget::Absolute(speed_mps) => speed_mps,
-        SpeedTarget::Faster(role, by_mps, _) => speeds[role] + by_mps,
-        SpeedTarget::Times(role, times, _) => speeds[role] * times,
+        SpeedTarget::Faster(role, by_mps, _) => speed_mps(role) + by_mps,
+        SpeedTarget::Times(role, times, _) => speed_mps(role) * times,
     }
 }
 
@@ -108,61 +119,76 @@ pub fn start(state: &mut StoryState, number: usize, seen: &Seen<'_>) {
     let (of, tick) = (&seen.plan.deeds[number], seen.tick);
     state.deeds[number].mark.turn(Progress::Running, Change::Started, tick);
     state.deeds[number].gone_m = 0.0;
-    let is_ego = of.role == seen.plan.ego;
-    // The drivers decide what the ego car does.
-    if is_ego || state.actors[of.role].gone {
-        return end(state, number, Change::Ended, tick);
-    }
-    if !begins(state, number, seen) {
+    let goes_on = match of.role {
+        None => {
+            lights::change(state, &of.action, seen);
+            false
+        }
+        Some(ego) if ego == seen.plan.ego && of.action == Action::HandOver => {
+            state.carries_ego = false;
+            false
+        }
+        // The drivers decide what the ego car does, once they have it.
+        Some(role) => {
+            let plays = role != seen.plan.ego || state.carries_ego;
+            plays && !state.actors[role].gone && begins(state, number, role, seen)
+        }
+    };
+    if !goes_on {
         end(state, number, Change::Ended, tick);
     }
 }
 
 /// Begins a deed; `false` when it is over at once.
-fn begins(state: &mut StoryState, number: usize, seen: &Seen<'_>) -> bool {
+fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) -> bool {
     let (of, network, before) = (&seen.plan.deeds[number], seen.network, seen.before);
-    let by = Some(number as u32);
     match &of.action {
         Action::Teleport(place) => {
             if let Some(spot) = relative::spot(network, before, place) {
-                state.actors[of.role].spot = spot;
-                state.actors[of.role].route.clear();
+                state.actors[role].spot = spot;
+                state.actors[role].route.clear();
             }
             false
         }
         Action::Leave => {
-            state.actors[of.role].gone = true;
+            state.actors[role].gone = true;
             false
         }
-        Action::Speed(dynamics, target) => {
-            let speeds: Vec<f32> = before.actors.iter().map(|actor| actor.speed_mps).collect();
-            let (from, to) = (state.actors[of.role].speed_mps, speed_of(*target, &speeds));
-            let replaced = std::mem::replace(&mut state.actors[of.role].speed_by, by);
+        Action::Speed(..) | Action::SpeedProfile(_) | Action::Gap(_) | Action::Meet(_) => {
+            let from = state.actors[role].speed_mps;
+            let (to, takes) = match &of.action {
+                Action::Speed(dynamics, target) => {
+                    let to = speed_of(*target, |role| before.actors[role].speed_mps);
+                    (to, length_of(*dynamics, to - from))
+                }
+                _ => (from, 0.0),
+            };
+            let replaced = state.actors[role].speed_by.replace(number as u32);
             let deed = &mut state.deeds[number];
-            (deed.from, deed.to, deed.takes) = (from, to, length_of(*dynamics, to - from));
+            (deed.from, deed.to, deed.takes) = (from, to, takes);
             replace(state, replaced, number, seen.tick);
             true
         }
         Action::LaneChange(dynamics, target, offset_m) => {
-            let Some(to) = lane_of(network, before, of.role, *target) else { return false };
-            let spot = state.actors[of.role].spot;
+            let Some(to) = lane_of(network, before, role, *target) else { return false };
+            let spot = state.actors[role].spot;
             let there = network.project(to.lane, spot.position);
             let now = OnLane { s_m: there.s_m, offset_m: there.lateral_m, ..to };
             let to_m = offset_m * if now.against { -1.0 } else { 1.0 };
-            state.actors[of.role].spot.on = Some(now);
-            state.actors[of.role].route.clear();
-            moves_aside(state, number, seen, (now.offset_m, to_m), length_of(*dynamics, to_m - now.offset_m));
+            state.actors[role].spot.on = Some(now);
+            state.actors[role].route.clear();
+            moves_aside(state, (role, number), seen, (now.offset_m, to_m), length_of(*dynamics, to_m - now.offset_m));
             true
         }
-        Action::LaneOffset(dynamics, offset_m, role) => {
-            let Some(on) = state.actors[of.role].spot.on else { return false };
-            let of_other = role.and_then(|role| before.actors[role].spot.on).map_or(0.0, |on| on.offset_m);
+        Action::LaneOffset(dynamics, offset_m, beside) => {
+            let Some(on) = state.actors[role].spot.on else { return false };
+            let of_other = beside.and_then(|other| before.actors[other].spot.on).map_or(0.0, |on| on.offset_m);
             let to_m = of_other + offset_m;
-            moves_aside(state, number, seen, (on.offset_m, to_m), calm_s(*dynamics, to_m - on.offset_m));
+            moves_aside(state, (role, number), seen, (on.offset_m, to_m), calm_s(*dynamics, to_m - on.offset_m));
             true
         }
         Action::Follow(path) => {
-            let actor = &mut state.actors[of.role];
+            let actor = &mut state.actors[role];
             let replaced = [actor.way_by.replace(number as u32), actor.side_by.take()];
             let replaced_speed = if path.timed { actor.speed_by.take() } else { None };
             let is_known = |(place, _): &(Position, Option<f32>)| matches!(place, Position::Known(_));
@@ -173,18 +199,22 @@ fn begins(state: &mut StoryState, number: usize, seen: &Seen<'_>) -> bool {
             true
         }
         Action::Route(via) => {
-            state.actors[of.role].route = route(network, state.actors[of.role].spot, via).unwrap_or_default();
+            state.actors[role].route = route(network, state.actors[role].spot, via).unwrap_or_default();
             false
         }
         Action::Acquire(place) => {
             let Some(to) = relative::spot(network, before, place) else { return false };
-            let actor = &mut state.actors[of.role];
+            let actor = &mut state.actors[role];
             let Some(way) = route(network, actor.spot, &[Position::Known(to)]) else { return false };
             let replaced = actor.way_by.replace(number as u32);
             actor.route = way;
             replace(state, replaced, number, seen.tick);
             true
         }
+        // Of the world, not of a role.
+        Action::Light(_) | Action::Programme(..) => false,
+        // Others have no drivers.
+        Action::HandOver => false,
     }
 }
 
@@ -193,8 +223,13 @@ fn line(network: &RoadNetwork, before: &StoryState, path: &Path) -> Option<Vec<S
     path.corners.iter().map(|(place, _)| relative::spot(network, before, place)).collect()
 }
 
-fn moves_aside(state: &mut StoryState, number: usize, seen: &Seen<'_>, (from, to): (f32, f32), takes: f32) {
-    let role = seen.plan.deeds[number].role;
+fn moves_aside(
+    state: &mut StoryState,
+    (role, number): (RoleId, usize),
+    seen: &Seen<'_>,
+    (from, to): (f32, f32),
+    takes: f32,
+) {
     let replaced = state.actors[role].side_by.replace(number as u32);
     let deed = &mut state.deeds[number];
     (deed.from, deed.to, deed.takes) = (from, to, takes);

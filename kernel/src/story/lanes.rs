@@ -85,6 +85,31 @@ pub fn ahead(network: &RoadNetwork, from: OnLane, by_m: f32) -> OnLane {
     on
 }
 
+/// The way to a place ahead, over the lanes of a route and then straight on, metres; negative for one behind on the same lane,
+/// nothing for one that is not met within so many metres.
+pub fn ahead_m(network: &RoadNetwork, from: OnLane, to: OnLane, route: &[LaneId], within_m: f32) -> Option<f32> {
+    if from.lane == to.lane {
+        let ahead_m = to.s_m - from.s_m;
+        return Some(if from.against { -ahead_m } else { ahead_m });
+    }
+    if from.against {
+        return None;
+    }
+    let (mut lane, mut route, mut way_m) = (from.lane, route, -from.s_m);
+    while way_m < within_m {
+        way_m += network.lanes[lane as usize].length_m;
+        let (after, at_m) = next(network, lane, route)?;
+        if route.first() == Some(&after) {
+            route = &route[1..];
+        }
+        if after == to.lane {
+            return Some(way_m + to.s_m - at_m);
+        }
+        (lane, way_m) = (after, way_m - at_m);
+    }
+    None
+}
+
 /// The lanes after the first on the shortest way from one to another; neighbours count as following each other.
 pub fn way(network: &RoadNetwork, from: OnLane, to: OnLane) -> Option<Vec<LaneId>> {
     if from.lane == to.lane && from.s_m <= to.s_m {

@@ -10,10 +10,10 @@ use crate::time::TICK_S;
 use super::actor::StoryActor;
 use super::cues::Seen;
 use super::plan::stations_m;
-use super::script::{Action, Dynamics, Path, Position, RoleId, Shape, SpeedTarget, Takes};
+use super::script::{Action, Path, Position, RoleId};
 use super::spot::{OnLane, Spot};
-use super::state::{Change, Deed, StoryState};
-use super::{deeds, lanes, relative};
+use super::state::{Change, StoryState};
+use super::{deeds, lanes, pace, relative};
 
 /// A place is reached so near to it, metres.
 const REACHED_M: f32 = 1.0;
@@ -21,7 +21,7 @@ const REACHED_M: f32 = 1.0;
 /// Moves a role by one tick.
 pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     let was = seen.before.actors[role].clone();
-    set_speed(state, role, seen);
+    pace::set(state, role, seen);
     let follows = state.actors[role].way_by.map(|deed| deed as usize);
     let path = follows.and_then(|deed| match &seen.plan.deeds[deed].action {
         Action::Follow(path) => Some((deed, path)),
@@ -45,44 +45,6 @@ pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
 fn is_on_road(seen: &Seen<'_>, actor: &StoryActor) -> bool {
     let kind = |on: OnLane| seen.network.lanes[on.lane as usize].kind;
     actor.spot.on.is_some_and(|on| matches!(kind(on), LaneKind::Driving | LaneKind::Biking | LaneKind::Shoulder))
-}
-
-/// How far a change has come, [0, 1].
-fn share(deed: &Deed, dynamics: Dynamics, seen: &Seen<'_>) -> f32 {
-    let gone = match dynamics.takes {
-        Takes::Distance(_) => deed.gone_m,
-        Takes::Time(_) | Takes::Rate(_) => (seen.tick + 1).saturating_sub(deed.mark.at) as f32 * TICK_S,
-    };
-    // Half a tick before the end is the end.
-    if gone + 0.5 * TICK_S >= deed.takes { 1.0 } else { (gone / deed.takes).clamp(0.0, 1.0) }
-}
-
-fn course(shape: Shape, share: f32) -> f32 {
-    match shape {
-        Shape::Linear => share,
-        Shape::Cubic => share * share * (3.0 - 2.0 * share),
-        Shape::Sinusoidal => 0.5 - 0.5 * ops::cos(core::f32::consts::PI * share),
-        Shape::Step => 1.0,
-    }
-}
-
-fn set_speed(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
-    let Some(number) = state.actors[role].speed_by.map(|deed| deed as usize) else { return };
-    let Action::Speed(dynamics, target) = &seen.plan.deeds[number].action else { return };
-    let goes_on = matches!(target, SpeedTarget::Faster(.., true) | SpeedTarget::Times(.., true));
-    if goes_on {
-        let speeds: Vec<f32> = seen.before.actors.iter().map(|actor| actor.speed_mps).collect();
-        state.deeds[number].to = deeds::speed_of(*target, &speeds);
-    }
-    let deed = &mut state.deeds[number];
-    let share = share(deed, *dynamics, seen);
-    let speed_mps = deed.from + (deed.to - deed.from) * course(dynamics.shape, share);
-    deed.gone_m += speed_mps.abs() * TICK_S;
-    let most_mps = seen.script.cast[role].most_mps;
-    state.actors[role].speed_mps = speed_mps.clamp(-most_mps, most_mps);
-    if share >= 1.0 && !goes_on {
-        deeds::end(state, number, Change::Ended, seen.tick);
-    }
 }
 
 /// Along its lane, or straight on where there is none; `true` where its road ends.
@@ -121,8 +83,8 @@ fn aside(state: &mut StoryState, role: RoleId, by_m: f32, seen: &Seen<'_>) -> Op
     };
     let deed = &mut state.deeds[number];
     deed.gone_m += by_m.abs();
-    let share = share(deed, dynamics, seen);
-    let offset_m = deed.from + (deed.to - deed.from) * course(dynamics.shape, share);
+    let share = pace::share(deed, dynamics, seen);
+    let offset_m = deed.from + (deed.to - deed.from) * pace::course(dynamics.shape, share);
     if share >= 1.0 {
         deeds::end(state, number, Change::Ended, seen.tick);
     }

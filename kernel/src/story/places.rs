@@ -51,7 +51,16 @@ fn of_action<'a>(action: &'a mut Action, out: &mut Vec<&'a mut Position>) {
         Action::Teleport(place) | Action::Acquire(place) => out.push(place),
         Action::Route(places) => out.extend(places),
         Action::Follow(path) => out.extend(path.corners.iter_mut().map(|(place, _)| place)),
-        Action::Speed(..) | Action::LaneChange(..) | Action::LaneOffset(..) | Action::Leave => {}
+        Action::Meet(meeting) => out.extend([&mut meeting.theirs.0, &mut meeting.own.0]),
+        Action::Speed(..)
+        | Action::SpeedProfile(_)
+        | Action::Gap(_)
+        | Action::LaneChange(..)
+        | Action::LaneOffset(..)
+        | Action::Leave
+        | Action::HandOver
+        | Action::Light(_)
+        | Action::Programme(..) => {}
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::script::{self, Action, Condition, ElementKind, Position, Priority, RoleId, Script};
+use super::script::{self, Action, Condition, Doer, ElementKind, Position, Priority, RoleId, Script};
 use super::state::{Change, Mark, Met, Progress, StoryState};
 
 /// A trigger whose conditions are numbered through the script.
@@ -53,7 +53,8 @@ pub struct EventPlan {
 #[derive(Clone, Debug)]
 pub struct DeedPlan {
     pub name: String,
-    pub role: RoleId,
+    /// Who does it; nobody where it is done to the world.
+    pub role: Option<RoleId>,
     pub action: Action,
     /// Of a line that is followed, where its corners are along it, metres.
     pub stations_m: Vec<f32>,
@@ -63,6 +64,8 @@ pub struct DeedPlan {
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     pub ego: RoleId,
+    /// The story drives the ego car until an event hands it over.
+    pub carries_ego: bool,
     pub acts: Vec<ActPlan>,
     pub groups: Vec<GroupPlan>,
     pub events: Vec<EventPlan>,
@@ -83,6 +86,8 @@ impl Plan {
             let stop = plan.numbered(&act.stop);
             plan.acts.push(ActPlan { name: act.name.clone(), groups, start, stop });
         }
+        let hands_over = |deed: &DeedPlan| deed.role == Some(ego) && deed.action == Action::HandOver;
+        plan.carries_ego = plan.deeds.iter().any(hands_over);
         plan
     }
 
@@ -99,10 +104,14 @@ impl Plan {
         for event in &group.events {
             let from = self.deeds.len();
             for (name, of, action) in &event.actions {
-                let roles = of.as_ref().map_or(group.actors.as_slice(), std::slice::from_ref);
-                self.deeds.extend(roles.iter().map(|role| DeedPlan {
+                let doers = match of {
+                    Doer::Each => group.actors.iter().map(|role| Some(*role)).collect(),
+                    Doer::Role(role) => vec![Some(*role)],
+                    Doer::World => vec![None],
+                };
+                self.deeds.extend(doers.into_iter().map(|role| DeedPlan {
                     name: name.clone(),
-                    role: *role,
+                    role,
                     action: action.clone(),
                     stations_m: match action {
                         Action::Follow(path) => stations_m(path.corners.iter().map(|(place, _)| place)),

@@ -2,7 +2,10 @@
 //! in the words of the text and found on a map by [`Stage`](super::Stage).
 
 use crate::actor::ActorKind;
+use crate::map_data::LightGroupId;
+use crate::signals::LightPhase;
 use crate::time::Tick;
+use crate::weather::Weather;
 
 use super::spot::Spot;
 
@@ -16,6 +19,12 @@ pub struct Script {
     pub cast: Vec<Role>,
     /// What is done before the first tick, in this order.
     pub init: Vec<(RoleId, Action)>,
+    /// Lights that are held from the first tick on.
+    pub lights: Vec<Light>,
+    /// Programmes of lights.
+    pub programmes: Vec<Programme>,
+    /// What the weather is, as far as the text says.
+    pub environment: Environment,
     /// What happens.
     pub acts: Vec<Act>,
     /// Ends the whole story.
@@ -31,6 +40,63 @@ pub struct Role {
     pub kind: Option<ActorKind>,
     /// Fastest it goes, m/s.
     pub most_mps: f32,
+}
+
+/// A traffic light at a phase.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// OpenDRIVE id of its signal.
+    pub signal: String,
+    /// What it shows.
+    pub phase: LightPhase,
+    /// The lights of that signal, once they are found on a map.
+    pub groups: Vec<LightGroupId>,
+}
+
+/// A programme of lights, which begins again at its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Programme {
+    /// Its name.
+    pub name: String,
+    /// It begins so long after the run, and with its last phase before that.
+    pub delay_ticks: Tick,
+    /// Its phases: names, how long they last, and what lights show in them.
+    pub phases: Vec<(String, Tick, Vec<Light>)>,
+}
+
+/// What a text says of the weather.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Environment {
+    /// Share of the sky under clouds, percent.
+    pub cloudiness_pct: Option<f32>,
+    /// Wind, percent of a storm.
+    pub wind_pct: Option<f32>,
+    /// Height of the sun and direction to it, counter-clockwise from east, degrees.
+    pub sun_deg: Option<[f32; 2]>,
+    /// Rain, percent of a cloudburst.
+    pub precipitation_pct: Option<f32>,
+    /// How wet surfaces are, and water that stands on them, percent.
+    pub water_pct: Option<[f32; 2]>,
+    /// How dense the fog is, percent.
+    pub fog_density_pct: Option<f32>,
+}
+
+impl Environment {
+    /// Changes what the text says of a weather.
+    pub fn change(&self, weather: &mut Weather) {
+        let set = |to: &mut f32, value: Option<f32>| *to = value.unwrap_or(*to);
+        set(&mut weather.cloudiness_pct, self.cloudiness_pct);
+        set(&mut weather.wind_pct, self.wind_pct);
+        set(&mut weather.sun_altitude_deg, self.sun_deg.map(|[altitude, _]| altitude));
+        set(&mut weather.sun_azimuth_deg, self.sun_deg.map(|[_, azimuth]| azimuth));
+        set(&mut weather.precipitation_pct, self.precipitation_pct);
+        set(&mut weather.wetness_pct, self.water_pct.map(|[wet, _]| wet));
+        set(&mut weather.puddles_pct, self.water_pct.map(|[_, puddles]| puddles));
+        set(&mut weather.fog_density_pct, self.fog_density_pct);
+        if self.fog_density_pct.is_some() {
+            weather.fog_distance_m = 0.0;
+        }
+    }
 }
 
 /// An act: it begins by its trigger, and its groups play at the same time.
@@ -72,8 +138,19 @@ pub struct Event {
     pub most: u16,
     /// Begins it.
     pub start: Trigger,
-    /// What is done: the name of the action, and of whom, if not of each who plays.
-    pub actions: Vec<(String, Option<RoleId>, Action)>,
+    /// What is done: the name of the action, and by whom.
+    pub actions: Vec<(String, Doer, Action)>,
+}
+
+/// By whom something is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doer {
+    /// Each who plays in the group.
+    Each,
+    /// This one.
+    Role(RoleId),
+    /// By nobody: it is done to the world.
+    World,
 }
 
 /// What an event that begins does to others of its manoeuvre that go on.
@@ -142,6 +219,10 @@ pub enum When {
     Time(Rule, f32),
     /// An element of the story is in a state, or just came there.
     Element(ElementKind, String, ElementState),
+    /// A light shows something.
+    Light(Light),
+    /// A programme is in a phase.
+    Programme(usize, usize),
     /// Something of one or all of some roles.
     Role {
         /// All of them, or any.
@@ -318,6 +399,12 @@ pub enum Action {
     Teleport(Position),
     /// Changes its speed.
     Speed(Dynamics, SpeedTarget),
+    /// Changes its speed again and again.
+    SpeedProfile(SpeedProfile),
+    /// Keeps a gap to somebody.
+    Gap(Gap),
+    /// Arrives when somebody else does.
+    Meet(Box<Meeting>),
     /// Changes to another lane.
     LaneChange(Dynamics, LaneTarget, f32),
     /// Moves within its lane, or beyond: to so far to the left of its middle, metres, of its own or of a role's.
@@ -328,8 +415,14 @@ pub enum Action {
     Route(Vec<Position>),
     /// Goes to a place, and is done there.
     Acquire(Position),
+    /// Leaves the ego car to its drivers.
+    HandOver,
     /// Leaves the map.
     Leave,
+    /// Holds a light.
+    Light(Light),
+    /// Puts a programme into a phase.
+    Programme(usize, usize),
 }
 
 /// Which speed.
@@ -341,6 +434,76 @@ pub enum SpeedTarget {
     Faster(RoleId, f32, bool),
     /// So many times as fast as a role.
     Times(RoleId, f32, bool),
+}
+
+/// How hard somebody changes its speed at most, and how fast it becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// m/s².
+    pub acceleration_mps2: f32,
+    /// m/s², positive.
+    pub deceleration_mps2: f32,
+    /// m/s.
+    pub most_mps: f32,
+}
+
+/// Speeds, one after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpeedProfile {
+    /// Each speed, m/s, and how long the even change to it takes, seconds; nothing where it is as hard as may be.
+    pub entries: Vec<(f32, Option<f32>)>,
+    /// How hard that is.
+    pub limits: Limits,
+}
+
+/// A gap to somebody.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// To whom.
+    pub role: RoleId,
+    /// How wide it shall be.
+    pub wanted: GapWidth,
+    /// How it is measured.
+    pub measure: Measure,
+    /// On which side of the other.
+    pub side: GapSide,
+    /// Goes on when it is so wide.
+    pub goes_on: bool,
+    /// How hard it may be changed.
+    pub limits: Limits,
+}
+
+/// How wide a gap shall be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GapWidth {
+    /// Metres.
+    Way(f32),
+    /// Seconds that who keeps it needs for it.
+    Time(f32),
+}
+
+/// On which side of the other who keeps a gap is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GapSide {
+    /// Where it is already.
+    Any,
+    /// Behind it.
+    Behind,
+    /// Before it.
+    Ahead,
+}
+
+/// Two who arrive at the same time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meeting {
+    /// By whom the time is told.
+    pub with: RoleId,
+    /// Where that arrives, and how near to it counts, metres.
+    pub theirs: (Position, f32),
+    /// Where who plays arrives, and how near to it counts, metres.
+    pub own: (Position, f32),
+    /// How fast it is then; nothing where that does not matter.
+    pub last: Option<SpeedTarget>,
 }
 
 /// Which lane.

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use crate::actor::FIRST_STORY_ID;
 use crate::map::RoadNetwork;
 use crate::map_data::{LaneId, LaneKind};
+use crate::signals::HeldLight;
 use crate::time::Tick;
 use crate::traffic::{Body, Obstacle};
 
@@ -17,7 +18,7 @@ use super::script::{Priority, RoleId, Script};
 use super::spot::Spot;
 use super::state::{Change, Deed, Mark, Met, Progress, StoryState};
 use super::text::Story;
-use super::{deeds, moves, places};
+use super::{deeds, lights, moves, places};
 
 /// Farther, and faster, nobody gets, metres and m/s.
 const MOST_M: f32 = 1e6;
@@ -38,6 +39,8 @@ pub struct Stage {
 pub struct Around<'a> {
     /// The tick that is computed.
     pub tick: Tick,
+    /// The seed of the run.
+    pub seed: u64,
     /// The map.
     pub network: &'a RoadNetwork,
     /// The ego car.
@@ -48,6 +51,8 @@ pub struct Around<'a> {
     pub touching: &'a [u32],
     /// Whether the ego car is on a road.
     pub ego_on_road: bool,
+    /// Whether its safety driver takes over in this tick.
+    pub taken_over: bool,
 }
 
 impl Stage {
@@ -58,6 +63,7 @@ impl Stage {
     pub fn new(story: &Story, network: &RoadNetwork) -> Result<Self, String> {
         let mut script = story.script().clone();
         places::find(&mut script, network)?;
+        lights::find(&mut script, network)?;
         let plan = Plan::of(&script);
         let start = deeds::begin(&script, network)?;
         Ok(Self { script: Arc::new(script), plan: Arc::new(plan), start: start.into() })
@@ -99,6 +105,7 @@ impl Stage {
     /// Before the first tick.
     pub fn begin(&self) -> StoryState {
         let plan = &*self.plan;
+        let (lights, cycles) = lights::begin(&self.script);
         StoryState {
             actors: self.start.to_vec(),
             acts: vec![Mark::NEW; plan.acts.len()],
@@ -106,6 +113,9 @@ impl Stage {
             events: vec![Mark::NEW; plan.events.len()],
             deeds: vec![Deed::NEW; plan.deeds.len()],
             conditions: vec![Met::default(); plan.conditions],
+            lights,
+            cycles,
+            carries_ego: plan.carries_ego,
             over: false,
         }
     }
@@ -113,10 +123,19 @@ impl Stage {
     /// Refuses a state that is none of this story on this map.
     pub fn check(&self, state: &StoryState, network: &RoadNetwork) -> Result<(), String> {
         let counts = |s: &StoryState| {
-            [s.actors.len(), s.acts.len(), s.groups.len(), s.events.len(), s.deeds.len(), s.conditions.len()]
+            let elements = [s.acts.len(), s.groups.len(), s.events.len(), s.deeds.len(), s.conditions.len()];
+            (s.actors.len(), elements, s.cycles.len())
         };
         if counts(state) != counts(&self.begin()) {
             return Err("its story has other elements than that of the scenario".to_owned());
+        }
+        let phases = self.script.programmes.iter().map(|programme| programme.phases.len());
+        if state.cycles.iter().zip(phases).any(|(cycle, phases)| usize::from(cycle.phase) >= phases) {
+            return Err("a programme of its lights is in a phase that it has not".to_owned());
+        }
+        let is_there = |light: &HeldLight| (light.group as usize) < network.light_groups.len();
+        if !state.lights.is_sorted_by(|a, b| a.group < b.group) || !state.lights.iter().all(is_there) {
+            return Err("story.lights are not lights of the map in ascending order".to_owned());
         }
         let lane = |lane: &u32| (*lane as usize) < network.lanes.len();
         let deed = |deed: &Option<u32>| deed.is_none_or(|deed| (deed as usize) < state.deeds.len());
@@ -146,16 +165,26 @@ impl Stage {
         self.bodies(state).map(move |body| actor::obstacle(&body, heading(body.id)))
     }
 
+    /// Where the ego car is at the end of this tick, as long as the story drives it: the middle of its footprint, and its
+    /// rotation.
+    pub fn carried(&self, state: &StoryState) -> Option<(Vec3, Quat)> {
+        let ego = &state.actors[self.plan.ego];
+        state.carries_ego.then(|| (ego.spot.position, ego.rotation()))
+    }
+
     /// Goes on by one tick.
     pub fn step(&self, state: &mut StoryState, around: &Around<'_>) {
-        let mut before = std::mem::replace(state, self.emptied());
+        let mut before = std::mem::take(state);
+        // Who is hit, or is taken over, is driven by nobody else.
+        before.carries_ego &= around.touching.is_empty() && !around.taken_over;
         self.mirror(&mut before, around);
         *state = before.clone();
         let touching: Vec<RoleId> = around.touching.iter().filter_map(|id| role_of(*id, &before)).collect();
         let (script, plan, network, tick) = (&*self.script, &*self.plan, around.network, around.tick);
-        let seen = Seen { script, plan, network, before: &before, tick, touching: &touching };
+        let seen = Seen { script, plan, network, before: &before, tick, seed: around.seed, touching: &touching };
+        lights::go_on(state, &script.programmes, tick);
         self.go_on(state, &seen);
-        for role in (0..script.cast.len()).filter(|role| *role != plan.ego) {
+        for role in (0..script.cast.len()).filter(|role| *role != plan.ego || before.carries_ego) {
             let held = around.loose.binary_search_by_key(&(FIRST_STORY_ID + role as u32), |o| o.id).is_ok();
             if !held && !state.actors[role].gone {
                 moves::advance(state, role, &seen);
@@ -163,23 +192,11 @@ impl Stage {
         }
     }
 
-    fn emptied(&self) -> StoryState {
-        StoryState {
-            actors: Vec::new(),
-            acts: Vec::new(),
-            groups: Vec::new(),
-            events: Vec::new(),
-            deeds: Vec::new(),
-            conditions: Vec::new(),
-            over: false,
-        }
-    }
-
     /// Takes over where the ego car is, and those that physics holds.
     fn mirror(&self, state: &mut StoryState, around: &Around<'_>) {
-        let ego = (self.plan.ego, &around.ego, around.ego_on_road);
+        let ego = (!state.carries_ego).then_some((self.plan.ego, &around.ego, around.ego_on_road));
         let loose = around.loose.iter().filter_map(|o| Some((role_of(o.id, state)?, o, true))).collect::<Vec<_>>();
-        for (role, obstacle, on_road) in std::iter::once(ego).chain(loose) {
+        for (role, obstacle, on_road) in ego.into_iter().chain(loose) {
             let was = state.actors[role].clone();
             let actor = &mut state.actors[role];
             actor.spot = Spot::at(around.network, obstacle.position, obstacle.heading_rad);

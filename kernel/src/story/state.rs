@@ -1,9 +1,11 @@
 //! How far a story has come: a part of the world's state.
 
+use crate::signals::HeldLight;
 use crate::time::Tick;
 use crate::{state, state_enum};
 
 use super::actor::StoryActor;
+use super::lights::Cycle;
 use super::spot::Spot;
 
 state_enum! {
@@ -81,7 +83,7 @@ state! {
 
 state! {
     /// How far a story has come.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Debug, Default, PartialEq)]
     pub struct StoryState {
         /// Who plays, in the order of the cast; the ego car is a mirror of the real one.
         pub actors: Vec<StoryActor>,
@@ -95,6 +97,12 @@ state! {
         pub deeds: Vec<Deed>,
         /// All conditions.
         pub conditions: Vec<Met>,
+        /// Lights that it holds, by ascending group.
+        pub lights: Vec<HeldLight>,
+        /// Where its programmes of lights are.
+        pub cycles: Vec<Cycle>,
+        /// It drives the ego car.
+        pub carries_ego: bool,
         /// The trigger that ends it was met.
         pub over: bool,
     }

@@ -22,6 +22,20 @@ impl Story {
         Ok(Self { text: text.to_owned(), read: reader::read(text)? })
     }
 
+    /// The folders of the catalogs to which a text refers, as that calls them.
+    pub fn catalog_folders(text: &str) -> Vec<String> {
+        reader::folders(text)
+    }
+
+    /// A text with the entries of catalogs in place of the references to them, each on the line of the reference; of each
+    /// catalog its file and its text. Who plays may be told by an entry that is not there: what it is is guessed by the name.
+    ///
+    /// # Errors
+    /// When a catalog is none, or an entry of another kind is not there, by line.
+    pub fn with_catalogs(text: &str, catalogs: &[(String, String)]) -> Result<String, StoryError> {
+        reader::put_in(text, catalogs)
+    }
+
     /// The text.
     pub fn text(&self) -> &str {
         &self.text

@@ -3,6 +3,7 @@
 use glam::{Quat, Vec3};
 
 use crate::actor::ActorKind;
+use crate::signals::HeldLight;
 use crate::time::Tick;
 use crate::weather::Conditions;
 
@@ -35,6 +36,8 @@ pub struct Surroundings<'a> {
     /// Actors that physics has made loose, by ascending id: they decide nothing, their state stays
     /// as it was, and others see them at these poses. Those who play a story are among them.
     pub loose: &'a [Obstacle],
+    /// Lights that a story holds, by ascending group.
+    pub lights: &'a [HeldLight],
     /// What the weather asks of everybody.
     pub conditions: Conditions,
 }

@@ -70,7 +70,7 @@ impl Sight {
         self.tick = around.tick;
         let groups = 0..map.light_groups.len() as u32;
         self.lights.clear();
-        self.lights.extend(groups.map(|g| signals::phase(map, actors.seed, g, around.tick)));
+        self.lights.extend(groups.map(|g| signals::shown(map, actors.seed, around.lights, g, around.tick)));
         let next = |v: &Vehicle| Journey::of(&actors.ways, actors.seed, v).next_lane(v.lane);
         let vehicles = &actors.state.vehicles;
         self.lists.rebuild(map, vehicles, &actors.drivers, next, |v| !v.is_aside() && !around.holds(v.id));

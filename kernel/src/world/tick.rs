@@ -166,7 +166,10 @@ impl World {
         if let (Some(stage), Some(story)) = (&self.stage, &mut self.parts.story) {
             let (network, touching) = (&*self.network, self.parts.run.watch.touching.as_slice());
             let ego_on_road = !self.parts.run.watch.off_road;
-            stage.step(story, &Around { tick, network, ego, loose: obstacles, touching, ego_on_road });
+            let seed = self.scenario.seed;
+            let taken_over = self.parts.output.intervention.is_some();
+            stage
+                .step(story, &Around { tick, seed, network, ego, loose: obstacles, touching, ego_on_road, taken_over });
         }
         if let Some((stage, story)) = &before {
             // Traffic decides from where they were.
@@ -175,9 +178,10 @@ impl World {
             obstacles.extend(playing);
             obstacles.sort_unstable_by_key(|o| o.id);
         }
+        let lights = before.as_ref().map_or(&[][..], |(_, story)| &story.lights);
         // People notice the weather once a second.
         let conditions = Conditions::of(&self.scenario.weather_at(tick - tick % seconds(1)));
-        self.traffic.step(&Surroundings { tick, ego, ego_flags, loose: obstacles, conditions });
+        self.traffic.step(&Surroundings { tick, ego, ego_flags, loose: obstacles, lights, conditions });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: self.parts.ego.car.speed_mps() };
         self.traffic.told_near(ego.position).for_each(|(kind, actor)| log.with(kind, actor));
         let parked = &self.network.places().parked;
@@ -185,14 +189,18 @@ impl World {
         let (car, bodies) = (&mut self.parts.ego.car, &mut self.parts.bodies);
         bodies.prepare(all, parked, car, &mut self.physics, near);
         let water = Water::of(&self.scenario.weather_at(tick));
-        self.physics.step(car, &self.parts.output.applied.controls, &self.scenario.car, &water);
+        match self.stage.as_ref().zip(self.parts.story.as_ref()).and_then(|(stage, story)| stage.carried(story)) {
+            Some((middle, rotation)) => self.physics.carry(car, middle, rotation),
+            None => self.physics.drive(car, &self.parts.output.applied.controls, &self.scenario.car, &water),
+        }
+        self.physics.step(car);
         bodies.moved(&self.parts.run.watch.touching, &mut self.physics);
     }
 
     /// Finds what began in this tick, and whether it ends the run.
     fn watch(&mut self) {
         let (tick, network) = (self.tick(), &*self.network);
-        let Parts { ego, bodies, run, output, .. } = &mut self.parts;
+        let Parts { ego, bodies, run, output, story, .. } = &mut self.parts;
         let (car, speed_mps) = (&ego.car, ego.car.speed_mps());
         let light = ego.route.light_ahead(network);
         let strayed = ego.route.follow(network, self.scenario.seed, car.middle(), car.heading_rad());
@@ -202,7 +210,8 @@ impl World {
         self.physics.touched(touched);
         doors::heed(doors::open_doors(&self.traffic, bodies, tick, car), car, touched, &mut log);
         let collided = run.watch.contacts(touched, &mut log);
-        let red = |group| signals::phase(network, self.scenario.seed, group, tick).0 == LightPhase::Red;
+        let held = story.as_ref().map_or(&[][..], |story| &story.lights);
+        let red = |group| signals::shown(network, self.scenario.seed, held, group, tick).0 == LightPhase::Red;
         if light.is_some_and(|light| !strayed && red(light.group) && ego.route.passed(network, &light)) {
             log.note(EventKind::RedLight);
         }

@@ -9,11 +9,11 @@ use crate::arbiter::Arbiter;
 use crate::car::Footing;
 use crate::controls::Controls;
 use crate::events::{Event, Hud};
-use crate::map::{RoadNetwork, SurfaceKind};
+use crate::map::{LightGroupId, RoadNetwork, SurfaceKind};
 use crate::motion::Motion;
 use crate::scenario::Scenario;
 use crate::scene::{ActorScene, EgoScene, SceneSnapshot, lamps, quantise};
-use crate::signals;
+use crate::signals::{self, HeldLight, LightPhase};
 use crate::traffic::{Body, Missing};
 use crate::watch::Watch;
 use crate::weather::Water;
@@ -55,7 +55,7 @@ impl World {
     /// What there is to see, on the grid of [`crate::scene::quantise`].
     pub fn scene(&self) -> SceneSnapshot {
         let (tick, car) = (self.tick(), &self.parts.ego.car);
-        let phase = |group| signals::phase(&self.network, self.scenario.seed, group, tick).0;
+        let phase = |group| self.light(group);
         let weather = self.scenario.weather_at(tick);
         let mut scene = SceneSnapshot {
             tick,
@@ -118,9 +118,19 @@ impl World {
         doors.map(|door| doors::scene_of(&door))
     }
 
+    /// Lights that the story holds.
+    pub(super) fn held_lights(&self) -> &[HeldLight] {
+        self.parts.story.as_ref().map_or(&[], |story| &story.lights)
+    }
+
+    /// What a traffic light shows.
+    pub fn light(&self, group: LightGroupId) -> LightPhase {
+        signals::shown(&self.network, self.scenario.seed, self.held_lights(), group, self.tick()).0
+    }
+
     /// What the HUD shows.
     pub fn hud(&self) -> Hud {
-        self.parts.ego.route.hud(&self.network, &self.scenario, self.tick(), &self.parts.ego.car)
+        self.parts.ego.route.hud(&self.network, &self.scenario, |group| self.light(group), &self.parts.ego.car)
     }
 
     /// Torque of the road on the front wheels about their steering axes, N m, positive to the right: what a driver's

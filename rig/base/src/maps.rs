@@ -1,6 +1,7 @@
 //! Maps and scenarios by the names that people give on the command line.
 
 use std::borrow::Cow;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,10 +12,13 @@ use kernel::story::Story;
 use kernel::{RoadNetwork, Scenario};
 use replay::ForeignMap;
 
-use crate::failure::Usage;
+use crate::failure::{Usage, sentence};
 use crate::files::{self, check_name, most};
 use crate::say::say;
 use crate::{output, toml_text};
+
+/// Most files of catalogs of a story.
+const CATALOGS: usize = 200;
 
 /// A map to drive on.
 #[derive(Clone, Debug)]
@@ -142,7 +146,8 @@ fn map_of(scenario: &Scenario, file: &Path) -> anyhow::Result<Map> {
 
 /// What a story in OpenSCENARIO XML begins with: nobody but those who play, who make no mistakes of their own.
 fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
-    let story = Story::read(text).map_err(|error| error.to_string())?;
+    let text = Story::with_catalogs(text, &catalogs(path, text)?).map_err(|error| error.to_string())?;
+    let story = Story::read(&text).map_err(|error| error.to_string())?;
     for (line, element) in story.passed_over() {
         say(format!("{}: line {line}: <{element}> is passed over", path.display()));
     }
@@ -152,7 +157,29 @@ fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
     let is_there = path.parent().unwrap_or(Path::new("")).join(&file).is_file();
     let map = if !is_there && bundled_text(&stem).is_some() { stem.into_owned() } else { file };
     let (traffic, hazards) = (TrafficCounts::NONE, HazardRates::NONE);
-    Ok(Scenario { map: map.clone(), traffic, hazards, story: Some(Arc::new(story)), ..Scenario::default_for(&map, 1) })
+    let mut scenario = Scenario { traffic, hazards, ..Scenario::default_for(&map, 1) };
+    scenario.play(story);
+    Ok(scenario)
+}
+
+/// The files of a story's catalogs that are there, and their texts.
+fn catalogs(path: &Path, text: &str) -> Result<Vec<(String, String)>, String> {
+    let mut files = Vec::new();
+    for folder in Story::catalog_folders(text) {
+        let folder = path.parent().unwrap_or(Path::new("")).join(folder);
+        let there = fs::read_dir(&folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
+        files.extend(there.filter(|file| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xosc"))));
+    }
+    files.sort();
+    files.dedup();
+    if files.len() > CATALOGS {
+        return Err(format!("expected at most {CATALOGS} files of catalogs, but there are {}", files.len()));
+    }
+    let text = |file: PathBuf| {
+        let text = files::read_text(&file, most::TEXT).map_err(|error| sentence(&error))?;
+        Ok((file.display().to_string(), text))
+    };
+    files.into_iter().map(text).collect()
 }
 
 /// The line on which a story names its map.
@@ -166,10 +193,7 @@ fn usage_in(path: &Path, reason: &str) -> anyhow::Error {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
-    use crate::failure::sentence;
 
     #[test]
     fn a_map_that_cannot_be_had_is_told_with_the_place_of_its_name() {

@@ -1,11 +1,11 @@
 //! What somebody does.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Action, Dynamics, LaneTarget, Path, Position, RoleId, Shape, SpeedTarget, Takes};
+use crate::story::script::{Action, Doer, Dynamics, LaneTarget, Path, Position, Shape, Takes};
 
 use super::document::Element;
 use super::names::Names;
-use super::positions;
+use super::{positions, signals, speeds};
 
 /// Most corners of a line, and most places of a route.
 const CORNERS: usize = 100_000;
@@ -18,7 +18,9 @@ pub fn private(action: Element<'_>, names: &Names<'_>) -> Result<Option<Action>,
         "LongitudinalAction" => {
             let speed = kind.choice()?;
             match speed.tag() {
-                "SpeedAction" => self::speed(speed, names)?,
+                "SpeedAction" => speeds::change(speed, names)?,
+                "SpeedProfileAction" => speeds::profile(speed)?,
+                "LongitudinalDistanceAction" => speeds::gap(speed, names)?,
                 _ => return Err(speed.unsupported()),
             }
         }
@@ -39,53 +41,54 @@ pub fn private(action: Element<'_>, names: &Names<'_>) -> Result<Option<Action>,
                 _ => return Err(way.unsupported()),
             }
         }
+        "SynchronizeAction" => speeds::meeting(kind, names)?,
         "TeleportAction" => Action::Teleport(positions::read(kind.need("Position")?, names)?),
-        "ControllerAction" | "ActivateControllerAction" | "VisibilityAction" | "AppearanceAction" => return Ok(None),
+        "ControllerAction" | "ActivateControllerAction" => return Ok(activates(kind)?.then_some(Action::HandOver)),
+        "VisibilityAction" | "AppearanceAction" => return Ok(None),
         _ => return Err(kind.unsupported()),
     };
     Ok(Some(found))
 }
 
-/// A global action, with the role that it is about.
-pub fn global(action: Element<'_>, names: &Names<'_>) -> Result<(RoleId, Action), StoryError> {
+/// Whether somebody's controller takes over.
+fn activates(action: Element<'_>) -> Result<bool, StoryError> {
+    let activation = if action.tag() == "ActivateControllerAction" {
+        Some(action)
+    } else {
+        action.child("ActivateControllerAction")
+    };
+    let Some(activation) = activation else { return Ok(false) };
+    let is_on = |domain: &str| Ok::<_, StoryError>(activation.switch(domain)?.unwrap_or(false));
+    Ok(is_on("longitudinal")? || is_on("lateral")?)
+}
+
+/// A global action, and by whom it is done.
+pub fn global(action: Element<'_>, names: &Names<'_>) -> Result<(Doer, Action), StoryError> {
     let kind = action.choice()?;
-    if kind.tag() != "EntityAction" {
-        return Err(kind.unsupported());
-    }
-    let role = names.role(kind, "entityRef")?;
-    let what = kind.choice()?;
-    match what.tag() {
-        "DeleteEntityAction" => Ok((role, Action::Leave)),
-        _ => Err(what.unsupported()),
+    match kind.tag() {
+        "EntityAction" => {
+            let role = names.role(kind, "entityRef")?;
+            let what = kind.choice()?;
+            match what.tag() {
+                "DeleteEntityAction" => Ok((Doer::Role(role), Action::Leave)),
+                _ => Err(what.unsupported()),
+            }
+        }
+        "InfrastructureAction" => Ok((Doer::World, signals::action(kind.need("TrafficSignalAction")?, names)?)),
+        "EnvironmentAction" => Err(kind.wrong("<EnvironmentAction> is supported in <Init> only")),
+        _ => Err(kind.unsupported()),
     }
 }
 
-fn dynamics(element: Element<'_>) -> Result<Dynamics, StoryError> {
-    let shapes =
-        [("linear", Shape::Linear), ("cubic", Shape::Cubic), ("sinusoidal", Shape::Sinusoidal), ("step", Shape::Step)];
-    let shape = element.word("dynamicsShape", &shapes)?;
+const SHAPES: &[(&str, Shape)] =
+    &[("linear", Shape::Linear), ("cubic", Shape::Cubic), ("sinusoidal", Shape::Sinusoidal), ("step", Shape::Step)];
+
+/// How something changes.
+pub fn dynamics(element: Element<'_>) -> Result<Dynamics, StoryError> {
+    let shape = element.word("dynamicsShape", SHAPES)?;
     let value = element.amount("value")?;
     let takes = [("time", Takes::Time(value)), ("distance", Takes::Distance(value)), ("rate", Takes::Rate(value))];
     Ok(Dynamics { shape, takes: element.word("dynamicsDimension", &takes)? })
-}
-
-fn speed(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
-    let dynamics = dynamics(action.need("SpeedActionDynamics")?)?;
-    let target = action.need("SpeedActionTarget")?.choice()?;
-    let target = match target.tag() {
-        "AbsoluteTargetSpeed" => SpeedTarget::Absolute(target.float("value")?),
-        "RelativeTargetSpeed" => {
-            let (role, value) = (names.role(target, "entityRef")?, target.float("value")?);
-            let goes_on = target.switch("continuous")?.unwrap_or(false);
-            let kinds = [
-                ("delta", SpeedTarget::Faster(role, value, goes_on)),
-                ("factor", SpeedTarget::Times(role, value, goes_on)),
-            ];
-            target.word("speedTargetValueType", &kinds)?
-        }
-        _ => return Err(target.unsupported()),
-    };
-    Ok(Action::Speed(dynamics, target))
 }
 
 fn lane_change(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
@@ -103,9 +106,7 @@ fn lane_change(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryEr
 fn lane_offset(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
     action.switch("continuous")?;
     let dynamics_of = action.need("LaneOffsetActionDynamics")?;
-    let shapes =
-        [("linear", Shape::Linear), ("cubic", Shape::Cubic), ("sinusoidal", Shape::Sinusoidal), ("step", Shape::Step)];
-    let shape = dynamics_of.word("dynamicsShape", &shapes)?;
+    let shape = dynamics_of.word("dynamicsShape", SHAPES)?;
     let most_mps2 = dynamics_of.number_given("maxLateralAcc")?;
     let target = action.need("LaneOffsetTarget")?.choice()?;
     let (offset_m, role) = match target.tag() {

@@ -2,11 +2,10 @@
 
 use crate::story::error::StoryError;
 use crate::story::script::{Along, Condition, Edge, ElementKind, ElementState, Measure, OfRole, Rule, Trigger, When};
-use crate::time::{TICK_HZ, Tick};
 
 use super::document::Element;
 use super::names::Names;
-use super::positions;
+use super::{positions, signals, ticks};
 
 /// Most conditions of a trigger.
 const CONDITIONS: usize = 100;
@@ -38,12 +37,6 @@ const STATES: &[(&str, ElementState)] = &[
     ("skipTransition", ElementState::Skipped),
 ];
 
-/// Seconds as ticks.
-fn ticks(seconds: f32) -> Tick {
-    // At most what a run can last.
-    (seconds.min(1e6) * TICK_HZ as f32 + 0.5) as Tick
-}
-
 /// The conditions in an element, if it is there.
 pub fn trigger(element: Option<Element<'_>>, names: &Names<'_>) -> Result<Trigger, StoryError> {
     let mut trigger = Trigger::default();
@@ -70,14 +63,14 @@ fn condition(element: Element<'_>, names: &Names<'_>) -> Result<Condition, Story
     let edge = element.word("conditionEdge", EDGES)?;
     let what = element.choice()?;
     let when = match what.tag() {
-        "ByValueCondition" => by_value(what.choice()?)?,
+        "ByValueCondition" => by_value(what.choice()?, names)?,
         "ByEntityCondition" => by_entity(what, names)?,
         _ => return Err(what.unsupported()),
     };
     Ok(Condition { delay_ticks: ticks(delay_s), edge, when })
 }
 
-fn by_value(value: Element<'_>) -> Result<When, StoryError> {
+fn by_value(value: Element<'_>, names: &Names<'_>) -> Result<When, StoryError> {
     match value.tag() {
         "SimulationTimeCondition" => Ok(When::Time(value.word("rule", RULES)?, value.float("value")?)),
         "StoryboardElementStateCondition" => Ok(When::Element(
@@ -85,6 +78,8 @@ fn by_value(value: Element<'_>) -> Result<When, StoryError> {
             value.text("storyboardElementRef")?,
             value.word("state", STATES)?,
         )),
+        "TrafficSignalCondition" => signals::shows(value),
+        "TrafficSignalControllerCondition" => signals::is_in(value, names),
         _ => Err(value.unsupported()),
     }
 }

@@ -10,7 +10,7 @@ use super::value;
 use crate::story::error::StoryError;
 
 /// Longest text, bytes.
-const BYTES: usize = 16 << 20;
+pub const BYTES: usize = 16 << 20;
 /// Most elements, texts and comments.
 const NODES: u32 = 400_000;
 
@@ -57,6 +57,11 @@ impl Shared {
         Self { parameters: declared.filter_map(value).collect(), read: RefCell::default() }
     }
 
+    /// The parameters and their values.
+    pub fn parameters(&self) -> &BTreeMap<String, String> {
+        &self.parameters
+    }
+
     /// Refuses what was not read and is not harmless; gives what is harmless, each once, by line.
     pub fn leftovers(&self, document: &Document<'_>) -> Result<Vec<(u32, String)>, StoryError> {
         let read = self.read.borrow();
@@ -86,7 +91,8 @@ impl Shared {
     }
 }
 
-fn line_of(node: Node<'_, '_>) -> u32 {
+/// The line that an element begins on.
+pub fn line_of(node: Node<'_, '_>) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 

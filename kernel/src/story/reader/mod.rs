@@ -1,23 +1,30 @@
 //! OpenSCENARIO XML, 1.0 to 1.2, to a [`Script`]. `coverage` says which elements are read.
 
 mod actions;
+mod catalogs;
 mod conditions;
 mod coverage;
 mod document;
 mod entities;
+mod environment;
 mod names;
 mod positions;
+mod signals;
+mod speeds;
 mod storyboard;
 mod value;
 mod vary;
 
+pub use catalogs::{folders, put_in};
 pub use coverage::{ELEMENTS, Row, Support};
 pub use vary::{varied, with_shares};
 
 use super::error::StoryError;
 use super::script::Script;
+use crate::time::{TICK_HZ, Tick};
 use document::{Element, Shared};
 use names::Names;
+use storyboard::{Beginning, Board};
 
 /// What a text says besides its script.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,9 +49,17 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
     let network = root.need("RoadNetwork")?;
     let map = network.need("LogicFile")?.text("filepath")?;
     let cast = entities::read(root.need("Entities")?)?;
-    let names = Names { cast: &cast };
-    let board = storyboard::read(root.need("Storyboard")?, &names)?;
+    let programmes = signals::programmes(network.child("TrafficSignals"))?;
+    let names = Names { cast: &cast, programmes: &programmes };
+    let Board { init, acts, stop } = storyboard::read(root.need("Storyboard")?, &names)?;
     let passed = shared.leftovers(&document)?;
-    let script = Script { init: board.init, acts: board.acts, stop: board.stop, cast };
+    let Beginning { actions: init, lights, environment } = init;
+    let script = Script { init, acts, stop, cast, lights, programmes, environment };
     Ok(Read { script, map, passed })
+}
+
+/// Seconds as ticks.
+fn ticks(seconds: f32) -> Tick {
+    // At most what a run can last.
+    (seconds.min(1e6) * TICK_HZ as f32 + 0.5) as Tick
 }

@@ -1,13 +1,14 @@
-//! Roles by their names.
+//! Roles and programmes of lights by their names.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Role, RoleId};
+use crate::story::script::{Programme, Role, RoleId};
 
 use super::document::Element;
 
-/// Names of roles.
+/// Names of roles, and of programmes of lights.
 pub struct Names<'a> {
     pub cast: &'a [Role],
+    pub programmes: &'a [Programme],
 }
 
 impl Names<'_> {
@@ -20,5 +21,17 @@ impl Names<'_> {
             let expected = format!("expected an entity of the file: {}", known.join(", "));
             element.wrong(format!("{attribute} of <{}> is {name:?}, {expected}", element.tag()))
         })
+    }
+
+    /// The programme of lights and its phase that two attributes name.
+    pub fn phase(&self, element: Element<'_>, attribute: &str, phase: &str) -> Result<(usize, usize), StoryError> {
+        let (name, phase) = (element.text(attribute)?, element.text(phase)?);
+        let number = self.programmes.iter().position(|programme| programme.name == name);
+        let of = number.and_then(|number| {
+            let phases = &self.programmes[number].phases;
+            phases.iter().position(|(other, ..)| *other == phase).map(|phase| (number, phase))
+        });
+        let expected = "expected a <TrafficSignalController> of the file and one of its phases";
+        of.ok_or_else(|| element.wrong(format!("<{}> names {name:?}, {phase:?}: {expected}", element.tag())))
     }
 }

@@ -1,11 +1,11 @@
 //! What happens: how it begins, acts, groups, manoeuvres and events.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Act, Action, Event, Group, Priority, RoleId, Trigger};
+use crate::story::script::{Act, Action, Doer, Environment, Event, Group, Light, Priority, RoleId, Trigger};
 
 use super::document::Element;
 use super::names::Names;
-use super::{actions, conditions};
+use super::{actions, conditions, environment};
 
 /// Most events of a text, and most actions of an event.
 const EVENTS: usize = 5_000;
@@ -20,9 +20,17 @@ const PRIORITIES: &[(&str, Priority)] = &[
     ("parallel", Priority::Parallel),
 ];
 
+/// What is so from the first tick on.
+#[derive(Default)]
+pub struct Beginning {
+    pub actions: Vec<(RoleId, Action)>,
+    pub lights: Vec<Light>,
+    pub environment: Environment,
+}
+
 /// What happens.
 pub struct Board {
-    pub init: Vec<(RoleId, Action)>,
+    pub init: Beginning,
     pub acts: Vec<Act>,
     pub stop: Trigger,
 }
@@ -30,7 +38,7 @@ pub struct Board {
 pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> {
     let init = match board.child("Init") {
         Some(init) => self::init(init.need("Actions")?, names)?,
-        None => Vec::new(),
+        None => Beginning::default(),
     };
     let mut acts = Vec::new();
     for story in board.all("Story") {
@@ -49,15 +57,23 @@ pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> 
     Ok(Board { init, acts, stop: conditions::trigger(board.child("StopTrigger"), names)? })
 }
 
-fn init(actions: Element<'_>, names: &Names<'_>) -> Result<Vec<(RoleId, Action)>, StoryError> {
-    let mut init = Vec::new();
+fn init(actions: Element<'_>, names: &Names<'_>) -> Result<Beginning, StoryError> {
+    let mut init = Beginning::default();
     for global in actions.all("GlobalAction") {
-        init.push(actions::global(global, names)?);
+        if let Some(environment) = global.child("EnvironmentAction") {
+            init.environment = environment::read(environment)?;
+            continue;
+        }
+        match actions::global(global, names)? {
+            (Doer::Role(role), action) => init.actions.push((role, action)),
+            (_, Action::Light(light)) => init.lights.push(light),
+            _ => return Err(global.wrong("a programme of lights is put into a phase in events only")),
+        }
     }
     for private in actions.all("Private") {
         let role = names.role(private, "entityRef")?;
         for action in private.all("PrivateAction") {
-            init.extend(actions::private(action, names)?.map(|action| (role, action)));
+            init.actions.extend(actions::private(action, names)?.map(|action| (role, action)));
         }
     }
     Ok(init)
@@ -114,10 +130,10 @@ fn event(event: Element<'_>, manoeuvre: (usize, String), names: &Names<'_>) -> R
         let name = action.given("name")?.unwrap_or_default();
         let kind = action.choice()?;
         match kind.tag() {
-            "PrivateAction" => actions.extend(actions::private(kind, names)?.map(|done| (name, None, done))),
+            "PrivateAction" => actions.extend(actions::private(kind, names)?.map(|done| (name, Doer::Each, done))),
             "GlobalAction" => {
-                let (role, done) = actions::global(kind, names)?;
-                actions.push((name, Some(role), done));
+                let (doer, done) = actions::global(kind, names)?;
+                actions.push((name, doer, done));
             }
             _ => return Err(kind.unsupported()),
         }

@@ -205,3 +205,85 @@ fn a_line_beside_another_lies_where_that_is_when_it_begins() {
     go_on(&mut world, 1.0);
     assert!((other(&world).position.x - 150.0).abs() < 0.5, "{:?}", other(&world));
 }
+
+fn entry(speed_mps: f32, time: &str) -> String {
+    format!(r#"<SpeedProfileEntry speed="{speed_mps}" {time}/>"#)
+}
+
+#[test]
+fn a_profile_of_speeds_is_driven_entry_by_entry() {
+    let entries = entry(14.0, r#"time="2""#) + &entry(14.0, r#"time="1""#) + &entry(6.0, "");
+    let action = format!(
+        r#"<PrivateAction><LongitudinalAction><SpeedProfileAction followingMode="follow">
+<DynamicConstraints maxDeceleration="4"/>{entries}</SpeedProfileAction></LongitudinalAction></PrivateAction>"#
+    );
+    let mut world = played(&event("e", &action, &after(1.0)));
+    go_on(&mut world, 1.0);
+    for (seconds, expected_mps) in [(1.0, 12.0), (1.0, 14.0), (1.0, 14.0), (1.0, 10.0), (1.1, 6.0), (1.0, 6.0)] {
+        go_on(&mut world, seconds);
+        let speed_mps = other(&world).speed_mps;
+        assert!((speed_mps - expected_mps).abs() < 0.15, "{speed_mps}, expected {expected_mps}");
+    }
+}
+
+fn keeps(gap: &str) -> String {
+    format!(
+        r#"<PrivateAction><LongitudinalAction><LongitudinalDistanceAction entityRef="Ego" {gap} continuous="true">
+<DynamicConstraints maxAcceleration="3" maxDeceleration="6"/></LongitudinalDistanceAction></LongitudinalAction></PrivateAction>"#
+    )
+}
+
+#[test]
+fn a_gap_is_kept_from_middle_to_middle_or_from_bumper_to_bumper() {
+    // The ego car stands at 500 m; cars are 4.5 m long.
+    for (gap, side, expected_m) in [
+        (r#"distance="20" freespace="false""#, 100.0, -20.0),
+        (r#"distance="20" freespace="true""#, 100.0, -24.5),
+        (r#"distance="30" freespace="false" displacement="leadingReferencedEntity""#, 510.0, 30.0),
+    ] {
+        let init = begins("Ego", -1, 500.0, 0.0) + &begins("Other", -1, side, 10.0);
+        let mut world = world(&text(&init, &event("e", &keeps(gap), &after(0.0))));
+        go_on(&mut world, 60.0);
+        let other = other(&world);
+        let [own, ego] = [other.position.x, world.scene().ego.position.x + crate::ego::CENTRE_M.x];
+        let length_m = crate::ego::SIZE_M.x * 0.5 + crate::actor::ActorKind::Car.size_m().x * 0.5 - 4.5;
+        let free_m = if gap.contains("true") { length_m } else { 0.0 };
+        assert!((own - ego - expected_m + free_m).abs() < 0.3, "{gap}: {}", own - ego);
+        assert!(other.speed_mps.abs() < 0.05, "{other:?}");
+    }
+}
+
+/// Arrives at 300 m of its lane when the ego car, which rolls, is at some place of its own.
+fn meets(theirs_m: f32, last: &str) -> String {
+    let place = |tag: &str, lane: i32, s_m: f32| {
+        format!(r#"<{tag}><LanePosition roadId="7" laneId="{lane}" s="{s_m}"/></{tag}>"#)
+    };
+    let (theirs, own) = (place("TargetPositionMaster", -2, theirs_m), place("TargetPosition", -1, 300.0));
+    format!(
+        r#"<PrivateAction><SynchronizeAction masterEntityRef="Ego" targetToleranceMaster="1" targetTolerance="1">
+{theirs}{own}{last}</SynchronizeAction></PrivateAction>"#
+    )
+}
+
+#[test]
+fn who_is_to_meet_the_ego_car_arrives_when_it_does() {
+    for (begins_m, last, last_mps) in [
+        (100.0, "", None),
+        (180.0, r#"<FinalSpeed><AbsoluteSpeed value="12"/></FinalSpeed>"#, Some(12.0)),
+        (220.0, r#"<FinalSpeed><RelativeSpeedToMaster speedTargetValueType="delta" value="-3"/></FinalSpeed>"#, None),
+    ] {
+        let init = begins("Ego", -2, 100.0, 15.0) + &begins("Other", -1, begins_m, 10.0);
+        let mut world = world(&text(&init, &event("e", &meets(200.0, last), &after(0.0))));
+        let place_m = |world: &World| world.scene().ego.position.x + crate::ego::CENTRE_M.x;
+        while place_m(&world) < 199.0 {
+            go_on(&mut world, 1.1 / 60.0);
+            assert!(world.tick() < 3000, "the ego car rolls to its place");
+        }
+        let other = other(&world);
+        // Within a tenth of a second: the ego car slows as it rolls.
+        assert!((other.position.x - 300.0).abs() < 1.0 + 0.1 * other.speed_mps, "from {begins_m} m: {other:?}");
+        if let Some(last_mps) = last_mps {
+            assert!((other.speed_mps - last_mps).abs() < 0.6, "{other:?}");
+        }
+    }
+}

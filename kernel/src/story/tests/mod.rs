@@ -2,6 +2,7 @@
 
 mod actions;
 mod conditions;
+mod lights;
 mod reading;
 mod worlds;
 

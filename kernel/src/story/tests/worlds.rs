@@ -96,6 +96,36 @@ fn the_ego_car_begins_as_fast_as_the_story_says() {
 }
 
 #[test]
+fn the_file_drives_the_ego_car_until_it_hands_it_over() {
+    let ego = |events: &str| {
+        let init = begins("Ego", -2, 300.0, 10.0) + &begins("Other", -1, 100.0, 0.0);
+        text(&init, events)
+            .replace(r#"<EntityRef entityRef="Other"/></Actors>"#, r#"<EntityRef entityRef="Ego"/></Actors>"#)
+    };
+    let activate = r#"<PrivateAction><ControllerAction><ActivateControllerAction longitudinal="true" lateral="true"/></ControllerAction></PrivateAction>"#;
+    let faster = event("faster", &speed("linear", 2.0, "time", 15.0), &after(1.0));
+    let hand_over = event("hand over", activate, &after(5.0)).replace("overwrite", "parallel");
+    let mut world = world(&ego(&(faster.clone() + &hand_over)));
+    let place = |world: &World| world.scene().ego.position.x + crate::ego::CENTRE_M.x;
+    // 10 m, then 25 m in 2 s, then 2 s at 15 m/s.
+    for (seconds, expected_m, expected_mps) in [(1.0, 310.0, 10.0), (2.0, 335.0, 15.0), (2.0, 365.0, 15.0)] {
+        (0..(seconds * 60.0) as u32).for_each(|_| drop(world.step(&TickInput::default())));
+        let ego = world.scene().ego;
+        assert!((place(&world) - expected_m).abs() < 0.3, "{ego:?}");
+        assert!((ego.speed_mps - expected_mps).abs() < 0.3 && ego.position.z.abs() < 0.05, "{ego:?}");
+    }
+    // Whoever brakes then brakes.
+    let brake = crate::controls::Controls { brake: u16::MAX, ..Default::default() };
+    let input = TickInput { semantic: brake, safety: brake };
+    (0..240).for_each(|_| drop(world.step(&input)));
+    assert!(world.scene().ego.speed_mps < 12.0, "{:?}", world.scene().ego);
+    // Without a hand-over the drivers have it from the beginning.
+    let mut alone = self::world(&ego(&faster));
+    go_on(&mut alone, 3.0);
+    assert!(alone.scene().ego.speed_mps < 10.0);
+}
+
+#[test]
 fn traffic_drives_behind_who_plays_and_does_not_touch_it() {
     let init = begins("Ego", 2, 500.0, 0.0) + &begins("Other", -2, 300.0, 3.0);
     let mut scenario = scenario(&text(&init, ""));

@@ -26,7 +26,14 @@ fn enter(
     let mut traffic = start(network, 60, 3);
     let mut entered = BTreeSet::new();
     for tick in 1..minutes * MINUTE {
-        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+        traffic.step(&Surroundings {
+            tick,
+            ego,
+            ego_flags: 0,
+            loose: &[],
+            lights: &[],
+            conditions: Conditions::default(),
+        });
         let enters = |v: &&Vehicle| lanes.contains(&v.lane) && v.s_m < 2.0 && counts_at(tick);
         entered.extend(traffic.state().vehicles.iter().filter(enters).map(|v| (v.id, tick / 600)));
     }
@@ -81,6 +88,7 @@ fn goes_in(network: &Arc<RoadNetwork>, ego_at: impl Fn(Tick) -> Obstacle) -> Vec
             ego: ego_at(tick),
             ego_flags: 0,
             loose: &[],
+            lights: &[],
             conditions: Conditions::default(),
         });
         traffic.bodies()[0]

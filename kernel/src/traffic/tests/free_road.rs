@@ -61,6 +61,7 @@ fn a_free_road_is_driven_as_the_model_says() {
                 ego: nowhere(),
                 ego_flags: 0,
                 loose: &[],
+                lights: &[],
                 conditions: Conditions::default(),
             });
             driven_m += f64::from(traffic.state().vehicles[0].speed_mps) / 60.0;

@@ -59,6 +59,7 @@ fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut
             ego: nowhere(),
             ego_flags: 0,
             loose: &[],
+            lights: &[],
             conditions: Conditions::default(),
         });
         each(traffic, tick);
@@ -277,7 +278,14 @@ fn vehicles_stop_behind_whatever_stands_in_their_lane() {
         let loose = [there];
         for tick in 1..1200 {
             let (ego, loose) = if ego { (there, &loose[..0]) } else { (nowhere(), &loose[..]) };
-            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose, conditions: Conditions::default() });
+            traffic.step(&Surroundings {
+                tick,
+                ego,
+                ego_flags: 0,
+                loose,
+                lights: &[],
+                conditions: Conditions::default(),
+            });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         let gap_m = 120.0 - vehicle.s_m - 2.25;
@@ -295,7 +303,14 @@ fn who_stands_without_a_reason_is_told_and_then_taken_off_the_road() {
         let mut traffic = lone_car(&network);
         let mut told = Vec::new();
         for tick in 1..4 * MINUTE {
-            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose, conditions: Conditions::default() });
+            traffic.step(&Surroundings {
+                tick,
+                ego,
+                ego_flags: 0,
+                loose,
+                lights: &[],
+                conditions: Conditions::default(),
+            });
             told.extend(traffic.told().iter().map(|(kind, id)| (*kind, *id, tick / 60)));
         }
         let id = u32::from(traffic.state().vehicles[0].id);
@@ -323,7 +338,7 @@ fn who_stands_is_told_once() {
         actors.state.vehicles[0] = Vehicle { stuck_s: now_s, ..vehicle };
         let before = [Vehicle { stuck_s: before_s, ..vehicle }];
         let conditions = Conditions::default();
-        let around = Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], conditions };
+        let around = Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions };
         actors.return_to_map(&before, &around, &mut told);
         told.len()
     };
@@ -340,7 +355,10 @@ fn who_waits_long_for_room_counts_in_every_tick() {
     let mut sight = look::Sight::default();
     for tick in 1..4 {
         let conditions = Conditions::default();
-        sight.look(&traffic.actors, &Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[], conditions });
+        sight.look(
+            &traffic.actors,
+            &Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions },
+        );
         assert!(sight.view(&traffic.actors).plans[0].line.is_some(), "tick {tick}");
     }
 }
@@ -391,7 +409,10 @@ fn a_junction_of_many_sections_has_its_line() {
         actors.place_bodies();
         let mut sight = look::Sight::default();
         let conditions = Conditions::default();
-        sight.look(&actors, &Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], conditions });
+        sight.look(
+            &actors,
+            &Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions },
+        );
         let line = sight.view(&actors).plans[0].line.expect("it has one");
         assert_eq!(line.inside, (1, 1 + sections.min(255)), "{sections}");
     }
@@ -428,6 +449,7 @@ fn vehicles_pass_what_stands_beside_their_lane() {
             ego: car_at(beside, 0.0),
             ego_flags: 0,
             loose: &[],
+            lights: &[],
             conditions: Conditions::default(),
         });
     }
@@ -447,6 +469,7 @@ fn vehicles_pass_within_their_lane_whatever_leaves_room_there() {
                 ego: car_at(beside, 0.0),
                 ego_flags: 0,
                 loose: &[],
+                lights: &[],
                 conditions: Conditions::default(),
             });
         }
@@ -474,7 +497,14 @@ fn who_waits_at_an_open_line_hears_the_horn_of_the_car_behind() {
             let after = |ego_flags: u8| {
                 let mut fork = traffic.clone();
                 for tick in tick..tick + Tick::from(DECIDE_TICKS) {
-                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
+                    fork.step(&Surroundings {
+                        tick,
+                        ego,
+                        ego_flags,
+                        loose: &[],
+                        lights: &[],
+                        conditions: Conditions::default(),
+                    });
                 }
                 fork.state().vehicles.iter().find(|v| v.id == id).map_or(0, |v| v.wait_ticks)
             };
@@ -487,6 +517,7 @@ fn who_waits_at_an_open_line_hears_the_horn_of_the_car_behind() {
             ego: nowhere(),
             ego_flags: 0,
             loose: &[],
+            lights: &[],
             conditions: Conditions::default(),
         });
     }
@@ -506,7 +537,14 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             let goes = |ego_flags: u8| {
                 let mut fork = traffic.clone();
                 for tick in tick..tick + 600 {
-                    fork.step(&Surroundings { tick, ego, ego_flags, loose: &[], conditions: Conditions::default() });
+                    fork.step(&Surroundings {
+                        tick,
+                        ego,
+                        ego_flags,
+                        loose: &[],
+                        lights: &[],
+                        conditions: Conditions::default(),
+                    });
                     let walker = fork.state().walkers.iter().find(|w| w.id == id).expect("it is there");
                     let edge = &network.walk_edges[walker.edge as usize];
                     if walker.mode != WalkerMode::Wait && edge.crosswalk.is_some() {
@@ -524,6 +562,7 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             ego: nowhere(),
             ego_flags: 0,
             loose: &[],
+            lights: &[],
             conditions: Conditions::default(),
         });
     }
@@ -543,6 +582,7 @@ fn loose_actors_keep_their_state() {
             ego: nowhere(),
             ego_flags: 0,
             loose: &loose,
+            lights: &[],
             conditions: Conditions::default(),
         });
     }

@@ -150,7 +150,14 @@ fn who_rides_in_a_bus_that_comes_to_no_stop_is_set_down_at_last() {
     for loose in [&[][..], &[lies]] {
         let mut traffic = Traffic::with(&counts, 5, network.ways(), state.clone());
         for tick in 1..11 * MINUTE {
-            let around = Surroundings { tick, ego: nowhere(), ego_flags: 0, loose, conditions: Conditions::default() };
+            let around = Surroundings {
+                tick,
+                ego: nowhere(),
+                ego_flags: 0,
+                loose,
+                lights: &[],
+                conditions: Conditions::default(),
+            };
             traffic.step(&around);
             let walker = traffic.state().walkers[0];
             assert_eq!(walker.rides(), body(&traffic, walker.id).is_none());

@@ -1,7 +1,6 @@
 //! What a campaign drives.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use base::maps::Map;
 use kernel::Scenario;
@@ -49,11 +48,9 @@ impl Plan {
         let mut scenario = self.scenario.clone().unwrap_or_else(|| map.scenario(seed));
         scenario.map = map.network.name.clone();
         scenario.seed = seed;
-        if let Some(story) = scenario.story.as_mut().filter(|_| self.vary)
-            && let Ok(varied) = story.varied(seed)
-        {
-            // Both ends of the ranges play: `plan` looked.
-            *story = Arc::new(varied);
+        // Both ends of the ranges play: `plan` looked.
+        if let Some(Ok(varied)) = scenario.story.as_ref().filter(|_| self.vary).map(|story| story.varied(seed)) {
+            scenario.play(varied);
         }
         scenario.rules.max_seconds = self.run_seconds;
         self.weather.iter().for_each(|preset| scenario.take_weather(preset));

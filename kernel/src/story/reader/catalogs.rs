@@ -1,0 +1,214 @@
+//! Catalogs: files of vehicles, manoeuvres, routes and so on, to whose entries a text refers. They are put into the text, so that
+//! it needs no other file.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use roxmltree::{Document, Node};
+
+use super::document::{self, BYTES, Shared, line_of};
+use super::value;
+use crate::story::error::StoryError;
+
+/// How deep entries may refer to others.
+const DEPTH: usize = 8;
+/// Elements whose references are passed over with all else in them.
+const UNREAD: [&str; 4] = ["ObjectController", "Controller", "AssignControllerAction", "ControllerAction"];
+
+/// The folders of the catalogs of a text, as that calls them.
+pub fn folders(text: &str) -> Vec<String> {
+    let Ok(document) = document::parse(text) else { return Vec::new() };
+    let shared = Shared::of(&document);
+    let locations = document.descendants().filter(|n| n.has_tag_name("CatalogLocations"));
+    let paths = locations.flat_map(|n| n.descendants()).filter(|n| n.has_tag_name("Directory"));
+    let mut found: Vec<String> = Vec::new();
+    for path in paths.filter_map(|n| value::of(n.attribute("path")?, shared.parameters()).ok()) {
+        if !found.contains(&path) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+/// A text with the entries of catalogs in place of references to them, each on the line of the reference. Who plays may be
+/// told by an entry that is not there.
+///
+/// # Errors
+/// When a catalog is none, or an entry is not there that is no entity.
+pub fn put_in(text: &str, catalogs: &[(String, String)]) -> Result<String, StoryError> {
+    let mut documents = Vec::new();
+    for (file, catalog) in catalogs {
+        let parsed = document::parse(catalog);
+        documents.push(parsed.map_err(|error| StoryError::at(1, format!("catalog {file}: {error}")))?);
+    }
+    let mut text = text.to_owned();
+    for _ in 0..DEPTH {
+        let Some(next) = once(&text, &documents)? else { return Ok(text) };
+        if next.len() > BYTES {
+            return Err(StoryError::at(
+                1,
+                format!("expected at most {} MiB with the entries of its catalogs", BYTES >> 20),
+            ));
+        }
+        text = next;
+    }
+    Err(StoryError::at(1, format!("entries of its catalogs refer to each other more than {DEPTH} times")))
+}
+
+/// Puts the entries of all references in; nothing where there is none.
+fn once(text: &str, catalogs: &[Document<'_>]) -> Result<Option<String>, StoryError> {
+    let document = document::parse(text)?;
+    let shared = Shared::of(&document);
+    let mut edits = Vec::new();
+    let is_read = |n: &Node<'_, '_>| !n.ancestors().any(|above| UNREAD.contains(&above.tag_name().name()));
+    for reference in document.descendants().filter(|n| n.has_tag_name("CatalogReference")).filter(is_read) {
+        let named = |name: &str| {
+            let text = reference.attribute(name).unwrap_or_default();
+            value::of(text, shared.parameters()).unwrap_or_else(|_| text.to_owned())
+        };
+        let (catalog, entry) = (named("catalogName"), named("entryName"));
+        match find(catalogs, &catalog, &entry) {
+            Some(found) => edits.push((reference.range(), put(found, &assigned(reference)))),
+            None if reference.parent_element().is_some_and(|n| n.has_tag_name("ScenarioObject")) => {}
+            None => {
+                let shown = |text: &str| -> String { text.chars().filter(|c| !c.is_control()).take(40).collect() };
+                let reason = format!(
+                    "<CatalogReference> names {:?} of the catalog {:?}, which is in none of the files of <CatalogLocations>",
+                    shown(&entry),
+                    shown(&catalog)
+                );
+                return Err(StoryError::at(line_of(reference), reason));
+            }
+        }
+    }
+    Ok((!edits.is_empty()).then(|| edited(text, 0, edits)))
+}
+
+fn find<'a>(catalogs: &'a [Document<'a>], catalog: &str, entry: &str) -> Option<Node<'a, 'a>> {
+    let named = |n: &Node<'_, '_>, name: &str| n.attribute("name") == Some(name);
+    let all = catalogs.iter().flat_map(|file| file.root_element().children());
+    let mut all = all.filter(|n| n.has_tag_name("Catalog") && named(n, catalog)).flat_map(|n| n.children());
+    all.find(|n| n.is_element() && named(n, entry))
+}
+
+/// What a reference gives the parameters of its entry.
+fn assigned(reference: Node<'_, '_>) -> BTreeMap<String, String> {
+    let all = reference.descendants().filter(|n| n.has_tag_name("ParameterAssignment"));
+    let pair = |n: Node<'_, '_>| {
+        let name = n.attribute("parameterRef")?.trim_start_matches('$');
+        Some((name.to_owned(), n.attribute("value")?.to_owned()))
+    };
+    all.filter_map(pair).collect()
+}
+
+/// The text of an entry on one line, with the values of its parameters.
+fn put(entry: Node<'_, '_>, assigned: &BTreeMap<String, String>) -> String {
+    let declarations = entry.children().find(|n| n.has_tag_name("ParameterDeclarations"));
+    let declared = declarations.into_iter().flat_map(|n| n.children());
+    let usual = |n: Node<'_, '_>| {
+        Some((n.attribute("name")?.trim_start_matches('$').to_owned(), n.attribute("value")?.to_owned()))
+    };
+    let mut values: BTreeMap<String, String> = declared.filter_map(usual).collect();
+    values.extend(assigned.iter().map(|(name, value)| (name.clone(), value.clone())));
+    let attributes = entry.descendants().filter(Node::is_element).flat_map(|n| n.attributes());
+    let own = declarations.map(|n| n.range());
+    let told = attributes.filter(|a| a.value().starts_with('$'));
+    let told = told.filter(|a| own.as_ref().is_none_or(|own| !own.contains(&a.range_value().start)));
+    let mut edits: Vec<_> = told.map(|a| (a.range_value(), escaped(&with_values(a.value(), &values)))).collect();
+    edits.extend(own.map(|range| (range, String::new())));
+    let all = entry.range();
+    edited(&entry.document().input_text()[all.clone()], all.start, edits).replace(['\n', '\r'], " ")
+}
+
+/// A parameter or an expression with the values of those that are known.
+fn with_values(text: &str, values: &BTreeMap<String, String>) -> String {
+    let Some(expression) = text.strip_prefix("${") else {
+        return values.get(text.trim_start_matches('$')).cloned().unwrap_or_else(|| text.to_owned());
+    };
+    let (mut out, mut rest) = ("${".to_owned(), expression);
+    while let Some(at) = rest.find('$') {
+        let (before, from) = rest.split_at(at);
+        let end = from[1..].find(|c: char| !c.is_alphanumeric() && c != '_').map_or(from.len(), |end| end + 1);
+        out += before;
+        match values.get(&from[1..end]) {
+            Some(value) => match value.strip_prefix("${").and_then(|value| value.strip_suffix('}')) {
+                Some(inner) => out += &format!("({inner})"),
+                None => out += value,
+            },
+            None => out += &from[..end],
+        }
+        rest = &from[end..];
+    }
+    out + rest
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;").replace('\'', "&apos;")
+}
+
+/// A text that begins at a place of a whole one, with some ranges of that replaced.
+fn edited(text: &str, begins: usize, mut edits: Vec<(Range<usize>, String)>) -> String {
+    edits.sort_by_key(|(range, _)| range.start);
+    let (mut out, mut at) = (String::new(), begins);
+    for (range, new) in edits {
+        out += &text[at - begins..range.start - begins];
+        out += &new;
+        at = range.end;
+    }
+    out + &text[at - begins..]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CATALOG: &str = r#"<OpenSCENARIO><FileHeader/><Catalog name="Moves">
+<Maneuver name="brake"><ParameterDeclarations><ParameterDeclaration name="mps" parameterType="double" value="4"/>
+<ParameterDeclaration name="s" parameterType="double" value="2"/></ParameterDeclarations>
+<Event name="$s" value="$mps" sum="${$mps * $s + $other}"/>
+</Maneuver></Catalog></OpenSCENARIO>"#;
+
+    fn with(reference: &str) -> Result<String, StoryError> {
+        let text = format!("<A>\n<ManeuverGroup>{reference}</ManeuverGroup>\n</A>");
+        put_in(&text, &[("moves.xosc".to_owned(), CATALOG.to_owned())])
+    }
+
+    #[test]
+    fn an_entry_takes_the_place_of_its_reference_with_its_values() {
+        let plain = with(r#"<CatalogReference catalogName="Moves" entryName="brake"/>"#).expect("it is there");
+        assert!(plain.contains(r#"<Event name="2" value="4" sum="${4 * 2 + $other}"/>"#), "{plain}");
+        assert!(!plain.contains("ParameterDeclaration") && plain.lines().count() == 3, "{plain}");
+        let given = with(
+            r#"<CatalogReference catalogName="Moves" entryName="brake"><ParameterAssignments>
+<ParameterAssignment parameterRef="$mps" value="${$fast - 1}"/></ParameterAssignments></CatalogReference>"#,
+        );
+        let given = given.expect("it is there");
+        assert!(given.contains(r#"value="${$fast - 1}" sum="${($fast - 1) * 2 + $other}""#), "{given}");
+    }
+
+    #[test]
+    fn what_is_not_there_is_named() {
+        let error = with(r#"<CatalogReference catalogName="Moves" entryName="turn"/>"#).expect_err("it is not there");
+        assert_eq!(error.line, 2);
+        assert!(
+            error.reason.starts_with("<CatalogReference> names \"turn\" of the catalog \"Moves\", which"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn entries_that_refer_to_themselves_are_refused() {
+        let own = CATALOG.replace("<Event", "<CatalogReference catalogName=\"Moves\" entryName=\"brake\"/><Event");
+        let text =
+            "<A><ManeuverGroup><CatalogReference catalogName=\"Moves\" entryName=\"brake\"/></ManeuverGroup></A>";
+        let error = put_in(text, &[("own.xosc".to_owned(), own)]).expect_err("it has no end");
+        assert!(error.reason.contains("refer to each other"), "{error}");
+    }
+
+    #[test]
+    fn folders_are_those_of_the_locations() {
+        let text = r#"<A><CatalogLocations><VehicleCatalog><Directory path="cat/v"/></VehicleCatalog>
+<RouteCatalog><Directory path="cat/v"/></RouteCatalog><ManeuverCatalog><Directory path="m"/></ManeuverCatalog></CatalogLocations></A>"#;
+        assert_eq!(folders(text), ["cat/v", "m"]);
+    }
+}
