@@ -11,6 +11,8 @@ pub const FIRST_STORY_ID: u32 = 1 << 15;
 pub const FIRST_PARKED_ID: u32 = 1 << 16;
 /// Open doors are actors with ids from here on: this plus the number of the parked car.
 pub const FIRST_DOOR_ID: u32 = 1 << 28;
+/// Open doors of those who play a story are actors with ids from here on: this plus the number of the role.
+pub const FIRST_STORY_DOOR_ID: u32 = 3 << 28;
 
 state_enum! {
     /// What an actor is.

@@ -9,7 +9,7 @@ use crate::light::LightPhase;
 use crate::time::Tick;
 use crate::{ops, state};
 
-pub use crate::actor::{ActorKind, FIRST_DOOR_ID, FIRST_PARKED_ID};
+pub use crate::actor::{ActorKind, FIRST_DOOR_ID, FIRST_PARKED_ID, FIRST_STORY_DOOR_ID, FIRST_STORY_ID};
 pub use crate::weather::Weather;
 
 state! {

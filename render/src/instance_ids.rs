@@ -1,12 +1,15 @@
-//! How instances are numbered: traffic from 1, parked cars above it, the ego car last.
+//! How instances are numbered: traffic from 1, then those who play a story, parked cars above them, the ego car last.
 
-use kernel::scene::{FIRST_DOOR_ID, FIRST_PARKED_ID};
+use kernel::scene::{FIRST_DOOR_ID, FIRST_PARKED_ID, FIRST_STORY_DOOR_ID, FIRST_STORY_ID};
 
 /// Instance of the ego car.
 pub const EGO_INSTANCE: u16 = u16::MAX;
 
 /// Instances of parked cars count from here.
 pub const FIRST_PARKED_INSTANCE: u16 = 32768;
+
+/// Those who play a story count from here: as many as a story has at most.
+const FIRST_STORY_INSTANCE: u16 = FIRST_PARKED_INSTANCE - 256;
 
 /// Instance of a parked car by its number among those of the map, pushed or not.
 pub fn instance_of_parked(number: usize) -> u16 {
@@ -16,11 +19,39 @@ pub fn instance_of_parked(number: usize) -> u16 {
 
 /// The number of the parked car that an actor is or that it is a door of.
 pub fn parked_number(id: u32) -> Option<usize> {
-    let first = if id < FIRST_DOOR_ID { FIRST_PARKED_ID } else { FIRST_DOOR_ID };
+    let first = match id {
+        FIRST_STORY_DOOR_ID.. => return None,
+        FIRST_DOOR_ID.. => FIRST_DOOR_ID,
+        _ => FIRST_PARKED_ID,
+    };
     Some(id.checked_sub(first)? as usize)
 }
 
 /// Instance of an actor; a door belongs to its car.
 pub fn instance_of_actor(id: u32) -> u16 {
-    parked_number(id).map_or_else(|| id.min(u32::from(FIRST_PARKED_INSTANCE) - 1) as u16, instance_of_parked)
+    let playing =
+        |role: u32| FIRST_STORY_INSTANCE + role.min(u32::from(FIRST_PARKED_INSTANCE - FIRST_STORY_INSTANCE) - 1) as u16;
+    match id {
+        FIRST_STORY_DOOR_ID.. => playing(id - FIRST_STORY_DOOR_ID),
+        FIRST_STORY_ID..FIRST_PARKED_ID => playing(id - FIRST_STORY_ID),
+        _ => parked_number(id).map_or(id.min(u32::from(FIRST_STORY_INSTANCE) - 1) as u16, instance_of_parked),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everybody_has_an_instance_of_its_own_and_a_door_that_of_its_car() {
+        let ids =
+            (1..400).chain((0..256).map(|role| FIRST_STORY_ID + role)).chain((0..400).map(|n| FIRST_PARKED_ID + n));
+        let mut instances: Vec<u16> = ids.map(instance_of_actor).chain([EGO_INSTANCE]).collect();
+        assert!(instances.is_sorted());
+        instances.dedup();
+        assert_eq!(instances.len(), 399 + 256 + 400 + 1);
+        assert_eq!(instance_of_actor(FIRST_DOOR_ID + 7), instance_of_actor(FIRST_PARKED_ID + 7));
+        assert_eq!(instance_of_actor(FIRST_STORY_DOOR_ID + 7), instance_of_actor(FIRST_STORY_ID + 7));
+        assert_eq!((parked_number(FIRST_STORY_DOOR_ID + 7), parked_number(FIRST_DOOR_ID + 7)), (None, Some(7)));
+    }
 }

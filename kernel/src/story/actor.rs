@@ -9,6 +9,7 @@ use crate::state;
 use crate::time::TICK_S;
 use crate::traffic::{Body, Obstacle};
 
+use super::doors::DoorSwing;
 use super::script;
 use super::spot::Spot;
 
@@ -48,6 +49,8 @@ state! {
         pub at_end_ticks: u32,
         /// Phase of its gait or pedals, 2^-16 turns.
         pub phase: u16,
+        /// Its front doors, left and right.
+        pub doors: [DoorSwing; 2],
         /// Lanes that it takes next.
         pub route: Vec<u32>,
         /// The deed that decides how fast it goes.
@@ -74,6 +77,7 @@ impl StoryActor {
             off_road_ticks: 0,
             at_end_ticks: 0,
             phase: 0,
+            doors: [DoorSwing::SHUT; 2],
             route: Vec::new(),
             speed_by: None,
             side_by: None,

@@ -10,7 +10,7 @@ use super::cues::Seen;
 use super::script::{Action, Dynamics, LaneTarget, Path, Position, RoleId, Script, Shape, SpeedTarget, Takes};
 use super::spot::{OnLane, Spot};
 use super::state::{Change, Progress, StoryState};
-use super::{lanes, lights, places, relative};
+use super::{doors, lanes, lights, places, relative};
 
 /// Where everybody begins, as the first actions of a script say.
 pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, String> {
@@ -58,6 +58,7 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
             }
             Action::Leave => actor.gone = true,
             Action::HandOver => {}
+            Action::Door(door) => doors::swing(actor, *door, 0),
             Action::LaneChange(..)
             | Action::LaneOffset(..)
             | Action::Follow(_)
@@ -213,6 +214,10 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
         }
         // Of the world, not of a role.
         Action::Light(_) | Action::Programme(..) => false,
+        Action::Door(door) => {
+            doors::swing(&mut state.actors[role], *door, seen.tick);
+            false
+        }
         // Others have no drivers.
         Action::HandOver => false,
     }

@@ -7,9 +7,11 @@
 mod actor;
 mod cues;
 mod deeds;
+mod doors;
 mod error;
 mod facts;
 mod lanes;
+mod library;
 mod lights;
 mod moves;
 mod pace;
@@ -25,6 +27,7 @@ mod text;
 
 pub use crate::actor::FIRST_STORY_ID;
 pub use error::StoryError;
+pub use library::{BUNDLED, bundled_text};
 pub use reader::{ELEMENTS, Row, Support};
 pub use script::Script;
 pub(crate) use stage::{Around, Stage};

@@ -58,6 +58,7 @@ fn of_action<'a>(action: &'a mut Action, out: &mut Vec<&'a mut Position>) {
         | Action::LaneChange(..)
         | Action::LaneOffset(..)
         | Action::Leave
+        | Action::Door(_)
         | Action::HandOver
         | Action::Light(_)
         | Action::Programme(..) => {}

@@ -415,6 +415,8 @@ pub enum Action {
     Route(Vec<Position>),
     /// Goes to a place, and is done there.
     Acquire(Position),
+    /// Opens or shuts a front door.
+    Door(Door),
     /// Leaves the ego car to its drivers.
     HandOver,
     /// Leaves the map.
@@ -434,6 +436,17 @@ pub enum SpeedTarget {
     Faster(RoleId, f32, bool),
     /// So many times as fast as a role.
     Times(RoleId, f32, bool),
+}
+
+/// A front door that is opened or shut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Door {
+    /// The one on the left.
+    pub is_left: bool,
+    /// How far open it is in the end, [0, 1].
+    pub open: f32,
+    /// How long that takes, ticks.
+    pub takes_ticks: u32,
 }
 
 /// How hard somebody changes its speed at most, and how fast it becomes.

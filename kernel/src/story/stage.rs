@@ -9,7 +9,7 @@ use crate::map::RoadNetwork;
 use crate::map_data::{LaneId, LaneKind};
 use crate::signals::HeldLight;
 use crate::time::Tick;
-use crate::traffic::{Body, Obstacle};
+use crate::traffic::{Body, Door, Obstacle};
 
 use super::actor::{self, StoryActor};
 use super::cues::Seen;
@@ -18,7 +18,7 @@ use super::script::{Priority, RoleId, Script};
 use super::spot::Spot;
 use super::state::{Change, Deed, Mark, Met, Progress, StoryState};
 use super::text::Story;
-use super::{deeds, lights, moves, places};
+use super::{deeds, doors, lights, moves, places};
 
 /// Farther, and faster, nobody gets, metres and m/s.
 const MOST_M: f32 = 1e6;
@@ -163,6 +163,13 @@ impl Stage {
     pub fn obstacles<'a>(&'a self, state: &'a StoryState) -> impl Iterator<Item = Obstacle> + 'a {
         let heading = |id: u32| state.actors[(id - FIRST_STORY_ID) as usize].spot.heading_rad;
         self.bodies(state).map(move |body| actor::obstacle(&body, heading(body.id)))
+    }
+
+    /// Doors of those who play that stand open at a tick.
+    pub fn open_doors<'a>(&'a self, state: &'a StoryState, tick: Tick) -> impl Iterator<Item = Door> + 'a {
+        let cast = self.script.cast.iter().zip(&state.actors).enumerate();
+        let plays = cast.filter(|(role, (_, actor))| *role != self.plan.ego && !actor.gone);
+        plays.filter_map(move |(role, (of, actor))| doors::open(actor, (role, of), tick))
     }
 
     /// Where the ego car is at the end of this tick, as long as the story drives it: the middle of its footprint, and its

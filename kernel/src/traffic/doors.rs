@@ -19,9 +19,9 @@ pub(super) const CELL_TICKS: Tick = seconds(20);
 /// It swings so long in either direction.
 const SWING_TICKS: Tick = seconds(1);
 /// Angle of a door that is fully open, radians: 65 degrees, the last detent of most.
-pub(super) const OPEN_RAD: f32 = 1.134;
+pub(crate) const OPEN_RAD: f32 = 1.134;
 /// From the middle of a car to the hinges of its front doors, as a share of its length.
-const HINGE: f32 = 0.2;
+pub(crate) const HINGE: f32 = 0.2;
 /// Roads at heights farther apart than this are not beside the car, metres.
 const LEVEL_M: f32 = 2.0;
 /// Slower than this somebody is let by with the door pulled to, m/s.

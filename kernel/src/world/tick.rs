@@ -208,7 +208,9 @@ impl World {
 
         let touched = &mut self.scratch.touched;
         self.physics.touched(touched);
-        doors::heed(doors::open_doors(&self.traffic, bodies, tick, car), car, touched, &mut log);
+        let played = self.stage.iter().zip(story.as_ref()).flat_map(|(stage, story)| stage.open_doors(story, tick));
+        let open = doors::open_doors(&self.traffic, bodies, tick, car).chain(played);
+        doors::heed(open, car, touched, &mut log);
         let collided = run.watch.contacts(touched, &mut log);
         let held = story.as_ref().map_or(&[][..], |story| &story.lights);
         let red = |group| signals::shown(network, self.scenario.seed, held, group, tick).0 == LightPhase::Red;

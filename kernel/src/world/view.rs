@@ -114,8 +114,10 @@ impl World {
 
     /// Open doors of parked cars.
     fn doors(&self) -> impl Iterator<Item = ActorScene> + '_ {
-        let doors = doors::open_doors(&self.traffic, &self.parts.bodies, self.tick(), &self.parts.ego.car);
-        doors.map(|door| doors::scene_of(&door))
+        let parked = doors::open_doors(&self.traffic, &self.parts.bodies, self.tick(), &self.parts.ego.car);
+        let played = self.stage.iter().zip(&self.parts.story);
+        let played = played.flat_map(|(stage, story)| stage.open_doors(story, self.tick()));
+        parked.chain(played).map(|door| doors::scene_of(&door))
     }
 
     /// Lights that the story holds.

@@ -17,6 +17,7 @@ pub mod png;
 pub mod progress;
 pub mod room;
 pub mod say;
+pub mod scenario_file;
 pub mod setting;
 pub mod spread;
 pub mod toml_text;

@@ -6,7 +6,8 @@ use kernel::Scenario;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
 
-use crate::maps::{Map, ScenarioFile};
+use crate::maps::Map;
+use crate::scenario_file::ScenarioFile;
 
 /// Where runs take place: a map, whose default scenarios they drive, or a scenario of a file.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use kernel::Seat;
 use kernel::events::{Event, EventKind};
-use kernel::scene::{ActorKind, ActorScene, FIRST_DOOR_ID, FIRST_PARKED_ID};
+use kernel::scene::{ActorKind, ActorScene, FIRST_DOOR_ID, FIRST_PARKED_ID, FIRST_STORY_DOOR_ID, FIRST_STORY_ID};
 
 /// What people and files call the seats.
 pub const SEATS: [&str; 2] = ["semantic", "safety"];
@@ -55,6 +55,7 @@ pub fn actor(actor: &ActorScene) -> String {
 /// Whom or what an actor's number names.
 fn collided(actor: u32) -> String {
     match actor {
+        FIRST_STORY_DOOR_ID.. => format!("a door of actor {}", actor - FIRST_STORY_DOOR_ID + FIRST_STORY_ID),
         FIRST_DOOR_ID.. => format!("a door of parked car {}", actor - FIRST_DOOR_ID),
         FIRST_PARKED_ID.. => format!("parked car {}", actor - FIRST_PARKED_ID),
         _ => format!("actor {actor}"),
@@ -84,7 +85,7 @@ pub fn event(event: &Event) -> String {
         EventKind::HazardCutIn => return format!("vehicle {} cuts in", event.actor),
         EventKind::HazardPullOut => return format!("vehicle {} pulls out from the kerb without a look", event.actor),
         EventKind::HazardDoor => {
-            return format!("a door of parked car {} opens into the lane", event.actor.saturating_sub(FIRST_DOOR_ID));
+            return format!("{} opens into the lane", collided(event.actor));
         }
         EventKind::HazardCollision => return format!("vehicle {} is in a collision with another", event.actor),
     };

@@ -6,13 +6,17 @@
 //! `blind` in place of a checkpoint is the truth in which people and vehicles are painted over with what is to the left of
 //! them for some seconds now and then: it errs where it matters, and costs no inference.
 
+#[path = "common/blind.rs"]
+mod blind;
+
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::bail;
-use base::maps::{Map, ScenarioFile};
+use base::maps::Map;
 use base::say::say;
+use base::scenario_file::ScenarioFile;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::crew::Bots;
 use drivers::safety::{Hazard, SafetyBot, URGENT};
@@ -25,7 +29,7 @@ use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Scenario, Seat, TickInput, World};
 use lab::redrive::{EARLY_TICKS, is_near_miss};
 use measures::criticality::{SAMPLE_TICKS, Sample, Sampler};
-use render::{RenderOptions, Renderer, SemanticTag};
+use render::{RenderOptions, Renderer};
 
 /// Thresholds that look on.
 const TRIED: [f32; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
@@ -33,8 +37,6 @@ const TRIED: [f32; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const AGAIN_TICKS: Tick = seconds(5);
 /// A collision counts as foreseen by a takeover at most this long before.
 const FORESEEN_TICKS: Tick = seconds(5);
-/// What a blind eye does not see.
-const TRAFFIC: [SemanticTag; 2] = [SemanticTag::Pedestrian, SemanticTag::Vehicles];
 /// Runs after which the table so far is shown.
 const TOLD_EVERY: usize = 16;
 
@@ -99,7 +101,7 @@ fn watch(scenario: &Scenario, map: &Map, mut vision: Vision, person: u64, is_bli
     while matches!(world.arbiter().phase, Phase::Arming | Phase::Driving) {
         let (mask, _) = vision.look(&world)?;
         let mut input = TickInput::default();
-        let blinded = (is_blind && is_blind_at(scenario.seed, world.tick())).then(|| without_traffic(mask));
+        let blinded = (is_blind && is_blind_at(scenario.seed, world.tick())).then(|| blind::without_traffic(mask));
         let mask = MaskView { ids: blinded.as_deref().unwrap_or(mask.ids), ..mask };
         driver.act(&world, Some(mask), &mut input);
         for (at, (watcher, since)) in watchers.iter_mut().enumerate() {
@@ -142,21 +144,6 @@ const BLIND_TICKS: Tick = seconds(4);
 
 fn is_blind_at(seed: u64, tick: Tick) -> bool {
     rng::bits(seed, Stream::Driver, u64::MAX, tick / BLIND_TICKS).is_multiple_of(BLIND_ONE_IN)
-}
-
-/// People and vehicles become what is to the left of them.
-fn without_traffic(mask: MaskView<'_>) -> Vec<u8> {
-    let mut ids = mask.ids.to_vec();
-    for row in ids.chunks_mut(mask.width) {
-        let mut left = SemanticTag::Unlabeled as u8;
-        for id in row {
-            if TRAFFIC.iter().any(|tag| *tag as u8 == *id) {
-                *id = left;
-            }
-            left = *id;
-        }
-    }
-    ids
 }
 
 /// Slower than this the ego car stands, m/s.

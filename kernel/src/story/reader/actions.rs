@@ -1,11 +1,11 @@
 //! What somebody does.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Action, Doer, Dynamics, LaneTarget, Path, Position, Shape, Takes};
+use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Position, Shape, Takes};
 
 use super::document::Element;
 use super::names::Names;
-use super::{positions, signals, speeds};
+use super::{positions, signals, speeds, ticks};
 
 /// Most corners of a line, and most places of a route.
 const CORNERS: usize = 100_000;
@@ -44,10 +44,28 @@ pub fn private(action: Element<'_>, names: &Names<'_>) -> Result<Option<Action>,
         "SynchronizeAction" => speeds::meeting(kind, names)?,
         "TeleportAction" => Action::Teleport(positions::read(kind.need("Position")?, names)?),
         "ControllerAction" | "ActivateControllerAction" => return Ok(activates(kind)?.then_some(Action::HandOver)),
-        "VisibilityAction" | "AppearanceAction" => return Ok(None),
+        "AppearanceAction" => return appearance(kind),
+        "VisibilityAction" => return Ok(None),
         _ => return Err(kind.unsupported()),
     };
     Ok(Some(found))
+}
+
+/// A door that is opened or shut; lights and gestures change nothing here.
+fn appearance(action: Element<'_>) -> Result<Option<Action>, StoryError> {
+    const DOORS: &[(&str, bool)] = &[("doorFrontLeft", true), ("doorFrontRight", false)];
+    let Some(animation) = action.child("AnimationAction") else { return Ok(None) };
+    let component = animation.child("AnimationType").and_then(|kind| kind.child("ComponentAnimation"));
+    let Some(component) = component.and_then(|component| component.child("VehicleComponent")) else { return Ok(None) };
+    let named = component.text("vehicleComponentType")?;
+    let Some((_, is_left)) = DOORS.iter().find(|(door, _)| *door == named) else {
+        return Err(component.wrong("expected doorFrontLeft or doorFrontRight: nothing else is supported"));
+    };
+    let open = animation.need("AnimationState")?.amount("state")?.min(1.0);
+    let takes_s =
+        if animation.given("animationDuration")?.is_some() { animation.amount("animationDuration")? } else { 1.0 };
+    let takes_ticks = ticks(takes_s.min(1e3)).max(1) as u32;
+    Ok(Some(Action::Door(Door { is_left: *is_left, open, takes_ticks })))
 }
 
 /// Whether somebody's controller takes over.

@@ -2,6 +2,7 @@
 
 mod actions;
 mod conditions;
+mod library;
 mod lights;
 mod reading;
 mod worlds;

@@ -126,6 +126,45 @@ fn the_file_drives_the_ego_car_until_it_hands_it_over() {
 }
 
 #[test]
+fn a_door_opens_is_seen_is_hit_and_shuts() {
+    let door = |state: u32| {
+        format!(
+            r#"<PrivateAction><AppearanceAction><AnimationAction loop="false" animationDuration="1"><AnimationType><ComponentAnimation>
+<VehicleComponent vehicleComponentType="doorFrontLeft"/></ComponentAnimation></AnimationType><AnimationState state="{state}"/>
+</AnimationAction></AppearanceAction></PrivateAction>"#
+        )
+    };
+    let shut = event("shut", &door(0), &after(6.0)).replace("overwrite", "parallel");
+    let events = event("open", &door(1), &after(1.0)) + &shut;
+    let begins_at = |mps: f32| {
+        begins("Ego", -1, 100.0, mps)
+            + &begins("Other", -2, 120.0, 0.0).replace("s=\"120\"", "s=\"120\" offset=\"0.7\"")
+    };
+    let doors = |world: &World| -> Vec<ActorScene> {
+        world.scene().actors.iter().filter(|a| a.kind == crate::scene::ActorKind::Door).copied().collect()
+    };
+    let mut world = world(&text(&begins_at(0.0), &events));
+    go_on(&mut world, 0.9);
+    assert_eq!(doors(&world), []);
+    go_on(&mut world, 2.0);
+    let [open] = doors(&world)[..] else { panic!("{:?}", doors(&world)) };
+    // It stands out into the lane on the left of the car, whose side is at -4.55 + 0.9 m.
+    assert!((-3.7..-2.6).contains(&open.position.y) && (119.0..122.0).contains(&open.position.x), "{open:?}");
+    go_on(&mut world, 5.0);
+    assert_eq!(doors(&world), []);
+    // Who drives by too near hits it.
+    let near = begins_at(10.0).replacen("s=\"100\"", "s=\"100\" offset=\"-0.6\"", 1);
+    let mut world = self::world(&text(&near, &events));
+    let hit = (0..240).any(|_| {
+        let events = world.step(&TickInput::default()).events;
+        events.iter().any(|e| {
+            e.kind == crate::events::EventKind::CollisionActor && e.actor == crate::scene::FIRST_STORY_DOOR_ID + 1
+        })
+    });
+    assert!(hit);
+}
+
+#[test]
 fn traffic_drives_behind_who_plays_and_does_not_touch_it() {
     let init = begins("Ego", 2, 500.0, 0.0) + &begins("Other", -2, 300.0, 3.0);
     let mut scenario = scenario(&text(&init, ""));

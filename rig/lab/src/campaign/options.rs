@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use base::failure::Usage;
-use base::maps::{Map, ScenarioFile};
+use base::maps::Map;
+use base::scenario_file::ScenarioFile;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;

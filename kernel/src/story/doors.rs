@@ -1,0 +1,65 @@
+//! Doors of those who play.
+
+use crate::actor::{ActorKind, FIRST_STORY_DOOR_ID};
+use crate::geometry::direction;
+use crate::state;
+use crate::time::Tick;
+use crate::traffic::{Door, HINGE, OPEN_RAD};
+use crate::{ops, traffic};
+
+use super::actor::{self, StoryActor};
+use super::script;
+
+state! {
+    /// How a front door swings.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct DoorSwing {
+        /// How far open it was, [0, 1].
+        pub from: f32,
+        /// And will be.
+        pub to: f32,
+        /// When it began to swing.
+        pub since: Tick,
+        /// How long it swings, ticks.
+        pub takes_ticks: u32,
+    }
+}
+
+impl DoorSwing {
+    /// A door that was never opened.
+    pub const SHUT: Self = Self { from: 0.0, to: 0.0, since: 0, takes_ticks: 1 };
+
+    /// How far open it is at a tick, [0, 1].
+    pub fn share(&self, tick: Tick) -> f32 {
+        let swung = tick.saturating_sub(self.since) as f32 / self.takes_ticks.max(1) as f32;
+        self.from + (self.to - self.from) * swung.min(1.0)
+    }
+}
+
+/// Begins to open or to shut one.
+pub fn swing(actor: &mut StoryActor, door: script::Door, tick: Tick) {
+    let swinging = &mut actor.doors[usize::from(!door.is_left)];
+    let from = swinging.share(tick);
+    *swinging = DoorSwing { from, to: door.open, since: tick, takes_ticks: door.takes_ticks };
+}
+
+/// Those of a role that stand open at a tick: of two the wider one.
+pub fn open(actor: &StoryActor, role: (usize, &script::Role), tick: Tick) -> Option<Door> {
+    let shares = actor.doors.map(|door| door.share(tick));
+    let side = usize::from(shares[1] > shares[0]);
+    if shares[side] <= 0.0 {
+        return None;
+    }
+    let size_m = actor::size_m(role.1);
+    let (ahead, angle_rad) = (direction(actor.spot.heading_rad), OPEN_RAD * shares[side]);
+    let out = ahead.perp() * if side == 0 { 1.0 } else { -1.0 };
+    let hinge = ahead * (HINGE * size_m.x) + out * (0.5 * size_m.y);
+    let leaf = out * ops::sin(angle_rad) - ahead * ops::cos(angle_rad);
+    let middle = hinge + leaf * (0.5 * ActorKind::Door.size_m().x);
+    Some(traffic::Door {
+        id: FIRST_STORY_DOOR_ID + role.0 as u32,
+        position: actor.spot.position + middle.extend(0.0),
+        heading_rad: ops::atan2(leaf.y, leaf.x),
+        begins: actor.doors[side].since + 1 == tick && actor.doors[side].to > 0.0,
+    })
+}

@@ -1,0 +1,155 @@
+//! Scenarios from files: texts of our own, and stories in OpenSCENARIO XML with their catalogs.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use kernel::Scenario;
+use kernel::map::bundled_text;
+use kernel::scenario::{HazardRates, TrafficCounts};
+use kernel::story::{self, Story};
+
+use crate::failure::{Usage, sentence};
+use crate::files::{self, most};
+use crate::maps::Map;
+use crate::say::say;
+use crate::toml_text;
+
+/// Most files of catalogs of a story.
+const CATALOGS: usize = 200;
+
+/// A scenario that was read from a file, and its map.
+#[derive(Clone, Debug)]
+pub struct ScenarioFile {
+    /// What it holds.
+    pub scenario: Scenario,
+    /// The map that it names.
+    pub map: Map,
+    path: PathBuf,
+    text: String,
+}
+
+impl ScenarioFile {
+    /// Reads one, or takes the story that comes with A-Eye under that name; a map file is looked for beside it.
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let bundled = path.to_str().filter(|_| !path.exists()).and_then(story::bundled_text);
+        let is_story = bundled.is_some() || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xosc"));
+        let text = match bundled {
+            Some(text) => text.to_owned(),
+            None if !path.exists() && path.extension().is_none() => return Err(no_story(path)),
+            None => files::read_text(path, most::TEXT)?,
+        };
+        let read = if is_story { of_story(path, &text) } else { Scenario::from_toml(&text).map_err(|e| e.to_string()) };
+        let mut scenario = read.map_err(|reason| usage_in(path, &reason))?;
+        let map = map_of(&scenario, path).map_err(|error| {
+            let line = if is_story { line_of_map(&text) } else { toml_text::line_of(&text, "map") };
+            let place = line.map_or("map".into(), |line| format!("line {line}: map"));
+            match error.downcast::<Usage>() {
+                Ok(usage) => usage_in(path, &format!("{place}: {usage}")),
+                Err(error) => error.context(format!("{}: {place}", path.display())),
+            }
+        })?;
+        scenario.map = map.network.name.clone();
+        Ok(Self { scenario, map, path: path.to_owned(), text })
+    }
+
+    /// A refusal of the file.
+    pub fn refusal(&self, reason: &str) -> anyhow::Error {
+        usage_in(&self.path, reason)
+    }
+
+    /// Refuses a map on which the ego car cannot start where the file says.
+    pub fn check_start(&self, map: &Map) -> anyhow::Result<()> {
+        self.scenario.start_on(&map.network).map(drop).map_err(|error| {
+            let line = error.key.and_then(|key| toml_text::line_of(&self.text, key));
+            let reason = line.map_or(error.reason.clone(), |line| format!("line {line}: {}", error.reason));
+            usage_in(&self.path, &reason)
+        })
+    }
+}
+
+/// The map of a scenario in a file, beside which a map file is looked for, too.
+fn map_of(scenario: &Scenario, file: &Path) -> anyhow::Result<Map> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    // Files of stories name maps in folders that nobody else has.
+    let plain = Path::new(&scenario.map).file_name().filter(|_| scenario.story.is_some());
+    let beside = [Some(folder.join(&scenario.map)), plain.map(|name| folder.join(name))];
+    let found = beside.into_iter().flatten().find(|path| path.is_file());
+    Map::find(&found.map_or(scenario.map.clone(), |path| path.to_string_lossy().into_owned()))
+}
+
+/// What a story in OpenSCENARIO XML begins with: nobody but those who play, who make no mistakes of their own.
+fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
+    let text = Story::with_catalogs(text, &catalogs(path, text)?).map_err(|error| error.to_string())?;
+    let story = Story::read(&text).map_err(|error| error.to_string())?;
+    for (line, element) in story.passed_over() {
+        say(format!("{}: line {line}: <{element}> is passed over", path.display()));
+    }
+    let file = story.map_file().to_owned();
+    // Maps that come with A-Eye need no file.
+    let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
+    let is_there = path.parent().unwrap_or(Path::new("")).join(&file).is_file();
+    let map = if !is_there && bundled_text(&stem).is_some() { stem.into_owned() } else { file };
+    let (traffic, hazards) = (TrafficCounts::NONE, HazardRates::NONE);
+    let mut scenario = Scenario { traffic, hazards, ..Scenario::default_for(&map, 1) };
+    scenario.play(story);
+    Ok(scenario)
+}
+
+/// The files of a story's catalogs that are there, and their texts.
+fn catalogs(path: &Path, text: &str) -> Result<Vec<(String, String)>, String> {
+    let mut files = Vec::new();
+    for folder in Story::catalog_folders(text) {
+        let folder = path.parent().unwrap_or(Path::new("")).join(folder);
+        let there = fs::read_dir(&folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
+        files.extend(there.filter(|file| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xosc"))));
+    }
+    files.sort();
+    files.dedup();
+    if files.len() > CATALOGS {
+        return Err(format!("expected at most {CATALOGS} files of catalogs, but there are {}", files.len()));
+    }
+    let text = |file: PathBuf| {
+        let text = files::read_text(&file, most::TEXT).map_err(|error| sentence(&error))?;
+        Ok((file.display().to_string(), text))
+    };
+    files.into_iter().map(text).collect()
+}
+
+/// The refusal of a name that is none of a story.
+fn no_story(path: &Path) -> anyhow::Error {
+    let known = story::BUNDLED.map(|(name, _)| name).join(", ");
+    usage_in(path, &format!("expected a file .toml or .xosc, or one of the stories {known}"))
+}
+
+/// The line on which a story names its map.
+fn line_of_map(text: &str) -> Option<usize> {
+    text.lines().position(|line| line.contains("<LogicFile")).map(|at| at + 1)
+}
+
+fn usage_in(path: &Path, reason: &str) -> anyhow::Error {
+    anyhow!(Usage(format!("{}: {reason}", path.display())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_that_cannot_be_had_is_told_with_the_place_of_its_name() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("run.toml");
+        fs::write(dir.path().join("empty.xodr"), "").expect("writable");
+        for (map, is_usage, said) in [
+            ("atlantis", true, "unknown map \"atlantis\": expected one of city, rural, old_town, "),
+            ("nowhere.xodr", false, "nowhere.xodr: "),
+            ("empty.xodr", false, "empty.xodr: "),
+        ] {
+            fs::write(&path, format!("seed = 1\nmap = {map:?}\n")).expect("writable");
+            let error = ScenarioFile::read(&path).expect_err(map);
+            let (place, sentence) = (format!("{}: line 2: map: ", path.display()), sentence(&error));
+            assert!(sentence.starts_with(&place) && sentence.contains(said), "{sentence}");
+            assert_eq!((error.is::<Usage>(), sentence.matches("run.toml").count()), (is_usage, 1), "{sentence}");
+        }
+    }
+}

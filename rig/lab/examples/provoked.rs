@@ -1,0 +1,132 @@
+//! Tries provoked accidents: `provoked CHECKPOINT,... SEED DRAWS FILE.xosc...` drives each story with as many draws of its
+//! parameters, and prints a table in Markdown of how often something is hit: by a car that drives on, whose driver sees nobody
+//! and has nobody beside him, and by both bots through `truth` and each checkpoint; and how often the safety driver took over.
+
+#[path = "common/blind.rs"]
+mod blind;
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use anyhow::bail;
+use base::maps::Map;
+use base::say::say;
+use base::scenario_file::ScenarioFile;
+use drivers::MaskView;
+use drivers::checkpoint::CheckpointChoice;
+use drivers::crew::Bots;
+use drivers::safety::SafetyBot;
+use drivers::semantic::SemanticBot;
+use drivers::vision::{Eye, Vision};
+use kernel::arbiter::Phase;
+use kernel::events::EventKind;
+use kernel::{Scenario, Seat, TickInput, World};
+use render::{RenderOptions, Renderer};
+
+/// Longest drive, seconds.
+const LONGEST_S: u32 = 40;
+
+/// Who drives.
+#[derive(Clone)]
+enum Who {
+    /// Nobody is seen, and nobody takes over.
+    On,
+    /// Both bots.
+    Crew(Eye),
+}
+
+/// What came of a drive.
+#[derive(Clone, Copy, Debug, Default)]
+struct Came {
+    hit: bool,
+    taken_over: bool,
+}
+
+fn main() -> anyhow::Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [checkpoints, seed, draws, files @ ..] = &arguments[..] else {
+        bail!("expected CHECKPOINT,... SEED DRAWS FILE.xosc...")
+    };
+    let choices = checkpoints.split(',').map(|name| name.parse::<CheckpointChoice>().map_err(anyhow::Error::msg));
+    let eyes = choices.map(|choice| Eye::open(&choice?)).collect::<anyhow::Result<Vec<_>>>()?;
+    let (seed, draws): (u64, u64) = (seed.parse()?, draws.parse()?);
+    let crews: Vec<Who> = std::iter::once(Who::On).chain(eyes.iter().cloned().map(Who::Crew)).collect();
+    let names: Vec<&str> = eyes.iter().map(Eye::name).collect();
+    let heads: String = names.iter().map(|name| format!(" `{name}`: hit | taken over |")).collect();
+    say(format_args!("| story | drives on: hit |{heads}"));
+    say(format_args!("|---|---|{}", "---|---|".repeat(eyes.len())));
+    for file in files {
+        let scenario = ScenarioFile::read(Path::new(file))?;
+        let came = try_out(&scenario, &crews, seed, draws)?;
+        let count = |who: usize, what: fn(&Came) -> bool| came[who].iter().filter(|came| what(came)).count();
+        let cells: String = (1..crews.len())
+            .map(|who| format!(" {} | {} |", count(who, |c| c.hit), count(who, |c| c.taken_over)))
+            .collect();
+        let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+        say(format_args!("| {stem} | {} of {draws} |{cells}", count(0, |c| c.hit)));
+    }
+    Ok(())
+}
+
+/// What came of each draw, for each who drives.
+fn try_out(file: &ScenarioFile, crews: &[Who], seed: u64, draws: u64) -> anyhow::Result<Vec<Vec<Came>>> {
+    let tasks: Vec<(usize, u64)> = (0..draws).flat_map(|draw| (0..crews.len()).map(move |who| (who, draw))).collect();
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![vec![Came::default(); draws as usize]; crews.len()]));
+    let work = || -> anyhow::Result<()> {
+        while let Some((who, draw)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let came = drive(&drawn(&file.scenario, seed + draw)?, &file.map, &crews[*who])?;
+            found.lock().expect("no thread panics")[*who][*draw as usize] = came;
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let cores = std::thread::available_parallelism()?.get();
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().try_for_each(|thread| thread.join().expect("no thread panics"))
+    })?;
+    Ok(found.into_inner()?)
+}
+
+/// The scenario with values drawn by a seed.
+fn drawn(of: &Scenario, seed: u64) -> anyhow::Result<Scenario> {
+    let mut scenario = Scenario { seed, ..of.clone() };
+    if let Some(story) = &of.story {
+        scenario.play(story.varied(seed)?);
+    }
+    scenario.rules.max_seconds = LONGEST_S;
+    Ok(scenario)
+}
+
+fn drive(scenario: &Scenario, map: &Map, who: &Who) -> anyhow::Result<Came> {
+    let mut world = World::new(scenario, &map.network)?;
+    let (eye, mut bots) = match who {
+        Who::On => (Eye::Truth, Bots::beside(Seat::Safety, scenario.seed)),
+        Who::Crew(eye) => (eye.clone(), Bots::both(SemanticBot::drawn(scenario.seed), SafetyBot::drawn(scenario.seed))),
+    };
+    let mut vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
+    let mut came = Came::default();
+    while world.arbiter().phase != Phase::Done && !came.hit {
+        let (mask, _) = vision.look(&world)?;
+        let blinded = matches!(who, Who::On).then(|| blind::without_traffic(mask));
+        let mask = MaskView { ids: blinded.as_deref().unwrap_or(mask.ids), ..mask };
+        let mut input = TickInput::default();
+        bots.act(&world, Some(mask), &mut input);
+        let output = world.step(&input);
+        let is_hit = |kind: EventKind| matches!(kind, EventKind::CollisionActor | EventKind::CollisionScenery);
+        came.hit |= output.events.iter().any(|event| is_hit(event.kind));
+        came.taken_over |= output.intervention.is_some();
+    }
+    if std::env::var_os("AEYE_PROVOKED").is_some() {
+        let ego = world.scene().ego;
+        let why = bots.cause(&world).map(|(label, comment)| format!("{label}: {comment}"));
+        say(format_args!(
+            "seed {} {}: {came:?} at {:.1} s, {:.1} m/s, {why:?}",
+            scenario.seed,
+            if matches!(who, Who::On) { "on" } else { "crew" },
+            world.tick() as f64 / 60.0,
+            ego.speed_mps
+        ));
+    }
+    Ok(came)
+}
