@@ -131,10 +131,16 @@ def adult_along_the_lane_at_night():
 
 
 def cyclist_crosses():
-    story = village(
-        "cyclist_crosses", "A cyclist rides across the road from the near side (Euro NCAP CBNA)", ride_mps=(3.5, 4.5), off_s=(-0.3, 0.1)
+    story = Story(
+        "cyclist_crosses",
+        "motorway",
+        "A cyclist rides across the road from the near side (Euro NCAP CBNA)",
+        ego_mps=(11.0, 13.5),
+        ride_mps=(3.5, 4.5),
+        off_s=(-0.3, 0.1),
     )
-    return crosses(story, "Cyclist", "bicycle", VILLAGE, 190, -13, 12, -1.2, "ride_mps")
+    story.ego("1597", -1, 12, "$ego_mps")
+    return crosses(story, "Cyclist", "bicycle", "1597", 130, -16, 14, -1.0, "ride_mps")
 
 
 def cyclist_swerves():
@@ -249,7 +255,7 @@ def cut_in_and_brakes():
         brake_mps2=(3.5, 5.5),
     )
     story.ego("638", -2, 240, "$ego_mps")
-    story.plays("Car", "car", on_lane("638", -1, 225), 18)
+    story.plays("Car", "car", on_lane("638", -1, 238), 18)
     story.does("Car", distance("Ego", "$gap_m", rule="greaterThan", who="Car"), lane_change(-2, 1.8), as_fast_as("Ego", 1, False), name="in")
     return story.does("Car", after("in"), speed(0, "linear", "rate", "$brake_mps2"))
 
@@ -280,7 +286,7 @@ def motorcycle_cuts_in():
         brake_mps2=(4.0, 6.0),
     )
     story.ego("638", -2, 240, "$ego_mps")
-    story.plays("Motorcycle", "motorbike", on_lane("638", -1, 222), 19)
+    story.plays("Motorcycle", "motorbike", on_lane("638", -1, 239), 19)
     story.does(
         "Motorcycle",
         distance("Ego", "$gap_m", rule="greaterThan", who="Motorcycle"),
@@ -311,7 +317,8 @@ def crossing(name, about, ego, own_mps, who, kind, begins, at, straight_m, way=N
     story.ego(*ego, "$ego_mps", *([route(on_lane(*ego), way)] if way else []))
     story.plays(who, kind, begins, "$run_mps")
     x, y, theirs, own = at
-    story.does(who, at_once(), meets("Ego", world(f"${{{x} + $off_m}}", y, theirs), world(x, y, own), "$run_mps"))
+    own_place = own if isinstance(own, str) else world(x, y, own)
+    story.does(who, at_once(), meets("Ego", world(f"${{{x} + $off_m}}", y, theirs), own_place, "$run_mps"))
     return story.does(who, travelled(straight_m, who), as_fast_as(who, 0, False))
 
 
@@ -326,6 +333,7 @@ def red_light_runner():
         on_lane("13", -1, 24),
         (143.6, 254.4, 0, QUARTER_TURN),
         62,
+        way=on_lane("14", -1, 50),
         off_m=(-1.0, 2.0),
     )
     for signal, state in (("140", "green"), ("134", "green"), ("131", "red"), ("137", "red")):
@@ -343,7 +351,8 @@ def stop_sign_runner():
         "van",
         on_lane("11", -1, 30),
         (143.6, 126.25, 0, QUARTER_TURN),
-        56,
+        66,
+        way=on_lane("12", -1, 40),
         off_m=(-1.0, 2.0),
     )
 
@@ -358,7 +367,8 @@ def turns_left_across():
         "car",
         on_lane("12", 1, 55),
         (143.5, 126.25, 0, -2.2),
-        44,
+        50,
+        way=on_lane("12", -1, 40),
         off_m=(-1.0, 2.0),
     )
     way = route(on_lane("12", 1, 50), on_lane("11", 1, 60))
@@ -368,20 +378,21 @@ def turns_left_across():
 def cyclist_at_the_right_turn():
     story = crossing(
         "cyclist_at_the_right_turn",
-        "A cyclist rides straight on where the ego car turns right",
+        "A cyclist on the path beside the road rides straight on where the ego car turns right (Euro NCAP CBTA)",
         ("5", -2, 20),
         (4.0, 5.0),
         "Cyclist",
         "bicycle",
-        on_lane("5", -2, 45, -1.3),
-        (134.0, 249.8, -0.4, 0),
-        66,
+        on_road("5", 48, -8),
+        # When the ego car begins to turn, which takes it 2.7 s to the path.
+        (129, 251.1, 0, world(126.5, 248, 0)),
+        62,
         way=on_lane("13", 1, 50),
         off_m=(-1.0, 1.0),
     )
     for signal in ("140", "134"):
         story.light(signal, "green")
-    return story
+    return story.does("Cyclist", at_once(), along(on_road("5", 48, -8), on_road("5", 115, -8), world(170, 248, 0)))
 
 
 ALL = [

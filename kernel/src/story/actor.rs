@@ -33,6 +33,8 @@ state! {
         pub gone: bool,
         /// Speed along its heading, m/s.
         pub speed_mps: f32,
+        /// How fast it was when it came to the end of its road, and is again where it is taken from there, m/s.
+        pub ended_mps: f32,
         /// Speed to the left across its lane, m/s.
         pub drift_mps: f32,
         /// What its speed became in the last tick, m/s².
@@ -69,6 +71,7 @@ impl StoryActor {
             spot,
             gone: false,
             speed_mps: 0.0,
+            ended_mps: 0.0,
             drift_mps: 0.0,
             acceleration_mps2: 0.0,
             velocity_mps: Vec3::ZERO,

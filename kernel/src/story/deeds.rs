@@ -34,7 +34,6 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
     let actors = placed.into_iter().enumerate().map(|(role, actor)| actor.ok_or_else(|| missing(role)));
     let mut actors = actors.collect::<Result<Vec<_>, _>>()?;
     for (role, action) in &script.init {
-        let name = &script.cast[*role].name;
         let asked_mps = match action {
             Action::Speed(_, target) => speed_of(*target, |role| actors[role].speed_mps),
             _ => 0.0,
@@ -59,17 +58,14 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
             Action::Leave => actor.gone = true,
             Action::HandOver => {}
             Action::Door(door) => doors::swing(actor, *door, 0),
-            Action::LaneChange(..)
-            | Action::LaneOffset(..)
-            | Action::Follow(_)
-            | Action::SpeedProfile(_)
-            | Action::Gap(_)
-            | Action::Meet(_)
-            | Action::Light(_)
-            | Action::Programme(..) => {
-                return Err(format!("what {name} does in <Init> is supported in events only"));
-            }
+            // What takes time is an act of its own.
+            _ => {}
         }
+    }
+    let ego = &mut actors[script.ego()];
+    if ego.route.is_empty() {
+        // Drivers know their way from the beginning, whenever the story tells it.
+        ego.route = script.ego_way().and_then(|via| route(network, ego.spot, via)).unwrap_or_default();
     }
     Ok(actors)
 }
@@ -146,8 +142,12 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
     match &of.action {
         Action::Teleport(place) => {
             if let Some(spot) = relative::spot(network, before, place) {
-                state.actors[role].spot = spot;
-                state.actors[role].route.clear();
+                let actor = &mut state.actors[role];
+                actor.spot = spot;
+                actor.route.clear();
+                if actor.speed_mps == 0.0 {
+                    actor.speed_mps = std::mem::take(&mut actor.ended_mps);
+                }
             }
             false
         }
@@ -175,7 +175,7 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             let spot = state.actors[role].spot;
             let there = network.project(to.lane, spot.position);
             let now = OnLane { s_m: there.s_m, offset_m: there.lateral_m, ..to };
-            let to_m = offset_m * if now.against { -1.0 } else { 1.0 };
+            let to_m = to.offset_m + offset_m * if now.against { -1.0 } else { 1.0 };
             state.actors[role].spot.on = Some(now);
             state.actors[role].route.clear();
             moves_aside(state, (role, number), seen, (now.offset_m, to_m), length_of(*dynamics, to_m - now.offset_m));
@@ -261,7 +261,7 @@ fn lane_of(network: &RoadNetwork, before: &StoryState, role: RoleId, target: Lan
             let of_other = relative::beside(network, before.actors[other].spot, count)?;
             let name = &network.lanes[of_other.lane as usize].name;
             let found = places::nearest(network, name, spot.position)?;
-            Some(relative::facing(network, found.lane, found.s_m, 0.0, spot.heading_rad))
+            Some(relative::facing(network, found.lane, found.s_m, of_other.offset_m, spot.heading_rad))
         }
     }
 }

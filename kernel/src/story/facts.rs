@@ -88,10 +88,11 @@ impl Outline {
         relative.dot(axis)
     }
 
-    /// Seconds until it is where another is now; nothing when it stands.
+    /// Seconds until it is where another is now; nothing when it stands, or when the other is behind it.
     pub fn headway_s(&self, other: &Self, measure: Measure) -> Option<f32> {
         let speed_mps = self.velocity_mps.length();
-        (speed_mps > 0.01).then(|| self.distance_m(other, measure) / speed_mps)
+        let is_ahead = self.velocity_mps.dot(other.middle - self.middle) >= 0.0;
+        (speed_mps > 0.01 && is_ahead).then(|| self.distance_m(other, measure) / speed_mps)
     }
 
     /// Seconds until it meets another if both go on; nothing when they do not come nearer.

@@ -11,7 +11,7 @@ use super::actor::StoryActor;
 use super::cues::Seen;
 use super::plan::stations_m;
 use super::script::{Action, Path, Position, RoleId};
-use super::spot::{OnLane, Spot};
+use super::spot::Spot;
 use super::state::{Change, StoryState};
 use super::{deeds, lanes, pace, relative};
 
@@ -42,9 +42,19 @@ pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     state.actors[role].came(&was, script.cast[role].kind, on_road, at_end);
 }
 
+fn is_on_some(seen: &Seen<'_>, actor: &StoryActor) -> bool {
+    let kinds = [LaneKind::Driving, LaneKind::Biking, LaneKind::Shoulder];
+    kinds.into_iter().any(|kind| !seen.network.lanes_at(actor.spot.position, kind).is_empty())
+}
+
 fn is_on_road(seen: &Seen<'_>, actor: &StoryActor) -> bool {
-    let kind = |on: OnLane| seen.network.lanes[on.lane as usize].kind;
-    actor.spot.on.is_some_and(|on| matches!(kind(on), LaneKind::Driving | LaneKind::Biking | LaneKind::Shoulder))
+    let is_road = |kind: LaneKind| matches!(kind, LaneKind::Driving | LaneKind::Biking | LaneKind::Shoulder);
+    actor.spot.on.is_some_and(|on| {
+        let lane = &seen.network.lanes[on.lane as usize];
+        let within = on.offset_m.abs() <= lane.at(on.s_m).half_width_m;
+        // Who left its lane sideways may be on another, or beside all.
+        is_road(lane.kind) && (within || is_on_some(seen, actor))
+    })
 }
 
 /// Along its lane, or straight on where there is none; `true` where its road ends.
@@ -69,8 +79,8 @@ fn drive_on(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) -> bool {
     // Who moves across faces where it goes.
     let slant_rad = if speed_mps.abs() > 1.0 { ops::atan2(actor.drift_mps, speed_mps.abs()) } else { 0.0 };
     actor.spot = there.facing(there.heading_rad + slant_rad * speed_mps.signum());
-    if !goes_on {
-        actor.speed_mps = 0.0;
+    if !goes_on && actor.speed_mps != 0.0 {
+        actor.ended_mps = std::mem::take(&mut actor.speed_mps);
     }
     !goes_on
 }

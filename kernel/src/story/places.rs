@@ -95,7 +95,9 @@ fn spot(place: &Position, network: &RoadNetwork) -> Result<Option<Spot>, String>
             };
             Ok(Some(Spot::at(network, point, ops::wrap_angle(heading_rad))))
         }
-        Position::Known(_) | Position::Beside { .. } | Position::BesideLane { .. } => Ok(None),
+        Position::Known(_) | Position::Beside { .. } | Position::BesideRoad { .. } | Position::BesideLane { .. } => {
+            Ok(None)
+        }
     }
 }
 

@@ -76,7 +76,7 @@ pub struct Plan {
 
 impl Plan {
     pub fn of(script: &Script) -> Self {
-        let ego = script.cast.iter().position(|role| role.kind.is_none()).unwrap_or_default();
+        let ego = script.ego();
         let mut plan = Self { ego, ..Self::default() };
         plan.stop = plan.numbered(&script.stop);
         for act in &script.acts {
@@ -86,8 +86,7 @@ impl Plan {
             let stop = plan.numbered(&act.stop);
             plan.acts.push(ActPlan { name: act.name.clone(), groups, start, stop });
         }
-        let hands_over = |deed: &DeedPlan| deed.role == Some(ego) && deed.action == Action::HandOver;
-        plan.carries_ego = plan.deeds.iter().any(hands_over);
+        plan.carries_ego = script.ego_actions().any(|action| *action == Action::HandOver);
         plan
     }
 

@@ -36,23 +36,37 @@ fn resolved(network: &RoadNetwork, place: &Position, of: impl Fn(RoleId) -> Opti
             let position = Spot::grounded(network, from.position + by.extend(0.5));
             Some(Spot::at(network, position, ops::wrap_angle(heading_rad)))
         }
+        Position::BesideRoad { role, by_m: [along_m, left_m], facing } => {
+            let from = of(*role)?;
+            let on = from.on?;
+            // Lanes on the left of a road's line lead against it.
+            let (_, number) = network.lanes[on.lane as usize].name.rsplit_once('/')?;
+            let sign = if number.starts_with('-') { 1.0 } else { -1.0 };
+            let towards = if on.against { -sign } else { sign };
+            let there = lanes::ahead(network, on, along_m * towards);
+            let offset_m = on.offset_m + left_m * sign;
+            Some(places::turned(Spot::on(network, OnLane { offset_m, ..there }), *facing))
+        }
         Position::BesideLane { role, lanes: count, ahead_m, offset_m, facing } => {
             let from = of(*role)?;
             let ahead = lanes::ahead(network, from.on?, *ahead_m);
             let there = beside(network, Spot::on(network, ahead), *count)?;
             let sign = if there.against { -1.0 } else { 1.0 };
-            Some(places::turned(Spot::on(network, OnLane { offset_m: offset_m * sign, ..there }), *facing))
+            let offset_m = there.offset_m + offset_m * sign;
+            Some(places::turned(Spot::on(network, OnLane { offset_m, ..there }), *facing))
         }
         Position::World { .. } | Position::Lane { .. } | Position::Road { .. } => None,
     }
 }
 
-/// The place on the lane so many lanes to the left of one, seen as who is there faces.
+/// The place on the lane so many lanes to the left of one, seen as who is there faces; where the road has fewer, as if it went on
+/// in lanes as wide as its last one.
 pub fn beside(network: &RoadNetwork, from: Spot, count: i32) -> Option<OnLane> {
     let on = from.on?;
     let left = direction(from.heading_rad).perp() * if count < 0 { -1.0 } else { 1.0 };
     let mut here = OnLane { offset_m: 0.0, ..on };
-    for _ in 0..count.unsigned_abs().min(64) {
+    let lanes = count.unsigned_abs().min(64);
+    for passed in 0..lanes {
         let middle = Spot::on(network, here);
         let (road, number) = network.lanes[here.lane as usize].name.rsplit_once('/')?;
         let number: i32 = number.parse().ok()?;
@@ -63,7 +77,11 @@ pub fn beside(network: &RoadNetwork, from: Spot, count: i32) -> Option<OnLane> {
             let point = network.lane_point(at.lane, at.s_m).position;
             (point - middle.position).truncate().dot(left) > 0.0
         };
-        let found = there.filter(is_beside).min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))?;
+        let Some(found) = there.filter(is_beside).min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)) else {
+            let width_m = 2.0 * network.lane_point(here.lane, here.s_m).half_width_m;
+            let away_m = (lanes - passed) as f32 * width_m * count.signum() as f32;
+            return Some(OnLane { offset_m: if here.against { -away_m } else { away_m }, ..here });
+        };
         here = facing(network, found.lane, found.s_m, 0.0, from.heading_rad);
     }
     Some(here)

@@ -31,6 +31,35 @@ pub struct Script {
     pub stop: Trigger,
 }
 
+impl Script {
+    /// The role of the ego car.
+    pub fn ego(&self) -> RoleId {
+        self.cast.iter().position(|role| role.kind.is_none()).unwrap_or_default()
+    }
+
+    /// What the ego car does in events, in their order.
+    pub fn ego_actions(&self) -> impl Iterator<Item = &Action> {
+        let ego = self.ego();
+        let groups = self.acts.iter().flat_map(|act| &act.groups);
+        let done = groups
+            .flat_map(|group| group.events.iter().flat_map(move |event| event.actions.iter().map(move |a| (group, a))));
+        done.filter_map(move |(group, (_, doer, action))| match doer {
+            Doer::Each => group.actors.contains(&ego).then_some(action),
+            Doer::Role(role) => (*role == ego).then_some(action),
+            Doer::World => None,
+        })
+    }
+
+    /// The way that events tell the ego car to go, if they do.
+    pub fn ego_way(&self) -> Option<&[Position]> {
+        self.ego_actions().find_map(|action| match action {
+            Action::Route(via) => Some(via.as_slice()),
+            Action::Acquire(place) => Some(std::slice::from_ref(place)),
+            _ => None,
+        })
+    }
+}
+
 /// Somebody who plays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Role {
@@ -365,6 +394,15 @@ pub enum Position {
         by_m: [f32; 2],
         /// Along the role's axes, not east and north.
         own_axes: bool,
+        /// How it faces.
+        facing: Facing,
+    },
+    /// So far from a role along the line of its road and to the left of that, metres.
+    BesideRoad {
+        /// The role.
+        role: RoleId,
+        /// Along and to the left, metres.
+        by_m: [f32; 2],
         /// How it faces.
         facing: Facing,
     },

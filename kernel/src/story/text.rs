@@ -4,7 +4,7 @@ use crate::state::{DecodeError, NamedValue, Reader, State};
 
 use super::error::StoryError;
 use super::reader;
-use super::script::Script;
+use super::script::{Action, Script};
 
 /// A text in OpenSCENARIO XML that was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +59,16 @@ impl Story {
             Self::read(text)?;
         }
         Ok(low.is_some())
+    }
+
+    /// How many things it would have the ego car do that its drivers decide instead; the way that it takes they know.
+    pub fn left_to_drivers(&self) -> usize {
+        let mut all = self.script().ego_actions();
+        if all.any(|action| *action == Action::HandOver) {
+            return 0;
+        }
+        let known = |action: &&Action| matches!(action, Action::Route(_) | Action::Acquire(_));
+        self.script().ego_actions().filter(|action| !known(action)).count()
     }
 
     /// What it says.

@@ -13,7 +13,7 @@ use crate::failure::{Usage, sentence};
 use crate::files::{self, most};
 use crate::maps::Map;
 use crate::say::say;
-use crate::toml_text;
+use crate::{toml_text, words};
 
 /// Most files of catalogs of a story.
 const CATALOGS: usize = 200;
@@ -84,6 +84,12 @@ fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
     let story = Story::read(&text).map_err(|error| error.to_string())?;
     for (line, element) in story.passed_over() {
         say(format!("{}: line {line}: <{element}> is passed over", path.display()));
+    }
+    match story.left_to_drivers() {
+        0 => {}
+        count => {
+            say(format!("{}: {} of the ego car left to its drivers", path.display(), words::count(count, "action")))
+        }
     }
     let file = story.map_file().to_owned();
     // Maps that come with A-Eye need no file.

@@ -113,6 +113,18 @@ fn drive(scenario: &Scenario, map: &Map, who: &Who) -> anyhow::Result<Came> {
         let mut input = TickInput::default();
         bots.act(&world, Some(mask), &mut input);
         let output = world.step(&input);
+        if std::env::var("AEYE_PROVOKED").is_ok_and(|v| v == "2") && output.tick % 30 == 0 {
+            let scene = world.scene();
+            let other = scene.actors.iter().find(|a| a.speed_mps.abs() > 0.0).or(scene.actors.first());
+            say(format_args!(
+                "{:.1} ego {:.1} {:.1} other {:?} {:?}",
+                output.tick as f64 / 60.0,
+                scene.ego.position,
+                scene.ego.speed_mps,
+                other.map(|o| o.position),
+                other.map(|o| o.speed_mps)
+            ));
+        }
         let is_hit = |kind: EventKind| matches!(kind, EventKind::CollisionActor | EventKind::CollisionScenery);
         came.hit |= output.events.iter().any(|event| is_hit(event.kind));
         came.taken_over |= output.intervention.is_some();

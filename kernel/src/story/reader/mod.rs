@@ -45,6 +45,11 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
     let document = document::parse(text)?;
     let shared = Shared::of(&document);
     let root = Element::root(&document, &shared)?;
+    for (other, what) in [("Catalog", "a catalog"), ("ParameterValueDistribution", "a distribution of parameters")] {
+        if root.child(other).is_some() {
+            return Err(root.wrong(format!("it is {what}, expected a story")));
+        }
+    }
     root.pass_parameters();
     let network = root.need("RoadNetwork")?;
     let map = network.need("LogicFile")?.text("filepath")?;

@@ -34,6 +34,11 @@ pub fn read(position: Element<'_>, names: &Names<'_>) -> Result<Position, StoryE
             own_axes: place.tag() == "RelativeObjectPosition",
             facing: facing(place)?,
         }),
+        "RelativeRoadPosition" => Ok(Position::BesideRoad {
+            role: names.role(place, "entityRef")?,
+            by_m: [place.float("ds")?, place.float("dt")?],
+            facing: facing(place)?,
+        }),
         "RelativeLanePosition" => Ok(Position::BesideLane {
             role: names.role(place, "entityRef")?,
             lanes: place.whole("dLane")?,

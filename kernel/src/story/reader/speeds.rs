@@ -78,7 +78,8 @@ fn limits(action: Element<'_>) -> Result<Limits, StoryError> {
 pub fn gap(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
     let has = |name: &str| Ok::<_, StoryError>(action.given(name)?.is_some());
     let wanted = match (has("distance")?, has("timeGap")?) {
-        (true, false) => GapWidth::Way(action.amount("distance")?),
+        // Some programs write a sign: on which side it is, it stays.
+        (true, false) => GapWidth::Way(action.float("distance")?.abs()),
         (false, true) => GapWidth::Time(action.amount("timeGap")?),
         _ => return Err(action.wrong("expected distance or timeGap of <LongitudinalDistanceAction>")),
     };

@@ -1,7 +1,9 @@
 //! What happens: how it begins, acts, groups, manoeuvres and events.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Act, Action, Doer, Environment, Event, Group, Light, Priority, RoleId, Trigger};
+use crate::story::script::{
+    Act, Action, Doer, Environment, Event, Group, Light, Priority, RoleId, Shape, Takes, Trigger,
+};
 
 use super::document::Element;
 use super::names::Names;
@@ -28,6 +30,43 @@ pub struct Beginning {
     pub environment: Environment,
 }
 
+impl Beginning {
+    /// What is so at once, and what takes time, which is an act of its own without a name.
+    fn split(mut self) -> (Self, Option<Act>) {
+        let (lasting, at_once) = std::mem::take(&mut self.actions).into_iter().partition(|(_, action)| lasts(action));
+        self.actions = at_once;
+        let groups: Vec<Group> = lasting.into_iter().map(opening).collect();
+        let (start, stop) = (Trigger::default(), Trigger::default());
+        let act = (!groups.is_empty()).then(|| Act { name: String::new(), groups, start, stop });
+        (self, act)
+    }
+}
+
+/// Whether an action takes time.
+fn lasts(action: &Action) -> bool {
+    match action {
+        Action::Speed(dynamics, _) => {
+            let none = matches!(dynamics.takes, Takes::Time(takes) | Takes::Distance(takes) if takes <= 0.0);
+            dynamics.shape != Shape::Step && !none
+        }
+        Action::LaneChange(..) | Action::LaneOffset(_, _, Some(_)) => true,
+        Action::SpeedProfile(_) | Action::Gap(_) | Action::Meet(_) | Action::Follow(_) => true,
+        _ => false,
+    }
+}
+
+fn opening((role, action): (RoleId, Action)) -> Group {
+    let event = Event {
+        name: String::new(),
+        manoeuvre: (0, String::new()),
+        priority: Priority::Parallel,
+        most: 1,
+        start: Trigger::default(),
+        actions: vec![(String::new(), Doer::Each, action)],
+    };
+    Group { name: String::new(), most: 1, actors: vec![role], events: vec![event] }
+}
+
 /// What happens.
 pub struct Board {
     pub init: Beginning,
@@ -36,11 +75,12 @@ pub struct Board {
 }
 
 pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> {
-    let init = match board.child("Init") {
+    let begins = match board.child("Init") {
         Some(init) => self::init(init.need("Actions")?, names)?,
         None => Beginning::default(),
     };
-    let mut acts = Vec::new();
+    let (init, opening) = begins.split();
+    let mut acts: Vec<Act> = opening.into_iter().collect();
     for story in board.all("Story") {
         story.pass_parameters();
         for act in story.all("Act") {

@@ -287,3 +287,53 @@ fn who_is_to_meet_the_ego_car_arrives_when_it_does() {
         }
     }
 }
+
+#[test]
+fn who_is_taken_from_the_end_of_its_road_goes_on_as_fast_as_before() {
+    let back = r#"<PrivateAction><TeleportAction><Position><LanePosition roadId="7" laneId="-1" s="50"/></Position></TeleportAction></PrivateAction>"#;
+    let at_end = when("Other", "none", r#"<EndOfRoadCondition duration="1"/>"#);
+    let init = begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 980.0, 20.0);
+    let mut world = world(&text(&init, &event("back", back, &at_end)));
+    go_on(&mut world, 1.5);
+    assert!(other(&world).speed_mps.abs() < 0.1 && other(&world).position.x > 999.0);
+    go_on(&mut world, 2.0);
+    let other = other(&world);
+    assert!((other.speed_mps - 20.0).abs() < 0.1 && (60.0..90.0).contains(&other.position.x), "{other:?}");
+}
+
+#[test]
+fn beyond_its_last_lane_a_road_counts_as_if_it_went_on() {
+    let off = lane_change(r#"<RelativeTargetLane entityRef="Other" value="-4"/>"#, "sinusoidal", 2.0, "time");
+    let gone = when("Other", "none", r#"<OffroadCondition duration="0.5"/>"#);
+    let events = event("off", &off, &after(1.0))
+        + &event("stop", &speed("step", 0.0, "time", 0.0), &gone).replace("overwrite", "parallel");
+    let mut world = played(&events);
+    go_on(&mut world, 2.2);
+    assert!(other(&world).speed_mps > 9.0);
+    go_on(&mut world, 1.5);
+    let other = other(&world);
+    // Lanes of 3.5 m: two of them on this side.
+    assert!((other.position.y + 15.75).abs() < 0.1 && other.speed_mps < 0.1, "{other:?}");
+}
+
+#[test]
+fn what_takes_time_at_the_beginning_takes_it() {
+    let slowly = begins("Other", -1, 100.0, 12.0)
+        .replace(r#"dynamicsShape="step" value="0""#, r#"dynamicsShape="linear" value="4""#);
+    let mut world = world(&text(&(begins("Ego", -2, 500.0, 0.0) + &slowly), ""));
+    for (seconds, expected_mps) in [(1.0, 3.0), (1.0, 6.0), (2.1, 12.0), (1.0, 12.0)] {
+        go_on(&mut world, seconds);
+        assert!((other(&world).speed_mps - expected_mps).abs() < 0.2, "{:?}", other(&world));
+    }
+}
+
+#[test]
+fn a_place_is_told_along_the_road_of_somebody() {
+    for (lane, ds, dt, x, y) in [(-1, 30.0, -3.5, 530.0, -5.25), (2, 30.0, 3.5, 530.0, 8.75)] {
+        let place = format!(r#"<RelativeRoadPosition entityRef="Ego" ds="{ds}" dt="{dt}"/>"#);
+        let init = begins("Ego", lane, 500.0, 0.0)
+            + &begins("Other", -1, 1.0, 0.0).replace(r#"<LanePosition roadId="7" laneId="-1" s="1"/>"#, &place);
+        let other = other(&world(&text(&init, "")));
+        assert!((other.position.truncate() - glam::Vec2::new(x, y)).length() < 0.05, "{lane}: {other:?}");
+    }
+}
