@@ -31,7 +31,7 @@ row() {
     local log=$folder/${name//[^a-z0-9]/-}.log
     settings+=("AEYE_BUILD=${name//[^a-z0-9]/-}" "CARGO_TARGET_DIR=$folder/$place")
     if ! {
-        env "${settings[@]}" cargo test "$@" -p kernel -p replay --test golden --test resume --test exchange &&
+        env "${settings[@]}" cargo test "$@" -p kernel -p replay --test golden --test stories --test resume --test exchange &&
             env "${settings[@]}" cargo test "$@" -p kernel -p replay --lib -- bundled:: recording::
     } >"$log" 2>&1; then
         result="DIFFERED (see $log)"

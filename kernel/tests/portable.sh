@@ -6,6 +6,6 @@ cd "$(dirname "$0")/../.."
 target=${CARGO_TARGET_DIR:-target}
 
 echo "golden timeline, debug"
-cargo test -p kernel --test golden
+cargo test -p kernel --test golden --test stories
 echo "golden timeline, release with -C target-cpu=native"
-RUSTFLAGS="-C target-cpu=native" cargo test -p kernel --test golden --release --target-dir "$target/native"
+RUSTFLAGS="-C target-cpu=native" cargo test -p kernel --test golden --test stories --release --target-dir "$target/native"

@@ -42,21 +42,12 @@ fn every_field_of_a_story_is_in_the_hash() {
     let mut world = played(&busy());
     go_on(&mut world, 11.5);
     let state = world.parts_of_story().expect("it has a story").clone();
-    let bytes = state.to_bytes();
     let mut named = Vec::new();
     state.name("", &mut named);
     for wanted in
         ["actors[1].spot.on.s_m", "actors[1].speed_by", "deeds[0].from", "events[1].at", "conditions[2].since"]
     {
         assert!(named.iter().any(|value| value.path.starts_with(wanted)), "{wanted}: {named:?}");
-    }
-    // Every byte of it counts.
-    for at in (0..bytes.len()).step_by(7) {
-        let mut other = bytes.clone();
-        other[at] ^= 1;
-        if let Ok(read) = crate::story::StoryState::from_bytes(&other) {
-            assert_ne!(read, state, "byte {at}");
-        }
     }
 }
 
