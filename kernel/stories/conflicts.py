@@ -319,7 +319,7 @@ def crossing(name, about, ego, own_mps, who, kind, begins, at, straight_m, way=N
     x, y, theirs, own = at
     own_place = own if isinstance(own, str) else world(x, y, own)
     story.does(who, at_once(), meets("Ego", world(f"${{{x} + $off_m}}", y, theirs), own_place, "$run_mps"))
-    return story.does(who, travelled(straight_m, who), as_fast_as(who, 0, False))
+    return story.does(who, travelled(straight_m, who), speed("$run_mps", "linear", "rate", 3))
 
 
 def red_light_runner():
@@ -351,7 +351,7 @@ def stop_sign_runner():
         "van",
         on_lane("11", -1, 30),
         (143.6, 126.25, 0, QUARTER_TURN),
-        66,
+        86,
         way=on_lane("12", -1, 40),
         off_m=(-1.0, 2.0),
     )
@@ -367,7 +367,7 @@ def turns_left_across():
         "car",
         on_lane("12", 1, 55),
         (143.5, 126.25, 0, -2.2),
-        50,
+        57,
         way=on_lane("12", -1, 40),
         off_m=(-1.0, 2.0),
     )
