@@ -57,11 +57,25 @@ impl<W: Write> Exporter<W> {
         Ok(Self { writer, counts: BTreeMap::new() })
     }
 
+    /// Adds a record of names and values that a standard asks for, beside the one of [`Exporter::new`].
+    pub fn metadata(&mut self, name: &str, entries: BTreeMap<String, String>) -> Result<(), Error> {
+        self.writer.write_metadata(&Metadata { name: name.into(), metadata: entries }).map_err(io_error)
+    }
+
     /// Adds a channel.
     pub fn channel(&mut self, topic: &str, schema: &Schema<'_>) -> Result<ExportChannel, Error> {
+        self.channel_with(topic, schema, &BTreeMap::new())
+    }
+
+    /// Adds a channel of which more is told, names and values.
+    pub fn channel_with(
+        &mut self,
+        topic: &str,
+        schema: &Schema<'_>,
+        entries: &BTreeMap<String, String>,
+    ) -> Result<ExportChannel, Error> {
         let id = self.writer.add_schema(schema.name, schema.encoding, schema.data).map_err(io_error)?;
-        let nothing = BTreeMap::new();
-        let channel = self.writer.add_channel(id, topic, schema.encoding, &nothing).map_err(io_error)?;
+        let channel = self.writer.add_channel(id, topic, schema.encoding, entries).map_err(io_error)?;
         match self.counts.insert(channel, 0) {
             None => Ok(ExportChannel(channel)),
             Some(_) => Err(Error::Unsuited(format!("topic {topic}: has a channel already"))),

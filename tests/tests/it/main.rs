@@ -29,6 +29,7 @@ mod rig_experiment;
 mod rig_export;
 mod rig_files;
 mod rig_learning;
+mod rig_osi;
 mod rig_pages;
 mod rig_pipeline;
 mod rig_redrive;

@@ -56,7 +56,7 @@ pub struct ExportArgs {
     pub files: Vec<PathBuf>,
     /// As what: messages for viewers of robot logs, or moving pictures, which but for apng take `ffmpeg` on the PATH
     /// (default: by the ending of --out, else mcap).
-    #[arg(long, value_name = "mcap|apng|gif|mp4|openscenario")]
+    #[arg(long, value_name = "mcap|apng|gif|mp4|openscenario|osi")]
     pub format: Option<Format>,
     /// From where moving pictures are taken: as both drivers see, from behind the car, or from above, north up.
     #[arg(long, default_value = "driver", value_name = "driver|chase|top")]

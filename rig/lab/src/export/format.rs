@@ -21,11 +21,13 @@ pub enum Format {
     Mp4,
     /// A story in OpenSCENARIO XML, with its map in OpenDRIVE beside it.
     OpenScenario,
+    /// A trace of the ASAM Open Simulation Interface, in MCAP.
+    Osi,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Mcap, Self::Apng, Self::Gif, Self::Mp4, Self::OpenScenario];
+    pub const ALL: [Self; 6] = [Self::Mcap, Self::Apng, Self::Gif, Self::Mp4, Self::OpenScenario, Self::Osi];
 
     /// What it is called on a command line.
     pub fn name(self) -> &'static str {
@@ -35,6 +37,7 @@ impl Format {
             Self::Gif => "gif",
             Self::Mp4 => "mp4",
             Self::OpenScenario => "openscenario",
+            Self::Osi => "osi",
         }
     }
 
@@ -43,6 +46,7 @@ impl Format {
         match self {
             Self::Apng => "png",
             Self::OpenScenario => "xosc",
+            Self::Osi => Self::Mcap.name(),
             Self::Mcap | Self::Gif | Self::Mp4 => self.name(),
         }
     }
@@ -55,15 +59,16 @@ impl Format {
 
     /// Refuses what it cannot show.
     pub fn check(self, camera: Viewpoint, checkpoints: &[CheckpointChoice]) -> Result<(), Usage> {
-        if self == Self::OpenScenario && !checkpoints.is_empty() {
-            return Err(Usage(
-                "a story holds no masks; expected --checkpoint or --format openscenario, not both".into(),
-            ));
+        if matches!(self, Self::OpenScenario | Self::Osi) && !checkpoints.is_empty() {
+            let name = self.name();
+            return Err(Usage(format!(
+                "{name} holds no masks of networks; expected --checkpoint or --format {name}, not both"
+            )));
         }
         if camera == Viewpoint::Driver {
             return Ok(());
         }
-        if matches!(self, Self::Mcap | Self::OpenScenario) {
+        if matches!(self, Self::Mcap | Self::OpenScenario | Self::Osi) {
             return Err(Usage("--camera is for moving pictures; expected --format apng, gif or mp4 with it".into()));
         }
         if !checkpoints.is_empty() {
@@ -80,6 +85,9 @@ impl FromStr for Format {
 
     fn from_str(text: &str) -> Result<Self, Usage> {
         let named = Self::ALL.into_iter().find(|format| format.name() == text);
-        named.ok_or_else(|| Usage(format!("no such format: {text:?}; expected mcap, apng, gif, mp4 or openscenario")))
+        named.ok_or_else(|| {
+            let names = Self::ALL.map(Self::name);
+            Usage(format!("no such format: {text:?}; expected one of {}", names.join(", ")))
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! Recordings and cases for the programs of others: for viewers of robot logs (Foxglove, Lichtblick, Rerun) an MCAP file
-//! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures, or as stories in OpenSCENARIO XML.
+//! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures, or as stories in OpenSCENARIO XML,
+//! or as traces of OSI.
 //!
 //! An export that is there already is kept: its file says what it was made from.
 
@@ -9,6 +10,7 @@ mod format;
 mod happenings;
 mod layout;
 mod options;
+mod osi;
 mod robot_log;
 mod sink;
 mod story;
@@ -93,6 +95,7 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
                 robot_log::export((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
             }),
             Format::OpenScenario => story::export(args, file, out.clone(), interrupt),
+            Format::Osi => osi::export(args, file, out.clone(), interrupt),
             Format::Apng | Format::Gif | Format::Mp4 => {
                 video::export(args, file, out.clone(), Screen { workshop: &workshop, size, eyes }, interrupt)
             }
