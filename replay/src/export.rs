@@ -27,18 +27,28 @@ const HEAD_BYTES: u64 = 1 << 16;
 pub struct Schema<'a> {
     /// Name, as in `foxglove.Log`.
     pub name: &'a str,
-    /// Encoding of the schema and of its messages, as MCAP's registry names it, as in `protobuf`.
+    /// Encoding of the schema, as MCAP's registry names it, as in `protobuf`; that of its messages follows from it.
     pub encoding: &'a str,
     /// The schema itself.
     pub data: &'a [u8],
+}
+
+impl Schema<'_> {
+    /// How messages are encoded, as MCAP's registry names it.
+    fn message_encoding(&self) -> &str {
+        match self.encoding {
+            "ros2msg" => "cdr",
+            same => same,
+        }
+    }
 }
 
 /// A channel of an [`Exporter`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExportChannel(u16);
 
-/// Writes an MCAP file with profile `""`, in chunks compressed by zstd. Message times are simulated
-/// time, nanoseconds from tick 0: the same messages give the same bytes.
+/// Writes an MCAP file, in chunks compressed by zstd. Message times are simulated time, nanoseconds from tick 0: the same
+/// messages give the same bytes.
 ///
 /// [`Exporter::finish`] must be called: without it the file has no index and no end.
 #[must_use = "a file is complete only after `finish`"]
@@ -51,17 +61,36 @@ pub struct Exporter<W: Write> {
 impl<W: Write> Exporter<W> {
     /// Starts a file that was made from `about`, names and values.
     pub fn new(out: W, about: BTreeMap<String, String>) -> Result<Self, Error> {
-        let options: WriteOptions = options().chunk_size(Some(CHUNK_BYTES));
+        Self::with_profile(out, "", about)
+    }
+
+    /// As [`Exporter::new`], of a profile of MCAP's registry, as in `ros2`.
+    pub fn with_profile(out: W, profile: &str, about: BTreeMap<String, String>) -> Result<Self, Error> {
+        let options: WriteOptions = options().profile(profile).chunk_size(Some(CHUNK_BYTES));
         let mut writer = Writer::with_options(NoSeek::new(out), options).map_err(io_error)?;
         writer.write_metadata(&Metadata { name: METADATA.into(), metadata: about }).map_err(io_error)?;
         Ok(Self { writer, counts: BTreeMap::new() })
     }
 
+    /// Adds a record of names and values that a standard asks for, beside the one of [`Exporter::new`].
+    pub fn metadata(&mut self, name: &str, entries: BTreeMap<String, String>) -> Result<(), Error> {
+        self.writer.write_metadata(&Metadata { name: name.into(), metadata: entries }).map_err(io_error)
+    }
+
     /// Adds a channel.
     pub fn channel(&mut self, topic: &str, schema: &Schema<'_>) -> Result<ExportChannel, Error> {
+        self.channel_with(topic, schema, &BTreeMap::new())
+    }
+
+    /// Adds a channel of which more is told, names and values.
+    pub fn channel_with(
+        &mut self,
+        topic: &str,
+        schema: &Schema<'_>,
+        entries: &BTreeMap<String, String>,
+    ) -> Result<ExportChannel, Error> {
         let id = self.writer.add_schema(schema.name, schema.encoding, schema.data).map_err(io_error)?;
-        let nothing = BTreeMap::new();
-        let channel = self.writer.add_channel(id, topic, schema.encoding, &nothing).map_err(io_error)?;
+        let channel = self.writer.add_channel(id, topic, schema.message_encoding(), entries).map_err(io_error)?;
         match self.counts.insert(channel, 0) {
             None => Ok(ExportChannel(channel)),
             Some(_) => Err(Error::Unsuited(format!("topic {topic}: has a channel already"))),

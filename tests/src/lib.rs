@@ -2,6 +2,7 @@
 
 pub mod command;
 pub mod files;
+pub mod protobuf;
 pub mod recordings;
 pub mod roads;
 pub mod scenes;

@@ -115,27 +115,45 @@ pub fn scenes(
     ticks: &[Tick],
     mut see: impl FnMut(&World, &SceneSnapshot),
 ) -> anyhow::Result<Vec<SceneSnapshot>> {
+    let mut scenes = Vec::with_capacity(ticks.len());
+    each_scene(log, network, ticks, |world, scene| {
+        if let Some(world) = world {
+            see(world, &scene);
+        }
+        scenes.push(scene);
+        Ok(())
+    })?;
+    Ok(scenes)
+}
+
+/// As [`scenes`], one after the other, so that a long window need not fit into memory. The world is there unless
+/// another kernel made the log; an error of `take` ends it.
+pub fn each_scene(
+    log: &Log,
+    network: &Arc<RoadNetwork>,
+    ticks: &[Tick],
+    mut take: impl FnMut(Option<&World>, SceneSnapshot) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
     let stored = |tick: Tick| log.scenes.iter().find(|scene| scene.tick == tick);
     if log.manifest.kernel != kernel::identity() {
         let all: Option<Vec<_>> = ticks.iter().map(|tick| stored(*tick).cloned()).collect();
         let (made_by, this) = (&log.manifest.kernel, kernel::identity());
-        return all.with_context(|| {
+        let all = all.with_context(|| {
             format!("made by kernel {made_by}; this one, {this}, can draw no more than the stored scenes of a case")
-        });
+        })?;
+        return all.into_iter().try_for_each(|scene| take(None, scene));
     }
     let mut replayer = Replayer::new(log, network.clone())?;
     replayer.seek(ticks.first().copied().unwrap_or(log.first_tick()))?;
-    let mut scenes = Vec::with_capacity(ticks.len());
     for &tick in ticks {
         replayer.run_to(tick)?;
         let scene = replayer.world().scene();
         if stored(tick).is_some_and(|stored| *stored != scene) {
             return Err(Error::from(Box::new(other_scene(tick))).into());
         }
-        see(replayer.world(), &scene);
-        scenes.push(scene);
+        take(Some(replayer.world()), scene)?;
     }
-    Ok(scenes)
+    Ok(())
 }
 
 fn other_scene(tick: Tick) -> Divergence {

@@ -38,7 +38,7 @@ const ONLOOKERS: [&str; 2] = ["tests", "benches"];
 const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows/", "rig/live/src/view/windows/"];
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str]); 17] = [
+const NAMED_ONCE: [(&str, &[&str]); 18] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
     ("roxmltree::", &["kernel/src/baking/limits/", "kernel/src/story/reader/"]),
@@ -46,6 +46,7 @@ const NAMED_ONCE: [(&str, &[&str]); 17] = [
     ("tract_cuda", &["perception/src/onnx/"]),
     ("bincode::", &["replay/src/wire.rs"]),
     ("rusqlite::", &["rig/lab/src/cases/"]),
+    ("cdr_encoding::", &["rig/lab/src/export/ros2/"]),
     ("wgpu::", &["render/", WINDOWS[0], WINDOWS[1], WINDOWS[2]]),
     ("winit::", &WINDOWS),
     ("egui::", &WINDOWS),

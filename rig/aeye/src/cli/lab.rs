@@ -54,9 +54,9 @@ pub struct ExportArgs {
     /// Recordings or cases, or folders with cases anywhere below.
     #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
-    /// As what: messages for viewers of robot logs, or moving pictures, which but for apng take `ffmpeg` on the PATH
-    /// (default: by the ending of --out, else mcap).
-    #[arg(long, value_name = "mcap|apng|gif|mp4|openscenario")]
+    /// As what: messages for viewers of robot logs, moving pictures, which but for apng take `ffmpeg` on the PATH, a story, a
+    /// trace of OSI, annotations of COCO, labels of OpenLABEL, or a bag of ROS 2 (default: by the ending of --out, else mcap).
+    #[arg(long, value_name = "mcap|apng|gif|mp4|openscenario|osi|coco|openlabel|ros2")]
     pub format: Option<Format>,
     /// From where moving pictures are taken: as both drivers see, from behind the car, or from above, north up.
     #[arg(long, default_value = "driver", value_name = "driver|chase|top")]
@@ -84,8 +84,8 @@ pub struct ExportArgs {
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
-    /// File of the export, `*.mcap` with its layout for viewers beside it, `*.png` (apng), `*.gif` or `*.mp4`; or a folder, for
-    /// several files. What is whole there and follows from the same files, checkpoints and options is kept.
+    /// File of the export, `*.mcap` with its layout for viewers beside it, `*.png` (apng), `*.gif`, `*.mp4`, `*.xosc` or `*.json`
+    /// (openlabel); or a folder, for several files, coco and ros2. What is whole there and follows from the same files, checkpoints and options is kept.
     #[arg(long, value_name = "OUT|DIR")]
     pub out: PathBuf,
 }

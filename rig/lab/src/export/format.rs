@@ -21,49 +21,95 @@ pub enum Format {
     Mp4,
     /// A story in OpenSCENARIO XML, with its map in OpenDRIVE beside it.
     OpenScenario,
+    /// A trace of the ASAM Open Simulation Interface, in MCAP.
+    Osi,
+    /// Pictures with panoptic and instance annotations as COCO has them, in a folder.
+    Coco,
+    /// Labels of ASAM OpenLABEL.
+    OpenLabel,
+    /// A bag of ROS 2: a folder with MCAP in it.
+    Ros2,
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// A file that ends with this.
+    File(&'static str),
+    /// A folder.
+    Folder,
+}
+
+/// What there is to know of a format.
+struct Traits {
+    format: Format,
+    /// What it is called on a command line.
+    name: &'static str,
+    written: Written,
+    /// It can hold what networks make of the pictures.
+    has_masks: bool,
+    /// It can be taken from other places than where the drivers sit.
+    has_cameras: bool,
+}
+
+/// Every format. Where a file's ending fits several, the first of them is meant; an animated PNG ends as all who show
+/// PNGs expect.
+const TABLE: [Traits; 9] = [
+    traits(Format::Mcap, "mcap", Written::File("mcap"), true, false),
+    traits(Format::Apng, "apng", Written::File("png"), true, true),
+    traits(Format::Gif, "gif", Written::File("gif"), true, true),
+    traits(Format::Mp4, "mp4", Written::File("mp4"), true, true),
+    traits(Format::OpenScenario, "openscenario", Written::File("xosc"), false, false),
+    traits(Format::Osi, "osi", Written::File("mcap"), false, false),
+    traits(Format::Coco, "coco", Written::Folder, false, false),
+    traits(Format::OpenLabel, "openlabel", Written::File("json"), false, false),
+    traits(Format::Ros2, "ros2", Written::Folder, true, false),
+];
+
+const fn traits(format: Format, name: &'static str, written: Written, has_masks: bool, has_cameras: bool) -> Traits {
+    Traits { format, name, written, has_masks, has_cameras }
 }
 
 impl Format {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::Mcap, Self::Apng, Self::Gif, Self::Mp4, Self::OpenScenario];
-
     /// What it is called on a command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Mcap => "mcap",
-            Self::Apng => "apng",
-            Self::Gif => "gif",
-            Self::Mp4 => "mp4",
-            Self::OpenScenario => "openscenario",
-        }
+        self.traits().name
     }
 
-    /// How its files end; an animated PNG is one to all who show PNGs.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Apng => "png",
-            Self::OpenScenario => "xosc",
-            Self::Mcap | Self::Gif | Self::Mp4 => self.name(),
-        }
+    /// What it writes of a recording.
+    pub fn written(self) -> Written {
+        self.traits().written
+    }
+
+    fn traits(self) -> &'static Traits {
+        // A test finds every format at its own place.
+        &TABLE[self as usize]
     }
 
     /// That of a file by its ending; messages for viewers, where that tells none.
     pub fn of_file(path: &Path) -> Self {
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        Self::ALL.into_iter().find(|format| ending == Some(format.ending())).unwrap_or_default()
+        Self::by_ending(path).unwrap_or_default()
+    }
+
+    /// That of a file by its ending.
+    pub fn by_ending(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?;
+        let is_it = |traits: &&Traits| matches!(traits.written, Written::File(known) if known == ending);
+        TABLE.iter().find(is_it).map(|traits| traits.format)
     }
 
     /// Refuses what it cannot show.
     pub fn check(self, camera: Viewpoint, checkpoints: &[CheckpointChoice]) -> Result<(), Usage> {
-        if self == Self::OpenScenario && !checkpoints.is_empty() {
-            return Err(Usage(
-                "a story holds no masks; expected --checkpoint or --format openscenario, not both".into(),
-            ));
+        let Traits { name, has_masks, has_cameras, .. } = self.traits();
+        if !has_masks && !checkpoints.is_empty() {
+            return Err(Usage(format!(
+                "{name} holds no masks of networks; expected --checkpoint or --format {name}, not both"
+            )));
         }
         if camera == Viewpoint::Driver {
             return Ok(());
         }
-        if matches!(self, Self::Mcap | Self::OpenScenario) {
+        if !has_cameras {
             return Err(Usage("--camera is for moving pictures; expected --format apng, gif or mp4 with it".into()));
         }
         if !checkpoints.is_empty() {
@@ -79,7 +125,38 @@ impl FromStr for Format {
     type Err = Usage;
 
     fn from_str(text: &str) -> Result<Self, Usage> {
-        let named = Self::ALL.into_iter().find(|format| format.name() == text);
-        named.ok_or_else(|| Usage(format!("no such format: {text:?}; expected mcap, apng, gif, mp4 or openscenario")))
+        let named = TABLE.iter().find(|traits| traits.name == text).map(|traits| traits.format);
+        named.ok_or_else(|| {
+            let names: Vec<&str> = TABLE.iter().map(|traits| traits.name).collect();
+            Usage(format!("no such format: {text:?}; expected one of {}", names.join(", ")))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_is_found_by_its_name_and_at_its_place() {
+        for (place, traits) in TABLE.iter().enumerate() {
+            assert_eq!(
+                (traits.format as usize, traits.name.parse::<Format>()),
+                (place, Ok(traits.format)),
+                "{}",
+                traits.name
+            );
+        }
+        let said = "pdf".parse::<Format>().expect_err("none").0;
+        assert!(said.starts_with("no such format: \"pdf\"; expected one of mcap, apng, "), "{said}");
+    }
+
+    #[test]
+    fn an_ending_means_the_usual_format() {
+        let of = |name: &str| Format::of_file(Path::new(name));
+        assert_eq!(
+            ["a.mcap", "a.png", "a.xosc", "a.json", "a", "a.txt"].map(of).map(Format::name),
+            ["mcap", "apng", "openscenario", "openlabel", "mcap", "mcap"]
+        );
     }
 }

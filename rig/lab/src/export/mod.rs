@@ -1,22 +1,28 @@
 //! Recordings and cases for the programs of others: for viewers of robot logs (Foxglove, Lichtblick, Rerun) an MCAP file
-//! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures, or as stories in OpenSCENARIO XML.
+//! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures, or as stories in OpenSCENARIO XML,
+//! or as traces of OSI, pictures annotated as in COCO, labels of OpenLABEL, bags of ROS 2.
 //!
 //! An export that is there already is kept: its file says what it was made from.
 
+mod about;
+mod coco;
 mod criticality;
 mod film;
 mod format;
 mod happenings;
 mod layout;
+mod openlabel;
 mod options;
+mod osi;
 mod robot_log;
+mod ros2;
 mod sink;
 mod story;
 mod topics;
 mod video;
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::bail;
@@ -37,7 +43,7 @@ use super::shots::Workshop;
 
 use film::Camera;
 pub use film::Counts;
-pub use format::Format;
+pub use format::{Format, Written};
 pub use options::{Export, Options};
 use video::Screen;
 
@@ -92,7 +98,15 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
                 let (recording, mut camera) = (Recording::open(file)?, Camera { studio, eyes });
                 robot_log::export((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
             }),
+            Format::Ros2 => studios.with(size, |studio| {
+                ros2::export((args, size), file, out.clone(), &mut Camera { studio, eyes }, interrupt)
+            }),
+            Format::Coco => {
+                studios.with(size, |studio| coco::export((args, size), file, out.clone(), studio, interrupt))
+            }
+            Format::OpenLabel => openlabel::export((args, size), file, out.clone(), interrupt),
             Format::OpenScenario => story::export(args, file, out.clone(), interrupt),
+            Format::Osi => osi::export(args, file, out.clone(), interrupt),
             Format::Apng | Format::Gif | Format::Mp4 => {
                 video::export(args, file, out.clone(), Screen { workshop: &workshop, size, eyes }, interrupt)
             }
@@ -131,30 +145,52 @@ struct Places {
     folder: Option<OutputFolder>,
 }
 
-/// One file goes to `OUT.mcap` (or another ending, by the format), or into a folder as several do.
+/// One file goes to `OUT.mcap` (or another ending, by the format), or into a folder as several do. Where a format writes
+/// folders, one file that is named goes to `OUT` itself.
 fn places(args: &Options) -> anyhow::Result<Places> {
     let Found { files: given, failed } = library::find(&args.files, Kind::Cases).apart_from(LAYOUT).or_failed()?;
-    let ending = args.format.ending();
-    let others = Format::of_file(&args.out);
-    if others != args.format && others != Format::Mcap && !args.out.is_dir() {
-        let sentence = format!("{}: expected a folder, or a file *.{ending}", args.out.display());
-        return Err(Usage(sentence).into());
-    }
-    let is_file = args.out.extension().is_some_and(|of_out| of_out == ending) && !args.out.is_dir();
-    if is_file && given.len() > 1 {
-        let sentence = format!("{}: is one file; expected a folder for several", args.out.display());
-        return Err(Usage(sentence).into());
-    }
-    if args.out.to_str().is_none() {
-        bail!("{}: its name is not UTF-8; expected one that is", args.out.display());
-    }
-    if is_file {
-        output::check_file(&args.out)?;
-    }
-    let to = |file: &Entry| if is_file { args.out.clone() } else { args.out.join(format!("{}.{ending}", file.name)) };
-    let layout = if is_file { args.out.with_extension("layout.json") } else { args.out.join(LAYOUT) };
+    check_out(args, given.len())?;
+    let is_out = match args.format.written() {
+        Written::File(ending) => is_file(&args.out, ending),
+        Written::Folder => args.files.len() == 1 && args.files[0].is_file(),
+    };
+    let to = |file: &Entry| match args.format.written() {
+        _ if is_out => args.out.clone(),
+        Written::File(ending) => args.out.join(format!("{}.{ending}", file.name)),
+        Written::Folder => args.out.join(&file.name),
+    };
+    let layout = if is_out { args.out.with_extension("layout.json") } else { args.out.join(LAYOUT) };
     let layout = (args.format == Format::Mcap).then_some(layout);
     let files = given.into_iter().map(|file| (file.path.clone(), to(&file))).collect();
-    let folder = if is_file { None } else { Some(OutputFolder::open(&args.out)?) };
+    let folder = if is_out { None } else { Some(OutputFolder::open(&args.out)?) };
     Ok(Places { layout, files, failed, folder })
+}
+
+/// Refuses a place for so many files that does not fit the format.
+fn check_out(args: &Options, files: usize) -> anyhow::Result<()> {
+    let (format, shown) = (args.format, args.out.display());
+    let is_other_file = Format::by_ending(&args.out).is_some() && !args.out.is_dir();
+    match format.written() {
+        Written::Folder if is_other_file => {
+            return Err(Usage(format!("{shown}: {} writes a folder; expected the name of one", format.name())).into());
+        }
+        Written::File(ending) if is_other_file && !is_file(&args.out, ending) => {
+            return Err(Usage(format!("{shown}: expected a folder, or a file *.{ending}")).into());
+        }
+        Written::File(ending) if is_file(&args.out, ending) && files > 1 => {
+            return Err(Usage(format!("{shown}: is one file; expected a folder for several")).into());
+        }
+        _ => {}
+    }
+    if args.out.to_str().is_none() {
+        bail!("{shown}: its name is not UTF-8; expected one that is");
+    }
+    match format.written() {
+        Written::File(ending) if is_file(&args.out, ending) => output::check_file(&args.out),
+        _ => Ok(()),
+    }
+}
+
+fn is_file(out: &Path, ending: &str) -> bool {
+    out.extension().is_some_and(|of_out| of_out == ending) && !out.is_dir()
 }
