@@ -8,6 +8,8 @@ use std::path::Path;
 pub mod most {
     /// Options, questionnaires, calibrations, descriptions: what a person writes.
     pub const TEXT: u64 = 4 << 20;
+    /// A story in OpenSCENARIO XML: those of recordings have everybody's places of every tick.
+    pub const STORY: u64 = 16 << 20;
     /// What is written for programs, a line for each of many.
     pub const TABLE: u64 = 256 << 20;
     /// A map of roads.

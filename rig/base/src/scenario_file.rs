@@ -37,7 +37,7 @@ impl ScenarioFile {
         let text = match bundled {
             Some(text) => text.to_owned(),
             None if !path.exists() && path.extension().is_none() => return Err(no_story(path)),
-            None => files::read_text(path, most::TEXT)?,
+            None => files::read_text(path, if is_story { most::STORY } else { most::TEXT })?,
         };
         let read = if is_story { of_story(path, &text) } else { Scenario::from_toml(&text).map_err(|e| e.to_string()) };
         let mut scenario = read.map_err(|reason| usage_in(path, &reason))?;

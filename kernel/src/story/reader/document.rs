@@ -65,29 +65,34 @@ impl Shared {
     /// Refuses what was not read and is not harmless; gives what is harmless, each once, by line.
     pub fn leftovers(&self, document: &Document<'_>) -> Result<Vec<(u32, String)>, StoryError> {
         let read = self.read.borrow();
-        let mut passed: Vec<(u32, String)> = Vec::new();
+        // Lines are counted from the beginning: only of those that are told.
+        let mut passed: BTreeMap<&str, Node<'_, '_>> = BTreeMap::new();
         let mut rest = vec![document.root_element()];
         while let Some(node) = rest.pop() {
-            let (line, tag) = (line_of(node), node.tag_name().name());
+            let tag = node.tag_name().name();
+            let refused = |why: String| StoryError::at(line_of(node), why);
             match coverage::support(tag) {
-                None => return Err(StoryError::at(line, format!("<{tag}> is no element of OpenSCENARIO 1.0 to 1.2"))),
-                Some(Support::No) => return Err(StoryError::at(line, format!("<{tag}> is not supported"))),
+                None => return Err(refused(format!("<{tag}> is no element of OpenSCENARIO 1.0 to 1.2"))),
+                Some(Support::No) => return Err(refused(format!("<{tag}> is not supported"))),
                 Some(Support::Ignored) => {
-                    passed.push((line, tag.to_owned()));
+                    let first = passed.entry(tag).or_insert(node);
+                    if node.range().start < first.range().start {
+                        *first = node;
+                    }
                     continue;
                 }
                 Some(Support::Yes | Support::Partly) if !read.contains(&node.id().get_usize()) => {
                     let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
-                    return Err(StoryError::at(line, format!("<{tag}> is not supported in <{parent}>")));
+                    return Err(refused(format!("<{tag}> is not supported in <{parent}>")));
                 }
                 Some(_) => {}
             }
             rest.extend(node.children().filter(Node::is_element));
         }
-        passed.sort_by(|a, b| (&a.1, a.0).cmp(&(&b.1, b.0)));
-        passed.dedup_by(|a, b| a.1 == b.1);
-        passed.sort();
-        Ok(passed)
+        let mut told: Vec<(u32, String)> =
+            passed.into_iter().map(|(tag, node)| (line_of(node), tag.to_owned())).collect();
+        told.sort();
+        Ok(told)
     }
 }
 

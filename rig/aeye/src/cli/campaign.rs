@@ -55,8 +55,9 @@ pub struct CampaignArgs {
     /// Put the files of maps that are not bundled into the recordings, instead of once beside them.
     #[arg(long)]
     pub embed_map: bool,
-    /// A scenario file, or a story in OpenSCENARIO XML; its seed and length are replaced for each run.
-    #[arg(long, value_name = "FILE.toml|FILE.xosc")]
+    /// A scenario file, a story in OpenSCENARIO XML, or a bundled story by name, as cut_out; its seed and length are replaced for
+    /// each run.
+    #[arg(long, value_name = "FILE.toml|FILE.xosc|STORY")]
     pub scenario: Option<PathBuf>,
     /// Number of runs of each checkpoint; beside another goal, how many runs must come to that.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]

@@ -51,8 +51,8 @@ pub struct DriveArgs {
     /// Put the file of a map that is not bundled into the recording, instead of beside it.
     #[arg(long)]
     pub embed_map: bool,
-    /// A scenario file, or a story in OpenSCENARIO XML.
-    #[arg(long, value_name = "FILE.toml|FILE.xosc")]
+    /// A scenario file, a story in OpenSCENARIO XML, or a bundled story by name, as cut_out.
+    #[arg(long, value_name = "FILE.toml|FILE.xosc|STORY")]
     pub scenario: Option<PathBuf>,
     /// What the semantic driver sees: a bundled checkpoint, ground truth, or an ONNX file.
     #[arg(long, default_value = "truth", value_parser = one_checkpoint, value_name = CHECKPOINT)]

@@ -1,9 +1,13 @@
-//! Tries provoked accidents: `provoked CHECKPOINT,... SEED DRAWS FILE.xosc...` drives each story with as many draws of its
-//! parameters, and prints a table in Markdown of how often something is hit: by a car that drives on, whose driver sees nobody
-//! and has nobody beside him, and by both bots through `truth` and each checkpoint; and how often the safety driver took over.
+//! Tries provoked accidents.
+//!
+//! `provoked CHECKPOINT,... SEED DRAWS STORY...` drives each story with as many draws of its parameters, and prints a table in
+//! Markdown of how often something is hit: by a car that drives on, whose driver sees nobody and has nobody beside him, and by
+//! both bots through each checkpoint; and how often the safety driver took over. `provoked strips SEED DIR STORY...` draws the
+//! last seconds of such a car, as its driver's camera has them.
 
-#[path = "common/blind.rs"]
+#[path = "../common/blind.rs"]
 mod blind;
+mod strips;
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -21,11 +25,11 @@ use drivers::semantic::SemanticBot;
 use drivers::vision::{Eye, Vision};
 use kernel::arbiter::Phase;
 use kernel::events::EventKind;
-use kernel::{Scenario, Seat, TickInput, World};
+use kernel::{Scenario, SceneSnapshot, Seat, TickInput, World};
 use render::{RenderOptions, Renderer};
 
 /// Longest drive, seconds.
-const LONGEST_S: u32 = 40;
+const LONGEST_S: u32 = 30;
 
 /// Who drives.
 #[derive(Clone)]
@@ -46,8 +50,11 @@ struct Came {
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [checkpoints, seed, draws, files @ ..] = &arguments[..] else {
-        bail!("expected CHECKPOINT,... SEED DRAWS FILE.xosc...")
+        bail!("expected CHECKPOINT,... SEED DRAWS STORY..., or strips SEED DIR STORY...")
     };
+    if checkpoints == "strips" {
+        return files.iter().try_for_each(|file| strips::strip(Path::new(file), seed.parse()?, Path::new(draws)));
+    }
     let choices = checkpoints.split(',').map(|name| name.parse::<CheckpointChoice>().map_err(anyhow::Error::msg));
     let eyes = choices.map(|choice| Eye::open(&choice?)).collect::<anyhow::Result<Vec<_>>>()?;
     let (seed, draws): (u64, u64) = (seed.parse()?, draws.parse()?);
@@ -75,7 +82,7 @@ fn try_out(file: &ScenarioFile, crews: &[Who], seed: u64, draws: u64) -> anyhow:
     let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![vec![Came::default(); draws as usize]; crews.len()]));
     let work = || -> anyhow::Result<()> {
         while let Some((who, draw)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let came = drive(&drawn(&file.scenario, seed + draw)?, &file.map, &crews[*who])?;
+            let came = drive(&drawn(&file.scenario, seed + draw)?, &file.map, &crews[*who], |_| {})?;
             found.lock().expect("no thread panics")[*who][*draw as usize] = came;
         }
         Ok(())
@@ -98,7 +105,8 @@ fn drawn(of: &Scenario, seed: u64) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-fn drive(scenario: &Scenario, map: &Map, who: &Who) -> anyhow::Result<Came> {
+/// Drives until something is hit or the run is over; `look` sees each tick.
+fn drive(scenario: &Scenario, map: &Map, who: &Who, mut look: impl FnMut(SceneSnapshot)) -> anyhow::Result<Came> {
     let mut world = World::new(scenario, &map.network)?;
     let (eye, mut bots) = match who {
         Who::On => (Eye::Truth, Bots::beside(Seat::Safety, scenario.seed)),
@@ -113,32 +121,10 @@ fn drive(scenario: &Scenario, map: &Map, who: &Who) -> anyhow::Result<Came> {
         let mut input = TickInput::default();
         bots.act(&world, Some(mask), &mut input);
         let output = world.step(&input);
-        if std::env::var("AEYE_PROVOKED").is_ok_and(|v| v == "2") && output.tick % 30 == 0 {
-            let scene = world.scene();
-            let other = scene.actors.iter().find(|a| a.speed_mps.abs() > 0.0).or(scene.actors.first());
-            say(format_args!(
-                "{:.1} ego {:.1} {:.1} other {:?} {:?}",
-                output.tick as f64 / 60.0,
-                scene.ego.position,
-                scene.ego.speed_mps,
-                other.map(|o| o.position),
-                other.map(|o| o.speed_mps)
-            ));
-        }
         let is_hit = |kind: EventKind| matches!(kind, EventKind::CollisionActor | EventKind::CollisionScenery);
         came.hit |= output.events.iter().any(|event| is_hit(event.kind));
         came.taken_over |= output.intervention.is_some();
-    }
-    if std::env::var_os("AEYE_PROVOKED").is_some() {
-        let ego = world.scene().ego;
-        let why = bots.cause(&world).map(|(label, comment)| format!("{label}: {comment}"));
-        say(format_args!(
-            "seed {} {}: {came:?} at {:.1} s, {:.1} m/s, {why:?}",
-            scenario.seed,
-            if matches!(who, Who::On) { "on" } else { "crew" },
-            world.tick() as f64 / 60.0,
-            ego.speed_mps
-        ));
+        look(world.scene());
     }
     Ok(came)
 }
