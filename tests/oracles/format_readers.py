@@ -173,7 +173,7 @@ def read_bag(folder):
 
 
 def check_motion(odometry):
-    """The difference of places is what the velocities come to: within 2 cm in a tenth of a second."""
+    """The difference of places is what the velocities come to: within 5 cm in a tenth of a second."""
     worst, dt = 0.0, 1 / TICK_HZ
     for i in range(6, len(odometry)):
         way, turn = numpy.zeros(3), 0.0

@@ -33,7 +33,9 @@ python "$here/cityscapes_eval.py" "$aeye" "$work"
 "$aeye" campaign --checkpoint early --seed 5 --cases 1 --out "$work/drives"
 python "$here/recording_reader.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.mcap
 python "$here/export_readers.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.case.mcap
-python "$here/format_readers.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.mcap
+for case in "$work"/drives/*.case.mcap; do
+	python "$here/format_readers.py" "$aeye" "$work/drive.mcap" "$case" "${case%.case.mcap}.mcap"
+done
 
 "$aeye" dataset natural --scenes 2 --val-scenes 1 --test-scenes 1 --frames 4 --test-frames 2 --out "$work/natural"
 "$aeye" dataset cases "$work/drives" --out "$work/cases"
