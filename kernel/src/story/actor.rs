@@ -6,10 +6,9 @@ use crate::actor::{ActorKind, FIRST_STORY_ID};
 use crate::ego;
 use crate::scene::lamps;
 use crate::state;
-use crate::time::TICK_S;
+use crate::time::{TICK_S, Tick};
 use crate::traffic::{Body, Obstacle};
 
-use super::doors::DoorSwing;
 use super::script;
 use super::spot::Spot;
 
@@ -22,6 +21,32 @@ const INDICATES_MPS: f32 = 0.1;
 /// The way in a turn of the legs or the pedals, metres.
 const STRIDE_M: f32 = 1.4;
 const PEDALS_M: f32 = 5.0;
+
+state! {
+    /// How a front door swings.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct DoorSwing {
+        /// How far open it was, [0, 1].
+        pub from: f32,
+        /// And will be.
+        pub to: f32,
+        /// When it began to swing.
+        pub since: Tick,
+        /// How long it swings, ticks.
+        pub takes_ticks: u32,
+    }
+}
+
+impl DoorSwing {
+    /// A door that was never opened.
+    pub const SHUT: Self = Self { from: 0.0, to: 0.0, since: 0, takes_ticks: 1 };
+
+    /// How far open it is at a tick, [0, 1].
+    pub fn share(&self, tick: Tick) -> f32 {
+        let swung = tick.saturating_sub(self.since) as f32 / self.takes_ticks.max(1) as f32;
+        self.from + (self.to - self.from) * swung.min(1.0)
+    }
+}
 
 state! {
     /// Somebody who plays.

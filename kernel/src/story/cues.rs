@@ -1,15 +1,16 @@
 //! Whether what begins and ends elements holds.
 
 use crate::map::RoadNetwork;
+use crate::signals;
 use crate::time::{TICK_HZ, TICK_S, Tick};
 
 use super::actor::StoryActor;
 use super::facts::Outline;
 use super::plan::{Plan, Trigger};
-use super::script::{Condition, Edge, ElementKind, ElementState, OfRole, RoleId, Rule, Script, When};
+use super::relative;
+use super::script::{Condition, Edge, ElementKind, ElementState, Light, OfRole, RoleId, Rule, Script, When};
 use super::spot::Spot;
 use super::state::{Change, Mark, Met, Progress, StoryState};
-use super::{lights, relative};
 
 /// As near as this two numbers are equal.
 const EQUAL: f32 = 0.01;
@@ -76,13 +77,19 @@ impl Seen<'_> {
         match when {
             When::Time(rule, than) => compares(*rule, self.tick as f32 / TICK_HZ as f32, *than, 0.5 * TICK_S),
             When::Element(kind, name, state) => self.element(*kind, name, *state),
-            When::Light(light) => lights::shows(light, self),
+            When::Light(light) => self.shows(light),
             When::Programme(number, phase) => usize::from(self.before.cycles[*number].phase) == *phase,
             When::Role { all, roles, what } => {
                 let mut each = roles.iter().map(|role| self.of_role(*role, what));
                 if *all { each.all(|holds| holds) } else { each.any(|holds| holds) }
             }
         }
+    }
+
+    fn shows(&self, light: &Light) -> bool {
+        let tick = self.tick.saturating_sub(1);
+        let shown = |group| signals::shown(self.network, self.seed, &self.before.lights, group, tick).0;
+        light.groups.first().is_some_and(|group| shown(*group) == light.phase)
     }
 
     fn element(&self, kind: ElementKind, name: &str, state: ElementState) -> bool {

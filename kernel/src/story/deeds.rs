@@ -118,7 +118,7 @@ pub fn start(state: &mut StoryState, number: usize, seen: &Seen<'_>) {
     state.deeds[number].gone_m = 0.0;
     let goes_on = match of.role {
         None => {
-            lights::change(state, &of.action, seen);
+            lights::change(state, &of.action, &seen.script.programmes, tick);
             false
         }
         Some(ego) if ego == seen.plan.ego && of.action == Action::HandOver => {

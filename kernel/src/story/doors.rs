@@ -2,39 +2,12 @@
 
 use crate::actor::{ActorKind, FIRST_STORY_DOOR_ID};
 use crate::geometry::direction;
-use crate::state;
+use crate::ops;
 use crate::time::Tick;
 use crate::traffic::{Door, HINGE, OPEN_RAD};
-use crate::{ops, traffic};
 
-use super::actor::{self, StoryActor};
+use super::actor::{self, DoorSwing, StoryActor};
 use super::script;
-
-state! {
-    /// How a front door swings.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct DoorSwing {
-        /// How far open it was, [0, 1].
-        pub from: f32,
-        /// And will be.
-        pub to: f32,
-        /// When it began to swing.
-        pub since: Tick,
-        /// How long it swings, ticks.
-        pub takes_ticks: u32,
-    }
-}
-
-impl DoorSwing {
-    /// A door that was never opened.
-    pub const SHUT: Self = Self { from: 0.0, to: 0.0, since: 0, takes_ticks: 1 };
-
-    /// How far open it is at a tick, [0, 1].
-    pub fn share(&self, tick: Tick) -> f32 {
-        let swung = tick.saturating_sub(self.since) as f32 / self.takes_ticks.max(1) as f32;
-        self.from + (self.to - self.from) * swung.min(1.0)
-    }
-}
 
 /// Begins to open or to shut one.
 pub fn swing(actor: &mut StoryActor, door: script::Door, tick: Tick) {
@@ -56,7 +29,7 @@ pub fn open(actor: &StoryActor, role: (usize, &script::Role), tick: Tick) -> Opt
     let hinge = ahead * (HINGE * size_m.x) + out * (0.5 * size_m.y);
     let leaf = out * ops::sin(angle_rad) - ahead * ops::cos(angle_rad);
     let middle = hinge + leaf * (0.5 * ActorKind::Door.size_m().x);
-    Some(traffic::Door {
+    Some(Door {
         id: FIRST_STORY_DOOR_ID + role.0 as u32,
         position: actor.spot.position + middle.extend(0.0),
         heading_rad: ops::atan2(leaf.y, leaf.x),

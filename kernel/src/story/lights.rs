@@ -1,25 +1,11 @@
 //! Traffic lights that a story holds.
 
 use crate::map::RoadNetwork;
-use crate::map_data::LightGroupId;
-use crate::signals::{self, HeldLight, LightPhase};
-use crate::state;
+use crate::signals::HeldLight;
 use crate::time::Tick;
 
-use super::cues::Seen;
 use super::script::{Action, Light, Programme, Script, When};
-use super::state::StoryState;
-
-state! {
-    /// Where a programme of lights is.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct Cycle {
-        /// The number of its phase.
-        pub phase: u16,
-        /// When that ends.
-        pub until: Tick,
-    }
-}
+use super::state::{Cycle, StoryState};
 
 /// Finds the lights of a script on a map.
 pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
@@ -96,21 +82,12 @@ fn enter(state: &mut StoryState, number: usize, programme: &Programme, phase: us
 }
 
 /// What is done to lights.
-pub fn change(state: &mut StoryState, action: &Action, seen: &Seen<'_>) {
+pub fn change(state: &mut StoryState, action: &Action, programmes: &[Programme], tick: Tick) {
     match action {
         Action::Light(light) => hold(&mut state.lights, light),
         Action::Programme(number, phase) => {
-            enter(state, *number, &seen.script.programmes[*number], *phase, seen.tick);
+            enter(state, *number, &programmes[*number], *phase, tick);
         }
         _ => {}
     }
-}
-
-/// Whether a light shows what it shall.
-pub fn shows(light: &Light, seen: &Seen<'_>) -> bool {
-    let held = &seen.before.lights;
-    let shown = |group: LightGroupId| -> LightPhase {
-        signals::shown(seen.network, seen.seed, held, group, seen.tick.saturating_sub(1)).0
-    };
-    light.groups.first().is_some_and(|group| shown(*group) == light.phase)
 }

@@ -5,7 +5,6 @@ use crate::time::Tick;
 use crate::{state, state_enum};
 
 use super::actor::StoryActor;
-use super::lights::Cycle;
 use super::spot::Spot;
 
 state_enum! {
@@ -78,6 +77,17 @@ state! {
         pub held: Option<bool>,
         /// When it was met, for those that count later.
         pub since: Option<Tick>,
+    }
+}
+
+state! {
+    /// Where a programme of lights is.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Cycle {
+        /// The number of its phase.
+        pub phase: u16,
+        /// When that ends.
+        pub until: Tick,
     }
 }
 

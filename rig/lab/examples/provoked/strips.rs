@@ -19,7 +19,7 @@ const PICTURES: usize = 4;
 /// Draws the first collision of a car that drives on through a story, as `DIR/STORY.png`.
 pub fn strip(file: &Path, seed: u64, folder: &Path) -> anyhow::Result<()> {
     let story = ScenarioFile::read(file)?;
-    let kept = seconds(PICTURES as u64 - 1) as usize + 1;
+    let kept = seconds(PICTURES as u32 - 1) as usize + 1;
     let mut scenes: VecDeque<SceneSnapshot> = VecDeque::new();
     let came = drive(&drawn(&story.scenario, seed)?, &story.map, &Who::On, |scene| {
         scenes.push_back(scene);
