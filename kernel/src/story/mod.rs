@@ -20,6 +20,7 @@ mod plan;
 mod reader;
 mod relative;
 mod script;
+mod setting;
 mod spot;
 mod stage;
 mod state;

@@ -2,11 +2,9 @@
 //! in the words of the text and found on a map by [`Stage`](super::Stage).
 
 use crate::actor::ActorKind;
-use crate::map_data::LightGroupId;
-use crate::signals::LightPhase;
 use crate::time::Tick;
-use crate::weather::Weather;
 
+pub use super::setting::{Environment, Light, Programme};
 use super::spot::Spot;
 
 /// Index of a role in [`Script::cast`].
@@ -69,63 +67,6 @@ pub struct Role {
     pub kind: Option<ActorKind>,
     /// Fastest it goes, m/s.
     pub most_mps: f32,
-}
-
-/// A traffic light at a phase.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Light {
-    /// OpenDRIVE id of its signal.
-    pub signal: String,
-    /// What it shows.
-    pub phase: LightPhase,
-    /// The lights of that signal, once they are found on a map.
-    pub groups: Vec<LightGroupId>,
-}
-
-/// A programme of lights, which begins again at its end.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Programme {
-    /// Its name.
-    pub name: String,
-    /// It begins so long after the run, and with its last phase before that.
-    pub delay_ticks: Tick,
-    /// Its phases: names, how long they last, and what lights show in them.
-    pub phases: Vec<(String, Tick, Vec<Light>)>,
-}
-
-/// What a text says of the weather.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Environment {
-    /// Share of the sky under clouds, percent.
-    pub cloudiness_pct: Option<f32>,
-    /// Wind, percent of a storm.
-    pub wind_pct: Option<f32>,
-    /// Height of the sun and direction to it, counter-clockwise from east, degrees.
-    pub sun_deg: Option<[f32; 2]>,
-    /// Rain, percent of a cloudburst.
-    pub precipitation_pct: Option<f32>,
-    /// How wet surfaces are, and water that stands on them, percent.
-    pub water_pct: Option<[f32; 2]>,
-    /// How dense the fog is, percent.
-    pub fog_density_pct: Option<f32>,
-}
-
-impl Environment {
-    /// Changes what the text says of a weather.
-    pub fn change(&self, weather: &mut Weather) {
-        let set = |to: &mut f32, value: Option<f32>| *to = value.unwrap_or(*to);
-        set(&mut weather.cloudiness_pct, self.cloudiness_pct);
-        set(&mut weather.wind_pct, self.wind_pct);
-        set(&mut weather.sun_altitude_deg, self.sun_deg.map(|[altitude, _]| altitude));
-        set(&mut weather.sun_azimuth_deg, self.sun_deg.map(|[_, azimuth]| azimuth));
-        set(&mut weather.precipitation_pct, self.precipitation_pct);
-        set(&mut weather.wetness_pct, self.water_pct.map(|[wet, _]| wet));
-        set(&mut weather.puddles_pct, self.water_pct.map(|[_, puddles]| puddles));
-        set(&mut weather.fog_density_pct, self.fog_density_pct);
-        if self.fog_density_pct.is_some() {
-            weather.fog_distance_m = 0.0;
-        }
-    }
 }
 
 /// An act: it begins by its trigger, and its groups play at the same time.
