@@ -37,6 +37,12 @@ for case in "$work"/drives/*.case.mcap; do
 	python "$here/format_readers.py" "$aeye" "$work/drive.mcap" "$case" "${case%.case.mcap}.mcap"
 done
 
+# In an environment of its own: its packages ask for other versions.
+environment "$folder/osi" "$here/requirements_osi.txt"
+"$aeye" drive --headless --scenario "$here/stories/slower_ahead.xosc" --checkpoint truth --max-time 15s --record "$work/slower_ahead.mcap"
+"$aeye" drive --headless --map old_town --seed 3 --max-time 10s --record "$work/old_town.mcap"
+"$folder/osi/bin/python" "$here/osi_readers.py" "$aeye" "$work/slower_ahead.mcap" "$work/old_town.mcap" "$work"/drives/*.case.mcap
+
 "$aeye" dataset natural --scenes 2 --val-scenes 1 --test-scenes 1 --frames 4 --test-frames 2 --out "$work/natural"
 "$aeye" dataset cases "$work/drives" --out "$work/cases"
 python "$here/cityscapes_layout.py" "$work/natural" "$work/cases"
