@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use aeye::cli::Cli;
 use aeye::exit;
 use base::failure::sentence;
-use base::maps::ScenarioFile;
+use base::scenario_file::ScenarioFile;
 use clap::Parser;
 use glam::Vec3;
 use kernel::story::FIRST_STORY_ID;

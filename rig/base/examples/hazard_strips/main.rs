@@ -11,7 +11,7 @@ mod studio;
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use base::maps::ScenarioFile;
+use base::scenario_file::ScenarioFile;
 
 /// With so many seeds, from the scenario's own on, somebody is looked for who shows the hazard.
 const SEEDS: u64 = 8;

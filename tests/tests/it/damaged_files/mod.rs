@@ -10,8 +10,8 @@ use std::fs;
 use std::path::Path;
 
 use base::failure::sentence;
-use base::maps::ScenarioFile;
 use base::png;
+use base::scenario_file::ScenarioFile;
 use lab::dataset::Manifest;
 use live::units::calibration;
 use perception::Checkpoint;

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use base::maps::ScenarioFile;
+use base::scenario_file::ScenarioFile;
 use lab::dataset::Manifest;
 use lab::experiment::{Preset, Recipe};
 use lab::map;
