@@ -118,7 +118,14 @@ impl Drive {
         traffic = traffic.with_hazards(&self.hazards);
         let mut watcher = Watcher::new(self, &traffic);
         for tick in 1..=seconds(60 * self.minutes) {
-            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], conditions: Conditions::default() });
+            traffic.step(&Surroundings {
+                tick,
+                ego,
+                ego_flags: 0,
+                loose: &[],
+                lights: &[],
+                conditions: Conditions::default(),
+            });
             watcher.look(&traffic, tick);
         }
         watcher.found
