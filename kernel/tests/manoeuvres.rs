@@ -72,7 +72,14 @@ fn car_at(position: Vec3) -> Obstacle {
 
 fn drive(traffic: &mut Traffic, ego: Obstacle, ticks: Tick, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in 1..=ticks {
-        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], lights: &[], conditions: Conditions::default() });
+        traffic.step(&Surroundings {
+            tick,
+            ego,
+            ego_flags: 0,
+            loose: &[],
+            lights: &[],
+            conditions: Conditions::default(),
+        });
         each(traffic, tick);
     }
 }
@@ -144,7 +151,14 @@ fn falls_back_m(seed: u64, indicates: bool) -> f32 {
     let mut tick = 0;
     let mut step = |traffic: &mut Traffic, ego, ego_flags| {
         tick += 1;
-        traffic.step(&Surroundings { tick, ego, ego_flags, loose: &[], lights: &[], conditions: Conditions::default() });
+        traffic.step(&Surroundings {
+            tick,
+            ego,
+            ego_flags,
+            loose: &[],
+            lights: &[],
+            conditions: Conditions::default(),
+        });
     };
     while traffic.bodies()[0].velocity_mps.x < 8.0 || place(&traffic).x > 1000.0 {
         step(&mut traffic, car_at(FAR), 0);

@@ -81,7 +81,8 @@ impl Drive {
     }
 
     fn step(&mut self, controls: &Controls) {
-        self.physics.step(&mut self.ego, controls, &self.setup, &self.water);
+        self.physics.drive(&mut self.ego, controls, &self.setup, &self.water);
+        self.physics.step(&mut self.ego);
     }
 
     fn hold(&mut self, ticks: Tick, driver: impl Fn(&Ego) -> Controls) {
