@@ -85,7 +85,10 @@ fn every_message_has_the_fields_of_its_definition() {
     assert_eq!(read(&tell::ego(&scene.ego, 7))[1..4], ["nanosec 7", "frame_id map", "child_frame_id base_link"]);
     assert_eq!(read(&tell::mounting(&camera, 0))[3], "child_frame_id camera_optical_frame");
     let odometry = read(&tell::odometry(&scene.ego, &twist, 0));
-    assert_eq!((odometry.len(), odometry[4].as_str()), (4 + 7 + 36 + 6 + 36, &*format!("x {}", scene.ego.position.x)));
+    assert_eq!(
+        (odometry.len(), odometry[4].as_str()),
+        (4 + 7 + 36 + 6 + 36, &*format!("x {}", f64::from(scene.ego.position.x)))
+    );
     let info = read(&tell::camera_info(&camera, 0));
     assert_eq!(
         (info[3..6].join(", "), info[11].as_str()),
