@@ -1,7 +1,7 @@
 //! Maps by the names that people give on the command line.
 
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, anyhow};
