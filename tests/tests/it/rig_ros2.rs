@@ -56,7 +56,7 @@ fn a_bag_holds_every_tick_picture_and_event_at_its_time() {
     for topic in ["/clock", "/tf", "/odom"] {
         assert_eq!(times(&topics[topic]), nanos(&mut window.clone()), "{topic}");
     }
-    let pictures = nanos(&mut window.clone().filter(|tick| (TAKEOVER - tick) % 6 == 0));
+    let pictures = nanos(&mut window.clone().filter(|tick| (TAKEOVER - tick).is_multiple_of(6)));
     let masks = ["/camera/truth/compressed", "/camera/predicted/truth/compressed"];
     for topic in ["/actors", "/camera/camera_info", "/camera/image_raw/compressed"].iter().chain(&masks) {
         assert_eq!(times(&topics[*topic]), pictures, "{topic}");
