@@ -180,7 +180,7 @@ mod tests {
             (
                 "[ego]",
                 "[wagon]",
-                "line 7: unknown key wagon, expected one of map, seed, traffic, hazards, weather, ego,",
+                "line 7: unknown key wagon, expected one of map, seed, story, traffic, hazards, weather,",
             ),
             ("[ego]", "[rules]\nabs = true\n\n[ego]", "line 8: unknown key rules.abs, expected one of max_speed_kmh,"),
             ("= 30", "= 95", "line 5: weather.sun_altitude_deg is 95, expected a number from -90 to 90"),
