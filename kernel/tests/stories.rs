@@ -11,7 +11,7 @@ use std::sync::Arc;
 use common::script;
 use kernel::map;
 use kernel::scenario::{HazardRates, Scenario, TrafficCounts};
-use kernel::story::{Story, bundled_text};
+use kernel::story::{BUNDLED, Story, bundled_text};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{Keyframe, RoadNetwork, World};
 
@@ -96,4 +96,13 @@ fn a_keyframe_without_a_part_of_its_story_is_another() {
         let shorter = Keyframe { tick: keyframe.tick, bytes };
         assert!(World::resume(&scenario, &network, &shorter).is_err(), "without byte {at}");
     }
+}
+
+#[test]
+fn every_file_of_the_folder_is_bundled() {
+    let folder = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/stories")).expect("it is there");
+    let files = folder.map(|entry| entry.expect("readable").file_name().into_string().expect("plain"));
+    let mut stories: Vec<String> = files.filter_map(|file| Some(file.strip_suffix(".xosc")?.to_owned())).collect();
+    stories.sort();
+    assert_eq!(stories, BUNDLED.map(|(name, _)| name));
 }

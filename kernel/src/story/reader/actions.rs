@@ -1,9 +1,10 @@
 //! What somebody does.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Position, Shape, Takes};
+use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Position, Takes};
 
 use super::document::Element;
+use super::dynamics::{SHAPES, dynamics};
 use super::names::Names;
 use super::{positions, signals, speeds, ticks};
 
@@ -96,17 +97,6 @@ pub fn global(action: Element<'_>, names: &Names<'_>) -> Result<(Doer, Action), 
         "EnvironmentAction" => Err(kind.wrong("<EnvironmentAction> is supported in <Init> only")),
         _ => Err(kind.unsupported()),
     }
-}
-
-const SHAPES: &[(&str, Shape)] =
-    &[("linear", Shape::Linear), ("cubic", Shape::Cubic), ("sinusoidal", Shape::Sinusoidal), ("step", Shape::Step)];
-
-/// How something changes.
-pub fn dynamics(element: Element<'_>) -> Result<Dynamics, StoryError> {
-    let shape = element.word("dynamicsShape", SHAPES)?;
-    let value = element.amount("value")?;
-    let takes = [("time", Takes::Time(value)), ("distance", Takes::Distance(value)), ("rate", Takes::Rate(value))];
-    Ok(Dynamics { shape, takes: element.word("dynamicsDimension", &takes)? })
 }
 
 fn lane_change(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {

@@ -5,6 +5,7 @@ mod catalogs;
 mod conditions;
 mod coverage;
 mod document;
+mod dynamics;
 mod entities;
 mod environment;
 mod names;

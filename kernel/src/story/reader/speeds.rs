@@ -5,8 +5,8 @@ use crate::story::script::{
     Action, Along, Gap, GapSide, GapWidth, Limits, Measure, Meeting, Position, SpeedProfile, SpeedTarget,
 };
 
-use super::actions::dynamics;
 use super::document::Element;
+use super::dynamics::dynamics;
 use super::names::Names;
 use super::positions;
 

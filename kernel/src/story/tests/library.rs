@@ -7,16 +7,6 @@ use crate::map::bundled;
 use crate::story::BUNDLED;
 
 #[test]
-#[allow(clippy::disallowed_methods, reason = "a test may read files")]
-fn every_file_of_the_folder_is_bundled() {
-    let folder = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/stories")).expect("it is there");
-    let files = folder.map(|entry| entry.expect("readable").file_name().into_string().expect("plain"));
-    let mut stories: Vec<String> = files.filter_map(|file| Some(file.strip_suffix(".xosc")?.to_owned())).collect();
-    stories.sort();
-    assert_eq!(stories, BUNDLED.map(|(name, _)| name));
-}
-
-#[test]
 fn bundled_stories_play_with_all_values_of_their_parameters() {
     for (name, text) in BUNDLED {
         let story = Story::read(text).unwrap_or_else(|error| panic!("{name}: {error}"));
