@@ -4,9 +4,9 @@ use crate::story::error::StoryError;
 use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Position, Takes};
 
 use super::document::Element;
-use super::dynamics::{SHAPES, dynamics};
+use super::dynamics::{SHAPES, dynamics, ticks};
 use super::names::Names;
-use super::{positions, signals, speeds, ticks};
+use super::{positions, signals, speeds};
 
 /// Most corners of a line, and most places of a route.
 const CORNERS: usize = 100_000;

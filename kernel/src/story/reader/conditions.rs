@@ -4,8 +4,9 @@ use crate::story::error::StoryError;
 use crate::story::script::{Along, Condition, Edge, ElementKind, ElementState, Measure, OfRole, Rule, Trigger, When};
 
 use super::document::Element;
+use super::dynamics::ticks;
 use super::names::Names;
-use super::{positions, signals, ticks};
+use super::{positions, signals};
 
 /// Most conditions of a trigger.
 const CONDITIONS: usize = 100;

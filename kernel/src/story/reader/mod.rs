@@ -22,7 +22,6 @@ pub use vary::{varied, with_shares};
 
 use super::error::StoryError;
 use super::script::Script;
-use crate::time::{TICK_HZ, Tick};
 use document::{Element, Shared};
 use names::Names;
 use storyboard::{Beginning, Board};
@@ -62,10 +61,4 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
     let Beginning { actions: init, lights, environment } = init;
     let script = Script { init, acts, stop, cast, lights, programmes, environment };
     Ok(Read { script, map, passed })
-}
-
-/// Seconds as ticks.
-fn ticks(seconds: f32) -> Tick {
-    // At most what a run can last.
-    (seconds.min(1e6) * TICK_HZ as f32 + 0.5) as Tick
 }

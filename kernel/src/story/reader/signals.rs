@@ -5,8 +5,8 @@ use crate::story::error::StoryError;
 use crate::story::script::{Action, Light, Programme, When};
 
 use super::document::Element;
+use super::dynamics::ticks;
 use super::names::Names;
-use super::ticks;
 
 /// Most programmes of a text, and most phases of one.
 const PROGRAMMES: usize = 200;
