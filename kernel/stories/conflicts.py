@@ -1,8 +1,9 @@
-"""The conflicts of the bundled stories: after the cases of Euro NCAP's test protocols (AEB C2C, AEB/LSS VRU), UN Regulation 157 and
+"""Provoked accidents: conflicts that end in a collision when the ego car drives on, and in none when somebody looks out; what varies
+from draw to draw are parameters with ranges. After the cases of Euro NCAP's test protocols (AEB C2C, AEB/LSS VRU), UN Regulation 157 and
 the paper's outlook, on roads of the bundled maps.
 """
 
-from author import (
+from openscenario import (
     Story,
     after,
     along,
@@ -26,7 +27,7 @@ from author import (
 VILLAGE = "1760"
 # The middle of the lane of whoever drives along the road's line.
 LANE_T = -1.75
-SIXTH_TURN, QUARTER_TURN, HALF_TURN = 1.0472, 1.5708, 3.14159
+QUARTER_TURN, HALF_TURN = 1.5708, 3.14159
 
 
 def village(name, about, s=40, mps=(11.0, 13.5), **ranges):
@@ -193,16 +194,15 @@ def leader_brakes():
 def oncoming_overtaker():
     story = village(
         "oncoming_overtaker",
-        "A car overtakes a cyclist that comes the other way, and is back in its lane late",
+        "A car that comes the other way overtakes a cyclist in the ego car's lane, and brakes late",
         mps=(11.5, 13.0),
         over_mps=(10.0, 12.0),
-        return_s=(-0.4, 0.0),
+        late_s=(-0.4, 0.0),
     )
     story.plays("Cyclist", "bicycle", on_lane(VILLAGE, 1, 250, -0.6), 4)
     story.plays("Car", "car", on_lane(VILLAGE, 1, 330), "$over_mps")
     story.does("Car", headway("Car", 8), lane_change(-1, 2.0), name="out")
-    # It brakes when it sees what it has done, and turns back behind the cyclist.
-    story.does("Car", headway("Car", "${2.9 + $return_s}"), speed(1.0, "linear", "rate", 6), name="late")
+    story.does("Car", headway("Car", "${2.9 + $late_s}"), speed(1.0, "linear", "rate", 6), name="late")
     return story
 
 

@@ -72,14 +72,7 @@ fn car_at(position: Vec3) -> Obstacle {
 
 fn drive(traffic: &mut Traffic, ego: Obstacle, ticks: Tick, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in 1..=ticks {
-        traffic.step(&Surroundings {
-            tick,
-            ego,
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, ego));
         each(traffic, tick);
     }
 }
@@ -151,14 +144,7 @@ fn falls_back_m(seed: u64, indicates: bool) -> f32 {
     let mut tick = 0;
     let mut step = |traffic: &mut Traffic, ego, ego_flags| {
         tick += 1;
-        traffic.step(&Surroundings {
-            tick,
-            ego,
-            ego_flags,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings { ego_flags, ..Surroundings::calm(tick, ego) });
     };
     while traffic.bodies()[0].velocity_mps.x < 8.0 || place(&traffic).x > 1000.0 {
         step(&mut traffic, car_at(FAR), 0);
@@ -245,7 +231,7 @@ fn swings_past_untouched(network: &Arc<RoadNetwork>, stands: Vec3, gap_m: f32, s
         }
         let conditions = Conditions::default();
         let ego = Obstacle { size_m, ..car_at(stands) };
-        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: coming.as_slice(), lights: &[], conditions });
+        traffic.step(&Surroundings { loose: coming.as_slice(), conditions, ..Surroundings::calm(tick, ego) });
         for (vehicle, body) in traffic.state().vehicles.iter().zip(traffic.bodies()) {
             let (way, their_half) = ((body.position - stands).truncate(), 0.5 * body.kind.size_m().truncate());
             let axis = (body.rotation * Vec3::X).truncate();

@@ -25,7 +25,7 @@ fn drive(network: &Arc<RoadNetwork>, counts: &TrafficCounts, weather: &Weather, 
     let ego = Obstacle { id: 0, position: FAR, heading_rad: 0.0, velocity_mps: Vec3::ZERO, size_m, on_foot: false };
     let conditions = Conditions::of(weather);
     for tick in 1..=ticks {
-        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], lights: &[], conditions });
+        traffic.step(&Surroundings { conditions, ..Surroundings::calm(tick, ego) });
         assert!(traffic.told().is_empty(), "tick {tick}: {:?}", traffic.told());
     }
     traffic
@@ -107,7 +107,7 @@ fn traffic_flows_in_a_downpour() {
         let conditions = Conditions::of(weather);
         let mut driven_m = 0.0;
         for tick in 1..=seconds(300) {
-            traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], lights: &[], conditions });
+            traffic.step(&Surroundings { conditions, ..Surroundings::calm(tick, ego) });
             let vehicles = traffic.bodies().iter().filter(|body| !body.kind.is_on_foot());
             driven_m += vehicles.map(|body| f64::from(body.velocity_mps.length())).sum::<f64>() / 60.0;
         }

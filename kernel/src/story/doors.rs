@@ -1,10 +1,9 @@
 //! Doors of those who play.
 
-use crate::actor::{ActorKind, FIRST_STORY_DOOR_ID};
-use crate::geometry::direction;
+use crate::actor::FIRST_STORY_DOOR_ID;
 use crate::ops;
 use crate::time::Tick;
-use crate::traffic::{Door, HINGE, OPEN_RAD};
+use crate::traffic::{Door, Hinge, OPEN_RAD};
 
 use super::actor::{self, DoorSwing, StoryActor};
 use super::script;
@@ -23,15 +22,12 @@ pub fn open(actor: &StoryActor, role: (usize, &script::Role), tick: Tick) -> Opt
     if shares[side] <= 0.0 {
         return None;
     }
-    let size_m = actor::size_m(role.1);
-    let (ahead, angle_rad) = (direction(actor.spot.heading_rad), OPEN_RAD * shares[side]);
-    let out = ahead.perp() * if side == 0 { 1.0 } else { -1.0 };
-    let hinge = ahead * (HINGE * size_m.x) + out * (0.5 * size_m.y);
-    let leaf = out * ops::sin(angle_rad) - ahead * ops::cos(angle_rad);
-    let middle = hinge + leaf * (0.5 * ActorKind::Door.size_m().x);
+    let (at, out) = (&actor.spot, if side == 0 { 1.0 } else { -1.0 });
+    let hinge = Hinge::of(at.position, at.heading_rad, actor::size_m(role.1), out);
+    let leaf = hinge.leaf(OPEN_RAD * shares[side]);
     Some(Door {
         id: FIRST_STORY_DOOR_ID + role.0 as u32,
-        position: actor.spot.position + middle.extend(0.0),
+        position: hinge.middle(leaf),
         heading_rad: ops::atan2(leaf.y, leaf.x),
         begins: actor.doors[side].since + 1 == tick && actor.doors[side].to > 0.0,
     })

@@ -8,6 +8,8 @@ use crate::ops;
 
 use super::spot::OnLane;
 
+/// Most lanes that a place ahead is looked for on.
+const AHEAD_LANES: usize = 500;
 /// Most lanes that a way is looked for over.
 const LOOKED_AT: usize = 20_000;
 
@@ -96,7 +98,8 @@ pub fn ahead_m(network: &RoadNetwork, from: OnLane, to: OnLane, route: &[LaneId]
         return None;
     }
     let (mut lane, mut route, mut way_m) = (from.lane, route, -from.s_m);
-    while way_m < within_m {
+    // So many lanes at most: some have next to no length.
+    for _ in 0..AHEAD_LANES {
         way_m += network.lanes[lane as usize].length_m;
         let (after, at_m) = next(network, lane, route)?;
         if route.first() == Some(&after) {
@@ -106,6 +109,9 @@ pub fn ahead_m(network: &RoadNetwork, from: OnLane, to: OnLane, route: &[LaneId]
             return Some(way_m + to.s_m - at_m);
         }
         (lane, way_m) = (after, way_m - at_m);
+        if way_m > within_m {
+            break;
+        }
     }
     None
 }

@@ -145,7 +145,9 @@ impl Stage {
             let deeds = deed(&actor.speed_by) && deed(&actor.side_by) && deed(&actor.way_by);
             let moves = [actor.spot.position, actor.velocity_mps].into_iter().all(|v| about(v.abs().max_element()));
             let place = moves && about(actor.speed_mps) && about(actor.travelled_m);
-            on && deeds && place && actor.route.iter().all(lane)
+            let doors =
+                actor.doors.iter().all(|door| [door.from, door.to].iter().all(|share| (0.0..=1.0).contains(share)));
+            on && deeds && place && doors && about(actor.ended_mps) && actor.route.iter().all(lane)
         };
         match state.actors.iter().position(|actor| !fits(actor)) {
             Some(role) => Err(format!("story.actors[{role}] is {:?}, expected a possible one", state.actors[role])),

@@ -42,6 +42,13 @@ pub struct Surroundings<'a> {
     pub conditions: Conditions,
 }
 
+impl Surroundings<'_> {
+    /// In dry weather, with an ego car that does nothing, and nobody and nothing held.
+    pub fn calm(tick: Tick, ego: Obstacle) -> Self {
+        Self { tick, ego, ego_flags: 0, loose: &[], lights: &[], conditions: Conditions::default() }
+    }
+}
+
 /// An actor as physics and pictures need it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {

@@ -21,7 +21,7 @@ const SWING_TICKS: Tick = seconds(1);
 /// Angle of a door that is fully open, radians: 65 degrees, the last detent of most.
 pub(crate) const OPEN_RAD: f32 = 1.134;
 /// From the middle of a car to the hinges of its front doors, as a share of its length.
-pub(crate) const HINGE: f32 = 0.2;
+const HINGE: f32 = 0.2;
 /// Roads at heights farther apart than this are not beside the car, metres.
 const LEVEL_M: f32 = 2.0;
 /// Slower than this somebody is let by with the door pulled to, m/s.
@@ -32,8 +32,15 @@ pub(super) const SLOW_MPS: f32 = 2.0;
 pub(super) struct DoorSpot {
     /// Number of the parked car.
     pub parked: u32,
-    hinge: Vec3,
-    /// From the hinge along the shut door, and away from the car.
+    /// Where it hangs.
+    pub hinge: Hinge,
+}
+
+/// Where a front door hangs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hinge {
+    position: Vec3,
+    /// From there along the shut door, and away from the car.
     shut: Vec2,
     out: Vec2,
 }
@@ -84,7 +91,7 @@ pub(super) fn door_spots(places: &Places) -> Vec<DoorSpot> {
     let spots = numbered.flat_map(|(car, parked)| [1.0, -1.0].map(|side| spot(car, parked, side)));
     let roads = places.roads();
     let in_lane = |spot: &DoorSpot| {
-        let edge = spot.hinge + spot.leaf(OPEN_RAD).extend(0.0) * ActorKind::Door.size_m().x;
+        let edge = spot.hinge.position + spot.hinge.leaf(OPEN_RAD).extend(0.0) * ActorKind::Door.size_m().x;
         roads.at(edge, LaneKind::Driving).iter().any(|place| {
             let lane = &places.map.lanes[place.lane as usize];
             lane.junction.is_none() && (lane.at(place.s_m).position.z - edge.z).abs() < LEVEL_M
@@ -97,13 +104,18 @@ pub(super) fn door_spots(places: &Places) -> Vec<DoorSpot> {
 }
 
 fn spot(car: &Prop, parked: u32, side: f32) -> DoorSpot {
-    let ahead = direction(car.heading_rad);
-    let out = ahead.perp() * side;
-    let hinge = car.position + (ahead * (HINGE * car.size.x) + out * (0.5 * car.size.y)).extend(0.0);
-    DoorSpot { parked, hinge, shut: -ahead, out }
+    DoorSpot { parked, hinge: Hinge::of(car.position, car.heading_rad, car.size, side) }
 }
 
-impl DoorSpot {
+impl Hinge {
+    /// That of a car's front door on the left (1) or on the right (-1).
+    pub fn of(position: Vec3, heading_rad: f32, size_m: Vec3, side: f32) -> Self {
+        let ahead = direction(heading_rad);
+        let out = ahead.perp() * side;
+        let position = position + (ahead * (HINGE * size_m.x) + out * (0.5 * size_m.y)).extend(0.0);
+        Self { position, shut: -ahead, out }
+    }
+
     /// Direction of the door that is open by an angle.
     pub fn leaf(&self, angle_rad: f32) -> Vec2 {
         self.shut * ops::cos(angle_rad) + self.out * ops::sin(angle_rad)
@@ -111,7 +123,7 @@ impl DoorSpot {
 
     /// Middle of the door then.
     pub fn middle(&self, leaf: Vec2) -> Vec3 {
-        self.hinge + (leaf * (0.5 * ActorKind::Door.size_m().x)).extend(0.0)
+        self.position + (leaf * (0.5 * ActorKind::Door.size_m().x)).extend(0.0)
     }
 }
 

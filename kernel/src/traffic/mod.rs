@@ -89,7 +89,7 @@ use passage::Told;
 
 pub use body::{Body, Obstacle, Surroundings};
 pub use counts::{Missing, TrafficCounts};
-pub(crate) use doors::{Door, HINGE, OPEN_RAD};
+pub(crate) use doors::{Door, Hinge, OPEN_RAD};
 pub use lapse::Lapse;
 pub use manoeuvre::Manoeuvre;
 pub use population::Population;

@@ -55,10 +55,10 @@ impl Actors {
     pub(super) fn door_hazards(&self, around: &Surroundings<'_>) -> impl Iterator<Item = Hazard> {
         let stays = |spot: &DoorSpot| !around.is_loose(FIRST_PARKED_ID + spot.parked);
         self.open_spots(around.tick).filter(move |(_, spot)| stays(spot)).map(|(_, spot)| {
-            let leaf = spot.leaf(OPEN_RAD);
+            let leaf = spot.hinge.leaf(OPEN_RAD);
             Hazard::of(&Obstacle {
                 id: FIRST_DOOR_ID + spot.parked,
-                position: spot.middle(leaf),
+                position: spot.hinge.middle(leaf),
                 heading_rad: ops::atan2(leaf.y, leaf.x),
                 velocity_mps: Vec3::ZERO,
                 size_m: ActorKind::Door.size_m(),
@@ -71,16 +71,16 @@ impl Actors {
     pub(super) fn open_doors(&self, tick: Tick, ego: Obstacle) -> impl Iterator<Item = Door> {
         self.open_spots(tick).filter_map(move |(opening, spot)| {
             let angle_rad = opening.angle_rad(tick);
-            let leaf = [1.0, 0.75, 0.5, 0.25].map(|share| spot.leaf(share * angle_rad));
+            let leaf = [1.0, 0.75, 0.5, 0.25].map(|share| spot.hinge.leaf(share * angle_rad));
             let leaf = leaf.into_iter().find(|leaf| self.has_room(spot, *leaf, &ego))?;
             let (id, begins) = (FIRST_DOOR_ID + spot.parked, tick == opening.ticks[0]);
-            Some(Door { id, position: spot.middle(leaf), heading_rad: ops::atan2(leaf.y, leaf.x), begins })
+            Some(Door { id, position: spot.hinge.middle(leaf), heading_rad: ops::atan2(leaf.y, leaf.x), begins })
         })
     }
 
     /// Whether a door meets nobody there who is beside it already.
     fn has_room(&self, spot: &DoorSpot, leaf: Vec2, ego: &Obstacle) -> bool {
-        let middle = spot.middle(leaf);
+        let middle = spot.hinge.middle(leaf);
         let ego_front_m = if ego.velocity_mps.length() < SLOW_MPS { 0.0 } else { FRONT_M };
         let near = |body: &&super::Body| body.position.distance_squared(middle) < BESIDE_M * BESIDE_M;
         let mut bodies = self.seen().iter().filter(near);

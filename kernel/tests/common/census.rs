@@ -11,7 +11,6 @@ use kernel::scene::ActorKind;
 use kernel::signals::{self, LightPhase};
 use kernel::time::{Tick, seconds};
 use kernel::traffic::{Body, HazardRates, Obstacle, Surroundings, Traffic, TrafficCounts, Vehicle};
-use kernel::weather::Conditions;
 
 /// Nobody may stand for so long but before a red light, or behind somebody who waits there.
 const STAND_S: u32 = 180;
@@ -118,14 +117,7 @@ impl Drive {
         traffic = traffic.with_hazards(&self.hazards);
         let mut watcher = Watcher::new(self, &traffic);
         for tick in 1..=seconds(60 * self.minutes) {
-            traffic.step(&Surroundings {
-                tick,
-                ego,
-                ego_flags: 0,
-                loose: &[],
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings::calm(tick, ego));
             watcher.look(&traffic, tick);
         }
         watcher.found

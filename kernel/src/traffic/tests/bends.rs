@@ -15,7 +15,7 @@ fn meet(network: &Arc<RoadNetwork>, [a, b]: [(u32, f32); 2], speeds_mps: [f32; 2
     let mut stood = 0;
     for tick in 1..=MINUTE {
         let conditions = Conditions::default();
-        traffic.step(&Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions });
+        traffic.step(&Surroundings { conditions, ..Surroundings::calm(tick, nowhere()) });
         let vehicles = &traffic.state().vehicles;
         assert_eq!(overlaps(&traffic), [], "{a:?} and {b:?}, tick {tick}: {vehicles:?}");
         stood += u32::from(vehicles.iter().any(|v| v.speed_mps == 0.0));

@@ -13,7 +13,6 @@ use crate::ops;
 use crate::signals::{LightPhase, phase};
 use crate::time::Tick;
 use crate::traffic::{Body, Obstacle, Surroundings, Vehicle};
-use crate::weather::Conditions;
 
 /// So many vehicles begin to drive a lane in some minutes beside an ego car, at ticks that count.
 fn enter(
@@ -26,14 +25,7 @@ fn enter(
     let mut traffic = start(network, 60, 3);
     let mut entered = BTreeSet::new();
     for tick in 1..minutes * MINUTE {
-        traffic.step(&Surroundings {
-            tick,
-            ego,
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, ego));
         let enters = |v: &&Vehicle| lanes.contains(&v.lane) && v.s_m < 2.0 && counts_at(tick);
         entered.extend(traffic.state().vehicles.iter().filter(enters).map(|v| (v.id, tick / 600)));
     }
@@ -83,14 +75,7 @@ fn goes_in(network: &Arc<RoadNetwork>, ego_at: impl Fn(Tick) -> Obstacle) -> Vec
     let car = &mut traffic.actors.state.vehicles[0];
     (car.s_m, car.flags) = (network.lanes[0].length_m - 6.0, Vehicle::GRANTED);
     let step = |tick| {
-        traffic.step(&Surroundings {
-            tick,
-            ego: ego_at(tick),
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, ego_at(tick)));
         traffic.bodies()[0]
     };
     (1..600).map(step).collect()

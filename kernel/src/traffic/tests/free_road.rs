@@ -7,7 +7,6 @@ use crate::map::{RoadNetwork, bake};
 use crate::time::Tick;
 use crate::traffic::traits::driver;
 use crate::traffic::{Population, Surroundings, Traffic, TrafficCounts};
-use crate::weather::Conditions;
 
 const LENGTH_M: f64 = 4000.0;
 const LIMIT_KMH: f64 = 100.0;
@@ -56,14 +55,7 @@ fn a_free_road_is_driven_as_the_model_says() {
         let ticks = 3 * MINUTE;
         let mut driven_m = 0.0;
         for tick in 1..=ticks {
-            traffic.step(&Surroundings {
-                tick,
-                ego: nowhere(),
-                ego_flags: 0,
-                loose: &[],
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings::calm(tick, nowhere()));
             driven_m += f64::from(traffic.state().vehicles[0].speed_mps) / 60.0;
         }
         let expected_m = expected_m(start.speed_mps, limit_mps.min(person.top_mps), person.accel_mps2, ticks);

@@ -31,14 +31,7 @@ pub(super) fn watch(
 ) {
     let mut sight = Sight::default();
     for tick in 1..=minutes * MINUTE {
-        let around = Surroundings {
-            tick,
-            ego: nowhere(),
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        };
+        let around = Surroundings::calm(tick, nowhere());
         sight.look(&traffic.actors, &around);
         before(&sight.view(&traffic.actors));
         traffic.step(&around);
@@ -255,10 +248,7 @@ fn nobody_halts_at_the_kerb_whose_way_there_ends_on_a_crosswalk() {
         traffic.actors.place_bodies();
         let mut sight = Sight::default();
         let conditions = Conditions::default();
-        sight.look(
-            &traffic.actors,
-            &Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions },
-        );
+        sight.look(&traffic.actors, &Surroundings { conditions, ..Surroundings::calm(60, nowhere()) });
         let view = sight.view(&traffic.actors);
         view.can_halt(&view.plans[0], &view.vehicles[0])
     };
@@ -309,7 +299,7 @@ fn doors_that_open_are_passed_and_hold_nobody_up_for_long() {
             if tick % 10 == 0 {
                 assert_eq!(overlaps(t), [], "tick {tick}");
                 let (ego, conditions) = (nowhere(), Conditions::default());
-                let around = Surroundings { tick, ego, ego_flags: 0, loose: &[], lights: &[], conditions };
+                let around = Surroundings { conditions, ..Surroundings::calm(tick, ego) };
                 open += t.actors.door_hazards(&around).count();
                 wide += t.open_doors(tick, nowhere()).count();
             }

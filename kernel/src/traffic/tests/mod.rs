@@ -54,14 +54,7 @@ fn start(network: &Arc<RoadNetwork>, actors: u16, seed: u64) -> Traffic {
 
 fn run(traffic: &mut Traffic, ticks: std::ops::Range<Tick>, mut each: impl FnMut(&Traffic, Tick)) {
     for tick in ticks {
-        traffic.step(&Surroundings {
-            tick,
-            ego: nowhere(),
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, nowhere()));
         each(traffic, tick);
     }
 }
@@ -278,14 +271,7 @@ fn vehicles_stop_behind_whatever_stands_in_their_lane() {
         let loose = [there];
         for tick in 1..1200 {
             let (ego, loose) = if ego { (there, &loose[..0]) } else { (nowhere(), &loose[..]) };
-            traffic.step(&Surroundings {
-                tick,
-                ego,
-                ego_flags: 0,
-                loose,
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings { loose, ..Surroundings::calm(tick, ego) });
         }
         let vehicle = traffic.actors.state.vehicles[0];
         let gap_m = 120.0 - vehicle.s_m - 2.25;
@@ -303,14 +289,7 @@ fn who_stands_without_a_reason_is_told_and_then_taken_off_the_road() {
         let mut traffic = lone_car(&network);
         let mut told = Vec::new();
         for tick in 1..4 * MINUTE {
-            traffic.step(&Surroundings {
-                tick,
-                ego,
-                ego_flags: 0,
-                loose,
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings { loose, ..Surroundings::calm(tick, ego) });
             told.extend(traffic.told().iter().map(|(kind, id)| (*kind, *id, tick / 60)));
         }
         let id = u32::from(traffic.state().vehicles[0].id);
@@ -338,7 +317,7 @@ fn who_stands_is_told_once() {
         actors.state.vehicles[0] = Vehicle { stuck_s: now_s, ..vehicle };
         let before = [Vehicle { stuck_s: before_s, ..vehicle }];
         let conditions = Conditions::default();
-        let around = Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions };
+        let around = Surroundings { conditions, ..Surroundings::calm(60, nowhere()) };
         actors.return_to_map(&before, &around, &mut told);
         told.len()
     };
@@ -355,10 +334,7 @@ fn who_waits_long_for_room_counts_in_every_tick() {
     let mut sight = look::Sight::default();
     for tick in 1..4 {
         let conditions = Conditions::default();
-        sight.look(
-            &traffic.actors,
-            &Surroundings { tick, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions },
-        );
+        sight.look(&traffic.actors, &Surroundings { conditions, ..Surroundings::calm(tick, nowhere()) });
         assert!(sight.view(&traffic.actors).plans[0].line.is_some(), "tick {tick}");
     }
 }
@@ -409,10 +385,7 @@ fn a_junction_of_many_sections_has_its_line() {
         actors.place_bodies();
         let mut sight = look::Sight::default();
         let conditions = Conditions::default();
-        sight.look(
-            &actors,
-            &Surroundings { tick: 60, ego: nowhere(), ego_flags: 0, loose: &[], lights: &[], conditions },
-        );
+        sight.look(&actors, &Surroundings { conditions, ..Surroundings::calm(60, nowhere()) });
         let line = sight.view(&actors).plans[0].line.expect("it has one");
         assert_eq!(line.inside, (1, 1 + sections.min(255)), "{sections}");
     }
@@ -444,14 +417,7 @@ fn vehicles_pass_what_stands_beside_their_lane() {
     let mut traffic = lone_car(&network);
     let beside = network.lanes[0].points[60].position + Vec3::Y * 3.5;
     for tick in 1..1200 {
-        traffic.step(&Surroundings {
-            tick,
-            ego: car_at(beside, 0.0),
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, car_at(beside, 0.0)));
     }
     assert!(traffic.actors.state.vehicles[0].lane != 0, "{:?}", traffic.actors.state.vehicles[0]);
 }
@@ -464,14 +430,7 @@ fn vehicles_pass_within_their_lane_whatever_leaves_room_there() {
         let mut traffic = lone_car(&network);
         let beside = network.lanes[0].points[60].position + Vec3::Y * aside_m;
         for tick in 1..1800 {
-            traffic.step(&Surroundings {
-                tick,
-                ego: car_at(beside, 0.0),
-                ego_flags: 0,
-                loose: &[],
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings::calm(tick, car_at(beside, 0.0)));
         }
         let vehicle = traffic.actors.state.vehicles[0];
         assert!(vehicle.lane != 0 || vehicle.s_m > 130.0, "{aside_m} m aside: {vehicle:?}");
@@ -497,14 +456,7 @@ fn who_waits_at_an_open_line_hears_the_horn_of_the_car_behind() {
             let after = |ego_flags: u8| {
                 let mut fork = traffic.clone();
                 for tick in tick..tick + Tick::from(DECIDE_TICKS) {
-                    fork.step(&Surroundings {
-                        tick,
-                        ego,
-                        ego_flags,
-                        loose: &[],
-                        lights: &[],
-                        conditions: Conditions::default(),
-                    });
+                    fork.step(&Surroundings { ego_flags, ..Surroundings::calm(tick, ego) });
                 }
                 fork.state().vehicles.iter().find(|v| v.id == id).map_or(0, |v| v.wait_ticks)
             };
@@ -512,14 +464,7 @@ fn who_waits_at_an_open_line_hears_the_horn_of_the_car_behind() {
             assert!(silent < 62 && (honked == 0 || honked > 240), "{silent} {honked}");
             heard += usize::from(honked > 240);
         }
-        traffic.step(&Surroundings {
-            tick,
-            ego: nowhere(),
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, nowhere()));
     }
     assert!(heard > 3, "{heard}");
 }
@@ -537,14 +482,7 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             let goes = |ego_flags: u8| {
                 let mut fork = traffic.clone();
                 for tick in tick..tick + 600 {
-                    fork.step(&Surroundings {
-                        tick,
-                        ego,
-                        ego_flags,
-                        loose: &[],
-                        lights: &[],
-                        conditions: Conditions::default(),
-                    });
+                    fork.step(&Surroundings { ego_flags, ..Surroundings::calm(tick, ego) });
                     let walker = fork.state().walkers.iter().find(|w| w.id == id).expect("it is there");
                     let edge = &network.walk_edges[walker.edge as usize];
                     if walker.mode != WalkerMode::Wait && edge.crosswalk.is_some() {
@@ -557,14 +495,7 @@ fn who_is_about_to_step_before_the_car_waits_at_the_horn() {
             gone += usize::from(goes(0));
             assert!(!goes(Controls::HORN), "walker {id} at tick {tick}");
         }
-        traffic.step(&Surroundings {
-            tick,
-            ego: nowhere(),
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, nowhere()));
     }
     assert!(asked > 20 && gone > 5, "{gone} of {asked}");
 }
@@ -577,14 +508,7 @@ fn loose_actors_keep_their_state() {
     let lie = |id: u16| Obstacle { id: u32::from(id), ..car_at(Vec3::new(0.0, 300.0, 0.0), 0.0) };
     let loose = [lie(vehicle.id), lie(walker.id)];
     for tick in 1..600 {
-        traffic.step(&Surroundings {
-            tick,
-            ego: nowhere(),
-            ego_flags: 0,
-            loose: &loose,
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings { loose: &loose, ..Surroundings::calm(tick, nowhere()) });
     }
     assert_eq!((traffic.actors.state.vehicles[2], traffic.actors.state.walkers[2]), (vehicle, walker));
 }

@@ -17,7 +17,6 @@ use crate::traffic::{
     Body, Lapse, Obstacle, Surroundings, Traffic, TrafficCounts, TrafficState, Vehicle, Walker, WalkerMode, cover,
     jaywalk,
 };
-use crate::weather::Conditions;
 
 /// So many people on foot and little traffic.
 fn with_people(network: &Arc<RoadNetwork>, pedestrians: u16, seed: u64) -> Traffic {
@@ -123,14 +122,7 @@ fn who_crosses_close_before_a_car_gets_past_it() {
     let mut traffic = Traffic::with(&counts(1), 2101, network.ways(), state);
     let ego = car_at(car, crate::ops::atan2(left.y, left.x));
     for tick in 1..10 * 60 {
-        traffic.step(&Surroundings {
-            tick,
-            ego,
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, ego));
     }
     let away_m = traffic.bodies()[0].position.distance(place.beside(offset_m));
     assert!(away_m > 4.0, "{away_m} m: {:?}", traffic.state().walkers[0]);
@@ -160,14 +152,7 @@ fn who_stands_with_a_pram_half_off_the_kerb_looks_before_it_goes_on() {
         let is_of_kind = |traffic: &Traffic| traffic.bodies()[0].kind == kind;
         let mut traffic = (100..1000).map(alone).find(is_of_kind).expect("there is one");
         let ego = behind(traffic.bodies()[0].position, Vec3::Y, 8.0);
-        traffic.step(&Surroundings {
-            tick: 1,
-            ego,
-            ego_flags,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings { ego_flags, ..Surroundings::calm(1, ego) });
         traffic.state().walkers[0].speed_mps
     };
     assert!(speed_mps(ActorKind::Pram, 0) > 0.0, "nothing comes");
@@ -328,14 +313,7 @@ fn a_jaywalker_beside_a_bend_gets_round_what_stands_before_it() {
         let mut traffic = Traffic::with(&counts(1), 2101, network.ways(), state);
         let from = traffic.bodies()[0].position;
         for tick in 1..40 * 60 {
-            traffic.step(&Surroundings {
-                tick,
-                ego,
-                ego_flags: 0,
-                loose: &[],
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings::calm(tick, ego));
         }
         let away_m = traffic.bodies()[0].position.distance(from);
         assert!(away_m > 3.0, "{away_m} m: {walker:?} is {:?}", traffic.state().walkers[0]);
@@ -364,14 +342,7 @@ fn prams_on_the_pavement_turn_into_nothing_that_stands_there() {
         let ego = Obstacle { heading_rad: crate::ops::atan2(place.forward.y, place.forward.x), ..ego };
         let bus = Hazard::of_body(&Body { kind: ActorKind::Bus, ..body_of(&ego) });
         for tick in 120..600 {
-            traffic.step(&Surroundings {
-                tick,
-                ego,
-                ego_flags: 0,
-                loose: &[],
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings::calm(tick, ego));
             let outline = Outline::of(&traffic.bodies()[0]);
             let off_m = bus.nearest_from_any(outline.places()).length() - outline.radius_m;
             assert!(off_m > 0.0, "{beside_m} m beside it, tick {tick}: {off_m} m, {:?}", traffic.state().walkers[0]);

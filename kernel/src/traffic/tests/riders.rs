@@ -14,7 +14,6 @@ use crate::state::State;
 use crate::time::{Tick, seconds};
 use crate::traffic::outline::half_m;
 use crate::traffic::{Body, Lapse, Obstacle, Surroundings, Traffic, TrafficState, Walker, WalkerMode};
-use crate::weather::Conditions;
 
 /// Radius of a person, metres.
 const PERSON_M: f32 = 0.2;
@@ -150,14 +149,7 @@ fn who_rides_in_a_bus_that_comes_to_no_stop_is_set_down_at_last() {
     for loose in [&[][..], &[lies]] {
         let mut traffic = Traffic::with(&counts, 5, network.ways(), state.clone());
         for tick in 1..11 * MINUTE {
-            let around = Surroundings {
-                tick,
-                ego: nowhere(),
-                ego_flags: 0,
-                loose,
-                lights: &[],
-                conditions: Conditions::default(),
-            };
+            let around = Surroundings { loose, ..Surroundings::calm(tick, nowhere()) };
             traffic.step(&around);
             let walker = traffic.state().walkers[0];
             assert_eq!(walker.rides(), body(&traffic, walker.id).is_none());

@@ -40,7 +40,7 @@ fn least_m_to(ego: Obstacle, network: &Arc<RoadNetwork>, seed: u64) -> Option<f3
     let mut least_m = f32::MAX;
     for tick in 1..=3 * MINUTE {
         let conditions = Conditions::default();
-        traffic.step(&Surroundings { tick, ego, ego_flags: 0, loose: &[], lights: &[], conditions });
+        traffic.step(&Surroundings { conditions, ..Surroundings::calm(tick, ego) });
         let vehicles = &traffic.bodies()[..traffic.state().vehicles.len()];
         let near = |b: &&Body| b.position.distance_squared(ego.position) < 169.0;
         if vehicles.iter().filter(near).any(|body| boxes_meet(body, &car)) {
@@ -80,7 +80,7 @@ fn who_passes_beside_the_pavement_stays_on_the_road() {
         let stands = car_at(network.lanes[0].points[42].position - Vec3::Y * left_m, 0.0);
         for tick in 1..600 {
             let conditions = Conditions::default();
-            traffic.step(&Surroundings { tick, ego: stands, ego_flags: 0, loose: &[], lights: &[], conditions });
+            traffic.step(&Surroundings { conditions, ..Surroundings::calm(tick, stands) });
             let car = &traffic.state().vehicles[0];
             let border_m = network.lanes[car.lane as usize].at(car.s_m).half_width_m;
             let over_m = car.kind.size_m().y * 0.5 - car.offset_m - border_m;
@@ -129,14 +129,7 @@ fn turn_beside_a_post(network: &Arc<RoadNetwork>, lane: u32, before: u32, outer:
     let post = Obstacle { id: 0, position: place, heading_rad, velocity_mps: Vec3::ZERO, size_m, on_foot: false };
     let from = body.position;
     for tick in 1..=600 {
-        traffic.step(&Surroundings {
-            tick,
-            ego: post,
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, post));
         let body = &traffic.bodies()[0];
         let local = (body.rotation.inverse() * (place - body.position)).abs();
         if local.x < half.x + POST_M * 0.5 && local.y < half.y + POST_M * 0.5 {
@@ -170,14 +163,7 @@ fn who_waits_for_room_behind_a_junction_has_the_reason_of_the_queue_there() {
         let mut traffic =
             with_vehicles(&network, vec![Vehicle { trips, ..on(1, before, waits_at_m) }, on(2, beyond, 3.0)]);
         for tick in 1..=10 * 60 {
-            traffic.step(&Surroundings {
-                tick,
-                ego,
-                ego_flags: 0,
-                loose: &loose,
-                lights: &[],
-                conditions: Conditions::default(),
-            });
+            traffic.step(&Surroundings { loose: &loose, ..Surroundings::calm(tick, ego) });
         }
         let waits = traffic.state().vehicles[0];
         if waits.lane == before && waits.wait_ticks > 5 * 60 {
@@ -215,14 +201,7 @@ fn rolls_on_m(network: &Arc<RoadNetwork>, lane: u32, trips: u16) -> Option<f32> 
     let place = lanes[across as usize].straight_on(s_m + 5.0);
     let ego = car_at(place.position, crate::ops::atan2(place.forward.y, place.forward.x));
     for tick in 1..=5 * 60 {
-        traffic.step(&Surroundings {
-            tick,
-            ego,
-            ego_flags: 0,
-            loose: &[],
-            lights: &[],
-            conditions: Conditions::default(),
-        });
+        traffic.step(&Surroundings::calm(tick, ego));
     }
     let now = traffic.state().vehicles[0];
     (now.lane == lane && now.flags & Vehicle::GRANTED == 0).then_some(now.s_m - rolls.s_m)

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::film::Viewpoint;
 use kernel::time::Tick;
+use measures::footage::Asked;
 use serde::Serialize;
 
 use super::film::Counts;
@@ -54,4 +55,11 @@ pub struct Options {
     pub jobs: Option<u16>,
     /// File of the export, with its layout for viewers beside it; or a folder, for several files.
     pub out: PathBuf,
+}
+
+impl Options {
+    /// The window that is asked for.
+    pub fn asked(&self) -> Asked {
+        Asked { last: self.last, from: self.from, to: self.to, fps: self.fps }
+    }
 }

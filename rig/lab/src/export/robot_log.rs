@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use base::output::PendingFile;
 use base::progress::Interrupt;
-use measures::footage::{Asked, Window};
+use measures::footage::Window;
 use replay::{Exported, Recording, exported};
 
 use super::about::{about, origin};
@@ -27,7 +27,7 @@ pub fn export(
         bail!("{}: exists already and is no export; expected another place", out.display());
     }
     let (log, network) = (recording.log(), recording.network()?);
-    let window = Window::of(log, &Asked { last: args.last, from: args.from, to: args.to, fps: args.fps })?;
+    let window = Window::of(log, &args.asked())?;
     let mut about = about(recording, &window, (args, size), camera.eyes);
     about.extend(origin(&network));
     let counts = Counts::of(log, &window);

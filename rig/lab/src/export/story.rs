@@ -46,7 +46,7 @@ struct Track {
 pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) -> anyhow::Result<Export> {
     let recording = Recording::open(file)?;
     let (log, network) = (recording.log(), recording.network()?);
-    let asked = Asked { last: args.last, from: args.from, to: args.to, fps: TICK_HZ };
+    let asked = Asked { fps: TICK_HZ, ..args.asked() };
     let window = Window::of(log, &asked)?;
     let (from, to) = window.ticks.clone().into_inner();
     let ticks: Vec<Tick> = window.ticks.clone().collect();

@@ -11,7 +11,6 @@ use anyhow::{Context, bail};
 use base::output;
 use base::progress::Interrupt;
 use drivers::vision::Eye;
-use measures::footage::Asked;
 use render::{Frame, tags};
 
 use self::encoder::Encoder;
@@ -39,8 +38,7 @@ pub fn export(
     interrupt: &Interrupt,
 ) -> anyhow::Result<Export> {
     let stage = Arc::new(Stage::open(file, screen.workshop)?);
-    let asked = Asked { last: args.last, from: args.from, to: args.to, fps: args.fps };
-    let shots = Shots::of_window(&stage, &asked, args.camera, screen.size)?;
+    let shots = Shots::of_window(&stage, &args.asked(), args.camera, screen.size)?;
     let (Some(&from), Some(&to)) = (shots.ticks().first(), shots.ticks().last()) else {
         bail!("no picture falls into the window; expected a longer one, or more pictures a second");
     };

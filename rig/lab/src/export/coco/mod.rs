@@ -13,7 +13,7 @@ use base::output::PendingFolder;
 use base::png;
 use base::progress::Interrupt;
 use kernel::time::Tick;
-use measures::footage::{self, Asked, Window};
+use measures::footage::{self, Window};
 use render::Frame;
 use replay::Recording;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,7 @@ pub fn export(
 ) -> anyhow::Result<Export> {
     let recording = Recording::open(file)?;
     let (log, network) = (recording.log(), recording.network()?);
-    let window = Window::of(log, &Asked { last: args.last, from: args.from, to: args.to, fps: args.fps })?;
+    let window = Window::of(log, &args.asked())?;
     let ticks: Vec<Tick> = window.pictures().collect();
     let (Some(&from), Some(&to)) = (ticks.first(), ticks.last()) else {
         bail!("no picture falls into the window; expected a longer one, or more pictures a second");

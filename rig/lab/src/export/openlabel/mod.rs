@@ -15,7 +15,7 @@ use base::progress::Interrupt;
 use kernel::RoadNetwork;
 use kernel::scene::Weather;
 use kernel::time::Tick;
-use measures::footage::{self, Asked, Window};
+use measures::footage::{self, Window};
 use render::Camera;
 use render::camera::OPTICAL;
 use replay::{Log, Recording};
@@ -44,7 +44,7 @@ pub fn export(
 ) -> anyhow::Result<Export> {
     let recording = Recording::open(file)?;
     let (log, network) = (recording.log(), recording.network()?);
-    let window = Window::of(log, &Asked { last: args.last, from: args.from, to: args.to, fps: args.fps })?;
+    let window = Window::of(log, &args.asked())?;
     let ticks: Vec<Tick> = window.pictures().collect();
     let (Some(&from), Some(&to)) = (ticks.first(), ticks.last()) else {
         bail!("no frame falls into the window; expected a longer one, or more frames a second");

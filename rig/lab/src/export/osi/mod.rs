@@ -24,7 +24,7 @@ use base::progress::Interrupt;
 use kernel::RoadNetwork;
 use kernel::map::bundled_text;
 use kernel::time::Tick;
-use measures::footage::{self, Asked, Window};
+use measures::footage::{self, Window};
 use prost::Message;
 use replay::{Exported, Exporter, Log, Recording, exported};
 
@@ -41,7 +41,7 @@ pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) 
     }
     let recording = Recording::open(file)?;
     let (log, network) = (recording.log(), recording.network()?);
-    let window = Window::of(log, &Asked { last: args.last, from: args.from, to: args.to, fps: args.fps })?;
+    let window = Window::of(log, &args.asked())?;
     let ticks: Vec<Tick> = window.pictures().collect();
     let (Some(&from), Some(&to)) = (ticks.first(), ticks.last()) else {
         bail!("no message falls into the window; expected a longer one, or a higher --fps");

@@ -18,7 +18,7 @@ use drivers::vision::Eye;
 use kernel::RoadNetwork;
 use kernel::scene::SceneSnapshot;
 use kernel::time::Tick;
-use measures::footage::{self, Asked, Window};
+use measures::footage::{self, Window};
 use replay::{Exported, Recording, exported, nanoseconds};
 
 use self::bag::{Bag, Durability, MESSAGES, Topic};
@@ -40,7 +40,7 @@ pub fn export(
 ) -> anyhow::Result<Export> {
     let recording = Recording::open(file)?;
     let (log, network) = (recording.log(), recording.network()?);
-    let window = Window::of(log, &Asked { last: args.last, from: args.from, to: args.to, fps: args.fps })?;
+    let window = Window::of(log, &args.asked())?;
     let mut about = about(&recording, &window, (args, size), camera.eyes);
     about.extend(origin(&network));
     let (from, to) = window.ticks.clone().into_inner();
