@@ -311,15 +311,17 @@ def wrong_way_driver():
     return story.does("Car", headway("Car", "${2 * $sees_s}"), speed(0, "linear", "rate", 7))
 
 
-def crossing(name, about, ego, own_mps, who, kind, begins, at, straight_m, way=None, **ranges):
-    """A conflict in a junction of the city: somebody is timed to be at a place when the ego car is, up to some 3 s before."""
+def crossing(name, about, ego, own_mps, who, kind, begins, at, straight_m, way, mps=None, **ranges):
+    """A conflict in a junction of the city: somebody is timed to be at a place when the ego car is, and after some metres goes on as
+    fast as it is then, or with a speed of its own."""
     story = Story(name, "city", about, ego_mps=(10.0, 12.0), run_mps=own_mps, **ranges)
-    story.ego(*ego, "$ego_mps", *([route(on_lane(*ego), way)] if way else []))
+    story.ego(*ego, "$ego_mps", route(on_lane(*ego), way))
     story.plays(who, kind, begins, "$run_mps")
     x, y, theirs, own = at
     own_place = own if isinstance(own, str) else world(x, y, own)
     story.does(who, at_once(), meets("Ego", world(f"${{{x} + $off_m}}", y, theirs), own_place, "$run_mps"))
-    return story.does(who, travelled(straight_m, who), speed("$run_mps", "linear", "rate", 3))
+    then = speed(mps, "linear", "rate", 3) if mps else as_fast_as(who, 0, False)
+    return story.does(who, travelled(straight_m, who), then)
 
 
 def red_light_runner():
@@ -351,7 +353,7 @@ def stop_sign_runner():
         "van",
         on_lane("11", -1, 30),
         (143.6, 126.25, 0, QUARTER_TURN),
-        86,
+        74,
         way=on_lane("12", -1, 40),
         off_m=(-1.0, 2.0),
     )
@@ -367,7 +369,7 @@ def turns_left_across():
         "car",
         on_lane("12", 1, 55),
         (143.5, 126.25, 0, -2.2),
-        57,
+        61,
         way=on_lane("12", -1, 40),
         off_m=(-1.0, 2.0),
     )
@@ -388,6 +390,7 @@ def cyclist_at_the_right_turn():
         (129, 251.1, 0, world(126.5, 248, 0)),
         62,
         way=on_lane("13", 1, 50),
+        mps="$run_mps",
         off_m=(-1.0, 1.0),
     )
     for signal in ("140", "134"):
