@@ -1,6 +1,6 @@
 """Provoked accidents: conflicts that end in a collision when the ego car drives on, and in none when somebody looks out; what varies
-from draw to draw are parameters with ranges. After the cases of Euro NCAP's test protocols (AEB C2C, AEB/LSS VRU), UN Regulation 157 and
-the paper's outlook, on roads of the bundled maps.
+from draw to draw are parameters with ranges. After the cases of Euro NCAP's test protocols (AEB C2C, AEB/LSS VRU) and UN Regulation 157,
+on roads of the bundled maps.
 """
 
 from openscenario import (

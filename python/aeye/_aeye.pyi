@@ -495,7 +495,7 @@ def campaign(
     parameters of the scenario's story that have ranges. A run takes at most `max_time` simulated seconds.
     `jobs` worlds are simulated at the same time (None: one a core); the results do not depend on it.
 
-    With `shard`, (i, n), it drives every n-th run alone, up to `runs`, into a folder for `collect`, and gives what `aeye
+    With `shard`, (i, n), it drives every n-th run alone, up to `runs` or `vary`, into a folder for `collect`, and gives what `aeye
     campaign --shard --json` prints.
 
     Raises InputError for a value that cannot be, FileError where a file is not there or cannot be written,

@@ -21,7 +21,12 @@ Checkpoints = StrPath | External | list[StrPath | External]
 # The file of a shard's folder that says what it is. It is written last, so that a folder with it is whole.
 _WHOLE = "shard.json"
 
-_MAP = re.compile(r'^\s*map\s*=\s*["\'](.+\.xodr)["\']', re.IGNORECASE | re.MULTILINE)
+# How a scenario names its map, and a story its map and the folders of its catalogs.
+_MAP = re.compile(
+    r"""^\s*map\s*=\s*["'](.+\.xodr)["']|<LogicFile\s[^>]*filepath\s*=\s*["']([^"']+)["']""",
+    re.IGNORECASE | re.MULTILINE,
+)
+_CATALOGS = re.compile(r"""<Directory\s[^>]*path\s*=\s*["']([^"']+)["']""")
 
 
 @dataclass(frozen=True)
@@ -83,13 +88,22 @@ def _packed(path: Any, place: str, files: dict[str, bytes]) -> Any:
 
 
 def _packed_scenario(path: Path, files: dict[str, bytes]) -> Any:
-    """The same for a scenario; a map that it names is looked for beside it."""
+    """The same for a scenario or story; a map and catalogs that it names are looked for beside it."""
+    if not path.suffix and len(path.parts) == 1:
+        return str(path)
     place = _packed(path.absolute(), "scenario", files)
-    for name in _MAP.findall(files[place].decode(errors="replace")):
-        beside = path.parent / name
-        if beside.is_file() and ".." not in PurePath(name).parts and not PurePath(name).is_absolute():
-            files[f"scenario/{name}"] = read(beside)
+    text = files[place].decode(errors="replace")
+    beside = [path.parent / name for pair in _MAP.findall(text) for name in pair if _is_below(name)]
+    for name in filter(_is_below, _CATALOGS.findall(text)):
+        beside += sorted((path.parent / name).glob("*.xosc"))
+    for each in filter(Path.is_file, beside):
+        files[f"scenario/{each.relative_to(path.parent)}"] = read(each)
     return place
+
+
+def _is_below(name: str) -> bool:
+    """Whether something with such a path lies below the folder that it counts from."""
+    return bool(name) and ".." not in PurePath(name).parts and not PurePath(name).is_absolute()
 
 
 def read(path: Path) -> bytes:

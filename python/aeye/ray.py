@@ -41,7 +41,8 @@ def campaign(
     checkpoint: Checkpoints,
     out: StrPath,
     *,
-    runs: int,
+    runs: int | None = None,
+    vary: int | None = None,
     shards: int | None = None,
     address: str | None = None,
     km: float | None = None,
@@ -62,11 +63,11 @@ def campaign(
 ) -> dict[str, Any]:
     """Does what `aeye.campaign` does with the same arguments, on the machines of a Ray cluster.
 
-    `runs` are driven in `shards` (None: one for each run, 256 at most), a task each, which takes `cores` CPUs, on which it
-    simulates as many worlds, and `gpus` GPUs to draw with. At most `in_flight` tasks are handed to Ray at the same time
-    (None: twice as many as it has room for). `address` is that of a cluster (None: the one that this process is connected
-    to, that of `RAY_ADDRESS`, one that runs on this machine, or else one that is started here and ends with the call). Checkpoints,
-    maps and the scenario are read here and travel along.
+    `runs`, or `vary` of a story, of which one must be given, are driven in `shards` (None: one for each run, 256 at most), a
+    task each, which takes `cores` CPUs, on which it simulates as many worlds, and `gpus` GPUs to draw with. At most
+    `in_flight` tasks are handed to Ray at the same time (None: twice as many as it has room for). `address` is that of a
+    cluster (None: the one that this process is connected to, that of `RAY_ADDRESS`, one that runs on this machine, or else one
+    that is started here and ends with the call). Checkpoints, maps and the scenario are read here and travel along.
 
     A task whose worker or machine is lost, or had no room on its disk, is tried again up to `retries` times. Shards that are done
     come to the folder `OUT.shards`; Ctrl-C ends the call, and the same call drives only what is missing there. That folder may
@@ -75,12 +76,16 @@ def campaign(
 
     Raises what `aeye.campaign` raises, and EngineError where a shard is lost as often as it may be.
     """
-    for name, value in (("runs", runs), ("shards", shards), ("cores", cores), ("in_flight", in_flight)):
+    count = runs if vary is None else vary
+    if count is None or (runs is not None and vary is not None):
+        raise InputError(f"runs={runs}, vary={vary}; expected one of them")
+    for name, value in (("runs", runs), ("vary", vary), ("shards", shards), ("cores", cores), ("in_flight", in_flight)):
         if value is not None and value < 1:
             raise InputError(f"{name}={value}; expected 1 or more")
     arguments = {
         "checkpoint": checkpoint,
         "runs": runs,
+        "vary": vary,
         "km": km,
         "cases": cases,
         "pedestrian_cases": pedestrian_cases,
@@ -93,7 +98,7 @@ def campaign(
         "seed": seed,
     }
     shipped = Shipped.pack(arguments)
-    of = shards or min(runs, _SHARDS)
+    of = shards or min(count, _SHARDS)
     folder = Path(f"{Path(out)}.shards")
     _keep_request({"shards": of, **shipped.identity()}, folder)
     done = {i for i in range(1, of + 1) if is_whole(folder / str(i))}

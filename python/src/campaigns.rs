@@ -23,7 +23,7 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 /// takes at most `max_time` simulated seconds. `jobs` worlds are simulated at the same time (None: one a core); the
 /// results do not depend on it.
 ///
-/// With `shard`, (i, n), it drives every n-th run alone, up to `runs`, into a folder for `collect`, and gives what `aeye
+/// With `shard`, (i, n), it drives every n-th run alone, up to `runs` or `vary`, into a folder for `collect`, and gives what `aeye
 /// campaign --shard --json` prints.
 ///
 /// Raises InputError for a value that cannot be, FileError where a file is not there or cannot be written,
@@ -85,8 +85,8 @@ pub fn campaign<'py>(
         jobs: jobs_at_once(jobs)?,
         out,
     };
-    if shard.is_some() && runs.is_none() {
-        return Err(input("a shard without runs; expected the number up to which all shards drive".to_owned()));
+    if shard.is_some() && runs.or(vary).is_none() {
+        return Err(input("a shard without runs or vary; expected the number up to which all shards drive".to_owned()));
     }
     match share(shard)? {
         Some(share) => {

@@ -62,7 +62,7 @@ def test_no_such_shard(shard, tmp_path):
 
 
 def test_shards_need_an_end(tmp_path):
-    with pytest.raises(aeye.InputError, match="a shard without runs"):
+    with pytest.raises(aeye.InputError, match="a shard without runs or vary"):
         aeye.campaign("truth", tmp_path / "out", shard=(1, 2), km=1.0)
 
 
@@ -82,6 +82,17 @@ def test_files_travel_and_names_stay(tmp_path):
         assert (here["scenario"].parent / "maps" / "street.xodr").read_text() == "maps/street.xodr"
         assert not out.exists()
     assert not out.parent.exists()
+
+
+def test_a_story_travels_with_its_map_and_catalogs_and_a_bundled_one_is_a_name(tmp_path):
+    (tmp_path / "catalogs").mkdir()
+    for name in ("catalogs/cars.xosc", "street.xodr", "other.xodr"):
+        (tmp_path / name).write_text(name)
+    story = '<Directory path="catalogs"/><LogicFile filepath="street.xodr"/><LogicFile filepath="../street.xodr"/>'
+    (tmp_path / "cut.xosc").write_text(story)
+    packed = Shipped.pack({**NOTHING, "scenario": tmp_path / "cut.xosc"})
+    assert set(packed.files) == {"scenario/cut.xosc", "scenario/catalogs/cars.xosc", "scenario/street.xodr"}
+    assert Shipped.pack({**NOTHING, "scenario": "cut_out"}).arguments["scenario"] == "cut_out"
 
 
 def test_what_a_call_is_follows_from_the_content_of_files(tmp_path):

@@ -62,6 +62,8 @@ state! {
         pub ended_mps: f32,
         /// Speed to the left across its lane, m/s.
         pub drift_mps: f32,
+        /// So far to the left of where it wants to be in its lane it still is after it changed that for its way, metres.
+        pub slip_m: f32,
         /// What its speed became in the last tick, m/s².
         pub acceleration_mps2: f32,
         /// Velocity, m/s.
@@ -98,6 +100,7 @@ impl StoryActor {
             speed_mps: 0.0,
             ended_mps: 0.0,
             drift_mps: 0.0,
+            slip_m: 0.0,
             acceleration_mps2: 0.0,
             velocity_mps: Vec3::ZERO,
             travelled_m: 0.0,

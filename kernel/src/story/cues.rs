@@ -8,7 +8,7 @@ use super::actor::StoryActor;
 use super::facts::Outline;
 use super::plan::{Plan, Trigger};
 use super::relative;
-use super::script::{Condition, Edge, ElementKind, ElementState, Light, OfRole, RoleId, Rule, Script, When};
+use super::script::{Condition, Edge, ElementState, Light, OfRole, RoleId, Rule, Script, When};
 use super::spot::Spot;
 use super::state::{Change, Mark, Met, Progress, StoryState};
 
@@ -48,21 +48,21 @@ impl Seen<'_> {
         for group in &trigger.groups {
             // Every condition is looked at, so that each knows what it was.
             let holds =
-                group.iter().fold(true, |all, (number, condition)| self.condition(condition, &mut met[*number]) && all);
+                group.iter().fold(true, |all, (number, of)| self.condition(*number, of, &mut met[*number]) && all);
             is_met |= holds;
         }
         is_met
     }
 
-    fn condition(&self, condition: &Condition, met: &mut Met) -> bool {
-        let holds = self.holds(&condition.when);
+    fn condition(&self, number: usize, condition: &Condition, met: &mut Met) -> bool {
+        let holds = self.holds(number, &condition.when);
         // Before its element stood by, nothing held.
         let held = met.held.replace(holds);
         let is_met = match condition.edge {
             Edge::None => holds,
             Edge::Rising => holds && held != Some(true),
             Edge::Falling => !holds && held == Some(true),
-            Edge::Either => held.is_some_and(|held| held != holds),
+            Edge::Either => held.map_or(holds, |held| held != holds),
         };
         if condition.delay_ticks == 0 {
             return is_met;
@@ -73,10 +73,10 @@ impl Seen<'_> {
         met.since.is_some_and(|since| self.tick >= since.saturating_add(condition.delay_ticks))
     }
 
-    fn holds(&self, when: &When) -> bool {
+    fn holds(&self, number: usize, when: &When) -> bool {
         match when {
             When::Time(rule, than) => compares(*rule, self.tick as f32 / TICK_HZ as f32, *than, 0.5 * TICK_S),
-            When::Element(kind, name, state) => self.element(*kind, name, *state),
+            When::Element { state, .. } => self.element(number, *state),
             When::Light(light) => self.shows(light),
             When::Programme(number, phase) => usize::from(self.before.cycles[*number].phase) == *phase,
             When::Role { all, roles, what } => {
@@ -92,18 +92,18 @@ impl Seen<'_> {
         light.groups.first().is_some_and(|group| shown(*group) == light.phase)
     }
 
-    fn element(&self, kind: ElementKind, name: &str, state: ElementState) -> bool {
+    fn element(&self, condition: usize, state: ElementState) -> bool {
         let just = |mark: &Mark, change: Change| mark.change == change && mark.at.saturating_add(1) == self.tick;
         let is = |mark: &Mark| match state {
             ElementState::Standby => mark.progress == Progress::Standby,
             ElementState::Running => mark.runs(),
             ElementState::Complete => mark.is_complete(),
-            ElementState::Started => just(mark, Change::Started),
+            ElementState::Started => mark.began.and_then(|at| at.checked_add(1)) == Some(self.tick),
             ElementState::Ended => just(mark, Change::Ended),
             ElementState::Stopped => just(mark, Change::Stopped),
             ElementState::Skipped => just(mark, Change::Skipped),
         };
-        self.plan.marks(self.before, kind, name).iter().any(is)
+        self.plan.marks(self.before, condition).any(|mark| is(&mark))
     }
 
     fn actor(&self, role: RoleId) -> &StoryActor {

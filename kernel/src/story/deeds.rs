@@ -12,6 +12,11 @@ use super::spot::{OnLane, Spot};
 use super::state::{Change, Progress, StoryState};
 use super::{doors, lanes, lights, places, relative};
 
+/// A lane is beside somebody whose place on it is within this along it, metres.
+const BESIDE_M: f32 = 3.0;
+/// Nobody needs longer for a way than at this speed, m/s.
+const LEAST_MPS: f32 = 0.1;
+
 /// Where everybody begins, as the first actions of a script say.
 pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, String> {
     let mut placed: Vec<Option<StoryActor>> = vec![None; script.cast.len()];
@@ -45,14 +50,12 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
                 actor.speed_mps = asked_mps.min(script.cast[*role].most_mps);
                 actor.velocity_mps = (direction(actor.spot.heading_rad) * actor.speed_mps).extend(0.0);
             }
-            Action::Route(via) => actor.route = route(network, actor.spot, via).unwrap_or_default(),
-            Action::Acquire(place) => {
-                let to = std::slice::from_ref(place);
-                actor.route = route(network, actor.spot, to).unwrap_or_default();
-            }
+            Action::Route(via) => actor.route = first_route(network, actor.spot, via),
+            Action::Acquire(place) => actor.route = first_route(network, actor.spot, std::slice::from_ref(place)),
             Action::LaneOffset(_, offset_m, None) => {
                 if let Some(on) = actor.spot.on {
-                    actor.spot = Spot::on(network, OnLane { offset_m: *offset_m, ..on });
+                    let offset_m = offset_m * if on.against { -1.0 } else { 1.0 };
+                    actor.spot = Spot::on(network, OnLane { offset_m, ..on });
                 }
             }
             Action::Leave => actor.gone = true,
@@ -65,20 +68,27 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
     let ego = &mut actors[script.ego()];
     if ego.route.is_empty() {
         // Drivers know their way from the beginning, whenever the story tells it.
-        ego.route = script.ego_way().and_then(|via| route(network, ego.spot, via)).unwrap_or_default();
+        ego.route = script.ego_way().map(|via| first_route(network, ego.spot, via)).unwrap_or_default();
     }
     Ok(actors)
 }
 
-fn route(network: &RoadNetwork, from: Spot, via: &[Position]) -> Option<Vec<u32>> {
+/// The lanes of a way through places; nothing where there is none, or a place is nowhere.
+fn route(network: &RoadNetwork, from: Spot, via: impl IntoIterator<Item = Option<Spot>>) -> Option<Vec<u32>> {
     let mut route = Vec::new();
     let mut at = from.on?;
     for place in via {
-        let Position::Known(Spot { on: Some(to), .. }) = place else { continue };
-        route.extend(lanes::way(network, at, *to)?);
-        at = *to;
+        let to = place?.on?;
+        route.extend(lanes::way(network, at, to)?);
+        at = to;
     }
     Some(route)
+}
+
+/// The same before anybody moves: through those places that do not depend on anybody.
+fn first_route(network: &RoadNetwork, from: Spot, via: &[Position]) -> Vec<u32> {
+    let known = |place: &Position| if let Position::Known(spot) = place { Some(Some(*spot)) } else { None };
+    route(network, from, via.iter().filter_map(known)).unwrap_or_default()
 }
 
 /// The speed that is asked for, m/s.
@@ -97,6 +107,16 @@ fn length_of(dynamics: Dynamics, change: f32) -> f32 {
         Takes::Time(seconds) => seconds,
         Takes::Distance(metres) => metres,
         Takes::Rate(rate) => change.abs() / rate.max(1e-3),
+    }
+}
+
+/// How long a change of the speed takes, seconds: the courses are even about their middle, so that its way tells the time.
+fn speeds_up_s(dynamics: Dynamics, from_mps: f32, to_mps: f32) -> f32 {
+    match dynamics.takes {
+        Takes::Distance(metres) if dynamics.shape != Shape::Step => {
+            2.0 * metres / (from_mps + to_mps).abs().max(LEAST_MPS)
+        }
+        _ => length_of(dynamics, to_mps - from_mps),
     }
 }
 
@@ -144,6 +164,7 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             if let Some(spot) = relative::spot(network, before, place) {
                 let actor = &mut state.actors[role];
                 actor.spot = spot;
+                actor.slip_m = 0.0;
                 actor.route.clear();
                 if actor.speed_mps == 0.0 {
                     actor.speed_mps = std::mem::take(&mut actor.ended_mps);
@@ -153,6 +174,7 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
         }
         Action::Leave => {
             state.actors[role].gone = true;
+            end_all(state, role, seen.tick);
             false
         }
         Action::Speed(..) | Action::SpeedProfile(_) | Action::Gap(_) | Action::Meet(_) => {
@@ -160,14 +182,14 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             let (to, takes) = match &of.action {
                 Action::Speed(dynamics, target) => {
                     let to = speed_of(*target, |role| before.actors[role].speed_mps);
-                    (to, length_of(*dynamics, to - from))
+                    (to, speeds_up_s(*dynamics, from, to))
                 }
                 _ => (from, 0.0),
             };
-            let replaced = state.actors[role].speed_by.replace(number as u32);
+            let replaced = [state.actors[role].speed_by.replace(number as u32), line_of(state, role, seen, true)];
             let deed = &mut state.deeds[number];
             (deed.from, deed.to, deed.takes) = (from, to, takes);
-            replace(state, replaced, number, seen.tick);
+            replaced.into_iter().for_each(|deed| replace(state, deed, number, seen.tick));
             true
         }
         Action::LaneChange(dynamics, target, offset_m) => {
@@ -176,15 +198,17 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             let there = network.project(to.lane, spot.position);
             let now = OnLane { s_m: there.s_m, offset_m: there.lateral_m, ..to };
             let to_m = to.offset_m + offset_m * if now.against { -1.0 } else { 1.0 };
-            state.actors[role].spot.on = Some(now);
-            state.actors[role].route.clear();
+            let actor = &mut state.actors[role];
+            actor.spot.on = Some(now);
+            actor.slip_m = 0.0;
+            actor.route = lanes::onward_way(network, now, &actor.route);
             moves_aside(state, (role, number), seen, (now.offset_m, to_m), length_of(*dynamics, to_m - now.offset_m));
             true
         }
         Action::LaneOffset(dynamics, offset_m, beside) => {
             let Some(on) = state.actors[role].spot.on else { return false };
             let of_other = beside.and_then(|other| before.actors[other].spot.on).map_or(0.0, |on| on.offset_m);
-            let to_m = of_other + offset_m;
+            let to_m = of_other + offset_m * if on.against { -1.0 } else { 1.0 };
             moves_aside(state, (role, number), seen, (on.offset_m, to_m), calm_s(*dynamics, to_m - on.offset_m));
             true
         }
@@ -200,13 +224,17 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             true
         }
         Action::Route(via) => {
-            state.actors[role].route = route(network, state.actors[role].spot, via).unwrap_or_default();
+            let via = via.iter().map(|place| relative::spot(network, before, place));
+            let actor = &mut state.actors[role];
+            actor.route = route(network, actor.spot, via).unwrap_or_default();
+            let replaced = actor.way_by.take();
+            replace(state, replaced, number, seen.tick);
             false
         }
         Action::Acquire(place) => {
             let Some(to) = relative::spot(network, before, place) else { return false };
             let actor = &mut state.actors[role];
-            let Some(way) = route(network, actor.spot, &[Position::Known(to)]) else { return false };
+            let Some(way) = route(network, actor.spot, [Some(to)]) else { return false };
             let replaced = actor.way_by.replace(number as u32);
             actor.route = way;
             replace(state, replaced, number, seen.tick);
@@ -235,10 +263,25 @@ fn moves_aside(
     (from, to): (f32, f32),
     takes: f32,
 ) {
-    let replaced = state.actors[role].side_by.replace(number as u32);
+    let replaced = [state.actors[role].side_by.replace(number as u32), line_of(state, role, seen, false)];
     let deed = &mut state.deeds[number];
     (deed.from, deed.to, deed.takes) = (from, to, takes);
-    replace(state, replaced, number, seen.tick);
+    replaced.into_iter().for_each(|deed| replace(state, deed, number, seen.tick));
+}
+
+/// The deed whose line a role follows, only one with times if `timed`: that decides how fast it is, too.
+fn line_of(state: &StoryState, role: RoleId, seen: &Seen<'_>, timed: bool) -> Option<u32> {
+    let of = |deed: &u32| &seen.plan.deeds[*deed as usize].action;
+    let is_line = |deed: &u32| matches!(of(deed), Action::Follow(path) if path.timed || !timed);
+    state.actors[role].way_by.filter(is_line)
+}
+
+/// Ends all that a role does.
+pub fn end_all(state: &mut StoryState, role: RoleId, tick: Tick) {
+    let actor = &state.actors[role];
+    for deed in [actor.speed_by, actor.side_by, actor.way_by].into_iter().flatten() {
+        end(state, deed as usize, Change::Stopped, tick);
+    }
 }
 
 /// Ends the deed that another replaces.
@@ -248,22 +291,23 @@ fn replace(state: &mut StoryState, replaced: Option<u32>, by: usize, tick: Tick)
     }
 }
 
-/// The lane that a change leads to, at the place of who changes.
+/// The lane that a change leads to, at the place of who changes; nothing where its road has none beside it.
 fn lane_of(network: &RoadNetwork, before: &StoryState, role: RoleId, target: LaneTarget) -> Option<OnLane> {
     let spot = before.actors[role].spot;
-    match target {
-        LaneTarget::Absolute(id) => {
-            let (road, _) = network.lanes[spot.on?.lane as usize].name.rsplit_once('/')?;
-            let found = places::nearest(network, &format!("{road}/{id}"), spot.position)?;
-            Some(relative::facing(network, found.lane, found.s_m, 0.0, spot.heading_rad))
-        }
+    let (road, _) = network.lanes[spot.on?.lane as usize].name.rsplit_once('/')?;
+    let (id, offset_m) = match target {
+        LaneTarget::Absolute(id) => (id.to_string(), 0.0),
         LaneTarget::Relative(other, count) => {
             let of_other = relative::beside(network, before.actors[other].spot, count)?;
-            let name = &network.lanes[of_other.lane as usize].name;
-            let found = places::nearest(network, name, spot.position)?;
-            Some(relative::facing(network, found.lane, found.s_m, of_other.offset_m, spot.heading_rad))
+            let (_, id) = network.lanes[of_other.lane as usize].name.rsplit_once('/')?;
+            (id.to_owned(), of_other.offset_m)
         }
-    }
+    };
+    let found = places::nearest(network, &format!("{road}/{id}"), spot.position)?;
+    let middle = network.lane_point(found.lane, found.s_m);
+    let along_m = (spot.position - middle.position).truncate().dot(direction(middle.heading_rad));
+    let there = relative::facing(network, found.lane, found.s_m, offset_m, spot.heading_rad);
+    (along_m.abs() < BESIDE_M).then_some(there)
 }
 
 /// A deed comes to its end.

@@ -29,6 +29,6 @@ pub fn open(actor: &StoryActor, role: (usize, &script::Role), tick: Tick) -> Opt
         id: FIRST_STORY_DOOR_ID + role.0 as u32,
         position: hinge.middle(leaf),
         heading_rad: ops::atan2(leaf.y, leaf.x),
-        begins: actor.doors[side].since + 1 == tick && actor.doors[side].to > 0.0,
+        begins: actor.doors[side].since.checked_add(1) == Some(tick) && actor.doors[side].to > 0.0,
     })
 }

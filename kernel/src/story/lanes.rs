@@ -121,6 +121,22 @@ pub fn way(network: &RoadNetwork, from: OnLane, to: OnLane) -> Option<Vec<LaneId
     if from.lane == to.lane && from.s_m <= to.s_m {
         return Some(Vec::new());
     }
+    search(network, from, |lane| lane == to.lane, true)
+}
+
+/// The way to the road that a route leads to, from where who drove it is now: without a change of lanes, if there is one.
+pub fn onward_way(network: &RoadNetwork, from: OnLane, route: &[LaneId]) -> Vec<LaneId> {
+    let Some(last) = route.last() else { return Vec::new() };
+    let road = |lane: LaneId| network.lanes[lane as usize].name.rsplit_once('/').map(|(road, _)| road);
+    if road(from.lane) == road(*last) {
+        return Vec::new();
+    }
+    let is_there = |lane: LaneId| road(lane) == road(*last);
+    let found = search(network, from, is_there, false).or_else(|| search(network, from, |lane| lane == *last, true));
+    found.unwrap_or_default()
+}
+
+fn search(network: &RoadNetwork, from: OnLane, is_goal: impl Fn(LaneId) -> bool, changes: bool) -> Option<Vec<LaneId>> {
     let tenths = |m: f32| (m * 10.0) as u64;
     let mut open = BTreeMap::from([((0_u64, from.lane), None)]);
     let mut came: BTreeMap<LaneId, Option<LaneId>> = BTreeMap::new();
@@ -136,7 +152,7 @@ pub fn way(network: &RoadNetwork, from: OnLane, to: OnLane) -> Option<Vec<LaneId
         if !first {
             came.insert(lane, before);
         }
-        if lane == to.lane && !first {
+        if is_goal(lane) && !first {
             return Some(back(&came, from.lane, lane));
         }
         let here = &network.lanes[lane as usize];
@@ -144,7 +160,7 @@ pub fn way(network: &RoadNetwork, from: OnLane, to: OnLane) -> Option<Vec<LaneId
         for next in network.ways().onward(lane) {
             open.insert((cost + tenths(length_m) + 1, next.lane), Some(lane));
         }
-        for beside in [here.left, here.right].into_iter().flatten() {
+        for beside in [here.left, here.right].into_iter().flatten().filter(|_| changes) {
             open.insert((cost + tenths(50.0), beside), Some(lane));
         }
     }

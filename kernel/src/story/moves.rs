@@ -11,16 +11,20 @@ use super::actor::StoryActor;
 use super::cues::Seen;
 use super::plan::stations_m;
 use super::script::{Action, Path, Position, RoleId};
-use super::spot::Spot;
-use super::state::{Change, StoryState};
+use super::spot::{OnLane, Spot};
+use super::state::{Change, Deed, StoryState};
 use super::{deeds, lanes, pace, relative};
 
 /// A place is reached so near to it, metres.
 const REACHED_M: f32 = 1.0;
+/// Who changes lanes for its way moves across so fast, m/s.
+const SLIDES_MPS: f32 = 1.2;
 
 /// Moves a role by one tick.
 pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
-    let was = seen.before.actors[role].clone();
+    begin_line(state, role, seen);
+    // Who was taken elsewhere did not drive there.
+    let was = StoryActor { spot: state.actors[role].spot, ..seen.before.actors[role].clone() };
     pace::set(state, role, seen);
     let follows = state.actors[role].way_by.map(|deed| deed as usize);
     let path = follows.and_then(|deed| match &seen.plan.deeds[deed].action {
@@ -40,6 +44,23 @@ pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     let script = seen.script;
     let on_road = is_on_road(seen, &state.actors[role]);
     state.actors[role].came(&was, script.cast[role].kind, on_road, at_end);
+}
+
+/// Takes a role to where a timed line is when it begins with it.
+fn begin_line(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
+    let Some(number) = state.actors[role].way_by.map(|deed| deed as usize) else { return };
+    let (Action::Follow(path), deed) = (&seen.plan.deeds[number].action, &state.deeds[number]) else { return };
+    if path.timed && deed.mark.at == seen.tick {
+        let (at, _) = by_time(path, line_time_s(path, deed, seen) - TICK_S);
+        if let Some((from, to, share)) = segment(path, &deed.line, at) {
+            state.actors[role].spot.position = from.position.lerp(to.position, share);
+        }
+    }
+}
+
+/// The time of a timed line at the end of the tick that is computed, seconds.
+fn line_time_s(path: &Path, deed: &Deed, seen: &Seen<'_>) -> f32 {
+    if path.absolute { seen.tick as f32 * TICK_S } else { pace::since_s(deed, seen) }
 }
 
 fn is_on_some(seen: &Seen<'_>, actor: &StoryActor) -> bool {
@@ -68,12 +89,20 @@ fn drive_on(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) -> bool {
         state.actors[role].spot = Spot::at(seen.network, position, spot.heading_rad);
         return false;
     };
+    change_for_way(&mut on, &mut state.actors[role], seen);
     let goes_on = lanes::advance(seen.network, &mut on, by_m, &mut state.actors[role].route);
+    if speed_mps == 0.0 && state.actors[role].side_by.is_none() {
+        // As it was put there.
+        state.actors[role].drift_mps = 0.0;
+        return !goes_on;
+    }
     let before_m = on.offset_m;
     if let Some(offset_m) = aside(state, role, by_m, seen) {
-        on.offset_m = offset_m;
+        (on.offset_m, state.actors[role].slip_m) = (offset_m, 0.0);
     }
     let actor = &mut state.actors[role];
+    let back_m = actor.slip_m.clamp(-SLIDES_MPS * TICK_S, SLIDES_MPS * TICK_S);
+    (on.offset_m, actor.slip_m) = (on.offset_m - back_m, actor.slip_m - back_m);
     actor.drift_mps = (on.offset_m - before_m) / TICK_S * if on.against { -1.0 } else { 1.0 };
     let there = Spot::on(seen.network, on);
     // Who moves across faces where it goes.
@@ -85,6 +114,19 @@ fn drive_on(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) -> bool {
     !goes_on
 }
 
+/// Goes over to the lane beside where the way goes on there, and begins to move to its middle.
+fn change_for_way(on: &mut OnLane, actor: &mut StoryActor, seen: &Seen<'_>) {
+    let lane = &seen.network.lanes[on.lane as usize];
+    let beside = actor.route.first().copied().filter(|next| [lane.left, lane.right].contains(&Some(*next)));
+    let Some(beside) = beside.filter(|_| !on.against && actor.speed_mps > 0.0 && actor.side_by.is_none()) else {
+        return;
+    };
+    let there = seen.network.project(beside, actor.spot.position);
+    actor.slip_m += there.lateral_m - on.offset_m;
+    *on = OnLane { lane: beside, s_m: there.s_m, offset_m: there.lateral_m, against: false };
+    actor.route.remove(0);
+}
+
 /// Where across its lane somebody is who moves across it, metres to the left of the middle.
 fn aside(state: &mut StoryState, role: RoleId, by_m: f32, seen: &Seen<'_>) -> Option<f32> {
     let number = state.actors[role].side_by? as usize;
@@ -93,7 +135,7 @@ fn aside(state: &mut StoryState, role: RoleId, by_m: f32, seen: &Seen<'_>) -> Op
     };
     let deed = &mut state.deeds[number];
     deed.gone_m += by_m.abs();
-    let share = pace::share(deed, dynamics, seen);
+    let share = pace::share_aside(deed, dynamics, seen);
     let offset_m = deed.from + (deed.to - deed.from) * pace::course(dynamics.shape, share);
     if share >= 1.0 {
         deeds::end(state, number, Change::Ended, seen.tick);
@@ -106,7 +148,12 @@ fn arrive(state: &mut StoryState, role: RoleId, (deed, place): (usize, &Position
     let actor = &state.actors[role];
     let spot = relative::spot(seen.network, seen.before, place);
     let step_m = actor.speed_mps.abs() * TICK_S;
-    if spot.is_none_or(|spot| spot.plan().distance(actor.spot.plan()) <= REACHED_M + step_m) {
+    let is_past = |to: OnLane| actor.spot.on.is_some_and(|on| on.lane == to.lane && !on.against && on.s_m >= to.s_m);
+    let is_there = |spot: Spot| {
+        let near = spot.plan().distance(actor.spot.plan()) <= REACHED_M + step_m;
+        near || (actor.route.is_empty() && spot.on.is_some_and(is_past))
+    };
+    if spot.is_none_or(is_there) {
         deeds::end(state, deed, Change::Ended, seen.tick);
     }
 }
@@ -116,10 +163,9 @@ fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), 
     let speed_mps = state.actors[role].speed_mps;
     let deed = &mut state.deeds[number];
     let (at, over) = if path.timed {
-        let since = if path.absolute { 0 } else { deed.mark.at };
-        by_time(path, seen.tick.saturating_sub(since) as f32 * TICK_S)
+        by_time(path, line_time_s(path, deed, seen))
     } else {
-        deed.gone_m += speed_mps.max(0.0) * TICK_S;
+        deed.gone_m += speed_mps.abs() * TICK_S;
         let line: Vec<Position> = deed.line.iter().copied().map(Position::Known).collect();
         let own = stations_m(line.iter());
         let stations_m = if own.is_empty() { &seen.plan.deeds[number].stations_m } else { &own };
@@ -127,7 +173,7 @@ fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), 
     };
     let line = std::mem::take(&mut state.deeds[number].line);
     let part = segment(path, &line, at);
-    let last_mps = last_mps(path, &line);
+    let last = last_mps(path, &line);
     state.deeds[number].line = line;
     let Some((from, to, share)) = part else {
         return deeds::end(state, number, Change::Ended, seen.tick);
@@ -140,13 +186,15 @@ fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), 
     } else if along == Vec2::ZERO {
         actor.spot.heading_rad
     } else {
-        ops::atan2(along.y, along.x)
+        // At a speed below zero it comes backwards.
+        let ahead = if !path.timed && speed_mps < 0.0 { -along } else { along };
+        ops::atan2(ahead.y, ahead.x)
     };
     if path.timed {
         let step = (position - actor.spot.position).truncate();
         actor.speed_mps = step.dot(direction(heading_rad)) / TICK_S;
         if over {
-            actor.speed_mps = last_mps;
+            actor.speed_mps = last.length() * last.dot(direction(heading_rad)).signum();
         }
     }
     actor.drift_mps = 0.0;
@@ -194,10 +242,10 @@ fn segment(path: &Path, line: &[Spot], at: f32) -> Option<(Spot, Spot, f32)> {
     Some((corner(first)?, corner(first + 1)?, at - first as f32))
 }
 
-/// How fast the last part of a timed line is followed, m/s.
-fn last_mps(path: &Path, line: &[Spot]) -> f32 {
+/// The velocity on the last part of a timed line, m/s.
+fn last_mps(path: &Path, line: &[Spot]) -> Vec2 {
     let last = path.corners.len() - 1;
     let span_s = path.corners[last].1.unwrap_or(0.0) - path.corners[last - 1].1.unwrap_or(0.0);
     let way = segment(path, line, last as f32).map_or(Vec2::ZERO, |(from, to, _)| to.plan() - from.plan());
-    if span_s > 1e-6 { way.length() / span_s } else { 0.0 }
+    if span_s > 1e-6 { way / span_s } else { Vec2::ZERO }
 }

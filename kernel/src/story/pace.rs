@@ -29,14 +29,20 @@ const LAST_S: f32 = 0.2;
 /// A place ahead is looked for along the lanes up to here, metres; beyond it is told by the straight line.
 const AHEAD_M: f32 = 1000.0;
 
-/// How far a change has come, [0, 1].
-pub fn share(deed: &Deed, dynamics: Dynamics, seen: &Seen<'_>) -> f32 {
-    let gone = match dynamics.takes {
-        Takes::Distance(_) => deed.gone_m,
-        Takes::Time(_) | Takes::Rate(_) => since_s(deed, seen),
-    };
+/// How far a change of the speed has come, [0, 1].
+fn share(deed: &Deed, seen: &Seen<'_>) -> f32 {
+    let gone_s = since_s(deed, seen);
     // Half a tick before the end is the end.
-    if gone + 0.5 * TICK_S >= deed.takes { 1.0 } else { (gone / deed.takes).clamp(0.0, 1.0) }
+    if gone_s + 0.5 * TICK_S >= deed.takes { 1.0 } else { (gone_s / deed.takes).clamp(0.0, 1.0) }
+}
+
+/// How far a move across the lane has come, [0, 1].
+pub fn share_aside(deed: &Deed, dynamics: Dynamics, seen: &Seen<'_>) -> f32 {
+    match dynamics.takes {
+        Takes::Distance(_) if deed.gone_m >= deed.takes => 1.0,
+        Takes::Distance(_) => (deed.gone_m / deed.takes).clamp(0.0, 1.0),
+        Takes::Time(_) | Takes::Rate(_) => share(deed, seen),
+    }
 }
 
 /// The course of a change, by the share of it that is over.
@@ -50,7 +56,7 @@ pub fn course(shape: Shape, share: f32) -> f32 {
 }
 
 /// Seconds since a deed began, at the end of the tick that is computed.
-fn since_s(deed: &Deed, seen: &Seen<'_>) -> f32 {
+pub fn since_s(deed: &Deed, seen: &Seen<'_>) -> f32 {
     (seen.tick + 1).saturating_sub(deed.mark.at) as f32 * TICK_S
 }
 
@@ -77,9 +83,8 @@ fn changed(deed: &mut Deed, dynamics: Dynamics, target: SpeedTarget, seen: &Seen
     if goes_on {
         deed.to = wanted_mps(target, seen);
     }
-    let share = share(deed, dynamics, seen);
+    let share = share(deed, seen);
     let speed_mps = deed.from + (deed.to - deed.from) * course(dynamics.shape, share);
-    deed.gone_m += speed_mps.abs() * TICK_S;
     (speed_mps, share >= 1.0 && !goes_on)
 }
 

@@ -13,6 +13,9 @@ use super::spot::{OnLane, Spot};
 /// What is told so near to the ground is on it, metres: pavements are raised.
 const ABOUT_M: f32 = 0.5;
 
+/// Farther nobody gets, metres.
+pub const MOST_M: f32 = 1e6;
+
 /// Replaces all places of a script that do not depend on where somebody is.
 pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
     let mut places = Vec::new();
@@ -25,6 +28,9 @@ pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
     }
     places.into_iter().try_for_each(|place| {
         if let Some(spot) = spot(place, network)? {
+            if spot.position.abs().max_element() >= MOST_M {
+                return Err(format!("a place is at {}, expected one within {MOST_M} m", spot.position));
+            }
             *place = Position::Known(spot);
         }
         Ok(())

@@ -1,8 +1,9 @@
 //! The script with everything numbered.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::script::{self, Action, Condition, Doer, ElementKind, Position, Priority, RoleId, Script};
+use super::script::{self, Action, Condition, Doer, ElementKind, Position, Priority, RoleId, Script, When};
 use super::state::{Change, Mark, Met, Progress, StoryState};
 
 /// A trigger whose conditions are numbered through the script.
@@ -16,15 +17,15 @@ impl Trigger {
         self.groups.is_empty()
     }
 
-    pub fn forget(&self, met: &mut [Met]) {
-        self.groups.iter().flatten().for_each(|(number, _)| met[*number] = Met::default());
+    /// Its conditions count anew; what they were is known, so that who rises has to fall before.
+    pub fn rearm(&self, met: &mut [Met]) {
+        self.groups.iter().flatten().for_each(|(number, _)| met[*number].since = None);
     }
 }
 
 /// An act, and which groups are its own.
 #[derive(Clone, Debug)]
 pub struct ActPlan {
-    pub name: String,
     pub groups: Range<usize>,
     pub start: Trigger,
     pub stop: Trigger,
@@ -33,7 +34,6 @@ pub struct ActPlan {
 /// A group, and which events are its own.
 #[derive(Clone, Debug)]
 pub struct GroupPlan {
-    pub name: String,
     pub most: u16,
     pub events: Range<usize>,
 }
@@ -41,8 +41,8 @@ pub struct GroupPlan {
 /// An event, and which deeds are its own.
 #[derive(Clone, Debug)]
 pub struct EventPlan {
-    pub name: String,
-    pub manoeuvre: (usize, String),
+    /// The number of its manoeuvre in the group.
+    pub manoeuvre: usize,
     pub priority: Priority,
     pub most: u16,
     pub start: Trigger,
@@ -52,7 +52,6 @@ pub struct EventPlan {
 /// What one role does in an event.
 #[derive(Clone, Debug)]
 pub struct DeedPlan {
-    pub name: String,
     /// Who does it; nobody where it is done to the world.
     pub role: Option<RoleId>,
     pub action: Action,
@@ -72,6 +71,19 @@ pub struct Plan {
     pub deeds: Vec<DeedPlan>,
     pub stop: Trigger,
     pub conditions: usize,
+    /// What conditions on elements refer to.
+    referred: BTreeMap<usize, Vec<Element>>,
+}
+
+/// An element by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Element {
+    Act(usize),
+    Group(usize),
+    /// The group that plays it, and its own number.
+    Manoeuvre(usize, usize),
+    Event(usize),
+    Deed(usize),
 }
 
 impl Plan {
@@ -84,9 +96,10 @@ impl Plan {
             act.groups.iter().for_each(|group| plan.add_group(group));
             let (groups, start) = (first..plan.groups.len(), plan.numbered(&act.start));
             let stop = plan.numbered(&act.stop);
-            plan.acts.push(ActPlan { name: act.name.clone(), groups, start, stop });
+            plan.acts.push(ActPlan { groups, start, stop });
         }
         plan.carries_ego = script.ego_actions().any(|action| *action == Action::HandOver);
+        plan.refer(script);
         plan
     }
 
@@ -102,14 +115,8 @@ impl Plan {
         let first = self.events.len();
         for event in &group.events {
             let from = self.deeds.len();
-            for (name, of, action) in &event.actions {
-                let doers = match of {
-                    Doer::Each => group.actors.iter().map(|role| Some(*role)).collect(),
-                    Doer::Role(role) => vec![Some(*role)],
-                    Doer::World => vec![None],
-                };
-                self.deeds.extend(doers.into_iter().map(|role| DeedPlan {
-                    name: name.clone(),
+            for (_, of, action) in &event.actions {
+                self.deeds.extend(doers(group, *of).map(|role| DeedPlan {
                     role,
                     action: action.clone(),
                     stations_m: match action {
@@ -119,50 +126,118 @@ impl Plan {
                 }));
             }
             let (deeds, start) = (from..self.deeds.len(), self.numbered(&event.start));
-            let script::Event { name, manoeuvre, priority, most, .. } = event.clone();
-            self.events.push(EventPlan { name, manoeuvre, priority, most, start, deeds });
+            let script::Event { priority, most, .. } = *event;
+            self.events.push(EventPlan { manoeuvre: event.manoeuvre.0, priority, most, start, deeds });
         }
-        self.groups.push(GroupPlan { name: group.name.clone(), most: group.most, events: first..self.events.len() });
+        self.groups.push(GroupPlan { most: group.most, events: first..self.events.len() });
     }
 
-    /// The marks of all elements of a kind and a name; of a manoeuvre those of its events.
-    pub fn marks(&self, state: &StoryState, kind: ElementKind, name: &str) -> Vec<Mark> {
-        // A reference may name the elements above it as well.
-        let name = name.rsplit("::").next().unwrap_or(name);
-        let of = |names: Vec<&str>, marks: Vec<Mark>| -> Vec<Mark> {
-            names.into_iter().zip(marks).filter(|(other, _)| *other == name).map(|(_, mark)| mark).collect()
+    /// The marks of the elements that a condition refers to; of a manoeuvre one for each group that plays it.
+    pub fn marks(&self, state: &StoryState, condition: usize) -> impl Iterator<Item = Mark> {
+        let of = |element: &Element| match *element {
+            Element::Act(act) => state.acts[act],
+            Element::Group(group) => state.groups[group],
+            Element::Event(event) => state.events[event],
+            Element::Deed(deed) => state.deeds[deed].mark,
+            Element::Manoeuvre(group, manoeuvre) => self.manoeuvre(state, group, manoeuvre),
         };
-        match kind {
-            ElementKind::Act => of(self.acts.iter().map(|act| &*act.name).collect(), state.acts.clone()),
-            ElementKind::Group => of(self.groups.iter().map(|group| &*group.name).collect(), state.groups.clone()),
-            ElementKind::Event => of(self.events.iter().map(|event| &*event.name).collect(), state.events.clone()),
-            ElementKind::Action => {
-                of(self.deeds.iter().map(|deed| &*deed.name).collect(), state.deeds.iter().map(|d| d.mark).collect())
-            }
-            ElementKind::Manoeuvre => self.manoeuvres(state, name),
-        }
+        self.referred.get(&condition).into_iter().flatten().map(of)
     }
 
     /// A manoeuvre goes on as long as one of its events does, and is over when all are.
-    fn manoeuvres(&self, state: &StoryState, name: &str) -> Vec<Mark> {
-        let of_group = |group: &GroupPlan| {
-            let events = group.events.clone().filter(|event| self.events[*event].manoeuvre.1 == name);
-            let marks: Vec<Mark> = events.map(|event| state.events[event]).collect();
-            let last = marks.iter().max_by_key(|mark| mark.at).copied()?;
-            let over = marks.iter().all(Mark::is_complete);
-            let first = marks.iter().filter(|mark| mark.change != Change::None).count() == 1;
-            let begins = last.change == Change::Started && first;
-            let change = match last.change {
-                Change::Started if !begins => Change::None,
-                Change::Ended | Change::Skipped | Change::Stopped if !over => Change::None,
-                change => change,
-            };
-            let begun = marks.iter().any(|mark| mark.change != Change::None);
-            let progress = if over { Progress::Complete } else { Progress::Running };
-            Some(Mark { progress: if begun { progress } else { Progress::Standby }, change, ..last })
+    fn manoeuvre(&self, state: &StoryState, group: usize, manoeuvre: usize) -> Mark {
+        let events = self.groups[group].events.clone().filter(|event| self.events[*event].manoeuvre == manoeuvre);
+        let marks: Vec<Mark> = events.map(|event| state.events[event]).collect();
+        let Some(last) = marks.iter().max_by_key(|mark| mark.at).copied() else { return Mark::NEW };
+        let over = marks.iter().all(Mark::is_complete);
+        let begun = marks.iter().filter_map(|mark| mark.began).min();
+        let change = match last.change {
+            Change::Ended | Change::Skipped | Change::Stopped if !over => Change::None,
+            change => change,
         };
-        self.groups.iter().filter_map(of_group).collect()
+        let progress = if over { Progress::Complete } else { Progress::Running };
+        Mark { progress: if begun.is_some() { progress } else { Progress::Standby }, change, began: begun, ..last }
     }
+
+    /// Finds what conditions refer to.
+    fn refer(&mut self, script: &Script) {
+        let elements = elements(script);
+        let mut triggers: Vec<&Trigger> = vec![&self.stop];
+        triggers.extend(self.acts.iter().flat_map(|act| [&act.start, &act.stop]));
+        triggers.extend(self.events.iter().map(|event| &event.start));
+        for (number, condition) in triggers.into_iter().flat_map(|trigger| trigger.groups.iter().flatten()) {
+            if let When::Element { kind, path, .. } = &condition.when {
+                self.referred.insert(*number, named(&elements, *kind, path).collect());
+            }
+        }
+    }
+}
+
+/// The first condition that refers to what is not there: where the text has it, and what that is.
+pub fn dangling(script: &Script) -> Option<(usize, String)> {
+    let elements = elements(script);
+    let acts = script.acts.iter().flat_map(|act| [&act.start, &act.stop]);
+    let events = script.acts.iter().flat_map(|act| &act.groups).flat_map(|group| &group.events);
+    let triggers = [&script.stop].into_iter().chain(acts).chain(events.map(|event| &event.start));
+    triggers.flat_map(|trigger| trigger.groups.iter().flatten()).find_map(|condition| match &condition.when {
+        When::Element { kind, path, at, .. } if named(&elements, *kind, path).next().is_none() => {
+            Some((*at, format!("{} {path:?}", kind.name())))
+        }
+        _ => None,
+    })
+}
+
+/// An element, its kind, and the names of those above it and its own, from the act on.
+type Named<'a> = (ElementKind, Vec<&'a str>, Element);
+
+/// The elements of a kind that a path ends at; it may leave out names from the beginning on.
+fn named<'a>(elements: &'a [Named<'a>], kind: ElementKind, path: &str) -> impl Iterator<Item = Element> + 'a {
+    let path: Vec<String> = path.split("::").map(str::to_owned).collect();
+    let is_it = move |(of, at, _): &&Named<'a>| {
+        *of == kind && at.ends_with(&path.iter().map(|name| &**name).collect::<Vec<_>>())
+    };
+    elements.iter().filter(is_it).map(|(.., element)| *element)
+}
+
+/// All elements of a script.
+fn elements(script: &Script) -> Vec<Named<'_>> {
+    let (mut found, mut groups, mut events, mut deeds) = (Vec::new(), 0, 0, 0);
+    for (number, act) in script.acts.iter().enumerate() {
+        found.push((ElementKind::Act, vec![&*act.name], Element::Act(number)));
+        for group in &act.groups {
+            let at = vec![&*act.name, &*group.name];
+            found.push((ElementKind::Group, at.clone(), Element::Group(groups)));
+            for event in &group.events {
+                let at = [&at[..], &[&*event.manoeuvre.1]].concat();
+                let manoeuvre = Element::Manoeuvre(groups, event.manoeuvre.0);
+                if !found.iter().any(|(.., other)| *other == manoeuvre) {
+                    found.push((ElementKind::Manoeuvre, at.clone(), manoeuvre));
+                }
+                let at = [&at[..], &[&*event.name]].concat();
+                found.push((ElementKind::Event, at.clone(), Element::Event(events)));
+                for (name, of, _) in &event.actions {
+                    for _ in 0..doers(group, *of).count() {
+                        found.push((ElementKind::Action, [&at[..], &[&**name]].concat(), Element::Deed(deeds)));
+                        deeds += 1;
+                    }
+                }
+                events += 1;
+            }
+            groups += 1;
+        }
+    }
+    found
+}
+
+/// Who does an action of a group's event; nobody where it is done to the world.
+fn doers(group: &script::Group, of: Doer) -> impl Iterator<Item = Option<RoleId>> {
+    let each = group.actors.iter().map(|role| Some(*role)).filter(move |_| of == Doer::Each);
+    let one = match of {
+        Doer::Each => None,
+        Doer::Role(role) => Some(Some(role)),
+        Doer::World => Some(None),
+    };
+    each.chain(one)
 }
 
 /// Where the corners of a line are along it, metres.

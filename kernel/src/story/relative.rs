@@ -14,7 +14,8 @@ use super::{lanes, places};
 
 /// A place in a state, if that says where it is.
 pub fn spot(network: &RoadNetwork, state: &StoryState, place: &Position) -> Option<Spot> {
-    resolved(network, place, |role| state.actors.get(role).map(|actor| actor.spot))
+    let found = resolved(network, place, |role| state.actors.get(role).map(|actor| actor.spot));
+    found.filter(|spot| spot.position.abs().max_element() < places::MOST_M)
 }
 
 /// The same among those who were placed.

@@ -188,7 +188,16 @@ pub enum When {
     /// Seconds since the start.
     Time(Rule, f32),
     /// An element of the story is in a state, or just came there.
-    Element(ElementKind, String, ElementState),
+    Element {
+        /// What it is.
+        kind: ElementKind,
+        /// Its name, after those of some elements above it: `Group::Manoeuvre::Event`.
+        path: String,
+        /// The state or change.
+        state: ElementState,
+        /// Where the text says so, bytes from its beginning.
+        at: usize,
+    },
     /// A light shows something.
     Light(Light),
     /// A programme is in a phase.
@@ -268,6 +277,19 @@ pub enum ElementKind {
     Event,
     /// An action of an event.
     Action,
+}
+
+impl ElementKind {
+    /// What the standard calls it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Act => "act",
+            Self::Group => "maneuverGroup",
+            Self::Manoeuvre => "maneuver",
+            Self::Event => "event",
+            Self::Action => "action",
+        }
+    }
 }
 
 /// A state of an element, or a change of that in the tick before.

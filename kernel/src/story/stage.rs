@@ -13,15 +13,13 @@ use crate::traffic::{Body, Door, Obstacle};
 
 use super::actor::{self, StoryActor};
 use super::cues::Seen;
-use super::plan::{GroupPlan, Plan};
-use super::script::{Priority, RoleId, Script};
+use super::places::MOST_M;
+use super::plan::{DeedPlan, GroupPlan, Plan};
+use super::script::{Action, Priority, RoleId, Script};
 use super::spot::Spot;
 use super::state::{Change, Deed, Mark, Met, Progress, StoryState};
 use super::text::Story;
 use super::{deeds, doors, lights, moves, places};
-
-/// Farther, and faster, nobody gets, metres and m/s.
-const MOST_M: f32 = 1e6;
 
 /// The ego car begins so near to a lane at least, metres.
 const NEAR_ROAD_M: f32 = 10.0;
@@ -147,8 +145,18 @@ impl Stage {
             let place = moves && about(actor.speed_mps) && about(actor.travelled_m);
             let doors =
                 actor.doors.iter().all(|door| [door.from, door.to].iter().all(|share| (0.0..=1.0).contains(share)));
-            on && deeds && place && doors && about(actor.ended_mps) && actor.route.iter().all(lane)
+            on && deeds
+                && place
+                && doors
+                && about(actor.ended_mps)
+                && about(actor.slip_m)
+                && actor.route.iter().all(lane)
         };
+        let corners = |deed: &DeedPlan| if let Action::Follow(path) = &deed.action { path.corners.len() } else { 0 };
+        let fits_line = |(of, deed): (&DeedPlan, &Deed)| deed.line.is_empty() || deed.line.len() == corners(of);
+        if !self.plan.deeds.iter().zip(&state.deeds).all(fits_line) {
+            return Err("a line of its story has other corners than that of the scenario".to_owned());
+        }
         match state.actors.iter().position(|actor| !fits(actor)) {
             Some(role) => Err(format!("story.actors[{role}] is {:?}, expected a possible one", state.actors[role])),
             None => Ok(()),
@@ -195,7 +203,9 @@ impl Stage {
         self.go_on(state, &seen);
         for role in (0..script.cast.len()).filter(|role| *role != plan.ego || before.carries_ego) {
             let held = around.loose.binary_search_by_key(&(FIRST_STORY_ID + role as u32), |o| o.id).is_ok();
-            if !held && !state.actors[role].gone {
+            if held {
+                deeds::end_all(state, role, tick);
+            } else if !state.actors[role].gone {
                 moves::advance(state, role, &seen);
             }
         }
@@ -297,9 +307,8 @@ impl Stage {
         if state.groups[group].times < of.most && !of.events.is_empty() {
             state.groups[group].progress = Progress::Running;
             for event in of.events.clone() {
-                state.events[event] =
-                    Mark { change: state.events[event].change, at: state.events[event].at, ..Mark::NEW };
-                self.plan.events[event].start.forget(&mut state.conditions);
+                (state.events[event].progress, state.events[event].times) = (Progress::Standby, 0);
+                self.plan.events[event].start.rearm(&mut state.conditions);
             }
         }
     }
@@ -309,7 +318,7 @@ impl Stage {
         if !of.start.is_empty() && !seen.is_met(&of.start, &mut state.conditions) {
             return;
         }
-        let beside = |other: &usize| *other != event && self.plan.events[*other].manoeuvre.0 == of.manoeuvre.0;
+        let beside = |other: &usize| *other != event && self.plan.events[*other].manoeuvre == of.manoeuvre;
         let going: Vec<usize> = group.events.clone().filter(beside).filter(|e| state.events[*e].runs()).collect();
         match of.priority {
             Priority::Skip if !going.is_empty() => {
@@ -321,7 +330,6 @@ impl Stage {
                 for other in going {
                     self.end_deeds(state, other, tick);
                     state.events[other].turn(Progress::Complete, Change::Stopped, tick);
-                    self.again_or_over(state, other);
                 }
             }
             Priority::Skip | Priority::Parallel => {}
@@ -344,7 +352,7 @@ impl Stage {
         let again = state.events[event].times < of.most;
         state.events[event].progress = if again { Progress::Standby } else { Progress::Complete };
         if again {
-            of.start.forget(&mut state.conditions);
+            of.start.rearm(&mut state.conditions);
         }
     }
 }

@@ -45,6 +45,8 @@ state! {
         pub change: Change,
         /// When that was.
         pub at: Tick,
+        /// When it began last: it may be over in the same tick.
+        pub began: Option<Tick>,
         /// How many times it was over.
         pub times: u16,
     }
@@ -120,7 +122,7 @@ state! {
 
 impl Mark {
     /// Nothing happened yet.
-    pub const NEW: Self = Self { progress: Progress::Standby, change: Change::None, at: 0, times: 0 };
+    pub const NEW: Self = Self { progress: Progress::Standby, change: Change::None, at: 0, began: None, times: 0 };
 
     /// Goes on.
     pub fn runs(&self) -> bool {
@@ -135,6 +137,9 @@ impl Mark {
     /// Changes at a tick.
     pub fn turn(&mut self, progress: Progress, change: Change, at: Tick) {
         (self.progress, self.change, self.at) = (progress, change, at);
+        if change == Change::Started {
+            self.began = Some(at);
+        }
         if matches!(change, Change::Ended | Change::Stopped | Change::Skipped) {
             self.times = self.times.saturating_add(1);
         }

@@ -22,6 +22,8 @@ const SWEEPS_M: f32 = 20.0;
 const OFF_VEHICLES_M: f32 = 0.1;
 /// The same from those that move, of whoever is on the road already.
 const OFF_MOVING_M: f32 = 0.0;
+/// Nobody steps to where one that moves is in so many seconds.
+const ROLLS_S: f32 = 0.2;
 /// Whoever goes round one keeps off by so much more, metres.
 const ROUND_M: f32 = 0.1;
 /// Whoever comes by this near a vehicle does not drift back towards it, metres.
@@ -46,7 +48,9 @@ impl Streets<'_> {
         let toe = here.truncate() + direction.normalize_or_zero() * toe_m;
         // Nobody stops early before what comes.
         let gap_m = |block: &Hazard| if block.stands() { OFF_VEHICLES_M + ROUND_M } else { OFF_MOVING_M };
-        let room_m = |block: &Hazard| block.nearest_from(toe).length() - outline.radius_m - gap_m(block);
+        let off_m =
+            |block: &Hazard| block.nearest_from(toe).length().min(block.after(ROLLS_S).nearest_from(toe).length());
+        let room_m = |block: &Hazard| off_m(block) - outline.radius_m - gap_m(block);
         let near = self.vehicles_near(here, toe_m + outline.radius_m + OFF_VEHICLES_M + ROUND_M + BESIDE_M);
         let found = near.map(|block| (block, room_m(block))).filter(|(_, room_m)| *room_m < BESIDE_M);
         found.min_by(|(_, a), (_, b)| a.total_cmp(b))

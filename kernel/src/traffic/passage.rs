@@ -1,5 +1,7 @@
 //! How vehicles leave the map and enter it again: where it ends, and when the watchdog takes them off.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use crate::events::EventKind;
@@ -21,6 +23,9 @@ use super::watchdog::{DISSOLVE_S, DISSOLVE_SEEN_S, STUCK_S};
 const UNSEEN_M: f32 = 2.0 * EGO_CLEARANCE_M;
 /// Who has stood where the map ends for so long leaves it though the ego car sees it: behind it a queue stands for nothing.
 const AT_END_S: u8 = 3;
+/// Who has stood there for so long enters it again before those who came later: where roads are full, a bus finds no gap
+/// that a car does not take. Who finds none for longer holds nobody up.
+const FIRST_S: Range<u8> = 20..160;
 /// Speed at which they enter it, m/s.
 const ENTRY_MPS: f32 = 3.0;
 /// Free space before a vehicle that enters, metres, and beside it.
@@ -48,7 +53,9 @@ impl Actors {
             }
             let id = u32::from(vehicle.id);
             if self.at_end(i) {
-                self.enter_map(i, around, vehicle.stuck_s >= AT_END_S);
+                if !self.is_after_others(i) {
+                    self.enter_map(i, around, vehicle.stuck_s >= AT_END_S);
+                }
                 continue;
             }
             if vehicle.stuck_s == STUCK_S && was.stuck_s < STUCK_S {
@@ -68,6 +75,16 @@ impl Actors {
         let end_m = way_end_m(&self.map().lanes[lane]);
         let near_end = vehicle.s_m > end_m - self.drivers[index].size_m.x * 0.5 - 4.0;
         self.ways.lanes[lane].onward.is_empty() && near_end && vehicle.speed_mps < 0.5
+    }
+
+    /// Whether somebody goes before a vehicle that stands where its way ends.
+    fn is_after_others(&self, index: usize) -> bool {
+        let vehicle = &self.state.vehicles[index];
+        let goes_before = |other: &Vehicle| {
+            let longer = FIRST_S.contains(&other.stuck_s) && other.stuck_s > vehicle.stuck_s;
+            longer && other.kind.is_pedalled() == vehicle.kind.is_pedalled()
+        };
+        self.state.vehicles.iter().enumerate().any(|(i, other)| goes_before(other) && self.at_end(i))
     }
 
     /// Moves a vehicle to where a road begins, drawn anew each tick, if there is room; out of sight of the

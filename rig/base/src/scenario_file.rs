@@ -74,8 +74,13 @@ fn map_of(scenario: &Scenario, file: &Path) -> anyhow::Result<Map> {
     // Files of stories name maps in folders that nobody else has.
     let plain = Path::new(&scenario.map).file_name().filter(|_| scenario.story.is_some());
     let beside = [Some(folder.join(&scenario.map)), plain.map(|name| folder.join(name))];
-    let found = beside.into_iter().flatten().find(|path| path.is_file());
-    Map::find(&found.map_or(scenario.map.clone(), |path| path.to_string_lossy().into_owned()))
+    // A story that comes with A-Eye has no folder.
+    let found = beside.into_iter().flatten().filter(|_| file.exists()).find(|path| path.is_file());
+    // Maps that come with A-Eye need no file.
+    let stem = plain.map(|name| Path::new(name).with_extension("").to_string_lossy().into_owned());
+    let bundled = stem.filter(|stem| bundled_text(stem).is_some());
+    let found = found.map(|path| path.to_string_lossy().into_owned()).or(bundled);
+    Map::find(&found.unwrap_or_else(|| scenario.map.clone()))
 }
 
 /// What a story in OpenSCENARIO XML begins with: nobody but those who play, who make no mistakes of their own.
@@ -91,11 +96,7 @@ fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
             say(format!("{}: {} of the ego car left to its drivers", path.display(), words::count(count, "action")))
         }
     }
-    let file = story.map_file().to_owned();
-    // Maps that come with A-Eye need no file.
-    let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
-    let is_there = path.parent().unwrap_or(Path::new("")).join(&file).is_file();
-    let map = if !is_there && bundled_text(&stem).is_some() { stem.into_owned() } else { file };
+    let map = story.map_file().to_owned();
     let (traffic, hazards) = (TrafficCounts::NONE, HazardRates::NONE);
     let mut scenario = Scenario { traffic, hazards, ..Scenario::default_for(&map, 1) };
     scenario.play(story);

@@ -1,7 +1,7 @@
 //! What somebody does.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Position, Takes};
+use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Takes};
 
 use super::document::Element;
 use super::dynamics::{SHAPES, dynamics, ticks};
@@ -130,7 +130,8 @@ fn lane_offset(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryEr
 
 fn route(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
     let route = action.need("Route")?;
-    route.pass_parameters();
+    is_open(route)?;
+    route.pass_parameters()?;
     let mut places = Vec::new();
     for waypoint in route.all("Waypoint") {
         if places.len() == WAYPOINTS {
@@ -144,13 +145,22 @@ fn route(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
     Ok(Action::Route(places))
 }
 
+/// Refuses what comes back to its beginning.
+fn is_open(way: Element<'_>) -> Result<(), StoryError> {
+    match way.switch("closed")? {
+        Some(true) => Err(way.wrong(format!("closed=\"true\" of <{}> is not supported", way.tag()))),
+        _ => Ok(()),
+    }
+}
+
 fn path(action: Element<'_>, names: &Names<'_>) -> Result<Path, StoryError> {
     if let Some(mode) = action.child("TrajectoryFollowingMode") {
         mode.given("followingMode")?;
     }
     let within = action.child("TrajectoryRef").unwrap_or(action);
     let trajectory = within.need("Trajectory")?;
-    trajectory.pass_parameters();
+    is_open(trajectory)?;
+    trajectory.pass_parameters()?;
     let line = trajectory.need("Shape")?.choice()?;
     if line.tag() != "Polyline" {
         return Err(line.unsupported());
@@ -181,7 +191,7 @@ fn path(action: Element<'_>, names: &Names<'_>) -> Result<Path, StoryError> {
             return Err(vertex.wrong("time of <Vertex> is before that of the one before"));
         }
         let position = positions::read(vertex.need("Position")?, names)?;
-        headings |= matches!(position, Position::World { heading_rad: Some(_), .. });
+        headings |= positions::says_heading(&position);
         corners.push((position, time_s));
     }
     if corners.len() < 2 {
@@ -192,5 +202,8 @@ fn path(action: Element<'_>, names: &Names<'_>) -> Result<Path, StoryError> {
         return Err(line.wrong("expected a time of every <Vertex>, as <Timing> asks for"));
     }
     let from_m = action.number_given("initialDistanceOffset")?.unwrap_or(0.0) as f32;
+    if timed && from_m != 0.0 {
+        return Err(action.wrong("initialDistanceOffset with <Timing> is not supported"));
+    }
     Ok(Path { corners, absolute, timed, from_m, headings })
 }

@@ -7,7 +7,6 @@ use std::ops::Range;
 use roxmltree::{Document, Node};
 
 use super::document::{self, BYTES, Shared, line_of};
-use super::value;
 use crate::story::error::StoryError;
 
 /// How deep entries may refer to others.
@@ -22,7 +21,7 @@ pub fn folders(text: &str) -> Vec<String> {
     let locations = document.descendants().filter(|n| n.has_tag_name("CatalogLocations"));
     let paths = locations.flat_map(|n| n.descendants()).filter(|n| n.has_tag_name("Directory"));
     let mut found: Vec<String> = Vec::new();
-    for path in paths.filter_map(|n| value::of(n.attribute("path")?, shared.parameters()).ok()) {
+    for path in paths.filter_map(|n| shared.value(n, n.attribute("path")?).ok()) {
         if !found.contains(&path) {
             found.push(path);
         }
@@ -64,7 +63,7 @@ fn once(text: &str, catalogs: &[Document<'_>]) -> Result<Option<String>, StoryEr
     for reference in document.descendants().filter(|n| n.has_tag_name("CatalogReference")).filter(is_read) {
         let named = |name: &str| {
             let text = reference.attribute(name).unwrap_or_default();
-            value::of(text, shared.parameters()).unwrap_or_else(|_| text.to_owned())
+            shared.value(reference, text).unwrap_or_else(|_| text.to_owned())
         };
         let (catalog, entry) = (named("catalogName"), named("entryName"));
         match find(catalogs, &catalog, &entry) {

@@ -22,11 +22,11 @@ const RULES: &[(&str, Rule)] = &[
 const EDGES: &[(&str, Edge)] =
     &[("none", Edge::None), ("rising", Edge::Rising), ("falling", Edge::Falling), ("risingOrFalling", Edge::Either)];
 const KINDS: &[(&str, ElementKind)] = &[
-    ("act", ElementKind::Act),
-    ("maneuverGroup", ElementKind::Group),
-    ("maneuver", ElementKind::Manoeuvre),
-    ("event", ElementKind::Event),
-    ("action", ElementKind::Action),
+    (ElementKind::Act.name(), ElementKind::Act),
+    (ElementKind::Group.name(), ElementKind::Group),
+    (ElementKind::Manoeuvre.name(), ElementKind::Manoeuvre),
+    (ElementKind::Event.name(), ElementKind::Event),
+    (ElementKind::Action.name(), ElementKind::Action),
 ];
 const STATES: &[(&str, ElementState)] = &[
     ("standbyState", ElementState::Standby),
@@ -74,11 +74,12 @@ fn condition(element: Element<'_>, names: &Names<'_>) -> Result<Condition, Story
 fn by_value(value: Element<'_>, names: &Names<'_>) -> Result<When, StoryError> {
     match value.tag() {
         "SimulationTimeCondition" => Ok(When::Time(value.word("rule", RULES)?, value.float("value")?)),
-        "StoryboardElementStateCondition" => Ok(When::Element(
-            value.word("storyboardElementType", KINDS)?,
-            value.text("storyboardElementRef")?,
-            value.word("state", STATES)?,
-        )),
+        "StoryboardElementStateCondition" => Ok(When::Element {
+            kind: value.word("storyboardElementType", KINDS)?,
+            path: value.text("storyboardElementRef")?,
+            state: value.word("state", STATES)?,
+            at: value.begins(),
+        }),
         "TrafficSignalCondition" => signals::shows(value),
         "TrafficSignalControllerCondition" => signals::is_in(value, names),
         _ => Err(value.unsupported()),
@@ -99,12 +100,11 @@ fn by_entity(element: Element<'_>, names: &Names<'_>) -> Result<When, StoryError
 
 fn of_role(it: Element<'_>, names: &Names<'_>) -> Result<OfRole, StoryError> {
     let rule = || it.word("rule", RULES);
+    if it.given("direction")?.is_some() {
+        return Err(it.wrong(format!("direction of <{}> is not supported", it.tag())));
+    }
     match it.tag() {
-        "SpeedCondition" => {
-            it.given("direction")?
-                .map_or(Ok(()), |_| Err(it.wrong("direction of <SpeedCondition> is not supported")))?;
-            Ok(OfRole::Speed(rule()?, it.float("value")?))
-        }
+        "SpeedCondition" => Ok(OfRole::Speed(rule()?, it.float("value")?)),
         "RelativeSpeedCondition" => {
             Ok(OfRole::RelativeSpeed(rule()?, it.float("value")?, names.role(it, "entityRef")?))
         }

@@ -6,17 +6,22 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::{Document, Error, Node, ParsingOptions};
 
 use super::coverage::{self, Support};
-use super::value;
+use super::{value, vary};
 use crate::story::error::StoryError;
 
 /// Longest text, bytes.
 pub const BYTES: usize = 16 << 20;
 /// Most elements, texts and comments.
 const NODES: u32 = 400_000;
+/// How many times values of parameters may name others.
+const REFERENCES: usize = 8;
 
 /// What all elements share.
 pub struct Shared {
-    parameters: BTreeMap<String, String>,
+    /// Values of parameters, by the element that declares them and their names.
+    parameters: BTreeMap<usize, BTreeMap<String, String>>,
+    /// Those that are known already.
+    values: RefCell<BTreeMap<(usize, String), String>>,
     read: RefCell<BTreeSet<usize>>,
 }
 
@@ -48,18 +53,43 @@ fn said(error: &Error) -> String {
 }
 
 impl Shared {
-    /// With the parameters that the text declares.
+    /// With the parameters that the text declares: stories and manoeuvres have some of their own.
     pub fn of(document: &Document<'_>) -> Self {
-        // Stories and manoeuvres have parameters of their own. Some programs write the sign of a reference as part of the name.
-        let declared = document.descendants().filter(|n| n.has_tag_name("ParameterDeclaration"));
-        let name = |n: &Node<'_, '_>| Some(n.attribute("name")?.trim_start_matches('$').to_owned());
-        let value = |n: Node<'_, '_>| Some((name(&n)?, n.attribute("value")?.to_owned()));
-        Self { parameters: declared.filter_map(value).collect(), read: RefCell::default() }
+        let mut parameters: BTreeMap<usize, BTreeMap<String, String>> = BTreeMap::new();
+        for node in document.descendants().filter(|n| n.has_tag_name("ParameterDeclaration")) {
+            let owner = node.parent_element().and_then(|all| all.parent_element());
+            if let (Some(owner), Some(name), Some(value)) = (owner, node.attribute("name"), node.attribute("value")) {
+                // Some programs write the sign of a reference as part of the name.
+                let name = name.trim_start_matches('$').to_owned();
+                parameters.entry(owner.id().get_usize()).or_default().insert(name, value.to_owned());
+            }
+        }
+        Self { parameters, values: RefCell::default(), read: RefCell::default() }
     }
 
-    /// The parameters and their values.
-    pub fn parameters(&self) -> &BTreeMap<String, String> {
-        &self.parameters
+    /// The text of an attribute with the values of parameters for it, as they are in an element.
+    pub fn value(&self, node: Node<'_, '_>, text: &str) -> Result<String, String> {
+        self.value_within(node, text, 0)
+    }
+
+    /// The nearest declaration around an element counts; its value may name others.
+    fn value_within(&self, node: Node<'_, '_>, text: &str, depth: usize) -> Result<String, String> {
+        if depth > REFERENCES {
+            return Err(format!("expected parameters that refer to each other at most {REFERENCES} times"));
+        }
+        let find = |name: &str| {
+            let declared = |at: &Node<'_, '_>| self.parameters.get(&at.id().get_usize()).and_then(|all| all.get(name));
+            let Some(owner) = node.ancestors().find(|at| declared(at).is_some()) else { return Ok(None) };
+            let value = declared(&owner).map_or("", String::as_str);
+            let key = (owner.id().get_usize(), name.to_owned());
+            if let Some(known) = self.values.borrow().get(&key) {
+                return Ok(Some(known.clone()));
+            }
+            let value = self.value_within(owner, value, depth + 1)?;
+            self.values.borrow_mut().insert(key, value.clone());
+            Ok(Some(value))
+        };
+        value::of(text, &find)
     }
 
     /// Refuses what was not read and is not harmless; gives what is harmless, each once, by line.
@@ -117,6 +147,11 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
+    /// Where it begins, bytes from the beginning of the text.
+    pub fn begins(&self) -> usize {
+        self.node.range().start
+    }
+
     /// A refusal at its line.
     pub fn wrong(&self, reason: impl Into<String>) -> StoryError {
         StoryError::at(line_of(self.node), reason.into())
@@ -137,13 +172,14 @@ impl<'a> Element<'a> {
         self.all(tag).next()
     }
 
-    /// Counts the declarations of its parameters as read: all are known from the beginning.
-    pub fn pass_parameters(self) {
+    /// Reads the declarations of its parameters: all are known from the beginning, but their ranges have to be some.
+    pub fn pass_parameters(self) -> Result<(), StoryError> {
         let declared = self.all("ParameterDeclarations").flat_map(|all| all.all("ParameterDeclaration"));
-        declared
-            .flat_map(|one| one.all("ConstraintGroup"))
-            .flat_map(|group| group.all("ValueConstraint"))
-            .for_each(drop);
+        declared.into_iter().try_for_each(|one| {
+            let groups = one.all("ConstraintGroup");
+            groups.flat_map(|group| group.all("ValueConstraint")).for_each(drop);
+            vary::range(one.node).map(drop)
+        })
     }
 
     /// The same, which must be there.
@@ -171,7 +207,7 @@ impl<'a> Element<'a> {
     /// An attribute with its parameters' values, if it is there.
     pub fn given(&self, name: &str) -> Result<Option<String>, StoryError> {
         let Some(text) = self.node.attribute(name) else { return Ok(None) };
-        let value = value::of(text.trim(), &self.shared.parameters);
+        let value = self.shared.value(self.node, text.trim());
         value.map(Some).map_err(|why| self.wrong(format!("{name} of <{}> is {}: {why}", self.tag(), shown(text))))
     }
 
@@ -249,7 +285,7 @@ impl<'a> Element<'a> {
 }
 
 /// A value as a refusal shows it.
-fn shown(text: &str) -> String {
+pub fn shown(text: &str) -> String {
     let mut shown: String = text.chars().filter(|c| !c.is_control()).take(40).collect();
     if text.chars().count() > 40 {
         shown.push_str("...");

@@ -48,7 +48,7 @@ const WETNESS: &[(&str, [f32; 2])] = &[
 /// What an `<EnvironmentAction>` says.
 pub fn read(action: Element<'_>) -> Result<Environment, StoryError> {
     let environment = action.need("Environment")?;
-    environment.pass_parameters();
+    environment.pass_parameters()?;
     let mut found = Environment::default();
     if let Some(weather) = environment.child("Weather") {
         self::weather(weather, &mut found)?;

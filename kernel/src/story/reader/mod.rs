@@ -21,6 +21,7 @@ pub use coverage::{ELEMENTS, Row, Support};
 pub use vary::{varied, with_shares};
 
 use super::error::StoryError;
+use super::plan;
 use super::script::Script;
 use document::{Element, Shared};
 use names::Names;
@@ -50,7 +51,7 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
             return Err(root.wrong(format!("it is {what}, expected a story")));
         }
     }
-    root.pass_parameters();
+    root.pass_parameters()?;
     let network = root.need("RoadNetwork")?;
     let map = network.need("LogicFile")?.text("filepath")?;
     let cast = entities::read(root.need("Entities")?)?;
@@ -60,5 +61,8 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
     let passed = shared.leftovers(&document)?;
     let Beginning { actions: init, lights, environment } = init;
     let script = Script { init, acts, stop, cast, lights, programmes, environment };
+    if let Some((at, what)) = plan::dangling(&script) {
+        return Err(StoryError::at(document.text_pos_at(at).row, format!("there is no {what}")));
+    }
     Ok(Read { script, map, passed })
 }

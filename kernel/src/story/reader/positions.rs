@@ -53,6 +53,19 @@ pub fn read(position: Element<'_>, names: &Names<'_>) -> Result<Position, StoryE
     }
 }
 
+/// Whether a place says how who is there faces, other than as traffic, the road or the role does.
+pub fn says_heading(place: &Position) -> bool {
+    match place {
+        Position::World { heading_rad, .. } => heading_rad.is_some(),
+        Position::Known(_) => false,
+        Position::Lane { facing, .. }
+        | Position::Road { facing, .. }
+        | Position::Beside { facing, .. }
+        | Position::BesideRoad { facing, .. }
+        | Position::BesideLane { facing, .. } => *facing != Facing::Relative(0.0),
+    }
+}
+
 /// What `<Orientation>` says; who says nothing faces as traffic, the road or the role does.
 fn facing(place: Element<'_>) -> Result<Facing, StoryError> {
     let Some(orientation) = place.child("Orientation") else { return Ok(Facing::Relative(0.0)) };

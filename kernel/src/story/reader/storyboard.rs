@@ -49,6 +49,7 @@ fn lasts(action: &Action) -> bool {
             let none = matches!(dynamics.takes, Takes::Time(takes) | Takes::Distance(takes) if takes <= 0.0);
             dynamics.shape != Shape::Step && !none
         }
+        Action::LaneOffset(dynamics, _, None) => dynamics.shape != Shape::Step,
         Action::LaneChange(..) | Action::LaneOffset(_, _, Some(_)) => true,
         Action::SpeedProfile(_) | Action::Gap(_) | Action::Meet(_) | Action::Follow(_) => true,
         _ => false,
@@ -82,7 +83,7 @@ pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> 
     let (init, opening) = begins.split();
     let mut acts: Vec<Act> = opening.into_iter().collect();
     for story in board.all("Story") {
-        story.pass_parameters();
+        story.pass_parameters()?;
         for act in story.all("Act") {
             acts.push(self::act(act, names)?);
         }
@@ -152,7 +153,7 @@ fn group(group: Element<'_>, names: &Names<'_>) -> Result<Group, StoryError> {
     let roles = roles.collect::<Result<Vec<_>, _>>()?;
     let mut events = Vec::new();
     for (number, manoeuvre) in group.all("Maneuver").enumerate() {
-        manoeuvre.pass_parameters();
+        manoeuvre.pass_parameters()?;
         let name = manoeuvre.given("name")?.unwrap_or_default();
         for event in manoeuvre.all("Event") {
             events.push(self::event(event, (number, name.clone()), names)?);

@@ -1,19 +1,20 @@
 //! Values of attributes: parameters (`$name`) and expressions (`${$name * 2 + 1}`), as OpenSCENARIO 1.1 has them.
 
-use std::collections::BTreeMap;
-
 /// Longest expression, characters, and how deep its brackets may go.
 const LENGTH: usize = 1000;
 const DEPTH: u32 = 30;
 
+/// Finds a parameter's value by its name.
+pub type Find<'a> = &'a dyn Fn(&str) -> Result<Option<String>, String>;
+
 /// The value of an attribute; a parameter or expression in it must be all of it.
-pub fn of(text: &str, parameters: &BTreeMap<String, String>) -> Result<String, String> {
+pub fn of(text: &str, find: Find<'_>) -> Result<String, String> {
     let Some(rest) = text.strip_prefix('$') else { return Ok(text.to_owned()) };
     if let Some(expression) = rest.strip_prefix('{').and_then(|rest| rest.strip_suffix('}')) {
         if expression.len() > LENGTH {
             return Err(format!("expected an expression of at most {LENGTH} characters"));
         }
-        let mut terms = Terms { rest: expression, parameters };
+        let mut terms = Terms { rest: expression, find };
         let value = terms.sum(0)?;
         terms.skip();
         return match terms.rest {
@@ -22,7 +23,11 @@ pub fn of(text: &str, parameters: &BTreeMap<String, String>) -> Result<String, S
             rest => Err(format!("expected an operator before {:?}", head(rest))),
         };
     }
-    parameters.get(rest).cloned().ok_or_else(|| format!("there is no parameter {}", head(rest)))
+    found(rest, find)
+}
+
+fn found(name: &str, find: Find<'_>) -> Result<String, String> {
+    find(name)?.ok_or_else(|| format!("there is no parameter {}", head(name)))
 }
 
 fn head(text: &str) -> String {
@@ -32,7 +37,7 @@ fn head(text: &str) -> String {
 /// The rest of an expression.
 struct Terms<'a> {
     rest: &'a str,
-    parameters: &'a BTreeMap<String, String>,
+    find: Find<'a>,
 }
 
 impl Terms<'_> {
@@ -90,9 +95,8 @@ impl Terms<'_> {
             return self.take(&[')']).map(|_| value).ok_or_else(|| "expected )".to_owned());
         }
         if self.take(&['$']).is_some() {
-            let parameters = self.parameters;
             let name = self.run(|c| c.is_alphanumeric() || c == '_').to_owned();
-            let value = parameters.get(&name).ok_or_else(|| format!("there is no parameter {}", head(&name)))?;
+            let value = found(&name, self.find)?;
             return value.parse().map_err(|_| format!("parameter {} is no number", head(&name)));
         }
         self.skip();
@@ -126,7 +130,7 @@ mod tests {
 
     fn value(text: &str) -> Result<String, String> {
         let parameters = [("speed", "12.5"), ("name", "Ego"), ("n_2", "4")];
-        of(text, &parameters.map(|(name, value)| (name.to_owned(), value.to_owned())).into())
+        of(text, &|name| Ok(parameters.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())))
     }
 
     #[test]

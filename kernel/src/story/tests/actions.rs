@@ -2,11 +2,11 @@
 
 use super::*;
 
-fn position(x: f32, y: f32, h: &str, time: &str) -> String {
+pub fn position(x: f32, y: f32, h: &str, time: &str) -> String {
     format!(r#"<Vertex {time}><Position><WorldPosition x="{x}" y="{y}" z="0" {h}/></Position></Vertex>"#)
 }
 
-fn follow(timing: &str, corners: &str) -> String {
+pub fn follow(timing: &str, corners: &str) -> String {
     format!(
         r#"<PrivateAction><RoutingAction><FollowTrajectoryAction>
 <Trajectory name="line" closed="false"><Shape><Polyline>{corners}</Polyline></Shape></Trajectory>

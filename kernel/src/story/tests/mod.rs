@@ -5,6 +5,7 @@ mod conditions;
 mod library;
 mod lights;
 mod reading;
+mod ways;
 mod worlds;
 
 use std::sync::{Arc, OnceLock};

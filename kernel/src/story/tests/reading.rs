@@ -93,6 +93,30 @@ fn parameters_with_ranges_are_drawn_by_seed() {
 }
 
 #[test]
+fn bounds_that_are_no_numbers_or_leave_none_are_refused() {
+    let plain = text(&begins("Other", -1, 100.0, 10.0), "");
+    let declared = r#"<ParameterDeclaration name="fast" parameterType="double" value="20"/>"#;
+    assert!(plain.contains(declared));
+    let bounded = |low: &str, high: &str| {
+        let bounds = format!(
+            r#"<ConstraintGroup><ValueConstraint rule="greaterOrEqual" value="{low}"/>
+<ValueConstraint rule="lessOrEqual" value="{high}"/></ConstraintGroup>"#
+        );
+        Story::read(&plain.replace(declared, &declared.replace("/>", &format!(">{bounds}</ParameterDeclaration>"))))
+    };
+    assert!(bounded("5", "15").is_ok());
+    for (low, high, said) in [
+        ("NaN", "15", "a number"),
+        ("5", "INF", "a number"),
+        ("$fast", "9", "a number"),
+        ("15", "5", "no number is from 15 to 5"),
+    ] {
+        let error = bounded(low, high).expect_err(said).to_string();
+        assert!(error.contains(said) && error.starts_with("line "), "{error}");
+    }
+}
+
+#[test]
 fn hostile_texts_are_refused_soon() {
     let deep = format!("<OpenSCENARIO>{}", "<Storyboard>".repeat(300_000));
     let events = event("e", "", "").replace("<Action name=\"of e\"></Action>", "");

@@ -128,6 +128,29 @@ fn who_crosses_close_before_a_car_gets_past_it() {
     assert!(away_m > 4.0, "{away_m} m: {:?}", traffic.state().walkers[0]);
 }
 
+/// The speed a tick later of somebody on a crosswalk, before whom the front of a car is that moves along their way's left.
+fn speed_before_mps(car_mps: f32) -> f32 {
+    let network = crossroads(Signs::Yield);
+    let mut state = with_people(&network, 1, 2101).state().clone();
+    state.vehicles.clear();
+    let crosswalk = network.walk_edges.iter().position(|e| e.crosswalk.is_some()).expect("there is one");
+    let (s_m, offset_m, forward) = (network.walk_edges[crosswalk].length_m * 0.5, 0.0, true);
+    let walker = Walker { edge: crosswalk as u32, s_m, offset_m, forward, speed_mps: 1.0, ..state.walkers[0] };
+    state.walkers[0] = walker;
+    let place = network.ways().walker_place(&walker);
+    let left = place.left().extend(0.0);
+    let ego = car_at(place.position + place.forward * 0.8 - left * (0.3 + 2.25), crate::ops::atan2(left.y, left.x));
+    let mut traffic = Traffic::with(&counts(1), 2101, network.ways(), state);
+    traffic.step(&Surroundings::calm(1, Obstacle { velocity_mps: left * car_mps, ..ego }));
+    traffic.state().walkers[0].speed_mps
+}
+
+#[test]
+fn nobody_steps_right_before_what_rolls() {
+    assert_eq!(speed_before_mps(0.7), 0.0);
+    assert!(speed_before_mps(-0.7) > 0.0, "it rolls away");
+}
+
 #[test]
 fn who_stands_with_a_pram_half_off_the_kerb_looks_before_it_goes_on() {
     let network = crossroads(Signs::Yield);

@@ -217,3 +217,26 @@ fn who_rolls_over_where_it_should_wait_in_a_narrow_street_stands_there() {
         .collect();
     assert!(rolled.len() > 4 && rolled.iter().all(|m| *m < 1.0), "{rolled:?}");
 }
+
+#[test]
+fn a_bus_that_waits_where_the_map_ends_is_not_passed_by_all_others() {
+    let network = crossroads(Signs::Yield);
+    let ends = (0..network.lanes.len() as u32).filter(|lane| network.ways().lanes[*lane as usize].onward.is_empty());
+    let [first, second] = ends.take(2).collect::<Vec<_>>()[..] else { panic!("two lanes end") };
+    let at_end = |id: u16, kind: ActorKind, lane: u32, stuck_s: u8| {
+        let s_m = network.lanes[lane as usize].length_m - kind.size_m().x * 0.5 - 1.0;
+        Vehicle { id, kind, lane, before: lane, s_m, stuck_s, ..Vehicle::standing() }
+    };
+    let enters = |tick: Tick, bus_waits_s: u8| {
+        let car = at_end(1, ActorKind::Car, first, 2);
+        let traffic = with_vehicles(&network, vec![car, at_end(2, ActorKind::Bus, second, bus_waits_s)]);
+        let mut actors = traffic.actors.clone();
+        let before = actors.state.vehicles.clone();
+        actors.return_to_map(&before, &Surroundings::calm(tick, nowhere()), &mut Vec::new());
+        [0, 1].map(|i| actors.state.vehicles[i].lane != before[i].lane)
+    };
+    // At times both draw the same entry.
+    let tick = (60..120).find(|tick| enters(*tick, 2) == [true, true]).expect("both have just come");
+    assert_eq!(enters(tick, 20), [false, true], "the bus goes first");
+    assert_eq!(enters(tick, 160), [true, true], "who finds no room for so long holds nobody up");
+}

@@ -38,6 +38,7 @@ const DRIVES: [&str; 16] = [
 #[derive(Args, Clone, Debug)]
 #[command(group = clap::ArgGroup::new("goal").args(["km", "cases", "pedestrian_cases"]))]
 #[command(group = clap::ArgGroup::new("end").required(true).multiple(true).args(ENDS))]
+#[command(group = clap::ArgGroup::new("counted").args(["runs", "vary"]))]
 pub struct CampaignArgs {
     /// What the semantic driver sees: bundled checkpoints, ground truth, or ONNX files; each drives
     /// the same runs.
@@ -63,7 +64,7 @@ pub struct CampaignArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub runs: Option<u32>,
     /// As many runs, for each of which values are drawn for those parameters of the story that have ranges.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), requires = "scenario", conflicts_with = "runs")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), requires = "scenario")]
     pub vary: Option<u32>,
     /// Kilometres of each checkpoint.
     #[arg(long)]
@@ -94,7 +95,7 @@ pub struct CampaignArgs {
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
     /// Drive one share of the runs: of N, the I-th one. Each has a folder of its own.
-    #[arg(long, value_name = "I/N", requires = "runs", conflicts_with = "print_scenario")]
+    #[arg(long, value_name = "I/N", requires = "counted", conflicts_with = "print_scenario")]
     pub shard: Option<Share>,
     /// Drive nothing, and put together what shards drove.
     #[arg(long, requires = "folders", conflicts_with_all = DRIVES)]

@@ -112,6 +112,8 @@ mod tests {
         assert!(parse(&["--runs", "4"]) && parse(&["--km", "1.5"]));
         assert!(!parse(&[]) && !parse(&["--km", "4", "--cases", "1"]) && parse(&["--runs", "4", "--cases", "1"]));
         assert!(parse(&["--runs", "4", "--shard", "2/3"]) && parse(&["--runs", "4", "--km", "1", "--shard", "2/3"]));
+        assert!(parse(&["--scenario", "cut_out", "--vary", "4", "--shard", "2/3"]));
+        assert!(!parse(&["--scenario", "cut_out", "--vary", "4", "--runs", "4"]) && !parse(&["--vary", "4"]));
         assert!(!parse(&["--km", "1", "--shard", "2/3"]) && !parse(&["--runs", "4", "--shard", "4/3"]));
         let collect = |tail: &[&str]| {
             let head = ["aeye", "campaign", "--collect", "a", "b", "--out", "d"];

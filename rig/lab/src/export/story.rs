@@ -11,9 +11,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use base::output;
 use base::progress::Interrupt;
+use base::say::say;
 use glam::{Quat, Vec3};
 use kernel::map::bundled_text;
 use kernel::scene::{ActorKind, SceneSnapshot};
+use kernel::story::Story;
 use kernel::time::{TICK_HZ, TICK_S, Tick};
 use kernel::{RoadNetwork, ego};
 use measures::footage::{self, Asked, Window};
@@ -61,7 +63,10 @@ pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) 
     }
     let map = out.with_extension("xodr");
     let map_name = map.file_name().context("a story without a name")?.to_string_lossy().into_owned();
-    let text = story(&tracks, &network, &map_name, from);
+    let text = story(&tracks, &network, &map_name, (from, to));
+    if let Err(error) = Story::read(&text) {
+        say(format!("{}: A-Eye itself does not read it: {error}; --last, --from and --to ask for less", out.display()));
+    }
     let map_text = map_text(&recording, &network)?;
     let there = |path: &Path| fs::read_to_string(path).ok();
     let kept = there(&out).as_ref() == Some(&text) && there(&map).as_ref() == Some(&map_text);
@@ -131,7 +136,7 @@ impl Track {
     }
 }
 
-fn story(tracks: &[Track], network: &RoadNetwork, map: &str, from: Tick) -> String {
+fn story(tracks: &[Track], network: &RoadNetwork, map: &str, (from, to): (Tick, Tick)) -> String {
     let name = escaped(&network.name);
     let mut text = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<OpenSCENARIO>\n\
@@ -160,22 +165,22 @@ fn story(tracks: &[Track], network: &RoadNetwork, map: &str, from: Tick) -> Stri
     }
     text.push_str("</Actions></Init>\n<Story name=\"recorded\"><Act name=\"as it was\">\n");
     for track in tracks {
-        group(track, from, &world, &mut text);
+        group(track, (from, to), &world, &mut text);
     }
-    let start = start("act");
+    let start = start("act", -1.0);
     let _ = write!(text, "{start}\n</Act></Story>\n<StopTrigger/>\n</Storyboard>\n</OpenSCENARIO>\n");
     text
 }
 
-/// What begins at once: a rising edge, or a time of 0, would come a tick late or never.
-fn start(of: &str) -> String {
+/// What begins after a time: at once where that is -1. A rising edge, or a time of 0, would come a tick late or never.
+fn start(of: &str, after_s: f64) -> String {
     format!(
         "<StartTrigger><ConditionGroup><Condition name=\"start of {of}\" delay=\"0\" conditionEdge=\"none\"><ByValueCondition>\
-         <SimulationTimeCondition value=\"-1\" rule=\"greaterThan\"/></ByValueCondition></Condition></ConditionGroup></StartTrigger>"
+         <SimulationTimeCondition value=\"{after_s}\" rule=\"greaterThan\"/></ByValueCondition></Condition></ConditionGroup></StartTrigger>"
     )
 }
 
-fn group(track: &Track, from: Tick, world: &impl Fn(Vec3, f32) -> String, text: &mut String) {
+fn group(track: &Track, (from, to): (Tick, Tick), world: &impl Fn(Vec3, f32) -> String, text: &mut String) {
     let name = &track.name;
     let _ = writeln!(
         text,
@@ -200,9 +205,19 @@ fn group(track: &Track, from: Tick, world: &impl Fn(Vec3, f32) -> String, text: 
         text,
         "</Polyline></Shape></Trajectory><TimeReference><Timing domainAbsoluteRelative=\"absolute\" scale=\"1\" \
          offset=\"0\"/></TimeReference><TrajectoryFollowingMode followingMode=\"position\"/></FollowTrajectoryAction>\
-         </RoutingAction></PrivateAction></Action>{}</Event></Maneuver></ManeuverGroup>",
-        start(name)
+         </RoutingAction></PrivateAction></Action>{}</Event>",
+        start(name, -1.0)
     );
+    let last = track.poses[track.poses.len() - 1].0;
+    if last < to {
+        let _ = writeln!(
+            text,
+            "<Event name=\"{name} leaves\" priority=\"overwrite\"><Action name=\"leaving of {name}\"><GlobalAction><EntityAction \
+             entityRef=\"{name}\"><DeleteEntityAction/></EntityAction></GlobalAction></Action>{}</Event>",
+            start(&format!("leaving of {name}"), time_s(last))
+        );
+    }
+    text.push_str("</Maneuver></ManeuverGroup>\n");
 }
 
 fn entity(track: &Track, text: &mut String) {
