@@ -180,7 +180,7 @@ pub struct After {
     pub collided: bool,
     /// It is inside a junction.
     pub in_junction: bool,
-    /// Its road ends right ahead.
+    /// Its road ends right ahead, or its story is over.
     pub at_end: bool,
     /// Its speed, m/s.
     pub speed_mps: f32,

@@ -19,6 +19,7 @@ from openscenario import (
     on_road,
     route,
     speed,
+    stands_near,
     travelled,
     world,
 )
@@ -202,7 +203,7 @@ def oncoming_overtaker():
     story.plays("Cyclist", "bicycle", on_lane(VILLAGE, 1, 250, -0.6), 4)
     story.plays("Car", "car", on_lane(VILLAGE, 1, 330), "$over_mps")
     story.does("Car", headway("Car", 8), lane_change(-1, 2.0), name="out")
-    story.does("Car", headway("Car", "${2.9 + $late_s}"), speed(1.0, "linear", "rate", 6), name="late")
+    story.does("Car", headway("Car", "${2.9 + $late_s}"), speed(0, "linear", "rate", 6), name="late")
     return story
 
 
@@ -321,7 +322,9 @@ def crossing(name, about, ego, own_mps, who, kind, begins, at, straight_m, way, 
     own_place = own if isinstance(own, str) else world(x, y, own)
     story.does(who, at_once(), meets("Ego", world(f"${{{x} + $off_m}}", y, theirs), own_place, "$run_mps"))
     then = speed(mps, "linear", "rate", 3) if mps else as_fast_as(who, 0, False)
-    return story.does(who, travelled(straight_m, who), then)
+    story.does(who, travelled(straight_m, who), then)
+    # Nobody drives on into a car that stands there.
+    return story.does(who, stands_near(who, 9), speed(0, "linear", "rate", 7))
 
 
 def red_light_runner():

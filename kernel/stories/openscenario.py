@@ -159,6 +159,13 @@ def travelled(metres, who="Ego", **delayed):
     return of(who, tag("TraveledDistanceCondition", value=metres), **delayed)
 
 
+def stands_near(who, metres, entity="Ego"):
+    """Somebody stands within so many metres of another."""
+    near = distance(entity, metres, who=who, along_heading=False)
+    stands = of(entity, tag("SpeedCondition", value=0.5, rule="lessThan"))
+    return near.removesuffix("</ConditionGroup>") + stands.removeprefix("<ConditionGroup>")
+
+
 def after(event, delay=0):
     """So long after an event is over."""
     state = tag(
@@ -217,6 +224,9 @@ def entity(name, kind):
 
 class Story:
     """A story: who plays, how it begins, and what happens."""
+
+    # Then all is over, seconds.
+    lasts_s = 30
 
     def __init__(self, name, map_name, about, **ranges):
         self.name, self.map, self.about, self.ranges = name, map_name, about, ranges
@@ -297,7 +307,7 @@ class Story:
 <Story name="{self.name}"><Act name="act">
 {groups}
 <StartTrigger>{at_once()}</StartTrigger></Act></Story>
-<StopTrigger/>
+<StopTrigger>{when(tag("ByValueCondition", tag("SimulationTimeCondition", value=self.lasts_s, rule="greaterThan")))}</StopTrigger>
 </Storyboard>
 </OpenSCENARIO>
 """

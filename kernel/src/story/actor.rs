@@ -9,6 +9,7 @@ use crate::state;
 use crate::time::{TICK_S, Tick};
 use crate::traffic::{Body, Obstacle};
 
+use super::places::MOST_M;
 use super::script;
 use super::spot::Spot;
 
@@ -18,6 +19,9 @@ const STANDS_MPS: f32 = 0.1;
 const LAMPS_MPS2: f32 = 0.7;
 /// Speed across the lane from which the indicators tell it, m/s.
 const INDICATES_MPS: f32 = 0.1;
+/// Nobody is faster, and nobody comes farther, m/s and metres.
+const MOST_MPS: f32 = 1000.0;
+const FARTHEST_M: f32 = 1e9;
 /// The way in a turn of the legs or the pedals, metres.
 const STRIDE_M: f32 = 1.4;
 const PEDALS_M: f32 = 5.0;
@@ -114,6 +118,17 @@ impl StoryActor {
             side_by: None,
             way_by: None,
         }
+    }
+
+    /// Whether it is where somebody can be, as fast as somebody can be.
+    pub fn is_possible(&self) -> bool {
+        let about = |m: f32| m.abs() < MOST_M;
+        let on = self.spot.on.is_none_or(|on| about(on.s_m) && about(on.offset_m));
+        let speeds = [self.speed_mps, self.ended_mps, self.drift_mps, self.velocity_mps.length()];
+        let places = [self.spot.position.abs().max_element(), self.slip_m, self.spot.heading_rad];
+        on && places.into_iter().all(about)
+            && speeds.into_iter().all(|mps| mps.abs() < MOST_MPS)
+            && self.travelled_m < FARTHEST_M
     }
 
     /// Takes over where it came in a tick.

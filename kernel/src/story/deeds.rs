@@ -1,7 +1,8 @@
 //! What roles do: how it begins, and how it ends.
 
 use crate::geometry::direction;
-use crate::map::RoadNetwork;
+use crate::map::{Lane, RoadNetwork};
+use crate::map_data::LaneKind;
 use crate::ops;
 use crate::time::Tick;
 
@@ -34,8 +35,11 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
             }
         }
     }
-    let missing =
-        |role: usize| format!("nothing says where {} begins: expected a teleport in <Init>", script.cast[role].name);
+    let is_told = |role: usize| teleports().any(|(of, _)| of == role);
+    let missing = |role: usize| {
+        let expected = if is_told(role) { "one that is not told by its own" } else { "a teleport in <Init>" };
+        format!("nothing says where {} begins, expected {expected}", script.cast[role].name)
+    };
     let actors = placed.into_iter().enumerate().map(|(role, actor)| actor.ok_or_else(|| missing(role)));
     let mut actors = actors.collect::<Result<Vec<_>, _>>()?;
     for (role, action) in &script.init {
@@ -47,7 +51,8 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
         match action {
             Action::Teleport(_) => {}
             Action::Speed(..) => {
-                actor.speed_mps = asked_mps.min(script.cast[*role].most_mps);
+                let most_mps = script.cast[*role].most_mps;
+                actor.speed_mps = asked_mps.clamp(-most_mps, most_mps);
                 actor.velocity_mps = (direction(actor.spot.heading_rad) * actor.speed_mps).extend(0.0);
             }
             Action::Route(via) => actor.route = first_route(network, actor.spot, via),
@@ -68,7 +73,12 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
     let ego = &mut actors[script.ego()];
     if ego.route.is_empty() {
         // Drivers know their way from the beginning, whenever the story tells it.
-        ego.route = script.ego_way().map(|via| first_route(network, ego.spot, via)).unwrap_or_default();
+        ego.route = match script.ego_way() {
+            Some(Action::Route(via)) => first_route(network, ego.spot, via),
+            Some(Action::Acquire(place)) => first_route(network, ego.spot, std::slice::from_ref(place)),
+            Some(Action::Follow(path)) => route_along(network, ego.spot, path),
+            _ => Vec::new(),
+        };
     }
     Ok(actors)
 }
@@ -89,6 +99,17 @@ fn route(network: &RoadNetwork, from: Spot, via: impl IntoIterator<Item = Option
 fn first_route(network: &RoadNetwork, from: Spot, via: &[Position]) -> Vec<u32> {
     let known = |place: &Position| if let Position::Known(spot) = place { Some(Some(*spot)) } else { None };
     route(network, from, via.iter().filter_map(known)).unwrap_or_default()
+}
+
+/// The lanes of a line: of its corners those count that first come to another lane, outside of junctions.
+fn route_along(network: &RoadNetwork, from: Spot, path: &Path) -> Vec<u32> {
+    let known =
+        path.corners.iter().filter_map(|(place, _)| if let Position::Known(spot) = place { spot.on } else { None });
+    let is_road = |lane: &Lane| lane.junction.is_none() && lane.kind == LaneKind::Driving;
+    let mut at = from.on.map(|on| on.lane);
+    let first = known.filter(|on| is_road(&network.lanes[on.lane as usize]) && at.replace(on.lane) != Some(on.lane));
+    let via: Vec<Option<Spot>> = first.map(|on| Some(Spot::on(network, on))).collect();
+    route(network, from, via).unwrap_or_default()
 }
 
 /// The speed that is asked for, m/s.
@@ -141,7 +162,7 @@ pub fn start(state: &mut StoryState, number: usize, seen: &Seen<'_>) {
             lights::change(state, &of.action, &seen.script.programmes, tick);
             false
         }
-        Some(ego) if ego == seen.plan.ego && of.action == Action::HandOver => {
+        Some(ego) if ego == seen.plan.ego && *of.action == Action::HandOver => {
             state.carries_ego = false;
             false
         }
@@ -159,7 +180,7 @@ pub fn start(state: &mut StoryState, number: usize, seen: &Seen<'_>) {
 /// Begins a deed; `false` when it is over at once.
 fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) -> bool {
     let (of, network, before) = (&seen.plan.deeds[number], seen.network, seen.before);
-    match &of.action {
+    match &*of.action {
         Action::Teleport(place) => {
             if let Some(spot) = relative::spot(network, before, place) {
                 let actor = &mut state.actors[role];
@@ -179,7 +200,7 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
         }
         Action::Speed(..) | Action::SpeedProfile(_) | Action::Gap(_) | Action::Meet(_) => {
             let from = state.actors[role].speed_mps;
-            let (to, takes) = match &of.action {
+            let (to, takes) = match &*of.action {
                 Action::Speed(dynamics, target) => {
                     let to = speed_of(*target, |role| before.actors[role].speed_mps);
                     (to, speeds_up_s(*dynamics, from, to))
@@ -271,7 +292,7 @@ fn moves_aside(
 
 /// The deed whose line a role follows, only one with times if `timed`: that decides how fast it is, too.
 fn line_of(state: &StoryState, role: RoleId, seen: &Seen<'_>, timed: bool) -> Option<u32> {
-    let of = |deed: &u32| &seen.plan.deeds[*deed as usize].action;
+    let of = |deed: &u32| &*seen.plan.deeds[*deed as usize].action;
     let is_line = |deed: &u32| matches!(of(deed), Action::Follow(path) if path.timed || !timed);
     state.actors[role].way_by.filter(is_line)
 }

@@ -8,7 +8,7 @@ use super::script::{Action, Light, Programme, Script, When};
 use super::state::{Cycle, StoryState};
 
 /// Finds the lights of a script on a map.
-pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
+pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), (usize, String)> {
     let Script { lights, programmes, acts, stop, .. } = script;
     let mut all: Vec<&mut Light> = lights.iter_mut().collect();
     all.extend(programmes.iter_mut().flat_map(|programme| &mut programme.phases).flat_map(|(.., lights)| lights));
@@ -32,7 +32,7 @@ pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
     all.into_iter().try_for_each(|light| {
         light.groups = network.lights_of(&light.signal).collect();
         match light.groups.is_empty() {
-            true => Err(format!("there is no traffic light {} on the map", light.signal)),
+            true => Err((light.at, format!("there is no traffic light {} on the map", light.signal))),
             false => Ok(()),
         }
     })

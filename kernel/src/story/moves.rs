@@ -27,7 +27,7 @@ pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     let was = StoryActor { spot: state.actors[role].spot, ..seen.before.actors[role].clone() };
     pace::set(state, role, seen);
     let follows = state.actors[role].way_by.map(|deed| deed as usize);
-    let path = follows.and_then(|deed| match &seen.plan.deeds[deed].action {
+    let path = follows.and_then(|deed| match &*seen.plan.deeds[deed].action {
         Action::Follow(path) => Some((deed, path)),
         _ => None,
     });
@@ -38,18 +38,29 @@ pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
         }
         None => drive_on(state, role, seen),
     };
-    if let Some((deed, Action::Acquire(place))) = follows.map(|deed| (deed, &seen.plan.deeds[deed].action)) {
+    if let Some((deed, Action::Acquire(place))) = follows.map(|deed| (deed, &*seen.plan.deeds[deed].action)) {
         arrive(state, role, (deed, place), seen);
     }
     let script = seen.script;
     let on_road = is_on_road(seen, &state.actors[role]);
     state.actors[role].came(&was, script.cast[role].kind, on_road, at_end);
+    if !state.actors[role].is_possible() {
+        leaves(state, role, was, seen);
+    }
+}
+
+/// Who came where nobody can be leaves the map; the ego car is left to its drivers.
+fn leaves(state: &mut StoryState, role: RoleId, was: StoryActor, seen: &Seen<'_>) {
+    deeds::end_all(state, role, seen.tick);
+    let is_ego = role == seen.plan.ego;
+    state.actors[role] = StoryActor { gone: !is_ego, speed_by: None, side_by: None, way_by: None, ..was };
+    state.carries_ego &= !is_ego;
 }
 
 /// Takes a role to where a timed line is when it begins with it.
 fn begin_line(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     let Some(number) = state.actors[role].way_by.map(|deed| deed as usize) else { return };
-    let (Action::Follow(path), deed) = (&seen.plan.deeds[number].action, &state.deeds[number]) else { return };
+    let (Action::Follow(path), deed) = (&*seen.plan.deeds[number].action, &state.deeds[number]) else { return };
     if path.timed && deed.mark.at == seen.tick {
         let (at, _) = by_time(path, line_time_s(path, deed, seen) - TICK_S);
         if let Some((from, to, share)) = segment(path, &deed.line, at) {
@@ -130,7 +141,7 @@ fn change_for_way(on: &mut OnLane, actor: &mut StoryActor, seen: &Seen<'_>) {
 /// Where across its lane somebody is who moves across it, metres to the left of the middle.
 fn aside(state: &mut StoryState, role: RoleId, by_m: f32, seen: &Seen<'_>) -> Option<f32> {
     let number = state.actors[role].side_by? as usize;
-    let (Action::LaneChange(dynamics, ..) | Action::LaneOffset(dynamics, ..)) = seen.plan.deeds[number].action else {
+    let (Action::LaneChange(dynamics, ..) | Action::LaneOffset(dynamics, ..)) = *seen.plan.deeds[number].action else {
         return None;
     };
     let deed = &mut state.deeds[number];
@@ -168,7 +179,7 @@ fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), 
         deed.gone_m += speed_mps.abs() * TICK_S;
         let line: Vec<Position> = deed.line.iter().copied().map(Position::Known).collect();
         let own = stations_m(line.iter());
-        let stations_m = if own.is_empty() { &seen.plan.deeds[number].stations_m } else { &own };
+        let stations_m: &[f32] = if own.is_empty() { &seen.plan.deeds[number].stations_m } else { &own };
         by_way(path, stations_m, deed.gone_m)
     };
     let line = std::mem::take(&mut state.deeds[number].line);

@@ -64,7 +64,7 @@ pub fn since_s(deed: &Deed, seen: &Seen<'_>) -> f32 {
 pub fn set(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     let Some(number) = state.actors[role].speed_by.map(|deed| deed as usize) else { return };
     let deed = &state.deeds[number];
-    let (speed_mps, over) = match &seen.plan.deeds[number].action {
+    let (speed_mps, over) = match &*seen.plan.deeds[number].action {
         Action::Speed(dynamics, target) => changed(&mut state.deeds[number], *dynamics, *target, seen),
         Action::SpeedProfile(profile) => along(profile, deed.from, since_s(deed, seen)),
         Action::Gap(gap) => keeping(state, role, gap, seen),
@@ -180,7 +180,7 @@ fn way_m(role: RoleId, place: &Position, seen: &Seen<'_>) -> Option<f32> {
 /// The same along the line that a role follows at its own speed.
 fn line_way_m(role: RoleId, to: &Spot, seen: &Seen<'_>) -> Option<f32> {
     let number = seen.before.actors[role].way_by? as usize;
-    let Action::Follow(path) = &seen.plan.deeds[number].action else { return None };
+    let Action::Follow(path) = &*seen.plan.deeds[number].action else { return None };
     let deed = &seen.before.deeds[number];
     let known = |place: &Position| if let Position::Known(spot) = place { Some(*spot) } else { None };
     let corners: Vec<_> = if deed.line.is_empty() {

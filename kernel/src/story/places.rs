@@ -16,8 +16,8 @@ const ABOUT_M: f32 = 0.5;
 /// Farther nobody gets, metres.
 pub const MOST_M: f32 = 1e6;
 
-/// Replaces all places of a script that do not depend on where somebody is.
-pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
+/// Replaces all places of a script that do not depend on where somebody is. A refusal says where the text has it.
+pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), (usize, String)> {
     let mut places = Vec::new();
     script.init.iter_mut().for_each(|(_, action)| of_action(action, &mut places));
     of_trigger(&mut script.stop, &mut places);
@@ -27,9 +27,13 @@ pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), String> {
         act.groups.iter_mut().flat_map(|group| &mut group.events).for_each(|event| of_event(event, &mut places));
     }
     places.into_iter().try_for_each(|place| {
-        if let Some(spot) = spot(place, network)? {
+        let at = match place {
+            Position::World { at, .. } | Position::Lane { at, .. } | Position::Road { at, .. } => *at,
+            _ => return Ok(()),
+        };
+        if let Some(spot) = spot(place, network).map_err(|reason| (at, reason))? {
             if spot.position.abs().max_element() >= MOST_M {
-                return Err(format!("a place is at {}, expected one within {MOST_M} m", spot.position));
+                return Err((at, format!("a place is at {}, expected one within {MOST_M} m", spot.position)));
             }
             *place = Position::Known(spot);
         }
@@ -74,7 +78,7 @@ fn of_action<'a>(action: &'a mut Action, out: &mut Vec<&'a mut Position>) {
 /// Where a place is, if that does not depend on anybody.
 fn spot(place: &Position, network: &RoadNetwork) -> Result<Option<Spot>, String> {
     match place {
-        Position::World { at_m: [x, y], z_m, heading_rad } => {
+        Position::World { at_m: [x, y], z_m, heading_rad, .. } => {
             let [east, north] = network.origin_m;
             let top = network.bounds[1].z + 1.0;
             let given = Vec3::new((x - east) as f32, (y - north) as f32, z_m.map_or(top, |z| z as f32 + 0.5));
@@ -86,14 +90,14 @@ fn spot(place: &Position, network: &RoadNetwork) -> Result<Option<Spot>, String>
             let facing = heading_rad.unwrap_or_else(|| lane_heading(network, position));
             Ok(Some(Spot::at(network, position, facing)))
         }
-        Position::Lane { road, lane, s_m, offset_m, facing } => {
+        Position::Lane { road, lane, s_m, offset_m, facing, .. } => {
             let point = survey(network)?.on_lane(road, *lane, *s_m, *offset_m)?;
             let found = nearest(network, &format!("{road}/{lane}"), point);
             let found = found.ok_or_else(|| format!("nobody can be on lane {lane} of road {road}"))?;
             let on = OnLane { lane: found.lane, s_m: found.s_m, offset_m: found.lateral_m, against: false };
             Ok(Some(turned(Spot::on(network, on), *facing)))
         }
-        Position::Road { road, s_m, t_m, facing } => {
+        Position::Road { road, s_m, t_m, facing, .. } => {
             let (point, along_rad) = survey(network)?.on_road(road, *s_m, *t_m)?;
             let heading_rad = match facing {
                 Facing::Absolute(heading_rad) => *heading_rad,

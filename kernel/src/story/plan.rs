@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::script::{self, Action, Condition, Doer, ElementKind, Position, Priority, RoleId, Script, When};
 use super::state::{Change, Mark, Met, Progress, StoryState};
@@ -54,9 +55,9 @@ pub struct EventPlan {
 pub struct DeedPlan {
     /// Who does it; nobody where it is done to the world.
     pub role: Option<RoleId>,
-    pub action: Action,
+    pub action: Arc<Action>,
     /// Of a line that is followed, where its corners are along it, metres.
-    pub stations_m: Vec<f32>,
+    pub stations_m: Arc<[f32]>,
 }
 
 /// The script with everything numbered.
@@ -74,6 +75,9 @@ pub struct Plan {
     /// What conditions on elements refer to.
     referred: BTreeMap<usize, Vec<Element>>,
 }
+
+/// Most elements of one name that a condition refers to.
+const NAMESAKES: usize = 100;
 
 /// An element by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,14 +120,13 @@ impl Plan {
         for event in &group.events {
             let from = self.deeds.len();
             for (_, of, action) in &event.actions {
-                self.deeds.extend(doers(group, *of).map(|role| DeedPlan {
-                    role,
-                    action: action.clone(),
-                    stations_m: match action {
-                        Action::Follow(path) => stations_m(path.corners.iter().map(|(place, _)| place)),
-                        _ => Vec::new(),
-                    },
-                }));
+                let stations_m: Arc<[f32]> = match action {
+                    Action::Follow(path) => stations_m(path.corners.iter().map(|(place, _)| place)).into(),
+                    _ => Arc::default(),
+                };
+                let action = Arc::new(action.clone());
+                let deed = |role| DeedPlan { role, action: action.clone(), stations_m: stations_m.clone() };
+                self.deeds.extend(doers(group, *of).map(deed));
             }
             let (deeds, start) = (from..self.deeds.len(), self.numbered(&event.start));
             let script::Event { priority, most, .. } = *event;
@@ -161,47 +164,65 @@ impl Plan {
 
     /// Finds what conditions refer to.
     fn refer(&mut self, script: &Script) {
-        let elements = elements(script);
+        let elements = Elements::of(script);
         let mut triggers: Vec<&Trigger> = vec![&self.stop];
         triggers.extend(self.acts.iter().flat_map(|act| [&act.start, &act.stop]));
         triggers.extend(self.events.iter().map(|event| &event.start));
         for (number, condition) in triggers.into_iter().flat_map(|trigger| trigger.groups.iter().flatten()) {
             if let When::Element { kind, path, .. } = &condition.when {
-                self.referred.insert(*number, named(&elements, *kind, path).collect());
+                self.referred.insert(*number, elements.named(*kind, path));
             }
         }
     }
 }
 
-/// The first condition that refers to what is not there: where the text has it, and what that is.
+/// The first condition that refers to what is not there, or to too much: where the text has it, and what is wrong.
 pub fn dangling(script: &Script) -> Option<(usize, String)> {
-    let elements = elements(script);
+    let elements = Elements::of(script);
     let acts = script.acts.iter().flat_map(|act| [&act.start, &act.stop]);
     let events = script.acts.iter().flat_map(|act| &act.groups).flat_map(|group| &group.events);
     let triggers = [&script.stop].into_iter().chain(acts).chain(events.map(|event| &event.start));
-    triggers.flat_map(|trigger| trigger.groups.iter().flatten()).find_map(|condition| match &condition.when {
-        When::Element { kind, path, at, .. } if named(&elements, *kind, path).next().is_none() => {
-            Some((*at, format!("{} {path:?}", kind.name())))
+    triggers.flat_map(|trigger| trigger.groups.iter().flatten()).find_map(|condition| {
+        let When::Element { kind, path, at, .. } = &condition.when else { return None };
+        let (what, count) = (format!("{} {path:?}", kind.name()), elements.named(*kind, path).len());
+        match count {
+            0 => Some((*at, format!("there is no {what}"))),
+            1..=NAMESAKES => None,
+            _ => Some((*at, format!("there are {count} elements {what}, expected at most {NAMESAKES}"))),
         }
-        _ => None,
     })
+}
+
+/// The elements of a script by their kinds and names.
+struct Elements<'a> {
+    /// With the names of those above them and their own, from the act on.
+    named: BTreeMap<(ElementKind, &'a str), Vec<(Vec<&'a str>, Element)>>,
+}
+
+impl<'a> Elements<'a> {
+    fn of(script: &'a Script) -> Self {
+        let mut named: BTreeMap<_, Vec<_>> = BTreeMap::new();
+        for (kind, path, element) in elements(script) {
+            named.entry((kind, path[path.len() - 1])).or_default().push((path, element));
+        }
+        Self { named }
+    }
+
+    /// Those of a kind that a path ends at; it may leave out names from the beginning on.
+    fn named(&self, kind: ElementKind, path: &str) -> Vec<Element> {
+        let path: Vec<&str> = path.split("::").collect();
+        let all = self.named.get(&(kind, path[path.len() - 1]));
+        all.into_iter().flatten().filter(|(at, _)| at.ends_with(&path)).map(|(_, element)| *element).collect()
+    }
 }
 
 /// An element, its kind, and the names of those above it and its own, from the act on.
 type Named<'a> = (ElementKind, Vec<&'a str>, Element);
 
-/// The elements of a kind that a path ends at; it may leave out names from the beginning on.
-fn named<'a>(elements: &'a [Named<'a>], kind: ElementKind, path: &str) -> impl Iterator<Item = Element> + 'a {
-    let path: Vec<String> = path.split("::").map(str::to_owned).collect();
-    let is_it = move |(of, at, _): &&Named<'a>| {
-        *of == kind && at.ends_with(&path.iter().map(|name| &**name).collect::<Vec<_>>())
-    };
-    elements.iter().filter(is_it).map(|(.., element)| *element)
-}
-
 /// All elements of a script.
 fn elements(script: &Script) -> Vec<Named<'_>> {
-    let (mut found, mut groups, mut events, mut deeds) = (Vec::new(), 0, 0, 0);
+    let (mut found, mut last) = (Vec::new(), None);
+    let (mut groups, mut events, mut deeds) = (0, 0, 0);
     for (number, act) in script.acts.iter().enumerate() {
         found.push((ElementKind::Act, vec![&*act.name], Element::Act(number)));
         for group in &act.groups {
@@ -210,7 +231,7 @@ fn elements(script: &Script) -> Vec<Named<'_>> {
             for event in &group.events {
                 let at = [&at[..], &[&*event.manoeuvre.1]].concat();
                 let manoeuvre = Element::Manoeuvre(groups, event.manoeuvre.0);
-                if !found.iter().any(|(.., other)| *other == manoeuvre) {
+                if last.replace(manoeuvre) != Some(manoeuvre) {
                     found.push((ElementKind::Manoeuvre, at.clone(), manoeuvre));
                 }
                 let at = [&at[..], &[&*event.name]].concat();

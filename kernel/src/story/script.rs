@@ -49,12 +49,8 @@ impl Script {
     }
 
     /// The way that events tell the ego car to go, if they do.
-    pub fn ego_way(&self) -> Option<&[Position]> {
-        self.ego_actions().find_map(|action| match action {
-            Action::Route(via) => Some(via.as_slice()),
-            Action::Acquire(place) => Some(std::slice::from_ref(place)),
-            _ => None,
-        })
+    pub fn ego_way(&self) -> Option<&Action> {
+        self.ego_actions().find(|action| matches!(action, Action::Route(_) | Action::Acquire(_) | Action::Follow(_)))
     }
 }
 
@@ -322,6 +318,8 @@ pub enum Position {
         z_m: Option<f64>,
         /// Heading; nothing where the file does not say.
         heading_rad: Option<f32>,
+        /// Where the text says so, bytes from its beginning.
+        at: usize,
     },
     /// On a lane.
     Lane {
@@ -335,6 +333,8 @@ pub enum Position {
         offset_m: f64,
         /// How it faces.
         facing: Facing,
+        /// Where the text says so, bytes from its beginning.
+        at: usize,
     },
     /// On a road.
     Road {
@@ -346,6 +346,8 @@ pub enum Position {
         t_m: f64,
         /// How it faces.
         facing: Facing,
+        /// Where the text says so, bytes from its beginning.
+        at: usize,
     },
     /// Found on the map.
     Known(Spot),

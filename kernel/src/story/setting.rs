@@ -12,6 +12,8 @@ pub struct Light {
     pub signal: String,
     /// What it shows.
     pub phase: LightPhase,
+    /// Where the text says so, bytes from its beginning.
+    pub at: usize,
     /// The lights of that signal, once they are found on a map.
     pub groups: Vec<LightGroupId>,
 }

@@ -13,7 +13,7 @@ use crate::traffic::{Body, Door, Obstacle};
 
 use super::actor::{self, StoryActor};
 use super::cues::Seen;
-use super::places::MOST_M;
+use super::facts::Outline;
 use super::plan::{DeedPlan, GroupPlan, Plan};
 use super::script::{Action, Priority, RoleId, Script};
 use super::spot::Spot;
@@ -60,10 +60,22 @@ impl Stage {
     /// When places are not on the map, or nobody says where somebody who plays begins.
     pub fn new(story: &Story, network: &RoadNetwork) -> Result<Self, String> {
         let mut script = story.script().clone();
-        places::find(&mut script, network)?;
-        lights::find(&mut script, network)?;
+        let said = |(at, reason)| story.refusal(at, reason).to_string();
+        places::find(&mut script, network).map_err(said)?;
+        lights::find(&mut script, network).map_err(said)?;
         let plan = Plan::of(&script);
         let start = deeds::begin(&script, network)?;
+        if let Some(role) = start.iter().position(|actor| !actor.is_possible()) {
+            let (name, at, mps) = (&script.cast[role].name, start[role].spot.position, start[role].speed_mps);
+            return Err(format!("{name} begins at {at} with {mps} m/s, where or as nobody can be"));
+        }
+        let outline = |role: RoleId| Outline::of(&start[role], &script.cast[role]);
+        let is_in_ego =
+            |role: &RoleId| *role != plan.ego && !start[*role].gone && outline(*role).touches(&outline(plan.ego));
+        if let Some(role) = (0..start.len()).find(is_in_ego) {
+            let [ego, name] = [plan.ego, role].map(|role| &script.cast[role].name);
+            return Err(format!("{name} and {ego} begin in each other"));
+        }
         Ok(Self { script: Arc::new(script), plan: Arc::new(plan), start: start.into() })
     }
 
@@ -138,27 +150,22 @@ impl Stage {
         let lane = |lane: &u32| (*lane as usize) < network.lanes.len();
         let deed = |deed: &Option<u32>| deed.is_none_or(|deed| (deed as usize) < state.deeds.len());
         let fits = |actor: &StoryActor| {
-            let about = |m: f32| m.abs() < MOST_M;
-            let on = actor.spot.on.is_none_or(|on| lane(&on.lane) && about(on.s_m) && about(on.offset_m));
+            let lanes = actor.spot.on.is_none_or(|on| lane(&on.lane)) && actor.route.iter().all(lane);
             let deeds = deed(&actor.speed_by) && deed(&actor.side_by) && deed(&actor.way_by);
-            let moves = [actor.spot.position, actor.velocity_mps].into_iter().all(|v| about(v.abs().max_element()));
-            let place = moves && about(actor.speed_mps) && about(actor.travelled_m);
             let doors =
                 actor.doors.iter().all(|door| [door.from, door.to].iter().all(|share| (0.0..=1.0).contains(share)));
-            on && deeds
-                && place
-                && doors
-                && about(actor.ended_mps)
-                && about(actor.slip_m)
-                && actor.route.iter().all(lane)
+            lanes && deeds && doors && actor.is_possible()
         };
-        let corners = |deed: &DeedPlan| if let Action::Follow(path) = &deed.action { path.corners.len() } else { 0 };
+        let corners = |deed: &DeedPlan| if let Action::Follow(path) = &*deed.action { path.corners.len() } else { 0 };
         let fits_line = |(of, deed): (&DeedPlan, &Deed)| deed.line.is_empty() || deed.line.len() == corners(of);
         if !self.plan.deeds.iter().zip(&state.deeds).all(fits_line) {
             return Err("a line of its story has other corners than that of the scenario".to_owned());
         }
         match state.actors.iter().position(|actor| !fits(actor)) {
-            Some(role) => Err(format!("story.actors[{role}] is {:?}, expected a possible one", state.actors[role])),
+            Some(role) => {
+                let (name, at) = (&self.script.cast[role].name, state.actors[role].spot.position);
+                Err(format!("story.actors[{role}], {name} at {at}, is where or as nobody can be"))
+            }
             None => Ok(()),
         }
     }

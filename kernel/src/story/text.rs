@@ -36,6 +36,12 @@ impl Story {
         reader::put_in(text, catalogs)
     }
 
+    /// A refusal of what the text has so many bytes from its beginning.
+    pub(super) fn refusal(&self, at: usize, reason: String) -> StoryError {
+        let line = self.text.as_bytes()[..at.min(self.text.len())].iter().filter(|byte| **byte == b'\n').count() + 1;
+        StoryError::at(line as u32, reason)
+    }
+
     /// The text.
     pub fn text(&self) -> &str {
         &self.text
@@ -47,6 +53,11 @@ impl Story {
     /// When it cannot be played with these values.
     pub fn varied(&self, seed: u64) -> Result<Self, StoryError> {
         reader::varied(&self.text, seed).map_or_else(|| Ok(self.clone()), |text| Self::read(&text))
+    }
+
+    /// Names and values of those of its parameters that have ranges.
+    pub fn drawn(&self) -> Vec<(String, f64)> {
+        reader::drawn(&self.text)
     }
 
     /// Whether some of its parameters have ranges.

@@ -221,7 +221,8 @@ impl World {
         let wrong_way = watch::wrong_way(network, car, tick);
         run.watch.rules(limit_mps, self.physics.off_road(), wrong_way, &mut log);
         let in_junction = network.lanes[ego.route.lanes[0] as usize].junction.is_some();
-        let at_end = ego.route.ends_in_m(network).is_some_and(|ends_in_m| ends_in_m < END_M);
+        let road_ends = ego.route.ends_in_m(network).is_some_and(|ends_in_m| ends_in_m < END_M);
+        let at_end = road_ends || story.as_ref().is_some_and(|story| story.over);
         let after = After { collided, in_junction, at_end, speed_mps };
         if run.arbiter.judge(tick, &after, &self.scenario.rules) {
             log.note(EventKind::Ended);

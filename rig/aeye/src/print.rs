@@ -1,7 +1,7 @@
 //! What a command says on stdout.
 
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 use anyhow::Context;
 use base::json::{Typed, json_line};
@@ -15,12 +15,19 @@ pub fn result<T: Typed + Display>(json: bool, value: &T) -> anyhow::Result<()> {
 /// Prints a value: one line of JSON, or this text.
 pub fn print<T: Typed>(json: bool, value: &T, text: impl FnOnce() -> String) -> anyhow::Result<()> {
     let line = if json { json_line(value)? } else { printable_lines(&text()) };
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{line}").and_then(|()| out.flush()).context("stdout")
+    write(&format!("{line}\n"))
 }
 
 /// Prints a text as it is.
 pub fn text(text: &str) -> anyhow::Result<()> {
+    write(text)
+}
+
+fn write(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).context("stdout")
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        // Who reads has enough, as `head` after its first lines.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => written.context("stdout"),
+    }
 }

@@ -87,7 +87,8 @@ fn map_of(scenario: &Scenario, file: &Path) -> anyhow::Result<Map> {
 fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
     let text = Story::with_catalogs(text, &catalogs(path, text)?).map_err(|error| error.to_string())?;
     let story = Story::read(&text).map_err(|error| error.to_string())?;
-    for (line, element) in story.passed_over() {
+    // Of those that come with A-Eye there is nothing to mend.
+    for (line, element) in story.passed_over().iter().filter(|_| path.exists()) {
         say(format!("{}: line {line}: <{element}> is passed over", path.display()));
     }
     match story.left_to_drivers() {
@@ -103,24 +104,32 @@ fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
     Ok(scenario)
 }
 
-/// The files of a story's catalogs that are there, and their texts.
+/// The files of a story's catalogs that are there, and their texts. Those that cannot be read are passed over: no reference may
+/// need them.
 fn catalogs(path: &Path, text: &str) -> Result<Vec<(String, String)>, String> {
     let mut files = Vec::new();
     for folder in Story::catalog_folders(text) {
         let folder = path.parent().unwrap_or(Path::new("")).join(folder);
         let there = fs::read_dir(&folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
-        files.extend(there.filter(|file| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xosc"))));
+        let there = there.filter(|file| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("xosc")));
+        files.extend(there.filter_map(|file| fs::canonicalize(file).ok()));
     }
     files.sort();
     files.dedup();
     if files.len() > CATALOGS {
         return Err(format!("expected at most {CATALOGS} files of catalogs, but there are {}", files.len()));
     }
-    let text = |file: PathBuf| {
-        let text = files::read_text(&file, most::TEXT).map_err(|error| sentence(&error))?;
-        Ok((file.display().to_string(), text))
-    };
-    files.into_iter().map(text).collect()
+    let mut texts = Vec::new();
+    for file in files {
+        match files::read_text(&file, most::TEXT) {
+            Ok(text) => texts.push((file.display().to_string(), text)),
+            Err(error) => say(format!("{} is passed over", sentence(&error))),
+        }
+        if texts.iter().map(|(_, text)| text.len() as u64).sum::<u64>() > most::STORY {
+            return Err(format!("expected catalogs of at most {} MiB in all", most::STORY >> 20));
+        }
+    }
+    Ok(texts)
 }
 
 /// The refusal of a name that is none of a story.

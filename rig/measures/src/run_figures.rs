@@ -1,5 +1,6 @@
 //! What a run came to.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::room::RoadUsers;
@@ -15,6 +16,8 @@ pub struct RunFigures {
     pub map: String,
     /// Seed of the run.
     pub seed: u64,
+    /// Values of those parameters of its story that have ranges, by name.
+    pub drawn: BTreeMap<String, f64>,
     /// Kilometres driven.
     pub km: f64,
     /// Simulated minutes.
@@ -44,6 +47,7 @@ impl RunFigures {
         Self {
             map: log.manifest.scenario.map.clone(),
             seed: log.manifest.scenario.seed,
+            drawn: log.manifest.scenario.story.iter().flat_map(|story| story.drawn()).collect(),
             km: log.odometer_mm() as f64 / 1e6,
             minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
             asked: RoadUsers::asked(&log.manifest.scenario.traffic),

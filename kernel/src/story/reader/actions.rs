@@ -100,7 +100,7 @@ pub fn global(action: Element<'_>, names: &Names<'_>) -> Result<(Doer, Action), 
 }
 
 fn lane_change(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
-    let offset_m = action.or_zero("targetLaneOffset")? as f32;
+    let offset_m = action.metres("targetLaneOffset")?;
     let dynamics = dynamics(action.need("LaneChangeActionDynamics")?)?;
     let target = action.need("LaneChangeTarget")?.choice()?;
     let target = match target.tag() {
@@ -118,8 +118,8 @@ fn lane_offset(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryEr
     let most_mps2 = dynamics_of.number_given("maxLateralAcc")?;
     let target = action.need("LaneOffsetTarget")?.choice()?;
     let (offset_m, role) = match target.tag() {
-        "AbsoluteTargetLaneOffset" => (target.float("value")?, None),
-        "RelativeTargetLaneOffset" => (target.float("value")?, Some(names.role(target, "entityRef")?)),
+        "AbsoluteTargetLaneOffset" => (target.need_metres("value")?, None),
+        "RelativeTargetLaneOffset" => (target.need_metres("value")?, Some(names.role(target, "entityRef")?)),
         _ => return Err(target.unsupported()),
     };
     // So fast that its greatest acceleration is the one of the file, or of a calm driver; `Takes::Time` cannot say it before
@@ -137,6 +137,7 @@ fn route(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
         if places.len() == WAYPOINTS {
             return Err(waypoint.wrong(format!("expected at most {WAYPOINTS} waypoints")));
         }
+        waypoint.spend(5)?;
         places.push(positions::read(waypoint.need("Position")?, names)?);
     }
     if places.is_empty() {

@@ -4,22 +4,25 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
 use super::document::{self, BYTES, Shared, line_of};
 use crate::story::error::StoryError;
 
 /// How deep entries may refer to others.
 const DEPTH: usize = 8;
+/// Most folders of catalogs, and longest expression with the values of its parameters, bytes.
+const FOLDERS: usize = 50;
+const EXPRESSION: usize = 10_000;
 /// Elements whose references are passed over with all else in them.
 const UNREAD: [&str; 4] = ["ObjectController", "Controller", "AssignControllerAction", "ControllerAction"];
 
-/// The folders of the catalogs of a text, as that calls them.
+/// The folders of the catalogs of a text, as that calls them, up to so many.
 pub fn folders(text: &str) -> Vec<String> {
     let Ok(document) = document::parse(text) else { return Vec::new() };
     let shared = Shared::of(&document);
     let locations = document.descendants().filter(|n| n.has_tag_name("CatalogLocations"));
-    let paths = locations.flat_map(|n| n.descendants()).filter(|n| n.has_tag_name("Directory"));
+    let paths = locations.flat_map(|n| n.descendants()).filter(|n| n.has_tag_name("Directory")).take(FOLDERS);
     let mut found: Vec<String> = Vec::new();
     for path in paths.filter_map(|n| shared.value(n, n.attribute("path")?).ok()) {
         if !found.contains(&path) {
@@ -29,50 +32,72 @@ pub fn folders(text: &str) -> Vec<String> {
     found
 }
 
+/// Entries of catalogs by the names of these and their own.
+type Entries<'a> = BTreeMap<(&'a str, &'a str), Node<'a, 'a>>;
+
 /// A text with the entries of catalogs in place of references to them, each on the line of the reference. Who plays may be
 /// told by an entry that is not there.
 ///
 /// # Errors
-/// When a catalog is none, or an entry is not there that is no entity.
+/// When an entry is not there that is no entity, or all of them come to too much.
 pub fn put_in(text: &str, catalogs: &[(String, String)]) -> Result<String, StoryError> {
     let mut documents = Vec::new();
+    let mut broken = None;
     for (file, catalog) in catalogs {
-        let parsed = document::parse(catalog);
-        documents.push(parsed.map_err(|error| StoryError::at(1, format!("catalog {file}: {error}")))?);
+        match document::parse(catalog) {
+            Ok(parsed) => documents.push(parsed),
+            Err(error) => broken = broken.or(Some(format!("; catalog {file}: {error}"))),
+        }
+    }
+    let mut entries = Entries::new();
+    for catalog in
+        documents.iter().flat_map(|file| file.root_element().children().filter(|n| n.has_tag_name("Catalog")))
+    {
+        for entry in catalog.children().filter(Node::is_element) {
+            if let (Some(of), Some(name)) = (catalog.attribute("name"), entry.attribute("name")) {
+                entries.entry((of, name)).or_insert(entry);
+            }
+        }
     }
     let mut text = text.to_owned();
     for _ in 0..DEPTH {
-        let Some(next) = once(&text, &documents)? else { return Ok(text) };
-        if next.len() > BYTES {
-            return Err(StoryError::at(
-                1,
-                format!("expected at most {} MiB with the entries of its catalogs", BYTES >> 20),
-            ));
-        }
+        let Some(next) = once(&text, &entries, broken.as_deref().unwrap_or_default())? else { return Ok(text) };
         text = next;
     }
     Err(StoryError::at(1, format!("entries of its catalogs refer to each other more than {DEPTH} times")))
 }
 
 /// Puts the entries of all references in; nothing where there is none.
-fn once(text: &str, catalogs: &[Document<'_>]) -> Result<Option<String>, StoryError> {
+fn once(text: &str, entries: &Entries<'_>, broken: &str) -> Result<Option<String>, StoryError> {
     let document = document::parse(text)?;
     let shared = Shared::of(&document);
-    let mut edits = Vec::new();
-    let is_read = |n: &Node<'_, '_>| !n.ancestors().any(|above| UNREAD.contains(&above.tag_name().name()));
-    for reference in document.descendants().filter(|n| n.has_tag_name("CatalogReference")).filter(is_read) {
+    let (mut edits, mut bytes) = (Vec::new(), text.len());
+    let is_reference = |n: &Node<'_, '_>| n.has_tag_name("CatalogReference");
+    // What is in one that is replaced goes with it.
+    let is_read = |n: &Node<'_, '_>| {
+        !n.ancestors().skip(1).any(|above| UNREAD.contains(&above.tag_name().name()) || is_reference(&above))
+    };
+    for reference in document.descendants().filter(is_reference).filter(is_read) {
         let named = |name: &str| {
             let text = reference.attribute(name).unwrap_or_default();
             shared.value(reference, text).unwrap_or_else(|_| text.to_owned())
         };
         let (catalog, entry) = (named("catalogName"), named("entryName"));
-        match find(catalogs, &catalog, &entry) {
-            Some(found) => edits.push((reference.range(), put(found, &assigned(reference)))),
+        match entries.get(&(catalog.as_str(), entry.as_str())) {
+            Some(found) => {
+                let too_much = || {
+                    let most = format!("expected at most {} MiB with the entries of its catalogs", BYTES >> 20);
+                    StoryError::at(line_of(reference), most)
+                };
+                let put = put(*found, &assigned(reference), BYTES.saturating_sub(bytes)).ok_or_else(too_much)?;
+                bytes += put.len();
+                edits.push((reference.range(), put));
+            }
             None if reference.parent_element().is_some_and(|n| n.has_tag_name("ScenarioObject")) => {}
             None => {
                 let shown = |text: &str| -> String { text.chars().filter(|c| !c.is_control()).take(40).collect() };
                 let reason = format!(
-                    "<CatalogReference> names {:?} of the catalog {:?}, which is in none of the files of <CatalogLocations>",
+                    "<CatalogReference> names {:?} of the catalog {:?}, which is in none of the files of <CatalogLocations>{broken}",
                     shown(&entry),
                     shown(&catalog)
                 );
@@ -81,13 +106,6 @@ fn once(text: &str, catalogs: &[Document<'_>]) -> Result<Option<String>, StoryEr
         }
     }
     Ok((!edits.is_empty()).then(|| edited(text, 0, edits)))
-}
-
-fn find<'a>(catalogs: &'a [Document<'a>], catalog: &str, entry: &str) -> Option<Node<'a, 'a>> {
-    let named = |n: &Node<'_, '_>, name: &str| n.attribute("name") == Some(name);
-    let all = catalogs.iter().flat_map(|file| file.root_element().children());
-    let mut all = all.filter(|n| n.has_tag_name("Catalog") && named(n, catalog)).flat_map(|n| n.children());
-    all.find(|n| n.is_element() && named(n, entry))
 }
 
 /// What a reference gives the parameters of its entry.
@@ -100,8 +118,8 @@ fn assigned(reference: Node<'_, '_>) -> BTreeMap<String, String> {
     all.filter_map(pair).collect()
 }
 
-/// The text of an entry on one line, with the values of its parameters.
-fn put(entry: Node<'_, '_>, assigned: &BTreeMap<String, String>) -> String {
+/// The text of an entry on one line, with the values of its parameters; nothing where that has more than so many bytes.
+fn put(entry: Node<'_, '_>, assigned: &BTreeMap<String, String>, most: usize) -> Option<String> {
     let declarations = entry.children().find(|n| n.has_tag_name("ParameterDeclarations"));
     let declared = declarations.into_iter().flat_map(|n| n.children());
     let usual = |n: Node<'_, '_>| {
@@ -113,16 +131,26 @@ fn put(entry: Node<'_, '_>, assigned: &BTreeMap<String, String>) -> String {
     let own = declarations.map(|n| n.range());
     let told = attributes.filter(|a| a.value().starts_with('$'));
     let told = told.filter(|a| own.as_ref().is_none_or(|own| !own.contains(&a.range_value().start)));
-    let mut edits: Vec<_> = told.map(|a| (a.range_value(), escaped(&with_values(a.value(), &values)))).collect();
-    edits.extend(own.map(|range| (range, String::new())));
     let all = entry.range();
-    edited(&entry.document().input_text()[all.clone()], all.start, edits).replace(['\n', '\r'], " ")
+    let mut bytes = all.len();
+    let mut edits = Vec::new();
+    for attribute in told {
+        let value = escaped(&with_values(attribute.value(), &values)?);
+        bytes += value.len();
+        if bytes > most {
+            return None;
+        }
+        edits.push((attribute.range_value(), value));
+    }
+    edits.extend(own.map(|range| (range, String::new())));
+    let text = edited(&entry.document().input_text()[all.clone()], all.start, edits).replace(['\n', '\r'], " ");
+    (text.len() <= most).then_some(text)
 }
 
-/// A parameter or an expression with the values of those that are known.
-fn with_values(text: &str, values: &BTreeMap<String, String>) -> String {
+/// A parameter or an expression with the values of those that are known; nothing where that is too long.
+fn with_values(text: &str, values: &BTreeMap<String, String>) -> Option<String> {
     let Some(expression) = text.strip_prefix("${") else {
-        return values.get(text.trim_start_matches('$')).cloned().unwrap_or_else(|| text.to_owned());
+        return Some(values.get(text.trim_start_matches('$')).cloned().unwrap_or_else(|| text.to_owned()));
     };
     let (mut out, mut rest) = ("${".to_owned(), expression);
     while let Some(at) = rest.find('$') {
@@ -136,9 +164,12 @@ fn with_values(text: &str, values: &BTreeMap<String, String>) -> String {
             },
             None => out += &from[..end],
         }
+        if out.len() > EXPRESSION {
+            return None;
+        }
         rest = &from[end..];
     }
-    out + rest
+    Some(out + rest)
 }
 
 fn escaped(text: &str) -> String {
@@ -202,6 +233,36 @@ mod tests {
             "<A><ManeuverGroup><CatalogReference catalogName=\"Moves\" entryName=\"brake\"/></ManeuverGroup></A>";
         let error = put_in(text, &[("own.xosc".to_owned(), own)]).expect_err("it has no end");
         assert!(error.reason.contains("refer to each other"), "{error}");
+    }
+
+    #[test]
+    fn references_in_references_and_bombs_of_them_come_to_an_end() {
+        let one = r#"<CatalogReference catalogName="Moves" entryName="brake"/>"#;
+        let nested = with(
+            r#"<CatalogReference catalogName="Moves" entryName="brake"><CatalogReference catalogName="Moves" entryName="brake"/></CatalogReference>"#,
+        );
+        assert_eq!(nested, with(one));
+        let big = CATALOG.replace("<Event", &format!("<Event note=\"{}\"", "x".repeat(1 << 20)));
+        let text = format!("<A>\n<ManeuverGroup>\n{}</ManeuverGroup></A>", format!("{one}\n").repeat(400));
+        let error = put_in(&text, &[("big.xosc".to_owned(), big)]).expect_err("it is too much");
+        assert!(error.line > 10 && error.reason.starts_with("expected at most 16 MiB"), "{error}");
+        let given = r#"<CatalogReference catalogName="Moves" entryName="brake"><ParameterAssignments><ParameterAssignment parameterRef="mps" value="VALUE"/></ParameterAssignments></CatalogReference>"#;
+        let sum = CATALOG.replace("${$mps * $s", &format!("${{{}", "$mps ".repeat(3000)));
+        let text = format!("<A><ManeuverGroup>{}</ManeuverGroup></A>", given.replace("VALUE", &"1".repeat(1 << 20)));
+        assert!(put_in(&text, &[("sum.xosc".to_owned(), sum)]).is_err());
+    }
+
+    #[test]
+    fn a_catalog_that_is_broken_is_told_where_an_entry_is_missing() {
+        let files = [("moves.xosc".to_owned(), CATALOG.to_owned()), ("bad.xosc".to_owned(), "<Open".to_owned())];
+        let text = |entry: &str| {
+            format!(
+                "<A><ManeuverGroup><CatalogReference catalogName=\"Moves\" entryName=\"{entry}\"/></ManeuverGroup></A>"
+            )
+        };
+        assert!(put_in(&text("brake"), &files).is_ok());
+        let error = put_in(&text("turn"), &files).expect_err("it is not there").to_string();
+        assert!(error.contains("catalog bad.xosc: line 1"), "{error}");
     }
 
     #[test]

@@ -60,6 +60,7 @@ pub fn trigger(element: Option<Element<'_>>, names: &Names<'_>) -> Result<Trigge
 }
 
 fn condition(element: Element<'_>, names: &Names<'_>) -> Result<Condition, StoryError> {
+    element.spend(1)?;
     let delay_s = if element.given("delay")?.is_some() { element.amount("delay")? } else { 0.0 };
     let edge = element.word("conditionEdge", EDGES)?;
     let what = element.choice()?;

@@ -1,6 +1,6 @@
 //! A text as a tree that knows which of its elements were read.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::{Document, Error, Node, ParsingOptions};
@@ -13,6 +13,13 @@ use crate::story::error::StoryError;
 pub const BYTES: usize = 16 << 20;
 /// Most elements, texts and comments.
 const NODES: u32 = 400_000;
+/// Most acts, groups, events, conditions, actions of all actors, and corners of lines that are told by where somebody is: all are
+/// in every keyframe.
+const PARTS: usize = 10_000;
+/// Most attributes of an element, declarations of namespaces, and how deep elements may lie in each other.
+const ATTRIBUTES: usize = 64;
+const NAMESPACES: usize = 32;
+const DEPTH: usize = 100;
 /// How many times values of parameters may name others.
 const REFERENCES: usize = 8;
 
@@ -23,6 +30,8 @@ pub struct Shared {
     /// Those that are known already.
     values: RefCell<BTreeMap<(usize, String), String>>,
     read: RefCell<BTreeSet<usize>>,
+    /// What is still left of [`PARTS`].
+    parts: Cell<usize>,
 }
 
 /// An element of the text.
@@ -38,6 +47,7 @@ pub fn parse(text: &str) -> Result<Document<'_>, StoryError> {
         let mib = text.len() >> 20;
         return Err(StoryError::at(1, format!("expected at most {} MiB, but it has {mib}", BYTES >> 20)));
     }
+    check_tags(text)?;
     let options = ParsingOptions { nodes_limit: NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|error| match error {
         Error::NodesLimitReached => StoryError::at(1, format!("expected at most {NODES} elements and texts")),
@@ -45,6 +55,52 @@ pub fn parse(text: &str) -> Result<Document<'_>, StoryError> {
             StoryError::at(error.pos().row, format!("expected well-formed OpenSCENARIO XML, but {}", said(&error)))
         }
     })
+}
+
+/// Refuses what takes the parser long: it compares attributes and namespaces each with all others.
+fn check_tags(text: &str) -> Result<(), StoryError> {
+    let refused = |at: usize, most: usize, what: &str| {
+        let line = text.as_bytes()[..at].iter().filter(|byte| **byte == b'\n').count() as u32 + 1;
+        Err(StoryError::at(line, format!("expected at most {most} {what}")))
+    };
+    if let Some((at, _)) = text.match_indices("xmlns").nth(NAMESPACES) {
+        return refused(at, NAMESPACES, "declarations of namespaces");
+    }
+    let (mut at, mut depth) = (0, 0_usize);
+    while let Some(begins) = text[at..].find('<').map(|to| at + to) {
+        let rest = &text[begins..];
+        let skipped =
+            [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")].into_iter().find(|(from, _)| rest.starts_with(from));
+        if let Some((_, to)) = skipped {
+            at = rest.find(to).map_or(text.len(), |end| begins + end + to.len());
+            continue;
+        }
+        let (mut quote, mut values, mut ends) = (None, 0, text.len());
+        for (k, byte) in rest.bytes().enumerate().skip(1) {
+            match (quote, byte) {
+                (None, b'"' | b'\'') => (quote, values) = (Some(byte), values + 1),
+                (Some(open), _) if open == byte => quote = None,
+                (None, b'>') => {
+                    ends = begins + k;
+                    break;
+                }
+                _ => {}
+            }
+        }
+        if values > ATTRIBUTES {
+            return refused(begins, ATTRIBUTES, "attributes of an element");
+        }
+        if rest.starts_with("</") {
+            depth = depth.saturating_sub(1);
+        } else if !text[..ends].ends_with('/') {
+            depth += 1;
+        }
+        if depth > DEPTH {
+            return refused(begins, DEPTH, "elements in each other");
+        }
+        at = ends;
+    }
+    Ok(())
 }
 
 /// What the parser says, on one line and not too long.
@@ -64,7 +120,7 @@ impl Shared {
                 parameters.entry(owner.id().get_usize()).or_default().insert(name, value.to_owned());
             }
         }
-        Self { parameters, values: RefCell::default(), read: RefCell::default() }
+        Self { parameters, values: RefCell::default(), read: RefCell::default(), parts: Cell::new(PARTS) }
     }
 
     /// The text of an attribute with the values of parameters for it, as they are in an element.
@@ -150,6 +206,33 @@ impl<'a> Element<'a> {
     /// Where it begins, bytes from the beginning of the text.
     pub fn begins(&self) -> usize {
         self.node.range().start
+    }
+
+    /// Counts parts of a story, of which there may be so many only.
+    pub fn spend(&self, parts: usize) -> Result<(), StoryError> {
+        let left = self.shared.parts.get().checked_sub(parts);
+        let Some(left) = left else {
+            let what = "acts, groups, events, conditions, actions of all actors, and corners told by where somebody is";
+            return Err(self.wrong(format!("expected at most {PARTS} {what}")));
+        };
+        self.shared.parts.set(left);
+        Ok(())
+    }
+
+    /// A length within what a map may have, metres.
+    pub fn metres(&self, name: &str) -> Result<f32, StoryError> {
+        const MOST_M: f64 = 10_000.0;
+        let metres = self.or_zero(name)?;
+        if metres.abs() > MOST_M {
+            return Err(self.misfit(name, &metres.to_string(), &format!("metres from -{MOST_M} to {MOST_M}")));
+        }
+        Ok(metres as f32)
+    }
+
+    /// The same of one that must be there.
+    pub fn need_metres(&self, name: &str) -> Result<f32, StoryError> {
+        self.text(name)?;
+        self.metres(name)
     }
 
     /// A refusal at its line.

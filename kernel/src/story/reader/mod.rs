@@ -18,7 +18,7 @@ mod vary;
 
 pub use catalogs::{folders, put_in};
 pub use coverage::{ELEMENTS, Row, Support};
-pub use vary::{varied, with_shares};
+pub use vary::{drawn, varied, with_shares};
 
 use super::error::StoryError;
 use super::plan;
@@ -61,8 +61,8 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
     let passed = shared.leftovers(&document)?;
     let Beginning { actions: init, lights, environment } = init;
     let script = Script { init, acts, stop, cast, lights, programmes, environment };
-    if let Some((at, what)) = plan::dangling(&script) {
-        return Err(StoryError::at(document.text_pos_at(at).row, format!("there is no {what}")));
+    if let Some((at, wrong)) = plan::dangling(&script) {
+        return Err(StoryError::at(document.text_pos_at(at).row, wrong));
     }
     Ok(Read { script, map, passed })
 }

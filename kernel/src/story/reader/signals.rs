@@ -21,7 +21,7 @@ fn light(element: Element<'_>, signal: &str) -> Result<Light, StoryError> {
         let expected = "expected red, yellow or green, or its three lamps as on;off;off";
         element.wrong(format!("state of <{}> is {text:?}, {expected}", element.tag()))
     })?;
-    Ok(Light { signal: element.text(signal)?, phase, groups: Vec::new() })
+    Ok(Light { signal: element.text(signal)?, phase, at: element.begins(), groups: Vec::new() })
 }
 
 /// What a light shows, by its colour or by its lamps from above.

@@ -2,18 +2,14 @@
 
 use crate::story::error::StoryError;
 use crate::story::script::{
-    Act, Action, Doer, Environment, Event, Group, Light, Priority, RoleId, Shape, Takes, Trigger,
+    Act, Action, Doer, Environment, Event, Group, Light, Position, Priority, RoleId, Shape, Takes, Trigger,
 };
 
 use super::document::Element;
 use super::names::Names;
 use super::{actions, conditions, environment};
 
-/// Most events of a text, and most actions of an event.
-const EVENTS: usize = 5_000;
 const ACTIONS: usize = 100;
-/// Most roles times actions of all events: each is remembered in the state of a run.
-const DEEDS: usize = 20_000;
 
 const PRIORITIES: &[(&str, Priority)] = &[
     ("overwrite", Priority::Override),
@@ -88,13 +84,6 @@ pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> 
             acts.push(self::act(act, names)?);
         }
     }
-    let events = || acts.iter().flat_map(|act| &act.groups).flat_map(|g| g.events.iter().map(move |e| (g, e)));
-    if events().count() > EVENTS {
-        return Err(board.wrong(format!("expected at most {EVENTS} events")));
-    }
-    if events().map(|(group, event)| group.actors.len() * event.actions.len()).sum::<usize>() > DEEDS {
-        return Err(board.wrong(format!("expected at most {DEEDS} actions of all actors")));
-    }
     Ok(Board { init, acts, stop: conditions::trigger(board.child("StopTrigger"), names)? })
 }
 
@@ -114,6 +103,7 @@ fn init(actions: Element<'_>, names: &Names<'_>) -> Result<Beginning, StoryError
     for private in actions.all("Private") {
         let role = names.role(private, "entityRef")?;
         for action in private.all("PrivateAction") {
+            action.spend(1)?;
             init.actions.extend(actions::private(action, names)?.map(|action| (role, action)));
         }
     }
@@ -121,6 +111,7 @@ fn init(actions: Element<'_>, names: &Names<'_>) -> Result<Beginning, StoryError
 }
 
 fn act(act: Element<'_>, names: &Names<'_>) -> Result<Act, StoryError> {
+    act.spend(1)?;
     let mut groups = Vec::new();
     for group in act.all("ManeuverGroup") {
         groups.push(self::group(group, names)?);
@@ -151,15 +142,33 @@ fn group(group: Element<'_>, names: &Names<'_>) -> Result<Group, StoryError> {
     }
     let roles = actors.all("EntityRef").map(|entity| names.role(entity, "entityRef"));
     let roles = roles.collect::<Result<Vec<_>, _>>()?;
+    group.spend(1)?;
+    if let Some(at) = (1..roles.len()).find(|at| roles[..*at].contains(&roles[*at])) {
+        return Err(actors.wrong(format!("<Actors> names {:?} twice", names.cast[roles[at]].name)));
+    }
     let mut events = Vec::new();
     for (number, manoeuvre) in group.all("Maneuver").enumerate() {
         manoeuvre.pass_parameters()?;
         let name = manoeuvre.given("name")?.unwrap_or_default();
         for event in manoeuvre.all("Event") {
-            events.push(self::event(event, (number, name.clone()), names)?);
+            let read = self::event(event, (number, name.clone()), names)?;
+            event
+                .spend(1 + roles.len().max(1) * read.actions.iter().map(|(.., action)| parts(action)).sum::<usize>())?;
+            events.push(read);
         }
     }
     Ok(Group { name: group.given("name")?.unwrap_or_default(), most: times(group)?, actors: roles, events })
+}
+
+/// How many parts of keyframes one who does it makes of an action.
+fn parts(action: &Action) -> usize {
+    let moves = |(place, _): &&(Position, Option<f32>)| {
+        matches!(place, Position::Beside { .. } | Position::BesideRoad { .. } | Position::BesideLane { .. })
+    };
+    match action {
+        Action::Follow(path) if path.corners.iter().any(|corner| moves(&corner)) => path.corners.len(),
+        _ => 1,
+    }
 }
 
 fn event(event: Element<'_>, manoeuvre: (usize, String), names: &Names<'_>) -> Result<Event, StoryError> {

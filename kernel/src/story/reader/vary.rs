@@ -2,7 +2,7 @@
 
 use roxmltree::{Document, Node};
 
-use super::document::{line_of, shown};
+use super::document::{self, line_of, shown};
 use crate::ops;
 use crate::rng::{self, Stream};
 use crate::story::error::StoryError;
@@ -23,13 +23,26 @@ pub fn varied(text: &str, seed: u64) -> Option<String> {
     with_shares(text, share)
 }
 
+/// Names and values of the parameters that have ranges.
+pub fn drawn(text: &str) -> Vec<(String, f64)> {
+    let Ok(document) = document::parse(text) else { return Vec::new() };
+    let ranged = declared(&document).filter(|one| matches!(range(*one), Ok(Some(_))));
+    let pair =
+        |one: Node<'_, '_>| Some((one.attribute("name")?.to_owned(), one.attribute("value")?.trim().parse().ok()?));
+    ranged.filter_map(pair).collect()
+}
+
+/// The declarations of the parameters of a whole text.
+fn declared<'a>(document: &'a Document<'_>) -> impl Iterator<Item = Node<'a, 'a>> {
+    let all = document.root_element().children().filter(|n| n.has_tag_name("ParameterDeclarations"));
+    all.flat_map(|n| n.children()).filter(|n| n.has_tag_name("ParameterDeclaration"))
+}
+
 /// The text with all such parameters at a share of their ranges, [0, 1].
 pub fn with_shares(text: &str, share: impl Fn(usize) -> f32) -> Option<String> {
-    let document = Document::parse(text).ok()?;
-    let declared = document.root_element().children().filter(|n| n.has_tag_name("ParameterDeclarations"));
-    let declared = declared.flat_map(|n| n.children()).filter(|n| n.has_tag_name("ParameterDeclaration"));
+    let document = document::parse(text).ok()?;
     let mut values = Vec::new();
-    for (number, parameter) in declared.enumerate() {
+    for (number, parameter) in declared(&document).enumerate() {
         let Ok(Some([low, high])) = range(parameter) else { continue };
         let value = low + (high - low) * share(number);
         let is_whole = parameter.attribute("parameterType").is_some_and(|of| WHOLE.contains(&of));
@@ -43,33 +56,43 @@ pub fn with_shares(text: &str, share: impl Fn(usize) -> f32) -> Option<String> {
     (!values.is_empty()).then_some(varied)
 }
 
-/// From where to where the first group of constraints lets a parameter be that is a number.
+/// From where to where the first group of constraints lets a parameter be that is a number; it needs both ends, and the value
+/// without a draw lies between them.
 pub fn range(parameter: Node<'_, '_>) -> Result<Option<[f32; 2]>, StoryError> {
     let is_number = parameter.attribute("parameterType").is_some_and(|of| of == "double" || WHOLE.contains(&of));
     let group = parameter.children().find(|n| n.has_tag_name("ConstraintGroup")).filter(|_| is_number);
+    let Some(group) = group else { return Ok(None) };
     let (mut low, mut high) = (None, None);
-    for bound in group.into_iter().flat_map(|group| group.children()).filter(|n| n.has_tag_name("ValueConstraint")) {
-        let end = match bound.attribute("rule") {
-            Some("greaterThan" | "greaterOrEqual") => &mut low,
-            Some("lessThan" | "lessOrEqual") => &mut high,
-            _ => continue,
+    for bound in group.children().filter(|n| n.has_tag_name("ValueConstraint")) {
+        let end = match bound.attribute("rule").unwrap_or_default() {
+            "greaterThan" | "greaterOrEqual" => &mut low,
+            "lessThan" | "lessOrEqual" => &mut high,
+            "equalTo" | "notEqualTo" => continue,
+            other => {
+                let reason =
+                    format!("rule of <ValueConstraint> is {}, expected greaterOrEqual or lessOrEqual", shown(other));
+                return Err(StoryError::at(line_of(bound), reason));
+            }
         };
-        let text = bound.attribute("value").unwrap_or_default().trim();
-        let value = text.parse::<f32>().ok().filter(|value| value.abs() <= MOST);
-        let Some(value) = value else {
-            let expected = format!("expected a number from -{MOST} to {MOST}");
-            return Err(StoryError::at(
-                line_of(bound),
-                format!("value of <ValueConstraint> is {}, {expected}", shown(text)),
-            ));
-        };
-        end.get_or_insert(value);
+        end.get_or_insert(number(bound)?);
     }
-    match low.zip(high) {
-        Some((low, high)) if low > high => {
-            let reason = format!("no number is from {low} to {high}, as <ConstraintGroup> asks for");
-            Err(StoryError::at(group.map_or(1, line_of), reason))
-        }
-        range => Ok(range.map(|(low, high)| [low, high])),
+    let (Some(low), Some(high)) = (low, high) else { return Ok(None) };
+    let wrong = |reason: String| Err(StoryError::at(line_of(parameter), reason));
+    if low > high {
+        return wrong(format!("no number is from {low} to {high}, as <ConstraintGroup> asks for"));
     }
+    match number(parameter)? {
+        value if (low..=high).contains(&value) => Ok(Some([low, high])),
+        value => wrong(format!("value of <ParameterDeclaration> is {value}, expected one from {low} to {high}")),
+    }
+}
+
+fn number(of: Node<'_, '_>) -> Result<f32, StoryError> {
+    let text = of.attribute("value").unwrap_or_default().trim();
+    let value = text.parse::<f32>().ok().filter(|value| value.abs() <= MOST);
+    value.ok_or_else(|| {
+        let tag = of.tag_name().name();
+        let reason = format!("value of <{tag}> is {}, expected a number from -{MOST} to {MOST}", shown(text));
+        StoryError::at(line_of(of), reason)
+    })
 }

@@ -75,7 +75,7 @@ fn places_that_are_not_on_the_map_are_refused() {
 #[test]
 fn parameters_with_ranges_are_drawn_by_seed() {
     let declared = r#"<ParameterDeclaration name="fast" parameterType="double" value="20"/>"#;
-    let ranged = r#"<ParameterDeclaration name="fast" parameterType="double" value="20"><ConstraintGroup>
+    let ranged = r#"<ParameterDeclaration name="fast" parameterType="double" value="10"><ConstraintGroup>
 <ValueConstraint rule="greaterOrEqual" value="5"/><ValueConstraint rule="lessOrEqual" value="15"/></ConstraintGroup></ParameterDeclaration>"#;
     let plain = text(&begins("Other", -1, 100.0, 10.0), "");
     let story = Story::read(&plain.replace(declared, ranged)).expect("it is a story");
@@ -88,6 +88,8 @@ fn parameters_with_ranges_are_drawn_by_seed() {
     let spread = drawn.iter().fold((f32::MAX, 0.0_f32), |(l, h), v| (l.min(*v), h.max(*v)));
     assert!(spread.0 < 6.0 && spread.1 > 14.0, "{spread:?}");
     assert_eq!(story.varied(7), story.varied(7));
+    let varied = story.varied(7).expect("it plays").drawn();
+    assert!(matches!(&varied[..], [(name, value)] if name == "fast" && *value as f32 == drawn[7]), "{varied:?}");
     let plain = Story::read(&plain).expect("it is a story");
     assert_eq!(plain.varied(3).as_ref(), Ok(&plain));
 }
@@ -104,11 +106,12 @@ fn bounds_that_are_no_numbers_or_leave_none_are_refused() {
         );
         Story::read(&plain.replace(declared, &declared.replace("/>", &format!(">{bounds}</ParameterDeclaration>"))))
     };
-    assert!(bounded("5", "15").is_ok());
+    assert!(bounded("5", "25").is_ok());
     for (low, high, said) in [
         ("NaN", "15", "a number"),
         ("5", "INF", "a number"),
         ("$fast", "9", "a number"),
+        ("5", "15", "expected one from 5 to 15"),
         ("15", "5", "no number is from 15 to 5"),
     ] {
         let error = bounded(low, high).expect_err(said).to_string();
@@ -118,14 +121,69 @@ fn bounds_that_are_no_numbers_or_leave_none_are_refused() {
 
 #[test]
 fn hostile_texts_are_refused_soon() {
+    let init = begins("Other", -1, 100.0, 10.0);
     let deep = format!("<OpenSCENARIO>{}", "<Storyboard>".repeat(300_000));
     let events = event("e", "", "").replace("<Action name=\"of e\"></Action>", "");
-    let many = text(&begins("Other", -1, 100.0, 10.0), &events.repeat(60_000));
-    let long = "x".repeat(17 << 20);
-    for (text, said) in [(deep, ""), (many, "expected at most"), (long, "expected at most 16 MiB")] {
-        let error = Story::read(&text).expect_err("it is no story").to_string();
-        assert!(error.contains(said) && error.len() < 300, "{error}");
+    let attributes: String = (0..1_000_000).map(|k| format!(" a{k}=\"\"")).collect();
+    let spaces: String = (0..60_000).map(|k| format!("<a xmlns:n{k}=\"u{k}\">")).collect();
+    let groups = r#"<ManeuverGroup name="g" maximumExecutionCount="1"><Actors selectTriggeringEntities="false"/></ManeuverGroup>"#;
+    let far = begins("Other", -1, 100.0, 10.0).replace(
+        r#"<LanePosition roadId="7" laneId="-1" s="100"/>"#,
+        r#"<RelativeLanePosition entityRef="Ego" dLane="0" ds="1e9"/>"#,
+    );
+    let twice = text(&init, "").replace(
+        r#"<EntityRef entityRef="Other"/></Actors>"#,
+        r#"<EntityRef entityRef="Other"/><EntityRef entityRef="Other"/></Actors>"#,
+    );
+    for (text, said) in [
+        (deep, "expected at most 100 elements in each other"),
+        (text(&init, &events.repeat(60_000)), "expected at most 10000 acts"),
+        (text(&init, "").replace("</Act>", &format!("{}</Act>", groups.repeat(20_000))), "expected at most 10000 acts"),
+        (format!("<OpenSCENARIO{attributes}/>"), "expected at most 64 attributes of an element"),
+        (spaces, "expected at most 32 declarations of namespaces"),
+        ("x".repeat(17 << 20), "expected at most 16 MiB"),
+        (text(&far, ""), "ds of <RelativeLanePosition> is \"1000000000\", expected metres"),
+        (twice, "<Actors> names \"Other\" twice"),
+    ] {
+        let error = Story::read(&text).expect_err(said).to_string();
+        assert!(error.starts_with("line ") && error.contains(said) && error.len() < 500, "{said}: {error}");
     }
+}
+
+#[test]
+fn tags_are_counted_as_the_parser_sees_them() {
+    let plain = text(&begins("Other", -1, 100.0, 10.0), "");
+    let noted = format!("<!-- {} > -->", "<a b='\"'".repeat(200));
+    let noted = plain.replace("<CatalogLocations/>", &format!("{noted}<CatalogLocations/>"));
+    assert!(Story::read(&noted).is_ok());
+    let quoted = plain.replace("description=\"\"", "description='a > b \"c\" /'");
+    assert!(quoted != plain && Story::read(&quoted).is_ok());
+}
+
+#[test]
+fn who_begins_where_nobody_can_be_is_refused() {
+    let refusal = |init: String| {
+        let scenario = scenario(&text(&init, ""));
+        World::new(&scenario, road()).err().expect("it cannot begin").to_string()
+    };
+    let ego = begins("Ego", -2, 500.0, 0.0);
+    let far = |x: &str| {
+        begins("Other", -1, 100.0, 0.0)
+            .replace(r#"<LanePosition roadId="7" laneId="-1" s="100"/>"#, &format!(r#"<WorldPosition x="{x}" y="0"/>"#))
+    };
+    for (init, said) in [
+        (ego.clone() + &far("1e9"), "expected one within 1000000 m"),
+        (ego.clone() + &begins("Other", -2, 501.0, 0.0), "Other and Ego begin in each other"),
+        (ego.clone() + &begins("Other", -9, 501.0, 0.0), "line 16: road 7 has no lane -9 at s 501"),
+        (ego, "nothing says where Other begins, expected a teleport in <Init>"),
+    ] {
+        let refusal = refusal(init);
+        assert!(refusal.contains(said), "{refusal}");
+    }
+    // As fast as its kind can be, and not faster.
+    let mut fast = played(&event("e", &speed("step", 0.0, "time", -1e9), &after(0.0)));
+    go_on(&mut fast, 1.0);
+    assert!(other(&fast).speed_mps.abs() < 1000.0);
 }
 
 #[test]

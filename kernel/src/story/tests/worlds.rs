@@ -1,7 +1,11 @@
 //! Stories as a part of worlds: keyframes, forks, collisions, traffic.
 
+use super::actions::follow;
 use super::*;
+use crate::arbiter::{Outcome, Phase};
+use crate::map::bundled;
 use crate::state::State;
+use crate::story::{BUNDLED, Stage};
 
 fn busy() -> String {
     let lane = r#"<PrivateAction><LateralAction><LaneChangeAction>
@@ -170,4 +174,36 @@ fn traffic_drives_behind_who_plays_and_does_not_touch_it() {
             assert!(way.x > 4.5 || way.y > 1.85, "{actor:?} is in {me:?}");
         }
     }
+}
+
+#[test]
+fn drivers_know_the_way_that_a_line_tells() {
+    let (_, told) = BUNDLED.into_iter().find(|(name, _)| *name == "cyclist_at_the_right_turn").expect("it is bundled");
+    let (before, rest) = told.split_once("<RoutingAction><AssignRouteAction>").expect("its ego car has a route");
+    let (_, after) = rest.split_once("</AssignRouteAction></RoutingAction>").expect("it ends");
+    let corners: String = [("5", -2, 20), ("5", -2, 60), ("5", -2, 59), ("13", 1, 50), ("13", 1, 60)]
+        .map(|(road, lane, s)| {
+            format!(r#"<Vertex><Position><LanePosition roadId="{road}" laneId="{lane}" s="{s}"/></Position></Vertex>"#)
+        })
+        .concat();
+    let line = follow("<None/>", &corners).replace("<PrivateAction>", "").replace("</PrivateAction>", "");
+    let network = bundled("city").expect("it is bundled");
+    let way = |text: &str| {
+        let stage = Stage::new(&Story::read(text).expect("it is a story"), &network).expect("it is on the map");
+        let (lane, _) = stage.ego_road(&network).expect("it begins on a road");
+        stage.ego_way(&network, lane)
+    };
+    let routed = way(told);
+    assert!(!routed.is_empty() && way(&format!("{before}{line}{after}")) == routed, "{routed:?}");
+}
+
+#[test]
+fn a_run_ends_when_its_story_is_stopped() {
+    let stop = format!("<StopTrigger>{}</StopTrigger></Storyboard>", after(5.0));
+    let text = text(&(begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 100.0, 10.0)), "");
+    let mut world = world(&text.replace("<StopTrigger/></Storyboard>", &stop));
+    go_on(&mut world, 4.9);
+    assert_ne!(world.arbiter().phase, Phase::Done);
+    go_on(&mut world, 0.2);
+    assert_eq!((world.arbiter().phase, world.arbiter().outcome), (Phase::Done, Some(Outcome::Censored)));
 }

@@ -1,5 +1,7 @@
 //! Campaigns on paper.
 
+use std::collections::BTreeMap;
+
 use base::room::RoadUsers;
 use measures::run_figures::RunFigures;
 use measures::statistics::Ride;
@@ -10,6 +12,7 @@ use super::until::{Goal, STALLED_RUNS, Until};
 
 fn runs(each: impl IntoIterator<Item = (f64, bool)>) -> Vec<RunLine> {
     let figures = |km| RunFigures {
+        drawn: BTreeMap::new(),
         map: "city".into(),
         seed: 1,
         km,

@@ -222,10 +222,11 @@ fn group(track: &Track, (from, to): (Tick, Tick), world: &impl Fn(Vec3, f32) -> 
 
 fn entity(track: &Track, text: &mut String) {
     let (name, Vec3 { x: length, y: width, z: height }) = (&track.name, track.size_m);
+    // Above the ground, the middle of the body; the ego car has room below.
+    let middle_m = if track.kind.is_none() { ego::CENTRE_M.z } else { height / 2.0 };
     let bounds = format!(
-        "<BoundingBox><Center x=\"0\" y=\"0\" z=\"{}\"/><Dimensions width=\"{width}\" length=\"{length}\" height=\"{height}\"/>\
-         </BoundingBox>",
-        height / 2.0
+        "<BoundingBox><Center x=\"0\" y=\"0\" z=\"{middle_m}\"/><Dimensions width=\"{width}\" length=\"{length}\" height=\"{height}\"/>\
+         </BoundingBox>"
     );
     let body = match track.kind {
         Some(kind) if kind.is_on_foot() => {
@@ -238,7 +239,10 @@ fn entity(track: &Track, text: &mut String) {
             )
         }
         kind => {
-            let (axle_m, wheel_m) = (length * 0.28, 0.6_f32.min(height));
+            let (axle_m, wheel_m) = match kind {
+                None => (ego::WHEELBASE_M / 2.0, 2.0 * ego::WHEEL_RADIUS_M),
+                Some(_) => (length * 0.28, 0.6_f32.min(height)),
+            };
             let ego = "<Property name=\"type\" value=\"ego_vehicle\"/>";
             format!(
                 "<Vehicle name=\"{name}\" vehicleCategory=\"{}\">{bounds}<Performance maxSpeed=\"{MOST_MPS}\" \

@@ -35,6 +35,10 @@ fn text(c: &Contents) -> String {
     line("file", format!("{} ({}, {} bytes)", c.file, c.kind, c.bytes));
     line("map", format!("{}{}", c.figures.map, if c.embedded_map { " (embedded)" } else { "" }));
     line("seed", c.figures.seed.to_string());
+    if !c.figures.drawn.is_empty() {
+        let values: Vec<String> = c.figures.drawn.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        line("drawn", values.join(", "));
+    }
     if let Some(missing) = c.figures.missing.and_then(|missing| missing.of(&c.figures.asked)) {
         line("no room for", missing);
     }
