@@ -229,7 +229,8 @@ def reverses_onto_the_road():
     story.plays("Car", "car", on_road(VILLAGE, 190, -9.5, -QUARTER_TURN))
     line = along(on_road(VILLAGE, 190, -9.5, -QUARTER_TURN), on_road(VILLAGE, 190, -1.0, -QUARTER_TURN))
     # Its tail, 2.25 m behind its middle, comes to the far side of the lane.
-    return story.does("Car", headway("Car", "${5.9 / $back_mps + $off_s}"), speed("$back_mps"), line)
+    story.does("Car", headway("Car", "${5.9 / $back_mps + $off_s}"), speed("$back_mps"), line)
+    return story.does("Car", stands_near("Car", 6), speed(0, "linear", "rate", 7))
 
 
 def queue_behind_a_crest():
@@ -356,9 +357,9 @@ def stop_sign_runner():
         "van",
         on_lane("11", -1, 30),
         (143.6, 126.25, 0, QUARTER_TURN),
-        74,
+        74.8,
         way=on_lane("12", -1, 40),
-        off_m=(-1.0, 2.0),
+        off_m=(-1.0, 0.5),
     )
 
 

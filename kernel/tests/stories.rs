@@ -86,15 +86,17 @@ fn a_keyframe_without_a_part_of_its_story_is_another() {
     // The story's bytes are the last ones: whatever of them is left out, or is another, the world is refused or goes elsewhere.
     let world = World::resume(&scenario, &network, keyframe).expect("it is its own");
     let hash = world.hash();
-    for at in (keyframe.bytes.len() - 160)..keyframe.bytes.len() {
+    let is_another = |bytes: Vec<u8>| {
+        let changed = Keyframe { tick: keyframe.tick, bytes };
+        World::resume(&scenario, &network, &changed).map_or(true, |other| other.hash() != hash)
+    };
+    for at in (keyframe.bytes.len() - 400)..keyframe.bytes.len() {
         let mut bytes = keyframe.bytes.clone();
         bytes[at] ^= 1;
-        let changed = Keyframe { tick: keyframe.tick, bytes };
-        assert!(World::resume(&scenario, &network, &changed).map_or(true, |other| other.hash() != hash), "byte {at}");
+        assert!(is_another(bytes), "byte {at}");
         let mut bytes = keyframe.bytes.clone();
         bytes.remove(at);
-        let shorter = Keyframe { tick: keyframe.tick, bytes };
-        assert!(World::resume(&scenario, &network, &shorter).is_err(), "without byte {at}");
+        assert!(is_another(bytes), "without byte {at}");
     }
 }
 

@@ -98,7 +98,7 @@ impl Seen<'_> {
             ElementState::Standby => mark.progress == Progress::Standby,
             ElementState::Running => mark.runs(),
             ElementState::Complete => mark.is_complete(),
-            ElementState::Started => mark.began.and_then(|at| at.checked_add(1)) == Some(self.tick),
+            ElementState::Started => mark.began > 0 && mark.began.checked_add(1) == Some(self.tick),
             ElementState::Ended => just(mark, Change::Ended),
             ElementState::Stopped => just(mark, Change::Stopped),
             ElementState::Skipped => just(mark, Change::Skipped),

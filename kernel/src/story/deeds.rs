@@ -19,7 +19,7 @@ const BESIDE_M: f32 = 3.0;
 const LEAST_MPS: f32 = 0.1;
 
 /// Where everybody begins, as the first actions of a script say.
-pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, String> {
+pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, (usize, String)> {
     let mut placed: Vec<Option<StoryActor>> = vec![None; script.cast.len()];
     let teleports = || {
         script.init.iter().filter_map(|(role, action)| match action {
@@ -38,7 +38,7 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
     let is_told = |role: usize| teleports().any(|(of, _)| of == role);
     let missing = |role: usize| {
         let expected = if is_told(role) { "one that is not told by its own" } else { "a teleport in <Init>" };
-        format!("nothing says where {} begins, expected {expected}", script.cast[role].name)
+        (script.cast[role].at, format!("nothing says where {} begins, expected {expected}", script.cast[role].name))
     };
     let actors = placed.into_iter().enumerate().map(|(role, actor)| actor.ok_or_else(|| missing(role)));
     let mut actors = actors.collect::<Result<Vec<_>, _>>()?;

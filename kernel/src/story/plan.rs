@@ -153,13 +153,13 @@ impl Plan {
         let marks: Vec<Mark> = events.map(|event| state.events[event]).collect();
         let Some(last) = marks.iter().max_by_key(|mark| mark.at).copied() else { return Mark::NEW };
         let over = marks.iter().all(Mark::is_complete);
-        let begun = marks.iter().filter_map(|mark| mark.began).min();
+        let began = marks.iter().map(|mark| mark.began).filter(|at| *at > 0).min().unwrap_or_default();
         let change = match last.change {
             Change::Ended | Change::Skipped | Change::Stopped if !over => Change::None,
             change => change,
         };
         let progress = if over { Progress::Complete } else { Progress::Running };
-        Mark { progress: if begun.is_some() { progress } else { Progress::Standby }, change, began: begun, ..last }
+        Mark { progress: if began > 0 { progress } else { Progress::Standby }, change, began, ..last }
     }
 
     /// Finds what conditions refer to.

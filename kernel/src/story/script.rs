@@ -63,6 +63,8 @@ pub struct Role {
     pub kind: Option<ActorKind>,
     /// Fastest it goes, m/s.
     pub most_mps: f32,
+    /// Where the text tells it, bytes from its beginning.
+    pub at: usize,
 }
 
 /// An act: it begins by its trigger, and its groups play at the same time.

@@ -64,17 +64,17 @@ impl Stage {
         places::find(&mut script, network).map_err(said)?;
         lights::find(&mut script, network).map_err(said)?;
         let plan = Plan::of(&script);
-        let start = deeds::begin(&script, network)?;
+        let start = deeds::begin(&script, network).map_err(said)?;
         if let Some(role) = start.iter().position(|actor| !actor.is_possible()) {
-            let (name, at, mps) = (&script.cast[role].name, start[role].spot.position, start[role].speed_mps);
-            return Err(format!("{name} begins at {at} with {mps} m/s, where or as nobody can be"));
+            let (of, at, mps) = (&script.cast[role], start[role].spot.position, start[role].speed_mps);
+            return Err(said((of.at, format!("{} begins at {at} with {mps} m/s, where or as nobody can be", of.name))));
         }
         let outline = |role: RoleId| Outline::of(&start[role], &script.cast[role]);
         let is_in_ego =
             |role: &RoleId| *role != plan.ego && !start[*role].gone && outline(*role).touches(&outline(plan.ego));
         if let Some(role) = (0..start.len()).find(is_in_ego) {
-            let [ego, name] = [plan.ego, role].map(|role| &script.cast[role].name);
-            return Err(format!("{name} and {ego} begin in each other"));
+            let [ego, other] = [plan.ego, role].map(|role| &script.cast[role]);
+            return Err(said((other.at, format!("{} and {} begin in each other", other.name, ego.name))));
         }
         Ok(Self { script: Arc::new(script), plan: Arc::new(plan), start: start.into() })
     }

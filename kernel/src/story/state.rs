@@ -45,8 +45,8 @@ state! {
         pub change: Change,
         /// When that was.
         pub at: Tick,
-        /// When it began last: it may be over in the same tick.
-        pub began: Option<Tick>,
+        /// When it began last, 0 if it did not: it may be over in the same tick.
+        pub began: Tick,
         /// How many times it was over.
         pub times: u16,
     }
@@ -122,7 +122,7 @@ state! {
 
 impl Mark {
     /// Nothing happened yet.
-    pub const NEW: Self = Self { progress: Progress::Standby, change: Change::None, at: 0, began: None, times: 0 };
+    pub const NEW: Self = Self { progress: Progress::Standby, change: Change::None, at: 0, began: 0, times: 0 };
 
     /// Goes on.
     pub fn runs(&self) -> bool {
@@ -138,7 +138,7 @@ impl Mark {
     pub fn turn(&mut self, progress: Progress, change: Change, at: Tick) {
         (self.progress, self.change, self.at) = (progress, change, at);
         if change == Change::Started {
-            self.began = Some(at);
+            self.began = at;
         }
         if matches!(change, Change::Ended | Change::Stopped | Change::Skipped) {
             self.times = self.times.saturating_add(1);

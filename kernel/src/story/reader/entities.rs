@@ -51,7 +51,7 @@ pub fn read(entities: Element<'_>) -> Result<Vec<Role>, StoryError> {
         if drives && (EGO.contains(&name.to_lowercase().as_str()) || is_ego(body)?) {
             egos.push(cast.len());
         }
-        cast.push(Role { name, kind: Some(kind), most_mps });
+        cast.push(Role { name, kind: Some(kind), most_mps, at: object.begins() });
     }
     let drives = |role: &Role| role.kind.is_some_and(|kind| !kind.is_on_foot());
     let Some(ego) = egos.first().copied().or_else(|| cast.iter().position(drives)) else {

@@ -175,7 +175,7 @@ fn who_begins_where_nobody_can_be_is_refused() {
         (ego.clone() + &far("1e9"), "expected one within 1000000 m"),
         (ego.clone() + &begins("Other", -2, 501.0, 0.0), "Other and Ego begin in each other"),
         (ego.clone() + &begins("Other", -9, 501.0, 0.0), "line 16: road 7 has no lane -9 at s 501"),
-        (ego, "nothing says where Other begins, expected a teleport in <Init>"),
+        (ego, "line 8: nothing says where Other begins, expected a teleport in <Init>"),
     ] {
         let refusal = refusal(init);
         assert!(refusal.contains(said), "{refusal}");
