@@ -195,15 +195,15 @@ pub fn dangling(script: &Script) -> Option<(usize, String)> {
 
 /// The elements of a script by their kinds and names.
 struct Elements<'a> {
-    /// With the names of those above them and their own, from the act on.
-    named: BTreeMap<(ElementKind, &'a str), Vec<(Vec<&'a str>, Element)>>,
+    named: BTreeMap<(ElementKind, &'a str), Vec<Named<'a>>>,
 }
 
 impl<'a> Elements<'a> {
     fn of(script: &'a Script) -> Self {
         let mut named: BTreeMap<_, Vec<_>> = BTreeMap::new();
-        for (kind, path, element) in elements(script) {
-            named.entry((kind, path[path.len() - 1])).or_default().push((path, element));
+        for element in elements(script) {
+            let (kind, path, _) = &element;
+            named.entry((*kind, path[path.len() - 1])).or_default().push(element);
         }
         Self { named }
     }
@@ -212,7 +212,7 @@ impl<'a> Elements<'a> {
     fn named(&self, kind: ElementKind, path: &str) -> Vec<Element> {
         let path: Vec<&str> = path.split("::").collect();
         let all = self.named.get(&(kind, path[path.len() - 1]));
-        all.into_iter().flatten().filter(|(at, _)| at.ends_with(&path)).map(|(_, element)| *element).collect()
+        all.into_iter().flatten().filter(|(_, at, _)| at.ends_with(&path)).map(|(.., element)| *element).collect()
     }
 }
 
