@@ -6,7 +6,7 @@ use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Takes
 use super::document::Element;
 use super::dynamics::{SHAPES, dynamics, ticks};
 use super::names::Names;
-use super::{positions, signals, speeds};
+use super::{positions, signals, speeds, vary};
 
 /// Most corners of a line, and most places of a route.
 const CORNERS: usize = 100_000;
@@ -131,7 +131,7 @@ fn lane_offset(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryEr
 fn route(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
     let route = action.need("Route")?;
     is_open(route)?;
-    route.pass_parameters()?;
+    vary::pass_parameters(route)?;
     let mut places = Vec::new();
     for waypoint in route.all("Waypoint") {
         if places.len() == WAYPOINTS {
@@ -161,7 +161,7 @@ fn path(action: Element<'_>, names: &Names<'_>) -> Result<Path, StoryError> {
     let within = action.child("TrajectoryRef").unwrap_or(action);
     let trajectory = within.need("Trajectory")?;
     is_open(trajectory)?;
-    trajectory.pass_parameters()?;
+    vary::pass_parameters(trajectory)?;
     let line = trajectory.need("Shape")?.choice()?;
     if line.tag() != "Polyline" {
         return Err(line.unsupported());

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::{Document, Error, Node, ParsingOptions};
 
 use super::coverage::{self, Support};
-use super::{value, vary};
+use super::value;
 use crate::story::error::StoryError;
 
 /// Longest text, bytes.
@@ -203,6 +203,11 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
+    /// The element in the tree.
+    pub fn node(&self) -> Node<'a, 'a> {
+        self.node
+    }
+
     /// Where it begins, bytes from the beginning of the text.
     pub fn begins(&self) -> usize {
         self.node.range().start
@@ -253,16 +258,6 @@ impl<'a> Element<'a> {
     /// The first child of a name.
     pub fn child(self, tag: &'static str) -> Option<Self> {
         self.all(tag).next()
-    }
-
-    /// Reads the declarations of its parameters: all are known from the beginning, but their ranges have to be some.
-    pub fn pass_parameters(self) -> Result<(), StoryError> {
-        let declared = self.all("ParameterDeclarations").flat_map(|all| all.all("ParameterDeclaration"));
-        declared.into_iter().try_for_each(|one| {
-            let groups = one.all("ConstraintGroup");
-            groups.flat_map(|group| group.all("ValueConstraint")).for_each(drop);
-            vary::range(one.node).map(drop)
-        })
     }
 
     /// The same, which must be there.

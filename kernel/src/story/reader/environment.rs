@@ -7,6 +7,7 @@ use crate::story::error::StoryError;
 use crate::story::script::Environment;
 
 use super::document::Element;
+use super::vary;
 
 /// Wind of 100 %: a storm, Beaufort 10, m/s.
 const STORM_MPS: f32 = 24.5;
@@ -48,7 +49,7 @@ const WETNESS: &[(&str, [f32; 2])] = &[
 /// What an `<EnvironmentAction>` says.
 pub fn read(action: Element<'_>) -> Result<Environment, StoryError> {
     let environment = action.need("Environment")?;
-    environment.pass_parameters()?;
+    vary::pass_parameters(environment)?;
     let mut found = Environment::default();
     if let Some(weather) = environment.child("Weather") {
         self::weather(weather, &mut found)?;

@@ -51,7 +51,7 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
             return Err(root.wrong(format!("it is {what}, expected a story")));
         }
     }
-    root.pass_parameters()?;
+    vary::pass_parameters(root)?;
     let network = root.need("RoadNetwork")?;
     let map = network.need("LogicFile")?.text("filepath")?;
     let cast = entities::read(root.need("Entities")?)?;

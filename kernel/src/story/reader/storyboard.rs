@@ -7,6 +7,7 @@ use crate::story::script::{
 
 use super::document::Element;
 use super::names::Names;
+use super::vary;
 use super::{actions, conditions, environment};
 
 const ACTIONS: usize = 100;
@@ -79,7 +80,7 @@ pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> 
     let (init, opening) = begins.split();
     let mut acts: Vec<Act> = opening.into_iter().collect();
     for story in board.all("Story") {
-        story.pass_parameters()?;
+        vary::pass_parameters(story)?;
         for act in story.all("Act") {
             acts.push(self::act(act, names)?);
         }
@@ -148,7 +149,7 @@ fn group(group: Element<'_>, names: &Names<'_>) -> Result<Group, StoryError> {
     }
     let mut events = Vec::new();
     for (number, manoeuvre) in group.all("Maneuver").enumerate() {
-        manoeuvre.pass_parameters()?;
+        vary::pass_parameters(manoeuvre)?;
         let name = manoeuvre.given("name")?.unwrap_or_default();
         for event in manoeuvre.all("Event") {
             let read = self::event(event, (number, name.clone()), names)?;

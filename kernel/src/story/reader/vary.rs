@@ -2,7 +2,7 @@
 
 use roxmltree::{Document, Node};
 
-use super::document::{self, line_of, shown};
+use super::document::{self, Element, line_of, shown};
 use crate::ops;
 use crate::rng::{self, Stream};
 use crate::story::error::StoryError;
@@ -21,6 +21,16 @@ pub fn varied(text: &str, seed: u64) -> Option<String> {
     let share =
         |number: usize| rng::below(seed, Stream::Scenario, KEY + number as u64, 0, STEPS + 1) as f32 / STEPS as f32;
     with_shares(text, share)
+}
+
+/// Reads the declarations of an element's parameters: all are known from the beginning, but their ranges have to be some.
+pub fn pass_parameters(owner: Element<'_>) -> Result<(), StoryError> {
+    let mut declared = owner.all("ParameterDeclarations").flat_map(|all| all.all("ParameterDeclaration"));
+    declared.try_for_each(|one| {
+        let groups = one.all("ConstraintGroup");
+        groups.flat_map(|group| group.all("ValueConstraint")).for_each(drop);
+        range(one.node()).map(drop)
+    })
 }
 
 /// Names and values of the parameters that have ranges.
@@ -58,7 +68,7 @@ pub fn with_shares(text: &str, share: impl Fn(usize) -> f32) -> Option<String> {
 
 /// From where to where the first group of constraints lets a parameter be that is a number; it needs both ends, and the value
 /// without a draw lies between them.
-pub fn range(parameter: Node<'_, '_>) -> Result<Option<[f32; 2]>, StoryError> {
+fn range(parameter: Node<'_, '_>) -> Result<Option<[f32; 2]>, StoryError> {
     let is_number = parameter.attribute("parameterType").is_some_and(|of| of == "double" || WHOLE.contains(&of));
     let group = parameter.children().find(|n| n.has_tag_name("ConstraintGroup")).filter(|_| is_number);
     let Some(group) = group else { return Ok(None) };
