@@ -81,8 +81,11 @@ fn try_out(file: &ScenarioFile, crews: &[Who], seed: u64, draws: u64) -> anyhow:
     let tasks: Vec<(usize, u64)> = (0..draws).flat_map(|draw| (0..crews.len()).map(move |who| (who, draw))).collect();
     let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![vec![Came::default(); draws as usize]; crews.len()]));
     let work = || -> anyhow::Result<()> {
+        let mut renderer = Renderer::new(&file.map.network, &RenderOptions::default())?;
         while let Some((who, draw)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let came = drive(&drawn(&file.scenario, seed + draw)?, &file.map, &crews[*who], |_| {})?;
+            let scenario = drawn(&file.scenario, seed + draw)?;
+            let came;
+            (came, renderer) = drive(&scenario, &file.map, &crews[*who], renderer, |_| {})?;
             found.lock().expect("no thread panics")[*who][*draw as usize] = came;
         }
         Ok(())
@@ -105,14 +108,20 @@ fn drawn(of: &Scenario, seed: u64) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-/// Drives until something is hit or the run is over; `look` sees each tick.
-fn drive(scenario: &Scenario, map: &Map, who: &Who, mut look: impl FnMut(SceneSnapshot)) -> anyhow::Result<Came> {
+/// Drives until something is hit or the run is over, and hands the renderer back; `look` sees each tick.
+fn drive(
+    scenario: &Scenario,
+    map: &Map,
+    who: &Who,
+    renderer: Renderer,
+    mut look: impl FnMut(SceneSnapshot),
+) -> anyhow::Result<(Came, Renderer)> {
     let mut world = World::new(scenario, &map.network)?;
     let (eye, mut bots) = match who {
         Who::On => (Eye::Truth, Bots::beside(Seat::Safety, scenario.seed)),
         Who::Crew(eye) => (eye.clone(), Bots::both(SemanticBot::drawn(scenario.seed), SafetyBot::drawn(scenario.seed))),
     };
-    let mut vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
+    let mut vision = Vision::new(renderer, eye);
     let mut came = Came::default();
     while world.arbiter().phase != Phase::Done && !came.hit {
         let (mask, _) = vision.look(&world)?;
@@ -126,5 +135,5 @@ fn drive(scenario: &Scenario, map: &Map, who: &Who, mut look: impl FnMut(SceneSn
         came.taken_over |= output.intervention.is_some();
         look(world.scene());
     }
-    Ok(came)
+    Ok((came, vision.into_renderer()))
 }

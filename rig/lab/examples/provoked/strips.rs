@@ -21,14 +21,14 @@ pub fn strip(file: &Path, seed: u64, folder: &Path) -> anyhow::Result<()> {
     let story = ScenarioFile::read(file)?;
     let kept = seconds(PICTURES as u32 - 1) as usize + 1;
     let mut scenes: VecDeque<SceneSnapshot> = VecDeque::new();
-    let came = drive(&drawn(&story.scenario, seed)?, &story.map, &Who::On, |scene| {
+    let renderer = Renderer::new(&story.map.network, &RenderOptions::default())?;
+    let (came, mut renderer) = drive(&drawn(&story.scenario, seed)?, &story.map, &Who::On, renderer, |scene| {
         scenes.push_back(scene);
         if scenes.len() > kept {
             scenes.pop_front();
         }
     })?;
     ensure!(came.hit && scenes.len() == kept, "{}: nothing is hit", file.display());
-    let mut renderer = Renderer::new(&story.map.network, &RenderOptions::default())?;
     let camera = Camera::driver(SIZE.0, SIZE.1);
     let chosen = scenes.iter().step_by(TICK_HZ as usize);
     let frames = chosen.map(|scene| renderer.draw(scene, &camera)).collect::<Result<Vec<_>, _>>()?;
