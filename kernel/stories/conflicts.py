@@ -61,8 +61,8 @@ def child_between_parked_cars():
     story = village(
         "child_between_parked_cars",
         "A child runs onto the road between two cars parked on the pavement (after Euro NCAP CPNCO-50)",
-        walk_mps=(1.6, 2.2),
-        off_s=(-0.3, 0.1),
+        walk_mps=(1.6, 2.0),
+        off_s=(-0.2, 0.1),
     )
     story.plays("Car", "car", on_road(VILLAGE, 187, -5.4)).plays("Van", "van", on_road(VILLAGE, 180, -5.4))
     return crosses(story, "Child", "child", VILLAGE, 190.5, -7.0, 6, -1.1, "walk_mps")
@@ -368,7 +368,7 @@ def turns_left_across():
         "turns_left_across",
         "An oncoming car turns left across the ego car's way (Euro NCAP CCFtap)",
         ("3", -1, 15),
-        (4.5, 6.0),
+        (3.5, 5.0),
         "Car",
         "car",
         on_lane("12", 1, 55),
