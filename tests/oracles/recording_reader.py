@@ -16,7 +16,7 @@ import mcap.stream_reader
 import xxhash
 import zstandard
 
-VERSION = 2
+VERSION = 3
 EVENTS = ["CollisionActor", "CollisionScenery", "RedLight", "Speeding", "OffRoad", "WrongWay", "Armed", "Intervention"]
 EVENTS += ["Seen", "Ended", "Stuck", "Dissolved"]
 EVENTS += ["HazardRedLight", "HazardRollingStop", "HazardBraking", "HazardCutIn", "HazardPullOut", "HazardCollision"]

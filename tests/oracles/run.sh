@@ -30,7 +30,8 @@ mkdir "$work"
 python "$here/cityscapes_eval.py" "$aeye" "$work"
 
 "$aeye" drive --headless --map city --max-time 20s --record "$work/drive.mcap"
-"$aeye" campaign --checkpoint early --seed 5 --cases 1 --out "$work/drives"
+# A story in which a takeover through `early` is the rule; anywhere else one may be long in coming.
+"$aeye" campaign --scenario adult_runs_from_the_left --vary 4 --checkpoint early --seed 5 --out "$work/drives"
 python "$here/recording_reader.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.mcap
 python "$here/export_readers.py" "$aeye" "$work/drive.mcap" "$work"/drives/*.case.mcap
 for case in "$work"/drives/*.case.mcap; do
