@@ -54,7 +54,8 @@ pub fn with_shares(text: &str, share: impl Fn(usize) -> f32) -> Option<String> {
     let mut values = Vec::new();
     for (number, parameter) in declared(&document).enumerate() {
         let Ok(Some([low, high])) = range(parameter) else { continue };
-        let value = low + (high - low) * share(number);
+        // Rounding may carry the sum beyond the end.
+        let value = (low + (high - low) * share(number)).min(high);
         let is_whole = parameter.attribute("parameterType").is_some_and(|of| WHOLE.contains(&of));
         let value = if is_whole { ops::round(value) } else { value };
         values.push((parameter.attribute_node("value")?.range_value(), value.to_string()));
