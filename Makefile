@@ -10,7 +10,7 @@ TOOLS := cargo-machete@0.9.2 cargo-deny@0.20.2
 
 AEYE := $(or $(CARGO_TARGET_DIR),target)/release/aeye
 
-.PHONY: demo test matrix bench dist oracles peers cluster campaign-check kills fuzz properties check-long headless setup tools build
+.PHONY: demo test matrix bench dist oracles peers cluster campaign-check kills fuzz properties check-long headless headless-test setup tools build
 
 ## Drives the bundled maps until three corner cases have happened and reports on them.
 demo: build
@@ -25,7 +25,7 @@ test: setup tools
 	cargo deny check -D unnecessary-skip -D unmatched-skip licenses bans sources
 	tests/advisories.sh
 	cargo clippy --release --workspace --all-targets -- -D warnings
-	cargo clippy --release -p aeye --no-default-features --all-targets -- -D warnings
+	cargo clippy --release --workspace --no-default-features --features aeye/cuda --all-targets -- -D warnings
 	cargo test --release --workspace
 	python/test.sh $(dir $(AEYE))../python
 	kernel/tests/portable.sh
@@ -87,6 +87,10 @@ headless: PACKAGES := gcc libc6-dev
 headless: setup
 	cargo build --release -p aeye --no-default-features
 
+## What that program refuses, and in which words.
+headless-test: headless
+	cargo test --release -p aeye --no-default-features --test headless
+
 # The whole workspace, so that demo, test and bench ask the same features of the dependencies.
 build: setup
 	cargo build --release --workspace --bins
@@ -98,9 +102,9 @@ setup:
 		$(SUDO) apt-get update -qq && $(SUDO) apt-get install -y -qq --no-install-recommends $$missing; \
 	fi
 
-# Built in a folder of their own: they share nothing with the workspace.
+# Built in a folder of their own: they share nothing with the workspace. Without optimisation: they are built longer than they run.
 tools:
 	@for tool in $(TOOLS); do \
 		cargo install --list | grep -qx "$${tool%@*} v$${tool#*@}:" || \
-		env -u CARGO_TARGET_DIR nice cargo install --locked "$$tool" || exit 1; \
+		env -u CARGO_TARGET_DIR nice cargo install --debug --locked "$$tool" || exit 1; \
 	done

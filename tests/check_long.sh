@@ -10,7 +10,7 @@ if [ -n "$(git status --porcelain)" ]; then
 fi
 commit=$(git rev-parse HEAD)
 passed=""
-for part in oracles bench kills properties; do
+for part in oracles bench kills properties headless-test; do
     started=$SECONDS
     make --no-print-directory "$part"
     passed+=$(printf '%-10s passed in %d s' "$part" $((SECONDS - started)))$'\n'
