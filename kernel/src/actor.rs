@@ -49,6 +49,8 @@ state_enum! {
         Wheelchair = 14,
         /// Tram of three sections.
         Tram = 15,
+        /// Thing that can be moved, as a bin or a barrel: only in stories.
+        Obstacle = 16,
     }
 }
 
@@ -73,6 +75,7 @@ impl ActorKind {
             Self::Pram => Vec3::new(1.5, 0.6, 1.75),
             Self::Wheelchair => Vec3::new(1.2, 0.7, 1.35),
             Self::Tram => Vec3::new(30.0, 2.4, 3.5),
+            Self::Obstacle => Vec3::new(0.8, 0.8, 1.0),
         }
     }
 
@@ -95,6 +98,7 @@ impl ActorKind {
             Self::Pram => 95.0,
             Self::Wheelchair => 100.0,
             Self::Tram => 40000.0,
+            Self::Obstacle => 60.0,
         }
     }
 
@@ -125,6 +129,11 @@ impl ActorKind {
 
     /// A motor vehicle with four wheels or more.
     pub fn is_car_or_heavier(self) -> bool {
-        !self.is_on_foot() && !self.is_pedalled() && !self.is_motorcycle() && self != Self::Door
+        self.is_vehicle() && !self.is_pedalled() && !self.is_motorcycle()
+    }
+
+    /// Somebody drives or rides it.
+    pub fn is_vehicle(self) -> bool {
+        !self.is_on_foot() && !matches!(self, Self::Door | Self::Obstacle)
     }
 }

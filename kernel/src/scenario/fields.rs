@@ -12,6 +12,8 @@ use crate::weather::{Weather, WeatherChange, WeatherPreset};
 
 /// Most actors of one kind.
 pub const MOST_OF_A_KIND: u16 = 500;
+/// Highest speed that can be asked of the semantic driver, km/h.
+pub const MOST_KMH: f32 = 130.0;
 
 state! {
     /// Rules of a run.
@@ -93,9 +95,12 @@ impl Scenario {
         self.later.map_or(self.weather, |later| later.at(&self.weather, tick))
     }
 
-    /// Takes a story, and the weather as far as that says.
+    /// Takes a story, the weather as far as that says, and the speed that its ego car begins with as the highest one asked for, if that
+    /// is higher.
     pub fn play(&mut self, story: Story) {
         story.script().environment.change(&mut self.weather);
+        let told_kmh = (story.ego_mps() * 3.6).min(MOST_KMH);
+        self.rules.max_speed_kmh = self.rules.max_speed_kmh.max(told_kmh);
         self.story = Some(Arc::new(story));
     }
 

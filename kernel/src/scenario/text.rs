@@ -4,7 +4,7 @@ use crate::car::CarSetup;
 use crate::story::Story;
 use crate::traffic::TrafficCounts;
 
-use super::fields::{EgoStart, MOST_OF_A_KIND, Rules, Scenario, ScenarioError};
+use super::fields::{EgoStart, MOST_KMH, MOST_OF_A_KIND, Rules, Scenario, ScenarioError};
 use super::hazards::{print_hazards, read_hazards};
 use super::reader::Section;
 use super::weather::{self, read_weather};
@@ -75,7 +75,7 @@ fn read_car(root: &mut Section<'_>, to: &mut CarSetup) -> Result<(), ScenarioErr
 fn read_rules(root: &mut Section<'_>, to: &mut Rules) -> Result<(), ScenarioError> {
     root.section("rules", "keys such as max_seconds = 600", |section| {
         let threshold = 0.01..=0.99;
-        section.number("max_speed_kmh", 5.0..=130.0, &mut to.max_speed_kmh)?;
+        section.number("max_speed_kmh", 5.0..=MOST_KMH, &mut to.max_speed_kmh)?;
         to.max_seconds = section.whole("max_seconds", 4..=86_400)?.unwrap_or(to.max_seconds);
         section.number("brake_threshold", threshold.clone(), &mut to.brake_threshold)?;
         section.number("steer_threshold", threshold, &mut to.steer_threshold)?;

@@ -30,17 +30,6 @@ pub struct Seen<'a> {
     pub touching: &'a [RoleId],
 }
 
-fn compares(rule: Rule, value: f32, than: f32, equal: f32) -> bool {
-    match rule {
-        Rule::Greater => value > than,
-        Rule::GreaterOrEqual => value >= than,
-        Rule::Less => value < than,
-        Rule::LessOrEqual => value <= than,
-        Rule::Equal => (value - than).abs() <= equal,
-        Rule::NotEqual => (value - than).abs() > equal,
-    }
-}
-
 impl Seen<'_> {
     /// Whether a trigger is met; remembers what its conditions were. One without conditions is never met.
     pub fn is_met(&self, trigger: &Trigger, met: &mut [Met]) -> bool {
@@ -56,13 +45,15 @@ impl Seen<'_> {
 
     fn condition(&self, number: usize, condition: &Condition, met: &mut Met) -> bool {
         let holds = self.holds(number, &condition.when);
-        // Before its element stood by, nothing held.
-        let held = met.held.replace(holds);
+        let before = met.held.replace(holds);
+        // Of roles nothing is known before; of all else that it was not so yet.
+        let unknown = if matches!(condition.when, When::Role { .. }) { holds } else { false };
+        let held = before.unwrap_or(unknown);
         let is_met = match condition.edge {
             Edge::None => holds,
-            Edge::Rising => holds && held != Some(true),
-            Edge::Falling => !holds && held == Some(true),
-            Edge::Either => held.map_or(holds, |held| held != holds),
+            Edge::Rising => holds && !held,
+            Edge::Falling => !holds && held,
+            Edge::Either => holds != held,
         };
         if condition.delay_ticks == 0 {
             return is_met;
@@ -75,7 +66,8 @@ impl Seen<'_> {
 
     fn holds(&self, number: usize, when: &When) -> bool {
         match when {
-            When::Time(rule, than) => compares(*rule, self.tick as f32 / TICK_HZ as f32, *than, 0.5 * TICK_S),
+            When::Always(holds) => *holds,
+            When::Time(rule, than) => rule.holds(self.tick as f32 / TICK_HZ as f32, *than, 0.5 * TICK_S),
             When::Element { state, .. } => self.element(number, *state),
             When::Light(light) => self.shows(light),
             When::Programme(number, phase) => usize::from(self.before.cycles[*number].phase) == *phase,
@@ -123,7 +115,7 @@ impl Seen<'_> {
         if actor.gone {
             return false;
         }
-        let is = |rule: Rule, value: f32, than: f32| compares(rule, value, than, EQUAL);
+        let is = |rule: Rule, value: f32, than: f32| rule.holds(value, than, EQUAL);
         let is_some = |rule: Rule, value: Option<f32>, than: f32| value.is_some_and(|value| is(rule, value, than));
         let there = |other: RoleId| !self.actor(other).gone;
         match what {

@@ -1,14 +1,16 @@
 //! What roles do: how it begins, and how it ends.
 
+use glam::Vec3;
+
 use crate::geometry::direction;
 use crate::map::{Lane, RoadNetwork};
 use crate::map_data::LaneKind;
 use crate::ops;
 use crate::time::Tick;
 
-use super::actor::StoryActor;
+use super::actor::{self, StoryActor};
 use super::cues::Seen;
-use super::script::{Action, Dynamics, LaneTarget, Path, Position, RoleId, Script, Shape, SpeedTarget, Takes};
+use super::script::{Abreast, Action, Dynamics, LaneTarget, Path, Position, RoleId, Script, Shape, SpeedTarget, Takes};
 use super::spot::{OnLane, Spot};
 use super::state::{Change, Progress, StoryState};
 use super::{doors, lanes, lights, places, relative};
@@ -23,7 +25,7 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
     let mut placed: Vec<Option<StoryActor>> = vec![None; script.cast.len()];
     let teleports = || {
         script.init.iter().filter_map(|(role, action)| match action {
-            Action::Teleport(place) => Some((*role, place)),
+            Action::Teleport(place) | Action::Enter(place) => Some((*role, place)),
             _ => None,
         })
     };
@@ -40,6 +42,12 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
         let expected = if is_told(role) { "one that is not told by its own" } else { "a teleport in <Init>" };
         (script.cast[role].at, format!("nothing says where {} begins, expected {expected}", script.cast[role].name))
     };
+    // Who comes later, or never, is unseen.
+    let absent = script.init.iter().filter(|(_, action)| *action == Action::Leave).map(|(role, _)| *role);
+    for role in script.entrances().chain(absent) {
+        let nowhere = Spot { position: Vec3::ZERO, heading_rad: 0.0, on: None };
+        placed[role].get_or_insert_with(|| StoryActor { gone: true, ..StoryActor::standing(nowhere) });
+    }
     let actors = placed.into_iter().enumerate().map(|(role, actor)| actor.ok_or_else(|| missing(role)));
     let mut actors = actors.collect::<Result<Vec<_>, _>>()?;
     for (role, action) in &script.init {
@@ -49,7 +57,7 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
         };
         let actor = &mut actors[*role];
         match action {
-            Action::Teleport(_) => {}
+            Action::Teleport(_) | Action::Enter(_) => {}
             Action::Speed(..) => {
                 let most_mps = script.cast[*role].most_mps;
                 actor.speed_mps = asked_mps.clamp(-most_mps, most_mps);
@@ -83,14 +91,16 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
     Ok(actors)
 }
 
-/// The lanes of a way through places; nothing where there is none, or a place is nowhere.
+/// The lanes of a way through places; nothing where there is none, or a place is nowhere. Places that were passed are left out.
 fn route(network: &RoadNetwork, from: Spot, via: impl IntoIterator<Item = Option<Spot>>) -> Option<Vec<u32>> {
-    let mut route = Vec::new();
+    let via: Vec<OnLane> = via.into_iter().map(|place| place?.on).collect::<Option<_>>()?;
     let mut at = from.on?;
-    for place in via {
-        let to = place?.on?;
-        route.extend(lanes::way(network, at, to)?);
-        at = to;
+    let is_between = |ends: &[OnLane]| lanes::is_on_way(network, at, ends[0], ends[1]);
+    let passed = via.windows(2).rposition(is_between).map_or(0, |leg| leg + 1);
+    let mut route = Vec::new();
+    for to in &via[passed..] {
+        route.extend(lanes::way(network, at, *to)?);
+        at = *to;
     }
     Some(route)
 }
@@ -169,7 +179,8 @@ pub fn start(state: &mut StoryState, number: usize, seen: &Seen<'_>) {
         // The drivers decide what the ego car does, once they have it.
         Some(role) => {
             let plays = role != seen.plan.ego || state.carries_ego;
-            plays && !state.actors[role].gone && begins(state, number, role, seen)
+            let enters = matches!(*of.action, Action::Enter(_));
+            plays && state.actors[role].gone == enters && begins(state, number, role, seen)
         }
     };
     if !goes_on {
@@ -198,6 +209,12 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             end_all(state, role, seen.tick);
             false
         }
+        Action::Enter(place) => {
+            if let Some(spot) = relative::spot(network, before, place) {
+                state.actors[role] = StoryActor::standing(spot);
+            }
+            false
+        }
         Action::Speed(..) | Action::SpeedProfile(_) | Action::Gap(_) | Action::Meet(_) => {
             let from = state.actors[role].speed_mps;
             let (to, takes) = match &*of.action {
@@ -213,25 +230,8 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             replaced.into_iter().for_each(|deed| replace(state, deed, number, seen.tick));
             true
         }
-        Action::LaneChange(dynamics, target, offset_m) => {
-            let Some(to) = lane_of(network, before, role, *target) else { return false };
-            let spot = state.actors[role].spot;
-            let there = network.project(to.lane, spot.position);
-            let now = OnLane { s_m: there.s_m, offset_m: there.lateral_m, ..to };
-            let to_m = to.offset_m + offset_m * if now.against { -1.0 } else { 1.0 };
-            let actor = &mut state.actors[role];
-            actor.spot.on = Some(now);
-            actor.slip_m = 0.0;
-            actor.route = lanes::onward_way(network, now, &actor.route);
-            moves_aside(state, (role, number), seen, (now.offset_m, to_m), length_of(*dynamics, to_m - now.offset_m));
-            true
-        }
-        Action::LaneOffset(dynamics, offset_m, beside) => {
-            let Some(on) = state.actors[role].spot.on else { return false };
-            let of_other = beside.and_then(|other| before.actors[other].spot.on).map_or(0.0, |on| on.offset_m);
-            let to_m = of_other + offset_m * if on.against { -1.0 } else { 1.0 };
-            moves_aside(state, (role, number), seen, (on.offset_m, to_m), calm_s(*dynamics, to_m - on.offset_m));
-            true
+        Action::LaneChange(..) | Action::LaneOffset(..) | Action::Abreast(_) => {
+            begins_across(state, (role, number), seen)
         }
         Action::Follow(path) => {
             let actor = &mut state.actors[role];
@@ -262,7 +262,7 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             true
         }
         // Of the world, not of a role.
-        Action::Light(_) | Action::Programme(..) => false,
+        Action::Light(_) | Action::Programme(..) | Action::Environment(_) => false,
         Action::Door(door) => {
             doors::swing(&mut state.actors[role], *door, seen.tick);
             false
@@ -270,6 +270,48 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
         // Others have no drivers.
         Action::HandOver => false,
     }
+}
+
+/// Begins a move across the lane, or to another; `false` where there is none.
+fn begins_across(state: &mut StoryState, (role, number): (RoleId, usize), seen: &Seen<'_>) -> bool {
+    let spot = state.actors[role].spot;
+    let Some(mut on) = spot.on else { return false };
+    let (to_m, takes_s) = match &*seen.plan.deeds[number].action {
+        Action::LaneChange(dynamics, target, offset_m) => {
+            let Some(to) = lane_of(seen.network, seen.before, role, *target) else { return false };
+            let there = seen.network.project(to.lane, spot.position);
+            on = OnLane { s_m: there.s_m, offset_m: there.lateral_m, ..to };
+            let to_m = to.offset_m + offset_m * if on.against { -1.0 } else { 1.0 };
+            let actor = &mut state.actors[role];
+            actor.spot.on = Some(on);
+            actor.slip_m = 0.0;
+            actor.route = lanes::onward_way(seen.network, on, &actor.route);
+            (to_m, length_of(*dynamics, to_m - on.offset_m))
+        }
+        Action::LaneOffset(dynamics, offset_m, beside) => {
+            let of_other = beside.and_then(|other| seen.before.actors[other].spot.on).map_or(0.0, |on| on.offset_m);
+            let to_m = of_other + offset_m * if on.against { -1.0 } else { 1.0 };
+            (to_m, calm_s(*dynamics, to_m - on.offset_m))
+        }
+        Action::Abreast(wanted) => {
+            let to_m = abreast_m(*wanted, role, on, seen);
+            (to_m, calm_s(wanted.dynamics(), to_m - on.offset_m))
+        }
+        _ => return false,
+    };
+    moves_aside(state, (role, number), seen, (on.offset_m, to_m), takes_s);
+    true
+}
+
+/// To the left of the middle of its lane in its direction, metres: where somebody is as far beside another as it should be.
+fn abreast_m(wanted: Abreast, role: RoleId, on: OnLane, seen: &Seen<'_>) -> f32 {
+    let actors = &seen.before.actors;
+    let other_m = seen.network.project(on.lane, actors[wanted.role].spot.position).lateral_m;
+    let half_m = |role: RoleId| actor::size_m(&seen.script.cast[role]).y * 0.5;
+    let widths_m = if wanted.free { half_m(role) + half_m(wanted.role) } else { 0.0 };
+    let is_left = wanted.is_left.map_or(on.offset_m >= other_m, |is_left| is_left != on.against);
+    let away_m = wanted.wanted_m.map_or((on.offset_m - other_m).abs(), |wanted_m| wanted_m + widths_m);
+    other_m + if is_left { away_m } else { -away_m }
 }
 
 /// The corners of a line where they are now; nothing where one of them is nowhere.

@@ -76,10 +76,15 @@ pub fn advance(network: &RoadNetwork, on: &mut OnLane, by_m: f32, route: &mut Ve
 
 /// So many metres on, over as many lanes as it takes.
 pub fn ahead(network: &RoadNetwork, from: OnLane, by_m: f32) -> OnLane {
+    along(network, from, by_m, Vec::new())
+}
+
+/// The same over the lanes of a route.
+pub fn along(network: &RoadNetwork, from: OnLane, by_m: f32, mut route: Vec<LaneId>) -> OnLane {
     let (mut on, mut left_m) = (from, by_m);
     while left_m.abs() > 0.0 {
         let step_m = left_m.clamp(-10.0, 10.0);
-        if !advance(network, &mut on, step_m, &mut Vec::new()) {
+        if !advance(network, &mut on, step_m, &mut route) {
             break;
         }
         left_m -= step_m;
@@ -122,6 +127,14 @@ pub fn way(network: &RoadNetwork, from: OnLane, to: OnLane) -> Option<Vec<LaneId
         return Some(Vec::new());
     }
     search(network, from, |lane| lane == to.lane, true)
+}
+
+/// Whether a place is on the shortest way from one to another, after the first.
+pub fn is_on_way(network: &RoadNetwork, at: OnLane, from: OnLane, to: OnLane) -> bool {
+    let Some(way) = way(network, from, to) else { return false };
+    let after_from = at.lane != from.lane || at.s_m > from.s_m;
+    let before_to = at.lane != to.lane || at.s_m <= to.s_m;
+    (at.lane == from.lane || way.contains(&at.lane)) && after_from && before_to
 }
 
 /// The way to the road that a route leads to, from where who drove it is now: without a change of lanes, if there is one.

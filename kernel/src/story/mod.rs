@@ -4,6 +4,7 @@
 //! world's state. Who plays moves as the story says and else on along its lane at its speed; nobody who plays looks out for
 //! others, but traffic sees all of them. The ego car plays what its drivers do.
 
+mod action;
 mod actor;
 mod cues;
 mod deeds;
@@ -17,6 +18,7 @@ mod moves;
 mod pace;
 mod places;
 mod plan;
+mod position;
 mod reader;
 mod relative;
 mod script;
@@ -25,6 +27,7 @@ mod spot;
 mod stage;
 mod state;
 mod text;
+mod weather;
 
 pub use crate::actor::FIRST_STORY_ID;
 pub use error::StoryError;

@@ -20,6 +20,9 @@ const REACHED_M: f32 = 1.0;
 /// Who changes lanes for its way moves across so fast, m/s.
 const SLIDES_MPS: f32 = 1.2;
 
+/// Who faces more than 45 degrees away from a lane is across it.
+const ACROSS_COS: f32 = core::f32::consts::FRAC_1_SQRT_2;
+
 /// Moves a role by one tick.
 pub fn advance(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     begin_line(state, role, seen);
@@ -89,11 +92,18 @@ fn is_on_road(seen: &Seen<'_>, actor: &StoryActor) -> bool {
     })
 }
 
+/// Whether somebody walks or rides across a lane: on foot one keeps to none that leads elsewhere.
+fn crosses(role: RoleId, on: OnLane, heading_rad: f32, seen: &Seen<'_>) -> bool {
+    let along_rad = seen.network.lane_point(on.lane, on.s_m).heading_rad;
+    let is_free = seen.script.cast[role].kind.is_some_and(|kind| kind.is_on_foot() || kind.is_pedalled());
+    is_free && ops::cos(heading_rad - along_rad).abs() < ACROSS_COS
+}
+
 /// Along its lane, or straight on where there is none; `true` where its road ends.
 fn drive_on(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) -> bool {
     let StoryActor { spot, speed_mps, .. } = state.actors[role];
     let by_m = speed_mps * TICK_S;
-    let Some(mut on) = spot.on else {
+    let Some(mut on) = spot.on.filter(|on| !crosses(role, *on, spot.heading_rad, seen)) else {
         let to = spot.position + (direction(spot.heading_rad) * by_m).extend(0.5);
         let position = Spot::grounded(seen.network, to);
         let position = if position == to { spot.position + (to - spot.position).with_z(0.0) } else { position };
@@ -141,8 +151,10 @@ fn change_for_way(on: &mut OnLane, actor: &mut StoryActor, seen: &Seen<'_>) {
 /// Where across its lane somebody is who moves across it, metres to the left of the middle.
 fn aside(state: &mut StoryState, role: RoleId, by_m: f32, seen: &Seen<'_>) -> Option<f32> {
     let number = state.actors[role].side_by? as usize;
-    let (Action::LaneChange(dynamics, ..) | Action::LaneOffset(dynamics, ..)) = *seen.plan.deeds[number].action else {
-        return None;
+    let dynamics = match *seen.plan.deeds[number].action {
+        Action::LaneChange(dynamics, ..) | Action::LaneOffset(dynamics, ..) => dynamics,
+        Action::Abreast(wanted) => wanted.dynamics(),
+        _ => return None,
     };
     let deed = &mut state.deeds[number];
     deed.gone_m += by_m.abs();

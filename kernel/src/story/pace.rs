@@ -128,7 +128,9 @@ fn keeping(state: &StoryState, role: RoleId, gap: &Gap, seen: &Seen<'_>) -> (f32
     };
     let wanted_m = match gap.wanted {
         GapWidth::Way(metres) => metres,
-        GapWidth::Time(seconds) => seconds * speed_mps.max(0.0),
+        // Of who is behind, since it needs the time.
+        GapWidth::Time(seconds) if is_behind => seconds * speed_mps.max(0.0),
+        GapWidth::Time(seconds) => seconds * other.velocity_mps.dot(own.forward).max(0.0),
     };
     let too_wide_m = own.distance_m(&other, gap.measure) - wanted_m;
     let slower_mps = other.velocity_mps.dot(own.forward) - speed_mps;

@@ -7,6 +7,7 @@ use crate::map::{Projection, RoadNetwork};
 use crate::map_data::LaneId;
 use crate::ops;
 
+use super::lanes;
 use super::script::{Action, Event, Facing, OfRole, Position, Script, Trigger, When};
 use super::spot::{OnLane, Spot};
 
@@ -28,7 +29,10 @@ pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), (usize, St
     }
     places.into_iter().try_for_each(|place| {
         let at = match place {
-            Position::World { at, .. } | Position::Lane { at, .. } | Position::Road { at, .. } => *at,
+            Position::World { at, .. }
+            | Position::Lane { at, .. }
+            | Position::Road { at, .. }
+            | Position::Way { at, .. } => *at,
             _ => return Ok(()),
         };
         if let Some(spot) = spot(place, network).map_err(|reason| (at, reason))? {
@@ -58,7 +62,7 @@ fn of_trigger<'a>(trigger: &'a mut Trigger, out: &mut Vec<&'a mut Position>) {
 
 fn of_action<'a>(action: &'a mut Action, out: &mut Vec<&'a mut Position>) {
     match action {
-        Action::Teleport(place) | Action::Acquire(place) => out.push(place),
+        Action::Teleport(place) | Action::Acquire(place) | Action::Enter(place) => out.push(place),
         Action::Route(places) => out.extend(places),
         Action::Follow(path) => out.extend(path.corners.iter_mut().map(|(place, _)| place)),
         Action::Meet(meeting) => out.extend([&mut meeting.theirs.0, &mut meeting.own.0]),
@@ -67,11 +71,13 @@ fn of_action<'a>(action: &'a mut Action, out: &mut Vec<&'a mut Position>) {
         | Action::Gap(_)
         | Action::LaneChange(..)
         | Action::LaneOffset(..)
+        | Action::Abreast(_)
         | Action::Leave
         | Action::Door(_)
         | Action::HandOver
         | Action::Light(_)
-        | Action::Programme(..) => {}
+        | Action::Programme(..)
+        | Action::Environment(_) => {}
     }
 }
 
@@ -105,10 +111,49 @@ fn spot(place: &Position, network: &RoadNetwork) -> Result<Option<Spot>, String>
             };
             Ok(Some(Spot::at(network, point, ops::wrap_angle(heading_rad))))
         }
+        Position::Way { via, s_m, lane, offset_m, facing, .. } => {
+            on_way(network, via, *s_m, (*lane, *offset_m)).map(|found| Some(turned(found, *facing)))
+        }
         Position::Known(_) | Position::Beside { .. } | Position::BesideRoad { .. } | Position::BesideLane { .. } => {
             Ok(None)
         }
     }
+}
+
+/// The place so far along a way through others, on a lane of the road there; lane 0 is the reference line.
+fn on_way(
+    network: &RoadNetwork,
+    via: &[Position],
+    s_m: f32,
+    (lane, offset_m): (Option<i32>, f32),
+) -> Result<Spot, String> {
+    let told = |place: &Position| {
+        let found = spot(place, network)?.and_then(|found| found.on);
+        found.ok_or_else(|| "a place of its route is on no lane, expected roads and lanes by their ids".to_owned())
+    };
+    let via = via.iter().map(told).collect::<Result<Vec<OnLane>, String>>()?;
+    let mut route = Vec::new();
+    for leg in via.windows(2) {
+        route.extend(lanes::way(network, leg[0], leg[1]).ok_or("no way leads through all places of its route")?);
+    }
+    let on = lanes::along(network, via[0], s_m, route);
+    let Some(lane) = lane else { return Ok(Spot::on(network, OnLane { offset_m, ..on })) };
+    let here = Spot::on(network, OnLane { offset_m: 0.0, ..on });
+    let (road, _) = network.lanes[on.lane as usize].name.rsplit_once('/').unwrap_or_default();
+    let beside = if lane == 0 { if on_right(network, on) { -1 } else { 1 } } else { lane };
+    let found = nearest(network, &format!("{road}/{beside}"), here.position);
+    let found = found.ok_or_else(|| format!("road {road} has no lane {lane} where its route is"))?;
+    let mut there = OnLane { lane: found.lane, s_m: found.s_m, offset_m, against: false };
+    let right = on_right(network, there);
+    let half_m = if lane == 0 { network.lane_point(found.lane, found.s_m).half_width_m } else { 0.0 };
+    // Offsets of the text are to the left along the reference line; lanes on its left lead against it.
+    there.offset_m = if right { offset_m + half_m } else { -(offset_m - half_m) };
+    Ok(Spot::on(network, there))
+}
+
+/// Whether a lane is on the right of its road's reference line.
+fn on_right(network: &RoadNetwork, on: OnLane) -> bool {
+    network.lanes[on.lane as usize].name.rsplit_once('/').is_some_and(|(_, id)| id.starts_with('-'))
 }
 
 /// A place on a lane, faced as the text says: who is turned round drives against it.

@@ -70,6 +70,8 @@ pub struct Plan {
     pub groups: Vec<GroupPlan>,
     pub events: Vec<EventPlan>,
     pub deeds: Vec<DeedPlan>,
+    /// Those of them that change the weather.
+    pub weather: Vec<usize>,
     pub stop: Trigger,
     pub conditions: usize,
     /// What conditions on elements refer to.
@@ -126,6 +128,9 @@ impl Plan {
                 };
                 let action = Arc::new(action.clone());
                 let deed = |role| DeedPlan { role, action: action.clone(), stations_m: stations_m.clone() };
+                if matches!(*action, Action::Environment(_)) {
+                    self.weather.push(self.deeds.len());
+                }
                 self.deeds.extend(doers(group, *of).map(deed));
             }
             let (deeds, start) = (from..self.deeds.len(), self.numbered(&event.start));

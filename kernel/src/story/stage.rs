@@ -10,6 +10,7 @@ use crate::map_data::{LaneId, LaneKind};
 use crate::signals::HeldLight;
 use crate::time::Tick;
 use crate::traffic::{Body, Door, Obstacle};
+use crate::weather::Weather;
 
 use super::actor::{self, StoryActor};
 use super::cues::Seen;
@@ -19,7 +20,7 @@ use super::script::{Action, Priority, RoleId, Script};
 use super::spot::Spot;
 use super::state::{Change, Deed, Mark, Met, Progress, StoryState};
 use super::text::Story;
-use super::{deeds, doors, lights, moves, places};
+use super::{deeds, doors, lights, moves, places, weather};
 
 /// The ego car begins so near to a lane at least, metres.
 const NEAR_ROAD_M: f32 = 10.0;
@@ -108,7 +109,7 @@ impl Stage {
 
     /// Where the others begin.
     pub fn starts(&self) -> impl Iterator<Item = Vec3> + '_ {
-        let others = self.start.iter().enumerate().filter(|(role, _)| *role != self.plan.ego);
+        let others = self.start.iter().enumerate().filter(|(role, actor)| *role != self.plan.ego && !actor.gone);
         others.map(|(_, actor)| actor.spot.position)
     }
 
@@ -187,6 +188,18 @@ impl Stage {
         let cast = self.script.cast.iter().zip(&state.actors).enumerate();
         let plays = cast.filter(|(role, (_, actor))| *role != self.plan.ego && !actor.gone);
         plays.filter_map(move |(role, (of, actor))| doors::open(actor, (role, of), tick))
+    }
+
+    /// Names of the events that did not begin so far.
+    pub fn waiting<'a>(&'a self, state: &'a StoryState) -> impl Iterator<Item = &'a str> + 'a {
+        let groups = self.script.acts.iter().flat_map(|act| &act.groups);
+        let events = groups.flat_map(|group| &group.events).zip(&state.events);
+        events.filter(|(_, mark)| mark.change == Change::None).map(|(event, _)| event.name.as_str())
+    }
+
+    /// A weather as the story has changed it so far.
+    pub fn weather(&self, state: &StoryState, from: Weather) -> Weather {
+        weather::changed(&self.plan, state, from)
     }
 
     /// Where the ego car is at the end of this tick, as long as the story drives it: the middle of its footprint, and its

@@ -1,10 +1,11 @@
 //! A story as a text.
 
+use crate::actor::ActorKind;
 use crate::state::{DecodeError, NamedValue, Reader, State};
 
 use super::error::StoryError;
 use super::reader;
-use super::script::{Action, Script};
+use super::script::{Action, Role, Script, SpeedTarget};
 
 /// A text in OpenSCENARIO XML that was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +81,22 @@ impl Story {
         }
         let known = |action: &&Action| matches!(action, Action::Route(_) | Action::Acquire(_));
         self.script().ego_actions().filter(|action| !known(action)).count()
+    }
+
+    /// Names of those whose catalog is not there, and what they were taken for.
+    pub fn guessed(&self) -> impl Iterator<Item = (&str, ActorKind)> {
+        let kind = |role: &Role| role.kind.unwrap_or(ActorKind::Car);
+        self.script().cast.iter().filter(|role| role.guessed).map(move |role| (role.name.as_str(), kind(role)))
+    }
+
+    /// The fastest that it would have the ego car go from the beginning, m/s.
+    pub fn ego_mps(&self) -> f32 {
+        let ego = self.script().ego();
+        let told = self.script().init.iter().filter_map(|(role, action)| match action {
+            Action::Speed(_, SpeedTarget::Absolute(mps)) if *role == ego => Some(*mps),
+            _ => None,
+        });
+        told.fold(0.0, f32::max)
     }
 
     /// What it says.

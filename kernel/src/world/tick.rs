@@ -157,11 +157,15 @@ impl World {
 
     /// Traffic decides from the state of the previous tick, then physics moves what is near.
     fn move_everyone(&mut self) {
+        let tick = self.parts.input.tick;
+        // People notice the weather once a second.
+        let conditions = Conditions::of(&self.weather_at(tick - tick % seconds(1)));
+        let water = Water::of(&self.weather_at(tick));
         let Scratch { obstacles, near, bodies: all, .. } = &mut self.scratch;
         obstacles.clear();
         obstacles.extend(self.parts.bodies.loose.iter().map(bodies::Loose::obstacle));
         let ego = doors::ego_obstacle(&self.parts.ego.car);
-        let (tick, ego_flags) = (self.parts.input.tick, self.parts.output.applied.controls.flags);
+        let ego_flags = self.parts.output.applied.controls.flags;
         let before = self.stage.as_ref().zip(self.parts.story.clone());
         if let (Some(stage), Some(story)) = (&self.stage, &mut self.parts.story) {
             let (network, touching) = (&*self.network, self.parts.run.watch.touching.as_slice());
@@ -179,8 +183,6 @@ impl World {
             obstacles.sort_unstable_by_key(|o| o.id);
         }
         let lights = before.as_ref().map_or(&[][..], |(_, story)| &story.lights);
-        // People notice the weather once a second.
-        let conditions = Conditions::of(&self.scenario.weather_at(tick - tick % seconds(1)));
         self.traffic.step(&Surroundings { tick, ego, ego_flags, loose: obstacles, lights, conditions });
         let mut log = Log { events: &mut self.parts.output.events, speed_mps: self.parts.ego.car.speed_mps() };
         self.traffic.told_near(ego.position).for_each(|(kind, actor)| log.with(kind, actor));
@@ -188,7 +190,6 @@ impl World {
         let all = everybody(&self.traffic, self.stage.as_deref(), &self.parts, all);
         let (car, bodies) = (&mut self.parts.ego.car, &mut self.parts.bodies);
         bodies.prepare(all, parked, car, &mut self.physics, near);
-        let water = Water::of(&self.scenario.weather_at(tick));
         match self.stage.as_ref().zip(self.parts.story.as_ref()).and_then(|(stage, story)| stage.carried(story)) {
             Some((middle, rotation)) => self.physics.carry(car, middle, rotation),
             None => self.physics.drive(car, &self.parts.output.applied.controls, &self.scenario.car, &water),

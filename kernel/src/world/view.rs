@@ -14,9 +14,10 @@ use crate::motion::Motion;
 use crate::scenario::Scenario;
 use crate::scene::{ActorScene, EgoScene, SceneSnapshot, lamps, quantise};
 use crate::signals::{self, HeldLight, LightPhase};
+use crate::time::Tick;
 use crate::traffic::{Body, Missing};
 use crate::watch::Watch;
-use crate::weather::Water;
+use crate::weather::{Water, Weather};
 
 use super::doors;
 use super::keyframe::{self, FieldDifference, Keyframe};
@@ -52,11 +53,24 @@ impl World {
         keyframe::difference((&self.parts, self.traffic.state()), (&other.parts, other.traffic.state()))
     }
 
+    /// Names of the events of its story that did not begin so far.
+    pub fn waiting_events(&self) -> impl Iterator<Item = &str> {
+        let told = self.stage.as_ref().zip(self.parts.story.as_ref());
+        told.into_iter().flat_map(|(stage, story)| stage.waiting(story))
+    }
+
+    /// The scenario's weather at a tick, as its story has changed it so far.
+    pub fn weather_at(&self, tick: Tick) -> Weather {
+        let from = self.scenario.weather_at(tick);
+        let told = self.stage.as_ref().zip(self.parts.story.as_ref());
+        told.map_or(from, |(stage, story)| stage.weather(story, from))
+    }
+
     /// What there is to see, on the grid of [`crate::scene::quantise`].
     pub fn scene(&self) -> SceneSnapshot {
         let (tick, car) = (self.tick(), &self.parts.ego.car);
         let phase = |group| self.light(group);
-        let weather = self.scenario.weather_at(tick);
+        let weather = self.weather_at(tick);
         let mut scene = SceneSnapshot {
             tick,
             ego: EgoScene {
@@ -75,7 +89,7 @@ impl World {
     }
 
     fn actors(&self, lit: bool) -> impl Iterator<Item = ActorScene> + '_ {
-        let lights = move |body: &Body| if lit && !body.kind.is_on_foot() { lamps::HEADLIGHTS } else { 0 };
+        let lights = move |body: &Body| if lit && body.kind.is_vehicle() { lamps::HEADLIGHTS } else { 0 };
         let playing = self.stage.iter().zip(&self.parts.story).flat_map(|(stage, story)| stage.bodies(story));
         self.traffic.bodies().iter().copied().chain(playing).map(move |body| {
             let loose = self.parts.bodies.loose(body.id).map(|loose| loose.motion);
@@ -144,7 +158,7 @@ impl World {
     /// Greatest coefficient of friction of the road under the ego car without paint and puddles in the present weather,
     /// at its speed; beside roads that of asphalt.
     pub fn friction(&self) -> f32 {
-        let (water, car) = (Water::of(&self.scenario.weather_at(self.tick())), &self.parts.ego.car);
+        let (water, car) = (Water::of(&self.weather_at(self.tick())), &self.parts.ego.car);
         let below = self.network.ground(car.middle()).map(|ground| ground.kind);
         let kind = below.filter(|kind| matches!(kind, SurfaceKind::Gravel | SurfaceKind::Setts));
         let road = Footing {

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use kernel::scene::ActorKind;
 
 use super::model::{Detail, Model};
-use super::{car, heavy, person, tram, two_wheeler, wheeled};
+use super::{car, heavy, loose, person, tram, two_wheeler, wheeled};
 
 /// The model of an actor.
 pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
@@ -26,6 +26,7 @@ pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
         ActorKind::Wheelchair => wheeled::wheelchair(variant, detail),
         ActorKind::Tram => Model::rigid(tram::tram(variant, detail)),
         ActorKind::Door => Model::rigid(car::door(variant)),
+        ActorKind::Obstacle => Model::rigid(loose::movable(variant, kind.size_m(), detail)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Maps by the names that people give on the command line.
 
 use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context, anyhow};
@@ -20,17 +20,20 @@ pub struct Map {
     pub network: Arc<RoadNetwork>,
     /// Its OpenDRIVE file, when it is not a bundled one.
     pub foreign: Option<ForeignMap>,
+    /// Where that is, if it was found by its path.
+    pub path: Option<PathBuf>,
 }
 
 impl Map {
     /// A bundled map by name, or an OpenDRIVE file by its path.
     pub fn find(name: &str) -> anyhow::Result<Self> {
         if let Some(network) = bundled(name) {
-            return Ok(Self { network, foreign: None });
+            return Ok(Self { network, foreign: None, path: None });
         }
         let (stem, text) = foreign(name)?;
         let network = bake(&stem, &text).with_context(|| name.to_owned())?;
-        Ok(Self { network: Arc::new(network), foreign: Some(ForeignMap::new(text, false)) })
+        let foreign = Some(ForeignMap::new(text, false));
+        Ok(Self { network: Arc::new(network), foreign, path: Some(name.into()) })
     }
 
     /// Several maps; `all` are the bundled ones.

@@ -18,6 +18,9 @@ use crate::{toml_text, words};
 /// Most files of catalogs of a story.
 const CATALOGS: usize = 200;
 
+/// An ego car that begins faster is slowed down by its drivers where the map tells no limit, km/h.
+const SOON_SLOWER_KMH: f32 = 51.0;
+
 /// A scenario that was read from a file, and its map.
 #[derive(Clone, Debug)]
 pub struct ScenarioFile {
@@ -73,7 +76,10 @@ fn map_of(scenario: &Scenario, file: &Path) -> anyhow::Result<Map> {
     let folder = file.parent().unwrap_or(Path::new(""));
     // Files of stories name maps in folders that nobody else has.
     let plain = Path::new(&scenario.map).file_name().filter(|_| scenario.story.is_some());
-    let beside = [Some(folder.join(&scenario.map)), plain.map(|name| folder.join(name))];
+    // CARLA's tell no ending, and some the variant of the map that is drawn in layers.
+    let with_ending = plain.filter(|name| Path::new(name).extension().is_none()).map(|name| name.to_string_lossy());
+    let with_ending = with_ending.map(|name| folder.join(format!("{}.xodr", name.trim_end_matches("_Opt"))));
+    let beside = [Some(folder.join(&scenario.map)), plain.map(|name| folder.join(name)), with_ending];
     // A story that comes with A-Eye has no folder.
     let found = beside.into_iter().flatten().filter(|_| file.exists()).find(|path| path.is_file());
     // Maps that come with A-Eye need no file.
@@ -88,20 +94,41 @@ fn of_story(path: &Path, text: &str) -> Result<Scenario, String> {
     let text = Story::with_catalogs(text, &catalogs(path, text)?).map_err(|error| error.to_string())?;
     let story = Story::read(&text).map_err(|error| error.to_string())?;
     // Of those that come with A-Eye there is nothing to mend.
-    for (line, element) in story.passed_over().iter().filter(|_| path.exists()) {
-        say(format!("{}: line {line}: <{element}> is passed over", path.display()));
-    }
-    match story.left_to_drivers() {
-        0 => {}
-        count => {
-            say(format!("{}: {} of the ego car left to its drivers", path.display(), words::count(count, "action")))
-        }
+    if path.exists() {
+        notes(&story).into_iter().for_each(|note| say(format!("{}: {note}", path.display())));
     }
     let map = story.map_file().to_owned();
     let (traffic, hazards) = (TrafficCounts::NONE, HazardRates::NONE);
     let mut scenario = Scenario { traffic, hazards, ..Scenario::default_for(&map, 1) };
     scenario.play(story);
     Ok(scenario)
+}
+
+/// What is otherwise with a story than its text has it.
+fn notes(story: &Story) -> Vec<String> {
+    let mut notes = Vec::new();
+    let list = |all: Vec<String>| Some(all.join(", ")).filter(|all| !all.is_empty());
+    let passed = story.passed_over().iter().map(|(line, element)| format!("<{element}> (line {line})"));
+    notes.extend(list(passed.collect()).map(|passed| format!("passed over: {passed}")));
+    let guessed = story.guessed().map(|(name, kind)| format!("{name} a {}", words::road_user(kind)));
+    notes.extend(
+        list(guessed.collect()).map(|them| format!("of a catalog that is not there, taken by their names: {them}")),
+    );
+    let ego = &story.script().cast[story.script().ego()].name;
+    if !ego.to_lowercase().starts_with("ego") && !ego.eq_ignore_ascii_case("hero") {
+        notes.push(format!("{ego} is taken for the ego car"));
+    }
+    let ego_kmh = story.ego_mps() * 3.6;
+    if ego_kmh > SOON_SLOWER_KMH {
+        notes.push(format!(
+            "the ego car begins at {ego_kmh:.0} km/h; its drivers keep to the limits of the map, 50 km/h where it tells none, and bots to 69 km/h"
+        ));
+    }
+    match story.left_to_drivers() {
+        0 => {}
+        count => notes.push(format!("{} of the ego car left to its drivers", words::count(count, "action"))),
+    }
+    notes
 }
 
 /// The files of a story's catalogs that are there, and their texts. Those that cannot be read are passed over: no reference may

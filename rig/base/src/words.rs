@@ -44,6 +44,7 @@ pub fn road_user(kind: ActorKind) -> &'static str {
         ActorKind::Pram => "person with a pram",
         ActorKind::Wheelchair => "person in a wheelchair",
         ActorKind::Tram => "tram",
+        ActorKind::Obstacle => "obstacle",
     }
 }
 

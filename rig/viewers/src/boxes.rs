@@ -63,6 +63,7 @@ fn class(kind: ActorKind) -> SemanticTag {
         ActorKind::Motorcycle | ActorKind::Scooter => SemanticTag::Motorcycle,
         ActorKind::Bicycle | ActorKind::CargoBike => SemanticTag::Bicycle,
         ActorKind::Tram => SemanticTag::Train,
+        ActorKind::Obstacle => SemanticTag::Dynamic,
         ActorKind::Pedestrian | ActorKind::Child | ActorKind::Pram | ActorKind::Wheelchair => SemanticTag::Pedestrian,
     }
 }

@@ -1,16 +1,17 @@
 //! What somebody does.
 
 use crate::story::error::StoryError;
-use crate::story::script::{Action, Doer, Door, Dynamics, LaneTarget, Path, Takes};
+use crate::story::script::{Abreast, Action, Doer, Door, Dynamics, LaneTarget, Path, Takes};
 
 use super::document::Element;
 use super::dynamics::{SHAPES, dynamics, ticks};
 use super::names::Names;
-use super::{positions, signals, speeds, vary};
+use super::{environment, positions, signals, speeds, vary};
 
-/// Most corners of a line, and most places of a route.
+/// Most corners of a line.
 const CORNERS: usize = 100_000;
-const WAYPOINTS: usize = 100;
+/// As hard as who moves within a lane or to another's side accelerates across it where the file does not say, m/s².
+const CALM_MPS2: f64 = 0.5;
 
 /// The actions in an element of a choice; none where they change nothing here.
 pub fn private(action: Element<'_>, names: &Names<'_>) -> Result<Option<Action>, StoryError> {
@@ -30,6 +31,7 @@ pub fn private(action: Element<'_>, names: &Names<'_>) -> Result<Option<Action>,
             match across.tag() {
                 "LaneChangeAction" => lane_change(across, names)?,
                 "LaneOffsetAction" => lane_offset(across, names)?,
+                "LateralDistanceAction" => abreast(across, names)?,
                 _ => return Err(across.unsupported()),
             }
         }
@@ -90,11 +92,14 @@ pub fn global(action: Element<'_>, names: &Names<'_>) -> Result<(Doer, Action), 
             let what = kind.choice()?;
             match what.tag() {
                 "DeleteEntityAction" => Ok((Doer::Role(role), Action::Leave)),
+                "AddEntityAction" => {
+                    Ok((Doer::Role(role), Action::Enter(positions::read(what.need("Position")?, names)?)))
+                }
                 _ => Err(what.unsupported()),
             }
         }
         "InfrastructureAction" => Ok((Doer::World, signals::action(kind.need("TrafficSignalAction")?, names)?)),
-        "EnvironmentAction" => Err(kind.wrong("<EnvironmentAction> is supported in <Init> only")),
+        "EnvironmentAction" => Ok((Doer::World, Action::Environment(environment::read(kind)?))),
         _ => Err(kind.unsupported()),
     }
 }
@@ -124,34 +129,30 @@ fn lane_offset(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryEr
     };
     // So fast that its greatest acceleration is the one of the file, or of a calm driver; `Takes::Time` cannot say it before
     // the way is known.
-    let takes = Takes::Rate(most_mps2.unwrap_or(0.5).max(1e-3) as f32);
+    let takes = Takes::Rate(most_mps2.unwrap_or(CALM_MPS2).max(1e-3) as f32);
     Ok(Action::LaneOffset(Dynamics { shape, takes }, offset_m, role))
 }
 
-fn route(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
-    let route = action.need("Route")?;
-    is_open(route)?;
-    vary::pass_parameters(route)?;
-    let mut places = Vec::new();
-    for waypoint in route.all("Waypoint") {
-        if places.len() == WAYPOINTS {
-            return Err(waypoint.wrong(format!("expected at most {WAYPOINTS} waypoints")));
-        }
-        waypoint.spend(5)?;
-        places.push(positions::read(waypoint.need("Position")?, names)?);
-    }
-    if places.is_empty() {
-        return Err(route.wrong("<Route> has no <Waypoint>"));
-    }
-    Ok(Action::Route(places))
+fn abreast(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
+    action.switch("continuous")?;
+    action.given("coordinateSystem")?;
+    let sides = [("any", None), ("leftToReferencedEntity", Some(true)), ("rightToReferencedEntity", Some(false))];
+    let most_mps2 = match action.child("DynamicConstraints") {
+        Some(constraints) => constraints.number_given("maxAcceleration")?,
+        None => None,
+    };
+    Ok(Action::Abreast(Abreast {
+        role: names.role(action, "entityRef")?,
+        // On which side it is its sign does not say: `displacement` does.
+        wanted_m: action.number_given("distance")?.map(|distance_m| distance_m.abs() as f32),
+        free: action.switch("freespace")?.unwrap_or(false),
+        is_left: action.word_given("displacement", &sides)?.flatten(),
+        most_mps2: most_mps2.unwrap_or(CALM_MPS2).max(1e-3) as f32,
+    }))
 }
 
-/// Refuses what comes back to its beginning.
-fn is_open(way: Element<'_>) -> Result<(), StoryError> {
-    match way.switch("closed")? {
-        Some(true) => Err(way.wrong(format!("closed=\"true\" of <{}> is not supported", way.tag()))),
-        _ => Ok(()),
-    }
+fn route(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError> {
+    positions::waypoints(action.need("Route")?, names).map(Action::Route)
 }
 
 fn path(action: Element<'_>, names: &Names<'_>) -> Result<Path, StoryError> {
@@ -160,7 +161,7 @@ fn path(action: Element<'_>, names: &Names<'_>) -> Result<Path, StoryError> {
     }
     let within = action.child("TrajectoryRef").unwrap_or(action);
     let trajectory = within.need("Trajectory")?;
-    is_open(trajectory)?;
+    positions::is_open(trajectory)?;
     vary::pass_parameters(trajectory)?;
     let line = trajectory.need("Shape")?.choice()?;
     if line.tag() != "Polyline" {

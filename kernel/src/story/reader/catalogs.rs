@@ -41,6 +41,7 @@ type Entries<'a> = BTreeMap<(&'a str, &'a str), Node<'a, 'a>>;
 /// # Errors
 /// When an entry is not there that is no entity, or all of them come to too much.
 pub fn put_in(text: &str, catalogs: &[(String, String)]) -> Result<String, StoryError> {
+    document::check_version(&document::parse(text)?)?;
     let mut documents = Vec::new();
     let mut broken = None;
     for (file, catalog) in catalogs {

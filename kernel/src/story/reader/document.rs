@@ -57,6 +57,17 @@ pub fn parse(text: &str) -> Result<Document<'_>, StoryError> {
     })
 }
 
+/// Refuses what was written before the standard's first version.
+pub fn check_version(document: &Document<'_>) -> Result<(), StoryError> {
+    let header = document.root_element().children().find(|n| n.has_tag_name("FileHeader"));
+    match header.filter(|header| header.attribute("revMajor") == Some("0")) {
+        Some(header) => {
+            Err(StoryError::at(line_of(header), "it is OpenSCENARIO 0.9 or older, expected 1.0 to 1.2".into()))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Refuses what takes the parser long: it compares attributes and namespaces each with all others.
 fn check_tags(text: &str) -> Result<(), StoryError> {
     let refused = |at: usize, most: usize, what: &str| {
@@ -161,6 +172,10 @@ impl Shared {
                 None => return Err(refused(format!("<{tag}> is no element of OpenSCENARIO 1.0 to 1.2"))),
                 Some(Support::No) => return Err(refused(format!("<{tag}> is not supported"))),
                 Some(Support::Ignored) => {
+                    // Its catalogs were put in.
+                    if tag == "CatalogLocations" {
+                        continue;
+                    }
                     let first = passed.entry(tag).or_insert(node);
                     if node.range().start < first.range().start {
                         *first = node;
@@ -289,6 +304,15 @@ impl<'a> Element<'a> {
         value.map(Some).map_err(|why| self.wrong(format!("{name} of <{}> is {}: {why}", self.tag(), shown(text))))
     }
 
+    /// The value of the parameter that an attribute names; nothing where there is none of that name.
+    pub fn parameter(&self, attribute: &str) -> Result<Option<String>, StoryError> {
+        let missing = || self.wrong(format!("<{}> has no {attribute}", self.tag()));
+        let name = self.node.attribute(attribute).ok_or_else(missing)?.trim().trim_start_matches('$');
+        let is_declared = self.shared.parameters.values().any(|all| all.contains_key(name));
+        let value = || self.shared.value(self.node, &format!("${name}")).map_err(|why| self.wrong(why));
+        is_declared.then(value).transpose()
+    }
+
     /// An attribute that must be there.
     pub fn text(&self, name: &str) -> Result<String, StoryError> {
         self.given(name)?.ok_or_else(|| self.wrong(format!("<{}> has no {name}", self.tag())))
@@ -341,7 +365,8 @@ impl<'a> Element<'a> {
     /// Yes or no, if it is there.
     pub fn switch(&self, name: &str) -> Result<Option<bool>, StoryError> {
         let Some(text) = self.given(name)? else { return Ok(None) };
-        match text.as_str() {
+        // Python writes them large.
+        match text.to_ascii_lowercase().as_str() {
             "true" | "1" => Ok(Some(true)),
             "false" | "0" => Ok(Some(false)),
             _ => Err(self.misfit(name, &text, "true or false")),

@@ -12,10 +12,18 @@ pub const SHAPES: &[(&str, Shape)] =
 
 /// How something changes.
 pub fn dynamics(element: Element<'_>) -> Result<Dynamics, StoryError> {
+    type Of = fn(f32) -> Takes;
+    const DIMENSIONS: &[(&str, Of)] = &[("time", Takes::Time), ("distance", Takes::Distance), ("rate", Takes::Rate)];
     let shape = element.word("dynamicsShape", SHAPES)?;
-    let value = element.amount("value")?;
-    let takes = [("time", Takes::Time(value)), ("distance", Takes::Distance(value)), ("rate", Takes::Rate(value))];
-    Ok(Dynamics { shape, takes: element.word("dynamicsDimension", &takes)? })
+    if shape == Shape::Step && element.given("value")?.is_none() {
+        element.given("dynamicsDimension")?;
+        return Ok(Dynamics { shape, takes: Takes::Time(0.0) });
+    }
+    let takes = element.word("dynamicsDimension", DIMENSIONS)?;
+    // Some files write the sign of a rate, though the target says which it has.
+    let is_rate = matches!(takes(0.0), Takes::Rate(_));
+    let value = if is_rate { element.float("value")?.abs() } else { element.amount("value")? };
+    Ok(Dynamics { shape, takes: takes(value) })
 }
 
 /// Seconds as ticks.

@@ -5,6 +5,7 @@ use crate::story::error::StoryError;
 use crate::story::script::Role;
 
 use super::document::Element;
+use super::vary;
 
 /// Most roles.
 const ROLES: usize = 200;
@@ -28,7 +29,7 @@ const VEHICLES: &[(&str, ActorKind)] = &[
 const PEOPLE: &[(&str, ActorKind)] = &[("pedestrian", ActorKind::Pedestrian), ("wheelchair", ActorKind::Wheelchair)];
 
 /// The roles of a file. The ego car is the vehicle that is called so, or whose property `type` is `ego_vehicle`, or else
-/// the first one.
+/// the first one, rather with four wheels than with two.
 pub fn read(entities: Element<'_>) -> Result<Vec<Role>, StoryError> {
     let mut cast: Vec<Role> = Vec::new();
     let mut egos = Vec::new();
@@ -41,20 +42,25 @@ pub fn read(entities: Element<'_>) -> Result<Vec<Role>, StoryError> {
             return Err(object.wrong(format!("there are two entities of the name {name:?}")));
         }
         let body = object.choice()?;
+        vary::pass_parameters(body)?;
         let (kind, most_mps) = match body.tag() {
             "Vehicle" => vehicle(body)?,
             "Pedestrian" => (person(body)?, MOST_MPS),
-            "CatalogReference" => (guessed(&body.text("entryName")?), MOST_MPS),
+            "MiscObject" => (thing(body)?, MOST_MPS),
+            "CatalogReference" => (guessed(&body.text("catalogName")?, &body.text("entryName")?), MOST_MPS),
             _ => return Err(body.unsupported()),
         };
-        let drives = !kind.is_on_foot();
+        let drives = kind.is_vehicle();
         if drives && (EGO.contains(&name.to_lowercase().as_str()) || is_ego(body)?) {
             egos.push(cast.len());
         }
-        cast.push(Role { name, kind: Some(kind), most_mps, at: object.begins() });
+        let guessed = body.tag() == "CatalogReference";
+        cast.push(Role { name, kind: Some(kind), guessed, most_mps, at: object.begins() });
     }
-    let drives = |role: &Role| role.kind.is_some_and(|kind| !kind.is_on_foot());
-    let Some(ego) = egos.first().copied().or_else(|| cast.iter().position(drives)) else {
+    let drives = |role: &Role| role.kind.is_some_and(ActorKind::is_vehicle);
+    let is_car = |role: &Role| role.kind.is_some_and(ActorKind::is_car_or_heavier);
+    let first = cast.iter().position(is_car).or_else(|| cast.iter().position(drives));
+    let Some(ego) = egos.first().copied().or(first) else {
         return Err(entities.wrong("expected a vehicle that is the ego car"));
     };
     cast[ego].kind = None;
@@ -62,7 +68,10 @@ pub fn read(entities: Element<'_>) -> Result<Vec<Role>, StoryError> {
 }
 
 /// What an entry of a catalog is by its name, where the catalog is not there: a car unless it says otherwise.
-fn guessed(entry: &str) -> ActorKind {
+fn guessed(catalog: &str, entry: &str) -> ActorKind {
+    if catalog.to_lowercase().contains("misc") {
+        return ActorKind::Obstacle;
+    }
     let entry = entry.to_lowercase();
     let named =
         [("motorbike", ActorKind::Motorcycle), ("motorcycle", ActorKind::Motorcycle), ("bicycle", ActorKind::Bicycle)];
@@ -92,6 +101,13 @@ fn vehicle(body: Element<'_>) -> Result<(ActorKind, f32), StoryError> {
         None => MOST_MPS,
     };
     Ok((kind, most_mps))
+}
+
+/// What stands in the way: other things are parts of a map.
+fn thing(body: Element<'_>) -> Result<ActorKind, StoryError> {
+    const THINGS: &[(&str, ActorKind)] =
+        &[("obstacle", ActorKind::Obstacle), ("barrier", ActorKind::Obstacle), ("none", ActorKind::Obstacle)];
+    body.word("miscObjectCategory", THINGS)
 }
 
 fn person(body: Element<'_>) -> Result<ActorKind, StoryError> {

@@ -51,12 +51,17 @@ pub fn read(text: &str) -> Result<Read, StoryError> {
             return Err(root.wrong(format!("it is {what}, expected a story")));
         }
     }
+    document::check_version(&document)?;
+    let header = root.child("FileHeader");
     vary::pass_parameters(root)?;
     let network = root.need("RoadNetwork")?;
     let map = network.need("LogicFile")?.text("filepath")?;
     let cast = entities::read(root.need("Entities")?)?;
     let programmes = signals::programmes(network.child("TrafficSignals"))?;
-    let names = Names { cast: &cast, programmes: &programmes };
+    // As CARLA's ScenarioRunner tells them.
+    let is_carla =
+        header.map_or(Ok(None), |header| header.given("description"))?.is_some_and(|d| d.starts_with("CARLA:"));
+    let names = Names { cast: &cast, programmes: &programmes, left: if is_carla { -1.0 } else { 1.0 } };
     let Board { init, acts, stop } = storyboard::read(root.need("Storyboard")?, &names)?;
     let passed = shared.leftovers(&document)?;
     let Beginning { actions: init, lights, environment } = init;

@@ -9,6 +9,8 @@ use super::document::Element;
 pub struct Names<'a> {
     pub cast: &'a [Role],
     pub programmes: &'a [Programme],
+    /// What leads to the left and turns to the left in the file, in CARLA's files to the right: 1 or -1.
+    pub left: f64,
 }
 
 impl Names<'_> {

@@ -28,7 +28,7 @@ pub fn change(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryErr
                 ("delta", SpeedTarget::Faster(role, value, goes_on)),
                 ("factor", SpeedTarget::Times(role, value, goes_on)),
             ];
-            target.word("speedTargetValueType", &kinds)?
+            target.word_given("speedTargetValueType", &kinds)?.unwrap_or(kinds[0].1)
         }
         _ => return Err(target.unsupported()),
     };

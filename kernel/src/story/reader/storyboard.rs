@@ -47,7 +47,7 @@ fn lasts(action: &Action) -> bool {
             dynamics.shape != Shape::Step && !none
         }
         Action::LaneOffset(dynamics, _, None) => dynamics.shape != Shape::Step,
-        Action::LaneChange(..) | Action::LaneOffset(_, _, Some(_)) => true,
+        Action::LaneChange(..) | Action::LaneOffset(_, _, Some(_)) | Action::Abreast(_) => true,
         Action::SpeedProfile(_) | Action::Gap(_) | Action::Meet(_) | Action::Follow(_) => true,
         _ => false,
     }
@@ -108,6 +108,16 @@ fn init(actions: Element<'_>, names: &Names<'_>) -> Result<Beginning, StoryError
             init.actions.extend(actions::private(action, names)?.map(|action| (role, action)));
         }
     }
+    let is_placed = |role: RoleId| {
+        init.actions.iter().any(|(of, a)| *of == role && matches!(a, Action::Teleport(_) | Action::Enter(_)))
+    };
+    // Who is told a line alone begins at its beginning.
+    let first = init.actions.iter().filter_map(|(role, action)| match action {
+        Action::Follow(path) if !is_placed(*role) => Some((*role, Action::Teleport(path.corners.first()?.0.clone()))),
+        _ => None,
+    });
+    let first: Vec<_> = first.collect();
+    init.actions.splice(0..0, first);
     Ok(init)
 }
 
@@ -186,6 +196,7 @@ fn event(event: Element<'_>, manoeuvre: (usize, String), names: &Names<'_>) -> R
                 let (doer, done) = actions::global(kind, names)?;
                 actions.push((name, doer, done));
             }
+            "UserDefinedAction" => {}
             _ => return Err(kind.unsupported()),
         }
     }

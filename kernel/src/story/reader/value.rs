@@ -4,6 +4,26 @@
 const LENGTH: usize = 1000;
 const DEPTH: u32 = 30;
 
+type OfOne = fn(f64) -> f64;
+type OfTwo = fn(f64, f64) -> f64;
+
+/// Functions of one value, and of two. Angles are radians.
+const OF_ONE: [(&str, OfOne); 12] = [
+    ("sqrt", libm::sqrt),
+    ("floor", libm::floor),
+    ("ceil", libm::ceil),
+    ("round", libm::round),
+    ("abs", f64::abs),
+    ("sign", |value| if value == 0.0 { 0.0 } else { value.signum() }),
+    ("sin", libm::sin),
+    ("cos", libm::cos),
+    ("tan", libm::tan),
+    ("asin", libm::asin),
+    ("acos", libm::acos),
+    ("atan", libm::atan),
+];
+const OF_TWO: [(&str, OfTwo); 3] = [("pow", libm::pow), ("min", f64::min), ("max", f64::max)];
+
 /// Finds a parameter's value by its name.
 pub type Find<'a> = &'a dyn Fn(&str) -> Result<Option<String>, String>;
 
@@ -109,17 +129,25 @@ impl Terms<'_> {
 
     fn function(&mut self, depth: u32) -> Result<f64, String> {
         let name = self.run(char::is_alphabetic).to_owned();
+        if name == "pi" {
+            return Ok(core::f64::consts::PI);
+        }
         let open = self.take(&['(']).ok_or_else(|| format!("expected ( after {}", head(&name)));
         open?;
         let value = self.sum(depth + 1)?;
+        if let Some((_, of_two)) = OF_TWO.iter().find(|(of, _)| *of == name) {
+            self.take(&[',']).ok_or_else(|| format!("expected two values of {name}"))?;
+            let second = self.sum(depth + 1)?;
+            self.take(&[')']).ok_or("expected )")?;
+            return Ok(of_two(value, second));
+        }
         self.take(&[')']).ok_or("expected )")?;
-        match name.as_str() {
-            "sqrt" => Ok(libm::sqrt(value)),
-            "floor" => Ok(libm::floor(value)),
-            "ceil" => Ok(libm::ceil(value)),
-            "round" => Ok(libm::round(value)),
-            "abs" => Ok(value.abs()),
-            _ => Err(format!("expected one of sqrt, floor, ceil, round and abs, not {}", head(&name))),
+        match OF_ONE.iter().find(|(of, _)| *of == name) {
+            Some((_, of_one)) => Ok(of_one(value)),
+            None => {
+                let known = OF_ONE.iter().map(|(of, _)| *of).chain(OF_TWO.iter().map(|(of, _)| *of));
+                Err(format!("expected one of {}, not {}", known.collect::<Vec<_>>().join(", "), head(&name)))
+            }
         }
     }
 }
@@ -142,6 +170,8 @@ mod tests {
             ("${$speed * 2}", "25"),
             ("${ 1 + 2 * 3 - -4 }", "11"),
             ("${(1 + 2) * (3 - $n_2) / 2}", "-1.5"),
+            ("${65 * pi / 180 - 65 / (180 / pi)}", "0"),
+            ("${pow(2, 3) + min($speed, 1) + max(1, 2) * sign(-7) + cos(0) + acos(1)}", "8"),
             ("${7 % 4 + round(2.4) + sqrt(16) + abs(-3) + floor(1.9) + ceil(0.1)}", "14"),
         ] {
             assert_eq!(value(text).as_deref(), Ok(expected), "{text}");
@@ -157,7 +187,8 @@ mod tests {
             ("${1 +}", "expected a number before"),
             ("${1 1}", "expected an operator before"),
             ("${(1}", "expected )"),
-            ("${sin(1)}", "expected one of sqrt"),
+            ("${log(1)}", "expected one of sqrt, floor,"),
+            ("${pow(1)}", "expected two values of pow"),
         ] {
             let refused = value(text).expect_err(text);
             assert!(refused.starts_with(said), "{text}: {refused}");

@@ -85,6 +85,10 @@ fn range(parameter: Node<'_, '_>) -> Result<Option<[f32; 2]>, StoryError> {
                 return Err(StoryError::at(line_of(bound), reason));
             }
         };
+        // Expressions are no ends of a range that is drawn from.
+        if bound.attribute("value").is_some_and(|value| value.trim().starts_with('$')) {
+            continue;
+        }
         end.get_or_insert(number(bound)?);
     }
     let (Some(low), Some(high)) = (low, high) else { return Ok(None) };

@@ -12,6 +12,13 @@ fn stops_after(trigger: &str) -> f32 {
     stopped.unwrap_or(1200) as f32 / 60.0
 }
 
+fn parameter(name: &str, value: &str, rule: &str) -> String {
+    format!(
+        r#"<ConditionGroup><Condition name="" delay="0" conditionEdge="rising"><ByValueCondition>
+<ParameterCondition parameterRef="{name}" value="{value}" rule="{rule}"/></ByValueCondition></Condition></ConditionGroup>"#
+    )
+}
+
 fn relative(kind: &str, rest: &str, value: f32, rule: &str) -> String {
     when("Other", "none", &format!(r#"<{kind} entityRef="Ego" value="{value}" rule="{rule}" {rest}/>"#))
 }
@@ -40,7 +47,16 @@ fn conditions_are_met_when_they_should_be() {
             4.0,
         ),
         (when("Ego", "none", r#"<StandStillCondition duration="3"/>"#), 3.0),
-        (when("Other", "rising", r#"<SpeedCondition value="5" rule="greaterThan"/>"#), 0.0),
+        // Of who plays nothing is known before.
+        (when("Other", "rising", r#"<SpeedCondition value="5" rule="greaterThan"/>"#), 20.0),
+        (when("Other", "risingOrFalling", r#"<SpeedCondition value="5" rule="greaterThan"/>"#), 20.0),
+        (when("Other", "none", r#"<SpeedCondition value="5" rule="greaterThan"/>"#), 0.0),
+        (when("Other", "rising", r#"<TraveledDistanceCondition value="80"/>"#), 8.0),
+        (parameter("fast", "20", "equalTo"), 0.0),
+        (parameter("$fast", "20.5", "lessThan"), 0.0),
+        (parameter("fast", "20", "notEqualTo"), 20.0),
+        (parameter("fast", "quick", "notEqualTo"), 0.0),
+        (parameter("", "", "lessThan"), 20.0),
         (when("Other", "falling", r#"<SpeedCondition value="5" rule="greaterThan"/>"#), 20.0),
         // 400 m apart at the beginning, 3.5 m beside each other; a car is 4.5 m long, and the ego car 4.18 m.
         (relative("RelativeDistanceCondition", straight, 300.0, "lessThan"), 10.0),
@@ -107,5 +123,17 @@ fn an_event_happens_as_many_times_as_it_may() {
         go_on(&mut world, 2.0);
         let x = other(&world).position.x;
         assert!((x - (120.0 + 20.0 * times as f32)).abs() < 0.3, "{times}: {x}");
+    }
+}
+
+#[test]
+fn events_that_did_not_begin_are_told() {
+    let slow = |name: &str, seconds: f32| event(name, &speed("step", 0.0, "time", 5.0), &after(seconds));
+    let mut world = played(&(slow("soon", 1.0) + &slow("late", 3.0) + &slow("never", 1e6)));
+    for (seconds, expected) in
+        [(0.5, vec!["soon", "late", "never"]), (1.5, vec!["late", "never"]), (2.0, vec!["never"])]
+    {
+        go_on(&mut world, seconds);
+        assert_eq!(world.waiting_events().collect::<Vec<_>>(), expected);
     }
 }

@@ -149,3 +149,40 @@ fn the_weather_is_that_of_the_story_and_of_the_scenario_over_it() {
     let drier = Scenario::from_toml(&format!("{head}[weather]\nprecipitation_pct = 5\n")).expect("a scenario").weather;
     assert_eq!(drier, Weather { precipitation_pct: 5.0, ..told });
 }
+
+#[test]
+fn weather_that_changes_later_is_that_of_the_last_event() {
+    let weather = |what: &str| {
+        let action =
+            "<GlobalAction><EnvironmentAction><Environment name=\"later\"><Weather>WHAT</Weather></Environment>";
+        action.replace("WHAT", what) + "</EnvironmentAction></GlobalAction>"
+    };
+    let rain = weather(r#"<Precipitation precipitationType="rain" precipitationIntensity="25"/>"#);
+    let [fog, haze] = [250, 1000].map(|range_m| weather(&format!(r#"<Fog visualRange="{range_m}"/>"#)));
+    // The later one stands first in the text.
+    let events =
+        event("haze", &haze, &after(13.0)) + &event("rain", &rain, &after(1.0)) + &event("fog", &fog, &after(2.0));
+    let mut world = played(&events.replace("overwrite", "parallel"));
+    let before = world.scene().weather;
+    let friction = world.friction();
+    go_on(&mut world, 0.9);
+    assert_eq!(world.scene().weather, before);
+    go_on(&mut world, 0.2);
+    let wet = Weather { precipitation_pct: 50.0, ..before };
+    assert_eq!(world.scene().weather, wet);
+    assert!(world.friction() < friction, "{} {friction}", world.friction());
+    go_on(&mut world, 1.0);
+    assert_eq!(world.scene().weather, Weather { fog_density_pct: 20.0, fog_distance_m: 0.0, ..wet });
+    let keyframe = loop {
+        if let Some(made) = world.step(&TickInput::default()).keyframe {
+            break made;
+        }
+    };
+    let mut resumed = World::resume(world.scenario(), road(), &keyframe).expect("it is its own");
+    assert_eq!(resumed.scene().weather, world.scene().weather);
+    for world in [&mut world, &mut resumed] {
+        go_on(world, 1.5);
+        assert_eq!(world.scene().weather, Weather { fog_density_pct: 5.0, fog_distance_m: 0.0, ..wet });
+    }
+    assert_eq!(resumed.hash(), world.hash());
+}

@@ -2,6 +2,7 @@
 
 use super::actions::{follow, position};
 use super::*;
+use crate::story::FIRST_STORY_ID;
 
 fn acquire(lane: i32, s_m: f32) -> String {
     format!(
@@ -125,7 +126,7 @@ fn an_event_that_was_overridden_does_not_come_again() {
 #[test]
 fn a_rising_edge_has_to_rise_for_each_time() {
     let further = r#"<PrivateAction><TeleportAction><Position><RelativeObjectPosition entityRef="Other" dx="20" dy="0"/></Position></TeleportAction></PrivateAction>"#;
-    let jumps = event("e", further, &when("Other", "rising", r#"<SpeedCondition value="5" rule="greaterThan"/>"#));
+    let jumps = event("e", further, &when("Other", "rising", r#"<TraveledDistanceCondition value="5"/>"#));
     let mut world = played(&jumps.replace("<Event ", "<Event maximumExecutionCount=\"9\" "));
     go_on(&mut world, 2.0);
     assert!((place(&world)[0] - 140.0).abs() < 0.5, "{:?}", place(&world));
@@ -215,5 +216,92 @@ fn what_conditions_refer_to_is_there() {
     for path in ["f", "other::e", "e::e"] {
         let error = Story::read(&text(&init, &events(path))).expect_err(path).to_string();
         assert!(error.starts_with("line ") && error.ends_with(&format!("there is no event {path:?}")), "{error}");
+    }
+}
+
+/// A route over lane 1 on the right and then the one beside it.
+const ROUTE: &str = r#"<Route name="way" closed="false">
+<Waypoint routeStrategy="shortest"><Position><LanePosition roadId="7" laneId="-1" s="50"/></Position></Waypoint>
+<Waypoint routeStrategy="shortest"><Position><LanePosition roadId="7" laneId="-2" s="400"/></Position></Waypoint></Route>"#;
+
+#[test]
+fn places_of_a_route_that_were_passed_are_left_out() {
+    let assigned = format!(
+        "<PrivateAction><RoutingAction><AssignRouteAction>{ROUTE}</AssignRouteAction></RoutingAction></PrivateAction>"
+    );
+    let mut world = played(&event("e", &assigned, &after(0.0)));
+    go_on(&mut world, 10.0);
+    assert!((place(&world)[1] + 5.25).abs() < 0.05, "{:?}", place(&world));
+}
+
+#[test]
+fn places_on_routes_are_so_far_along_them() {
+    for (within, expected) in [
+        (r#"<FromLaneCoordinates pathS="70" laneId="-2" laneOffset="0.5"/>"#, [120.0, -4.75]),
+        (r#"<FromLaneCoordinates pathS="70" laneId="1"/>"#, [120.0, 1.75]),
+        (r#"<FromRoadCoordinates pathS="10" t="-2"/>"#, [60.0, -2.0]),
+        (r#"<FromRoadCoordinates pathS="10" t="2"/>"#, [60.0, 2.0]),
+    ] {
+        let on_route = format!(
+            "<RoutePosition><RouteRef>{ROUTE}</RouteRef><InRoutePosition>{within}</InRoutePosition></RoutePosition>"
+        );
+        let other = begins("Other", -1, 1.0, 0.0).replace(r#"<LanePosition roadId="7" laneId="-1" s="1"/>"#, &on_route);
+        let at = place(&world(&text(&(begins("Ego", -2, 500.0, 0.0) + &other), "")));
+        assert!((at[0] - expected[0]).abs() < 0.05 && (at[1] - expected[1]).abs() < 0.05, "{within}: {at:?}");
+    }
+}
+
+#[test]
+fn who_is_added_is_there_from_then_on() {
+    let add = r#"<GlobalAction><EntityAction entityRef="Other"><AddEntityAction><Position>
+<LanePosition roadId="7" laneId="-1" s="100"/></Position></AddEntityAction></EntityAction></GlobalAction>"#;
+    let events = event("come", add, &after(1.0))
+        + &event("drive", &speed("step", 0.0, "time", 10.0), &after(2.0))
+        + &event("go", DELETE, &after(3.0))
+        + &event("again", add, &after(4.0));
+    let mut world = world(&text(&begins("Ego", -2, 500.0, 0.0), &events));
+    let others = |world: &World| world.scene().actors.iter().filter(|a| a.id == FIRST_STORY_ID + 1).count();
+    for (until_s, there) in [(0.9, 0), (1.9, 1), (2.9, 1), (3.9, 0), (4.9, 1)] {
+        while world.tick() < (until_s * 60.0) as Tick {
+            world.step(&TickInput::default());
+        }
+        assert_eq!(others(&world), there, "{until_s}");
+    }
+    // Whoever comes again begins anew.
+    assert_eq!((place(&world)[0], other(&world).speed_mps), (100.0, 0.0));
+}
+
+#[test]
+fn who_walks_across_a_lane_goes_straight_on() {
+    let walker = r#"<Private entityRef="Walker"><PrivateAction><LongitudinalAction><SpeedAction>
+<SpeedActionDynamics dynamicsShape="step"/><SpeedActionTarget><AbsoluteTargetSpeed value="1"/></SpeedActionTarget>
+</SpeedAction></LongitudinalAction></PrivateAction></Private>"#;
+    let text = text(&(begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 900.0, 0.0) + walker), "");
+    let place = r#"<WorldPosition x="900" y="30" z="0" h="0"/>"#;
+    let mut world = world(&text.replace(place, r#"<WorldPosition x="120" y="-9" z="0" h="1.5708"/>"#));
+    go_on(&mut world, 12.0);
+    let walker = *world.scene().actors.iter().find(|a| a.id == FIRST_STORY_ID + 2).expect("it plays");
+    let [x, y] = walker.position.truncate().to_array();
+    assert!((x - 120.0).abs() < 0.1 && (y - 3.0).abs() < 0.2, "{x} {y}");
+}
+
+#[test]
+fn somebody_moves_to_a_distance_across_from_another() {
+    let abreast = |rest: &str| {
+        format!(
+            r#"<PrivateAction><LateralAction><LateralDistanceAction entityRef="Ego" continuous="false" {rest}/></LateralAction></PrivateAction>"#
+        )
+    };
+    // The ego car is in the middle of its lane, 1.79 m wide; a car is 1.85 m wide.
+    for (rest, expected_m) in [
+        (r#"distance="2" freespace="false""#, -3.25),
+        (r#"distance="2" freespace="true" displacement="any""#, -1.43),
+        (r#"distance="4" freespace="false" displacement="leftToReferencedEntity""#, -1.25),
+        (r#"distance="1" freespace="false" displacement="rightToReferencedEntity""#, -6.25),
+        (r#"freespace="true""#, -1.75),
+    ] {
+        let mut world = played(&event("e", &abreast(rest), &after(0.0)));
+        go_on(&mut world, 15.0);
+        assert!((place(&world)[1] - expected_m).abs() < 0.06, "{rest}: {:?}", place(&world));
     }
 }

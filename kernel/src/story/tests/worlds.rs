@@ -2,7 +2,9 @@
 
 use super::actions::follow;
 use super::*;
+use crate::actor::{ActorKind, FIRST_STORY_ID};
 use crate::arbiter::{Outcome, Phase};
+use crate::events::EventKind;
 use crate::map::bundled;
 use crate::state::State;
 use crate::story::{BUNDLED, Stage};
@@ -206,4 +208,23 @@ fn a_run_ends_when_its_story_is_stopped() {
     assert_ne!(world.arbiter().phase, Phase::Done);
     go_on(&mut world, 0.2);
     assert_eq!((world.arbiter().phase, world.arbiter().outcome), (Phase::Done, Some(Outcome::Censored)));
+}
+
+#[test]
+fn a_thing_in_the_way_stands_there_until_it_is_run_into() {
+    let thing =
+        "<MiscObject name=\"bin\" mass=\"30\" miscObjectCategory=\"obstacle\"><BoundingBox/><Properties/></MiscObject>";
+    let walker = r#"<Pedestrian name="child" model="child" mass="30" pedestrianCategory="pedestrian"/>"#;
+    let text = text(&(begins("Ego", -1, 100.0, 12.0) + &begins("Other", -1, 300.0, 0.0)), "").replace(walker, thing);
+    let place = r#"<WorldPosition x="900" y="30" z="0" h="0"/>"#;
+    let mut world = world(&text.replace(place, r#"<LanePosition roadId="7" laneId="-1" s="120"/>"#));
+    let bin = |world: &World| *world.scene().actors.iter().find(|a| a.id == FIRST_STORY_ID + 2).expect("it is there");
+    let stood = bin(&world);
+    assert_eq!(stood.kind, ActorKind::Obstacle);
+    let mut hit = false;
+    for _ in 0..4 * 60 {
+        hit |= world.step(&TickInput::default()).events.iter().any(|event| event.kind == EventKind::CollisionActor);
+        assert!(hit || bin(&world).position == stood.position);
+    }
+    assert!(hit && bin(&world).position.x > stood.position.x + 0.5, "{:?}", bin(&world));
 }

@@ -1,6 +1,6 @@
 //! One run, recorded as it goes.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::path::Path;
 
 use anyhow::{Context, bail};
@@ -14,6 +14,7 @@ use base::progress::Interrupt;
 use base::room::NoRoom;
 use base::say::say;
 use base::setting::{Changes, Setting};
+use base::words;
 use drivers::simulate;
 use drivers::vision::Vision;
 use kernel::scenario::{EgoStart, driving_lanes};
@@ -88,6 +89,10 @@ fn scenario(args: &DriveArgs) -> anyhow::Result<(Scenario, Map)> {
 fn as_driven(mut scenario: Scenario, map: &Map) -> anyhow::Result<String> {
     let (lane, s_m) = scenario.start_on(&map.network)?;
     scenario.ego = EgoStart { lane: Some(lane), s_m };
+    if let Some(path) = &map.path {
+        // What is printed may be kept anywhere.
+        scenario.map = fs::canonicalize(path).unwrap_or_else(|_| path.clone()).to_string_lossy().into_owned();
+    }
     let lanes = driving_lanes(&map.network);
     let comment: String = lanes.chunks(LANES_A_LINE).map(|lanes| format!("# {}\n", lanes.join(", "))).collect();
     Ok(format!("{}\n# Driving lanes of {}, for ego.lane:\n{comment}", scenario.to_toml(), scenario.map))
@@ -139,7 +144,10 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     no_room.into_iter().for_each(say);
     let interrupt = Interrupt::listen();
     let mut second = Every::second();
+    let mut waiting: Option<(String, usize)> = None;
     let keep_on = |world: &World| {
+        let mut events = world.waiting_events();
+        waiting = events.next().map(|first| (first.to_owned(), 1 + events.count()));
         publisher.iter_mut().for_each(|publisher| publisher.show(world));
         if second.is_due() {
             say(format_args!("tick {}", world.tick()));
@@ -147,5 +155,13 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
         !interrupt.is_raised()
     };
     simulate::drive_as(&manifest, map, vision, file, keep_on).with_context(|| path.display().to_string())?;
+    if let Some((first, count)) = waiting {
+        say(format_args!(
+            "{}: {} of its story never began: {first:?}{}",
+            path.display(),
+            words::count(count, "event"),
+            if count > 1 { " and others" } else { "" }
+        ));
+    }
     tell(path, &RunFigures::of(&Recording::open(path)?, Some(&map.network)), json)
 }

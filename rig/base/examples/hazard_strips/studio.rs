@@ -98,7 +98,7 @@ fn behind(film: &Film, at: usize, who: u32) -> impl Iterator<Item = u16> {
             to.length() < 17.0 && to.dot(forward) < -3.0 && (rotation * Vec3::X).dot(forward) > 0.9
         })
     };
-    let drives = |kind: ActorKind| !kind.is_on_foot() && kind != ActorKind::Door;
+    let drives = ActorKind::is_vehicle;
     let others = scene.actors.iter().filter(move |a| drives(a.kind) && near(a.position, a.rotation));
     let ego = near(scene.ego.position, scene.ego.rotation).then_some(EGO_INSTANCE);
     others.map(|a| instance_of_actor(a.id)).chain(ego)

@@ -2,8 +2,8 @@
 //!
 //! `provoked CHECKPOINT,... SEED DRAWS STORY...` drives each story with as many draws of its parameters, and prints a table in
 //! Markdown of how often something is hit: by a car that drives on, whose driver sees nobody and has nobody beside him, and by
-//! both bots through each checkpoint; and how often the safety driver took over. `provoked strips SEED DIR STORY...` draws the
-//! last seconds of such a car, as its driver's camera has them.
+//! both bots through each checkpoint, in the time that the former took and ten seconds more; and how often the safety driver took
+//! over. `provoked strips SEED DIR STORY...` draws the last seconds of the former, as its driver's camera has them.
 
 #[path = "../common/blind.rs"]
 mod blind;
@@ -11,7 +11,7 @@ mod strips;
 
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use anyhow::bail;
 use base::maps::Map;
@@ -25,11 +25,13 @@ use drivers::semantic::SemanticBot;
 use drivers::vision::{Eye, Vision};
 use kernel::arbiter::Phase;
 use kernel::events::EventKind;
+use kernel::time::{Tick, seconds};
 use kernel::{Scenario, SceneSnapshot, Seat, TickInput, World};
 use render::{RenderOptions, Renderer};
 
-/// Longest drive, seconds.
+/// Longest drive, seconds, and how much longer than who drives on those drive who look out.
 const LONGEST_S: u32 = 30;
+const LONGER_S: u32 = 10;
 
 /// Who drives.
 #[derive(Clone)]
@@ -45,6 +47,7 @@ enum Who {
 struct Came {
     hit: bool,
     taken_over: bool,
+    ticks: Tick,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -78,17 +81,25 @@ fn main() -> anyhow::Result<()> {
 
 /// What came of each draw, for each who drives.
 fn try_out(file: &ScenarioFile, crews: &[Who], seed: u64, draws: u64) -> anyhow::Result<Vec<Vec<Came>>> {
-    let tasks: Vec<(usize, u64)> = (0..draws).flat_map(|draw| (0..crews.len()).map(move |who| (who, draw))).collect();
-    let (next, found) = (AtomicUsize::new(0), Mutex::new(vec![vec![Came::default(); draws as usize]; crews.len()]));
+    let (next, found) = (AtomicU64::new(0), Mutex::new(vec![vec![Came::default(); draws as usize]; crews.len()]));
     let work = || -> anyhow::Result<()> {
         let mut renderer = Renderer::new(&file.map.network, &RenderOptions::default())?;
-        while let Some((who, draw)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
+        loop {
+            let draw = next.fetch_add(1, Ordering::Relaxed);
+            if draw >= draws {
+                return Ok(());
+            }
             let scenario = drawn(&file.scenario, seed + draw)?;
-            let came;
-            (came, renderer) = drive(&scenario, &file.map, &crews[*who], renderer, |_| {})?;
-            found.lock().expect("no thread panics")[*who][*draw as usize] = came;
+            let mut longest_ticks = seconds(LONGEST_S);
+            for (who, crew) in crews.iter().enumerate() {
+                let came;
+                (came, renderer) = drive(&scenario, &file.map, crew, longest_ticks, renderer, |_| {})?;
+                found.lock().expect("no thread panics")[who][draw as usize] = came;
+                if matches!(crew, Who::On) {
+                    longest_ticks = longest_ticks.min(came.ticks + seconds(LONGER_S));
+                }
+            }
         }
-        Ok(())
     };
     std::thread::scope(|scope| {
         let cores = std::thread::available_parallelism()?.get();
@@ -108,11 +119,12 @@ fn drawn(of: &Scenario, seed: u64) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-/// Drives until something is hit or the run is over, and hands the renderer back; `look` sees each tick.
+/// Drives until something is hit, the run is over or the time is up, and hands the renderer back; `look` sees each tick.
 fn drive(
     scenario: &Scenario,
     map: &Map,
     who: &Who,
+    longest_ticks: Tick,
     renderer: Renderer,
     mut look: impl FnMut(SceneSnapshot),
 ) -> anyhow::Result<(Came, Renderer)> {
@@ -123,7 +135,7 @@ fn drive(
     };
     let mut vision = Vision::new(renderer, eye);
     let mut came = Came::default();
-    while world.arbiter().phase != Phase::Done && !came.hit {
+    while world.arbiter().phase != Phase::Done && !came.hit && came.ticks < longest_ticks {
         let (mask, _) = vision.look(&world)?;
         let blinded = matches!(who, Who::On).then(|| blind::without_traffic(mask));
         let mask = MaskView { ids: blinded.as_deref().unwrap_or(mask.ids), ..mask };
@@ -133,6 +145,7 @@ fn drive(
         let is_hit = |kind: EventKind| matches!(kind, EventKind::CollisionActor | EventKind::CollisionScenery);
         came.hit |= output.events.iter().any(|event| is_hit(event.kind));
         came.taken_over |= output.intervention.is_some();
+        came.ticks += 1;
         look(world.scene());
     }
     Ok((came, vision.into_renderer()))

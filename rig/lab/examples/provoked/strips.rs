@@ -7,7 +7,7 @@ use anyhow::{Context, ensure};
 use base::scenario_file::ScenarioFile;
 use base::{output, png};
 use kernel::SceneSnapshot;
-use kernel::time::{TICK_HZ, seconds};
+use kernel::time::{TICK_HZ, Tick, seconds};
 use render::{Camera, RenderOptions, Renderer};
 
 use super::{Who, drawn, drive};
@@ -22,12 +22,13 @@ pub fn strip(file: &Path, seed: u64, folder: &Path) -> anyhow::Result<()> {
     let kept = seconds(PICTURES as u32 - 1) as usize + 1;
     let mut scenes: VecDeque<SceneSnapshot> = VecDeque::new();
     let renderer = Renderer::new(&story.map.network, &RenderOptions::default())?;
-    let (came, mut renderer) = drive(&drawn(&story.scenario, seed)?, &story.map, &Who::On, renderer, |scene| {
-        scenes.push_back(scene);
-        if scenes.len() > kept {
-            scenes.pop_front();
-        }
-    })?;
+    let (came, mut renderer) =
+        drive(&drawn(&story.scenario, seed)?, &story.map, &Who::On, Tick::MAX, renderer, |scene| {
+            scenes.push_back(scene);
+            if scenes.len() > kept {
+                scenes.pop_front();
+            }
+        })?;
     ensure!(came.hit && scenes.len() == kept, "{}: nothing is hit", file.display());
     let camera = Camera::driver(SIZE.0, SIZE.1);
     let chosen = scenes.iter().step_by(TICK_HZ as usize);

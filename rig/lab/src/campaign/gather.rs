@@ -100,7 +100,7 @@ impl Maps {
         if let Some(map) = known().get(&manifest.map_digest) {
             return Ok(map.clone());
         }
-        let map = Map { network: recording.network()?, foreign: manifest.foreign_map.clone() };
+        let map = Map { network: recording.network()?, foreign: manifest.foreign_map.clone(), path: None };
         known().insert(manifest.map_digest, map.clone());
         Ok(map)
     }

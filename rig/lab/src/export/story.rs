@@ -238,6 +238,10 @@ fn entity(track: &Track, text: &mut String) {
                 kind.mass_kg()
             )
         }
+        Some(ActorKind::Obstacle) => format!(
+            "<MiscObject name=\"{name}\" mass=\"{}\" miscObjectCategory=\"obstacle\">{bounds}<Properties/></MiscObject>",
+            ActorKind::Obstacle.mass_kg()
+        ),
         kind => {
             let (axle_m, wheel_m) = match kind {
                 None => (ego::WHEELBASE_M / 2.0, 2.0 * ego::WHEEL_RADIUS_M),

@@ -35,7 +35,8 @@ impl Story {
         let annotation = log.annotation.as_ref();
         let label = annotation.map_or("not labelled".into(), |a| a.label.to_string());
         let comment = annotation.map_or(String::new(), |a| a.comment.clone());
-        let facts = [facts(log, at, odometer_mm), drive.facts()].concat();
+        let weather = footage.scenes.last().map_or_else(|| log.manifest.scenario.weather_at(at), |scene| scene.weather);
+        let facts = [facts(log, at, &weather, odometer_mm), drive.facts()].concat();
         Ok(Self { label, comment, facts, map_svg: map::svg(&footage.network, &route) })
     }
 }
@@ -59,9 +60,8 @@ fn route(log: &Log, footage: &Footage, to: Tick) -> anyhow::Result<(Vec<Vec2>, O
     }
 }
 
-fn facts(log: &Log, at: Tick, odometer_mm: Option<u64>) -> Vec<Fact> {
+fn facts(log: &Log, at: Tick, weather: &Weather, odometer_mm: Option<u64>) -> Vec<Fact> {
     let scenario = &log.manifest.scenario;
-    let weather = &scenario.weather_at(at);
     let mut facts = Vec::new();
     let mut add = |name, value: String| facts.push(Fact { name, value });
     if let Some(annotation) = &log.annotation {

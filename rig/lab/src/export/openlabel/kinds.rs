@@ -18,7 +18,7 @@ pub const CLASSES: [&str; 9] = [
     "HumanWheelchairUser",
 ];
 
-/// The class of a road user; that of a tram or a door is not of the ontology, which has none.
+/// The class of a road user; that of a tram, a door or a thing is not of the ontology, which has none.
 pub fn class(kind: ActorKind) -> &'static str {
     match kind {
         ActorKind::Car | ActorKind::Suv => EGO,
@@ -32,6 +32,7 @@ pub fn class(kind: ActorKind) -> &'static str {
         ActorKind::Wheelchair => "HumanWheelchairUser",
         ActorKind::Tram => "Tram",
         ActorKind::Door => "CarDoor",
+        ActorKind::Obstacle => "Obstacle",
     }
 }
 

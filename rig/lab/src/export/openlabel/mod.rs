@@ -49,10 +49,11 @@ pub fn export(
     let (Some(&from), Some(&to)) = (ticks.first(), ticks.last()) else {
         bail!("no frame falls into the window; expected a longer one, or more frames a second");
     };
-    let mut tracks = Tracks::default();
+    let (mut tracks, mut weather) = (Tracks::default(), log.manifest.scenario.weather);
     footage::each_scene(log, &network, &ticks, |_, scene| {
         ensure!(!interrupt.is_raised(), "interrupted; nothing of its export is kept");
         tracks.add(&scene);
+        weather = scene.weather;
         ensure!(tracks.boxes <= BOXES, "has over {BOXES} boxes; --last, --from and --to ask for less");
         Ok(())
     })?;
@@ -62,7 +63,7 @@ pub fn export(
     let story = Story::of(log, window.ticks.clone().into_inner(), verdict.as_ref(), &mut tracks);
     let counts = Counts { frames: ticks.len(), poses: tracks.frames.len(), events: story.events.len() };
     let metadata = metadata(file, &recording, &network);
-    let labels = labels(metadata, &log.manifest.scenario.weather_at(to), Camera::driver(size.0, size.1), tracks, story);
+    let labels = labels(metadata, &weather, Camera::driver(size.0, size.1), tracks, story);
     let text = serde_json::to_string(&Document { openlabel: labels })?;
     let kept = is_there(&out, &text)?;
     if !kept {

@@ -7,7 +7,7 @@ use super::messages::{BrakeLight, Indicator, Light, LightState, MovingType, Role
 /// What an actor is; nothing for the ego car, which is a car.
 pub fn moving(kind: Option<ActorKind>) -> MovingType {
     match kind {
-        Some(ActorKind::Door) => MovingType::Other,
+        Some(ActorKind::Door | ActorKind::Obstacle) => MovingType::Other,
         kind if vehicle(kind).is_some() => MovingType::Vehicle,
         _ => MovingType::Pedestrian,
     }
@@ -35,7 +35,8 @@ fn vehicle(kind: Option<ActorKind>) -> Option<VehicleType> {
         Some(ActorKind::Motorcycle | ActorKind::Scooter) => VehicleType::Motorbike,
         Some(ActorKind::Bicycle | ActorKind::CargoBike) => VehicleType::Bicycle,
         Some(ActorKind::Wheelchair) => VehicleType::Wheelchair,
-        Some(ActorKind::Pedestrian | ActorKind::Child | ActorKind::Pram | ActorKind::Door) => return None,
+        Some(ActorKind::Pedestrian | ActorKind::Child | ActorKind::Pram) => return None,
+        Some(ActorKind::Door | ActorKind::Obstacle) => return None,
     })
 }
 
