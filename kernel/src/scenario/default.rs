@@ -6,14 +6,12 @@ use crate::rng::{self, Stream};
 use crate::traffic::{HazardLevel, Population, TrafficCounts};
 use crate::weather::Weather;
 
-use super::fields::{EgoStart, Rules, Scenario};
+use super::fields::{EgoStart, MAX_SPEED_KMH, Rules, Scenario};
 
 /// Fewest and most actors on a map (paper, section 3).
 const ACTORS: [f32; 2] = [50.0, 150.0];
 /// Actors for each kilometre of driving lane, between those.
 const ACTORS_PER_KM: f32 = 12.0;
-/// Highest speed asked of the semantic driver, km/h (paper, section 3).
-const MAX_SPEED_KMH: f32 = 50.0;
 /// Longest run, seconds.
 const MAX_SECONDS: u32 = 600;
 /// Longest time after a takeover, seconds: enough to leave a junction and stop.

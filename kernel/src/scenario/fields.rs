@@ -5,13 +5,15 @@ use std::sync::Arc;
 use crate::car::CarSetup;
 use crate::state;
 use crate::state::State;
-use crate::story::Story;
+use crate::story::{Story, StoryError};
 use crate::time::Tick;
 use crate::traffic::{HazardRates, TrafficCounts};
 use crate::weather::{Weather, WeatherChange, WeatherPreset};
 
 /// Most actors of one kind.
 pub const MOST_OF_A_KIND: u16 = 500;
+/// Highest speed asked of the semantic driver as a rule, km/h (paper, section 3).
+pub(super) const MAX_SPEED_KMH: f32 = 50.0;
 /// Highest speed that can be asked of the semantic driver, km/h.
 pub const MOST_KMH: f32 = 130.0;
 
@@ -99,9 +101,25 @@ impl Scenario {
     /// is higher.
     pub fn play(&mut self, story: Story) {
         story.script().environment.change(&mut self.weather);
-        let told_kmh = (story.ego_mps() * 3.6).min(MOST_KMH);
-        self.rules.max_speed_kmh = self.rules.max_speed_kmh.max(told_kmh);
+        self.rules.max_speed_kmh = self.rules.max_speed_kmh.max(asked_kmh(&story));
         self.story = Some(Arc::new(story));
+    }
+
+    /// Plays its story with values drawn by a seed for those of its parameters that have ranges. What the scenario says otherwise than
+    /// its story stays.
+    ///
+    /// # Errors
+    /// When the story cannot be played with what was drawn; it stays as it is then.
+    pub fn vary(&mut self, seed: u64) -> Result<(), StoryError> {
+        let Some(told) = self.story.clone() else { return Ok(()) };
+        let drawn = told.varied(seed)?;
+        let environment = told.script().environment.replaced(&drawn.script().environment, &self.weather);
+        environment.change(&mut self.weather);
+        if self.rules.max_speed_kmh == asked_kmh(&told) {
+            self.rules.max_speed_kmh = asked_kmh(&drawn);
+        }
+        self.story = Some(Arc::new(drawn));
+        Ok(())
     }
 
     /// Takes the weather of a preset, which stays, with the sun in the direction that it had.
@@ -109,6 +127,11 @@ impl Scenario {
         self.weather = preset.weather(self.weather.sun_azimuth_deg);
         self.later = None;
     }
+}
+
+/// The highest speed that is asked for in a story, km/h: the usual one, or that with which its ego car begins.
+fn asked_kmh(story: &Story) -> f32 {
+    (story.ego_mps() * 3.6).clamp(MAX_SPEED_KMH, MOST_KMH)
 }
 
 /// Why a text is not a valid scenario; says line and key.

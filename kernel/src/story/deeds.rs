@@ -17,33 +17,38 @@ use super::{doors, lanes, lights, places, relative};
 
 /// A lane is beside somebody whose place on it is within this along it, metres.
 const BESIDE_M: f32 = 3.0;
+/// Most lanes of a route: keyframes hold them. After them who goes it goes straight on.
+const ROUTE_LANES: usize = 1000;
 /// Nobody needs longer for a way than at this speed, m/s.
 const LEAST_MPS: f32 = 0.1;
 
 /// Where everybody begins, as the first actions of a script say.
 pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, (usize, String)> {
     let mut placed: Vec<Option<StoryActor>> = vec![None; script.cast.len()];
-    let teleports = || {
-        script.init.iter().filter_map(|(role, action)| match action {
-            Action::Teleport(place) | Action::Enter(place) => Some((*role, place)),
-            _ => None,
-        })
-    };
+    // Who is put to several places is at the last one.
+    let mut places: Vec<Option<&Position>> = vec![None; script.cast.len()];
+    for (role, action) in &script.init {
+        if let Action::Teleport(place) | Action::Enter(place) = action {
+            places[*role] = Some(place);
+        }
+    }
     // Who begins beside another may be told of before it.
     for _ in 0..script.cast.len() {
-        for (role, place) in teleports() {
+        for (role, place) in places.iter().enumerate().filter_map(|(role, place)| Some((role, (*place)?))) {
             if placed[role].is_none() {
                 placed[role] = relative::spot_among(network, &placed, place).map(StoryActor::standing);
             }
         }
     }
-    let is_told = |role: usize| teleports().any(|(of, _)| of == role);
+    let is_told = |role: usize| places[role].is_some();
     let missing = |role: usize| {
         let expected = if is_told(role) { "one that is not told by its own" } else { "a teleport in <Init>" };
         (script.cast[role].at, format!("nothing says where {} begins, expected {expected}", script.cast[role].name))
     };
     // Who comes later, or never, is unseen.
-    let absent = script.init.iter().filter(|(_, action)| *action == Action::Leave).map(|(role, _)| *role);
+    let ego = script.ego();
+    let leaves = |(role, action): &&(RoleId, Action)| *action == Action::Leave && *role != ego;
+    let absent = script.init.iter().filter(leaves).map(|(role, _)| *role);
     for role in script.entrances().chain(absent) {
         let nowhere = Spot { position: Vec3::ZERO, heading_rad: 0.0, on: None };
         placed[role].get_or_insert_with(|| StoryActor { gone: true, ..StoryActor::standing(nowhere) });
@@ -71,14 +76,14 @@ pub fn begin(script: &Script, network: &RoadNetwork) -> Result<Vec<StoryActor>, 
                     actor.spot = Spot::on(network, OnLane { offset_m, ..on });
                 }
             }
-            Action::Leave => actor.gone = true,
+            Action::Leave => actor.gone = *role != ego,
             Action::HandOver => {}
             Action::Door(door) => doors::swing(actor, *door, 0),
             // What takes time is an act of its own.
             _ => {}
         }
     }
-    let ego = &mut actors[script.ego()];
+    let ego = &mut actors[ego];
     if ego.route.is_empty() {
         // Drivers know their way from the beginning, whenever the story tells it.
         ego.route = match script.ego_way() {
@@ -101,6 +106,10 @@ fn route(network: &RoadNetwork, from: Spot, via: impl IntoIterator<Item = Option
     for to in &via[passed..] {
         route.extend(lanes::way(network, at, *to)?);
         at = *to;
+        if route.len() > ROUTE_LANES {
+            route.truncate(ROUTE_LANES);
+            break;
+        }
     }
     Some(route)
 }
@@ -194,6 +203,7 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
     match &*of.action {
         Action::Teleport(place) => {
             if let Some(spot) = relative::spot(network, before, place) {
+                leaves_its_way(state, role, seen.tick);
                 let actor = &mut state.actors[role];
                 actor.spot = spot;
                 actor.slip_m = 0.0;
@@ -204,9 +214,12 @@ fn begins(state: &mut StoryState, number: usize, role: RoleId, seen: &Seen<'_>) 
             }
             false
         }
+        // The ego car stays.
+        Action::Leave if role == seen.plan.ego => false,
         Action::Leave => {
-            state.actors[role].gone = true;
             end_all(state, role, seen.tick);
+            // Nothing of it is left when it comes again.
+            state.actors[role] = StoryActor { gone: true, ..StoryActor::standing(state.actors[role].spot) };
             false
         }
         Action::Enter(place) => {
@@ -347,6 +360,16 @@ pub fn end_all(state: &mut StoryState, role: RoleId, tick: Tick) {
     }
 }
 
+/// Ends where across its lane and along which way a role goes: it is taken elsewhere. A line that begins in the same tick is where
+/// it is taken then.
+fn leaves_its_way(state: &mut StoryState, role: RoleId, tick: Tick) {
+    let actor = &state.actors[role];
+    let way = actor.way_by.filter(|deed| state.deeds[*deed as usize].mark.at < tick);
+    for deed in [actor.side_by, way].into_iter().flatten() {
+        end(state, deed as usize, Change::Stopped, tick);
+    }
+}
+
 /// Ends the deed that another replaces.
 fn replace(state: &mut StoryState, replaced: Option<u32>, by: usize, tick: Tick) {
     if let Some(replaced) = replaced.map(|deed| deed as usize).filter(|deed| *deed != by) {
@@ -375,7 +398,9 @@ fn lane_of(network: &RoadNetwork, before: &StoryState, role: RoleId, target: Lan
 
 /// A deed comes to its end.
 pub fn end(state: &mut StoryState, number: usize, change: Change, tick: Tick) {
-    state.deeds[number].mark.turn(Progress::Complete, change, tick);
+    let deed = &mut state.deeds[number];
+    deed.mark.turn(Progress::Complete, change, tick);
+    deed.line = Vec::new();
     let by = Some(number as u32);
     for actor in &mut state.actors {
         for held in [&mut actor.speed_by, &mut actor.side_by, &mut actor.way_by] {

@@ -10,8 +10,10 @@ use super::spot::OnLane;
 
 /// Most lanes that a place ahead is looked for on.
 const AHEAD_LANES: usize = 500;
-/// Most lanes that a way is looked for over.
+/// Most lanes that a way is looked for over, or steps of a way.
 const LOOKED_AT: usize = 20_000;
+/// Such a step, metres.
+const STEP_M: f32 = 10.0;
 
 /// The lane after one, and where on it one comes, metres from its start: the next of a route if that goes on there, or else
 /// the one that leads most nearly straight on.
@@ -31,6 +33,22 @@ fn next(network: &RoadNetwork, lane: LaneId, route: &[LaneId]) -> Option<(LaneId
         turns + ops::wrap_angle(next.end().heading_rad - here.end().heading_rad).abs()
     };
     onward.into_iter().min_by(|a, b| bend(a.0).total_cmp(&bend(b.0)).then(a.0.cmp(&b.0)))
+}
+
+/// The lane beside one to which a route goes over there.
+fn beside(network: &RoadNetwork, lane: LaneId, route: &[LaneId]) -> Option<LaneId> {
+    let here = &network.lanes[lane as usize];
+    route.first().copied().filter(|next| [here.left, here.right].contains(&Some(*next)))
+}
+
+/// Goes over to the lane beside one, if its route does so there, at the same place on the map: that it was in the middle of its
+/// lane there stays so.
+pub fn change(network: &RoadNetwork, on: &mut OnLane, route: &mut Vec<LaneId>) -> bool {
+    let Some(lane) = beside(network, on.lane, route) else { return false };
+    route.remove(0);
+    let there = network.project(lane, network.lane_point(on.lane, on.s_m).position);
+    *on = OnLane { lane, s_m: there.s_m, ..*on };
+    true
 }
 
 /// The lane before one, as straight as may be.
@@ -82,9 +100,10 @@ pub fn ahead(network: &RoadNetwork, from: OnLane, by_m: f32) -> OnLane {
 /// The same over the lanes of a route.
 pub fn along(network: &RoadNetwork, from: OnLane, by_m: f32, mut route: Vec<LaneId>) -> OnLane {
     let (mut on, mut left_m) = (from, by_m);
-    while left_m.abs() > 0.0 {
-        let step_m = left_m.clamp(-10.0, 10.0);
-        if !advance(network, &mut on, step_m, &mut route) {
+    for _ in 0..LOOKED_AT {
+        while change(network, &mut on, &mut route) {}
+        let step_m = left_m.clamp(-STEP_M, STEP_M);
+        if step_m == 0.0 || !advance(network, &mut on, step_m, &mut route) {
             break;
         }
         left_m -= step_m;
@@ -102,9 +121,19 @@ pub fn ahead_m(network: &RoadNetwork, from: OnLane, to: OnLane, route: &[LaneId]
     if from.against {
         return None;
     }
-    let (mut lane, mut route, mut way_m) = (from.lane, route, -from.s_m);
+    // The way is to where the lane starts.
+    let (mut lane, mut s_m, mut route, mut way_m) = (from.lane, from.s_m, route, -from.s_m);
     // So many lanes at most: some have next to no length.
     for _ in 0..AHEAD_LANES {
+        if let Some(beside) = beside(network, lane, route) {
+            let there_m = network.project(beside, network.lane_point(lane, s_m).position).s_m;
+            way_m += s_m - there_m;
+            (lane, s_m, route) = (beside, there_m, &route[1..]);
+            if lane == to.lane {
+                return Some(way_m + to.s_m);
+            }
+            continue;
+        }
         way_m += network.lanes[lane as usize].length_m;
         let (after, at_m) = next(network, lane, route)?;
         if route.first() == Some(&after) {
@@ -113,7 +142,7 @@ pub fn ahead_m(network: &RoadNetwork, from: OnLane, to: OnLane, route: &[LaneId]
         if after == to.lane {
             return Some(way_m + to.s_m - at_m);
         }
-        (lane, way_m) = (after, way_m - at_m);
+        (lane, s_m, way_m) = (after, at_m, way_m - at_m);
         if way_m > within_m {
             break;
         }

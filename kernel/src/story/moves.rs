@@ -1,5 +1,7 @@
 //! How somebody who plays comes on in a tick.
 
+use std::borrow::Cow;
+
 use glam::Vec2;
 
 use crate::geometry::direction;
@@ -9,11 +11,10 @@ use crate::time::TICK_S;
 
 use super::actor::StoryActor;
 use super::cues::Seen;
-use super::plan::stations_m;
 use super::script::{Action, Path, Position, RoleId};
 use super::spot::{OnLane, Spot};
 use super::state::{Change, Deed, StoryState};
-use super::{deeds, lanes, pace, relative};
+use super::{deeds, lanes, pace, plan, relative};
 
 /// A place is reached so near to it, metres.
 const REACHED_M: f32 = 1.0;
@@ -60,16 +61,29 @@ fn leaves(state: &mut StoryState, role: RoleId, was: StoryActor, seen: &Seen<'_>
     state.carries_ego &= !is_ego;
 }
 
-/// Takes a role to where a timed line is when it begins with it.
+/// Takes a role to where a line is when it begins with it.
 fn begin_line(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     let Some(number) = state.actors[role].way_by.map(|deed| deed as usize) else { return };
     let (Action::Follow(path), deed) = (&*seen.plan.deeds[number].action, &state.deeds[number]) else { return };
-    if path.timed && deed.mark.at == seen.tick {
-        let (at, _) = by_time(path, line_time_s(path, deed, seen) - TICK_S);
-        if let Some((from, to, share)) = segment(path, &deed.line, at) {
-            state.actors[role].spot.position = from.position.lerp(to.position, share);
-        }
+    if deed.mark.at != seen.tick {
+        return;
     }
+    let (at, _) = if path.timed {
+        by_time(path, line_time_s(path, deed, seen) - TICK_S)
+    } else {
+        by_way(&stations_m(number, deed, seen), deed.gone_m)
+    };
+    if let Some((from, to, share)) = segment(path, &deed.line, at) {
+        state.actors[role].spot.position = from.position.lerp(to.position, share);
+    }
+}
+
+/// Where the corners of a line are along it, metres.
+fn stations_m<'a>(number: usize, deed: &Deed, seen: &Seen<'a>) -> Cow<'a, [f32]> {
+    if deed.line.is_empty() {
+        return Cow::Borrowed(&seen.plan.deeds[number].stations_m);
+    }
+    Cow::Owned(plan::stations_m(deed.line.iter().map(|spot| Some(spot.plan()))))
 }
 
 /// The time of a timed line at the end of the tick that is computed, seconds.
@@ -137,15 +151,15 @@ fn drive_on(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) -> bool {
 
 /// Goes over to the lane beside where the way goes on there, and begins to move to its middle.
 fn change_for_way(on: &mut OnLane, actor: &mut StoryActor, seen: &Seen<'_>) {
-    let lane = &seen.network.lanes[on.lane as usize];
-    let beside = actor.route.first().copied().filter(|next| [lane.left, lane.right].contains(&Some(*next)));
-    let Some(beside) = beside.filter(|_| !on.against && actor.speed_mps > 0.0 && actor.side_by.is_none()) else {
+    if on.against || actor.speed_mps <= 0.0 || actor.side_by.is_some() {
         return;
-    };
-    let there = seen.network.project(beside, actor.spot.position);
-    actor.slip_m += there.lateral_m - on.offset_m;
-    *on = OnLane { lane: beside, s_m: there.s_m, offset_m: there.lateral_m, against: false };
-    actor.route.remove(0);
+    }
+    let before_m = on.offset_m;
+    if lanes::change(seen.network, on, &mut actor.route) {
+        let there = seen.network.project(on.lane, actor.spot.position);
+        (on.s_m, on.offset_m) = (there.s_m, there.lateral_m);
+        actor.slip_m += there.lateral_m - before_m;
+    }
 }
 
 /// Where across its lane somebody is who moves across it, metres to the left of the middle.
@@ -189,10 +203,7 @@ fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), 
         by_time(path, line_time_s(path, deed, seen))
     } else {
         deed.gone_m += speed_mps.abs() * TICK_S;
-        let line: Vec<Position> = deed.line.iter().copied().map(Position::Known).collect();
-        let own = stations_m(line.iter());
-        let stations_m: &[f32] = if own.is_empty() { &seen.plan.deeds[number].stations_m } else { &own };
-        by_way(path, stations_m, deed.gone_m)
+        by_way(&stations_m(number, deed, seen), deed.gone_m)
     };
     let line = std::mem::take(&mut state.deeds[number].line);
     let part = segment(path, &line, at);
@@ -227,48 +238,51 @@ fn follow(state: &mut StoryState, role: RoleId, (number, path): (usize, &Path), 
     }
 }
 
-/// A place between the corners of a line: as `1.25`, a quarter of the way from the second corner to the third.
-fn by_time(path: &Path, time_s: f32) -> (f32, bool) {
+/// A place on a line: the corner before it, and the share of the way from that to the next one.
+type Between = (usize, f32);
+
+/// Where on a line somebody is at a time, and whether that is its end.
+fn by_time(path: &Path, time_s: f32) -> (Between, bool) {
     let time = |k: usize| path.corners[k].1.unwrap_or(0.0);
     let last = path.corners.len() - 1;
     let next = path.corners.partition_point(|(_, at_s)| at_s.unwrap_or(0.0) <= time_s);
     match next {
-        0 => (0.0, false),
-        next if next > last => (last as f32, true),
+        0 => ((0, 0.0), false),
+        next if next > last => ((last - 1, 1.0), true),
         next => {
             let span_s = (time(next) - time(next - 1)).max(1e-6);
             let share = (time_s - time(next - 1)) / span_s;
             // Within a hundredth of a tick of the end it is there.
-            ((next - 1) as f32 + share, next == last && time(last) - time_s < 0.01 * TICK_S)
+            ((next - 1, share), next == last && time(last) - time_s < 0.01 * TICK_S)
         }
     }
 }
 
-fn by_way(path: &Path, stations_m: &[f32], gone_m: f32) -> (f32, bool) {
-    let last = path.corners.len() - 1;
+/// The same so far along it.
+fn by_way(stations_m: &[f32], gone_m: f32) -> (Between, bool) {
+    let last = stations_m.len() - 1;
     let next = stations_m.partition_point(|station_m| *station_m <= gone_m);
     if next > last {
-        return (last as f32, true);
+        return ((last - 1, 1.0), true);
     }
     let next = next.max(1);
     let span_m = (stations_m[next] - stations_m[next - 1]).max(1e-6);
-    ((next - 1) as f32 + ((gone_m - stations_m[next - 1]) / span_m).max(0.0), false)
+    ((next - 1, ((gone_m - stations_m[next - 1]) / span_m).max(0.0)), false)
 }
 
 /// The part of a line on which somebody is, and the share of it that is behind; `line` are corners that were found when it began.
-fn segment(path: &Path, line: &[Spot], at: f32) -> Option<(Spot, Spot, f32)> {
+fn segment(path: &Path, line: &[Spot], (first, share): Between) -> Option<(Spot, Spot, f32)> {
     let corner = |k: usize| match path.corners.get(k)?.0 {
         Position::Known(spot) if line.is_empty() => Some(spot),
         _ => line.get(k).copied(),
     };
-    let first = (at as usize).min(path.corners.len() - 2);
-    Some((corner(first)?, corner(first + 1)?, at - first as f32))
+    Some((corner(first)?, corner(first + 1)?, share))
 }
 
 /// The velocity on the last part of a timed line, m/s.
 fn last_mps(path: &Path, line: &[Spot]) -> Vec2 {
     let last = path.corners.len() - 1;
     let span_s = path.corners[last].1.unwrap_or(0.0) - path.corners[last - 1].1.unwrap_or(0.0);
-    let way = segment(path, line, last as f32).map_or(Vec2::ZERO, |(from, to, _)| to.plan() - from.plan());
+    let way = segment(path, line, (last - 1, 1.0)).map_or(Vec2::ZERO, |(from, to, _)| to.plan() - from.plan());
     if span_s > 1e-6 { way / span_s } else { Vec2::ZERO }
 }

@@ -73,6 +73,7 @@ pub fn set(state: &mut StoryState, role: RoleId, seen: &Seen<'_>) {
     };
     let most_mps = seen.script.cast[role].most_mps;
     state.actors[role].speed_mps = speed_mps.clamp(-most_mps, most_mps);
+    state.actors[role].ended_mps = 0.0;
     if over {
         deeds::end(state, number, Change::Ended, seen.tick);
     }
@@ -121,25 +122,32 @@ fn keeping(state: &StoryState, role: RoleId, gap: &Gap, seen: &Seen<'_>) -> (f32
     if seen.before.actors[gap.role].gone {
         return (speed_mps, true);
     }
+    let was_behind = own.forward.dot(other.middle - own.middle) >= 0.0;
     let is_behind = match gap.side {
-        GapSide::Any => own.forward.dot(other.middle - own.middle) >= 0.0,
+        GapSide::Any => was_behind,
         GapSide::Behind => true,
         GapSide::Ahead => false,
     };
+    // On the other side of it than it shall be, the gap is below zero.
+    let on_side = if is_behind == was_behind { 1.0 } else { -1.0 };
     let wanted_m = match gap.wanted {
         GapWidth::Way(metres) => metres,
         // Of who is behind, since it needs the time.
         GapWidth::Time(seconds) if is_behind => seconds * speed_mps.max(0.0),
         GapWidth::Time(seconds) => seconds * other.velocity_mps.dot(own.forward).max(0.0),
     };
-    let too_wide_m = own.distance_m(&other, gap.measure) - wanted_m;
-    let slower_mps = other.velocity_mps.dot(own.forward) - speed_mps;
-    let over = !gap.goes_on && too_wide_m.abs() < THERE_M && slower_mps.abs() < SAME_MPS;
+    let too_wide_m = own.distance_m(&other, gap.measure) * on_side - wanted_m;
+    let their_mps = other.velocity_mps.dot(own.forward);
+    let slower_mps = their_mps - speed_mps;
+    if !gap.goes_on && too_wide_m.abs() < THERE_M && slower_mps.abs() < SAME_MPS {
+        // Both go on as fast as each other.
+        return (their_mps.max(0.0), true);
+    }
     let to_m = if is_behind { too_wide_m } else { -too_wide_m };
     // So fast towards it that half of the braking that is allowed ends it there.
     let braking_mps2 = 0.5 * gap.limits.deceleration_mps2.min(gap.limits.acceleration_mps2);
     let towards_mps = (CLOSES_PER_S * to_m.abs()).min(ops::sqrt(2.0 * braking_mps2 * to_m.abs())) * to_m.signum();
-    (sped_up(speed_mps, (slower_mps + towards_mps) / SETTLES_S, gap.limits), over)
+    (sped_up(speed_mps, (slower_mps + towards_mps) / SETTLES_S, gap.limits), false)
 }
 
 /// So fast that both arrive at the same time: with an even acceleration, or with one that changes evenly where the last speed is

@@ -32,7 +32,7 @@ pub fn find(script: &mut Script, network: &RoadNetwork) -> Result<(), (usize, St
             Position::World { at, .. }
             | Position::Lane { at, .. }
             | Position::Road { at, .. }
-            | Position::Way { at, .. } => *at,
+            | Position::Route { at, .. } => *at,
             _ => return Ok(()),
         };
         if let Some(spot) = spot(place, network).map_err(|reason| (at, reason))? {
@@ -111,7 +111,7 @@ fn spot(place: &Position, network: &RoadNetwork) -> Result<Option<Spot>, String>
             };
             Ok(Some(Spot::at(network, point, ops::wrap_angle(heading_rad))))
         }
-        Position::Way { via, s_m, lane, offset_m, facing, .. } => {
+        Position::Route { via, s_m, lane, offset_m, facing, .. } => {
             on_way(network, via, *s_m, (*lane, *offset_m)).map(|found| Some(turned(found, *facing)))
         }
         Position::Known(_) | Position::Beside { .. } | Position::BesideRoad { .. } | Position::BesideLane { .. } => {
@@ -121,12 +121,7 @@ fn spot(place: &Position, network: &RoadNetwork) -> Result<Option<Spot>, String>
 }
 
 /// The place so far along a way through others, on a lane of the road there; lane 0 is the reference line.
-fn on_way(
-    network: &RoadNetwork,
-    via: &[Position],
-    s_m: f32,
-    (lane, offset_m): (Option<i32>, f32),
-) -> Result<Spot, String> {
+fn on_way(network: &RoadNetwork, via: &[Position], s_m: f32, (lane, offset_m): (i32, f32)) -> Result<Spot, String> {
     let told = |place: &Position| {
         let found = spot(place, network)?.and_then(|found| found.on);
         found.ok_or_else(|| "a place of its route is on no lane, expected roads and lanes by their ids".to_owned())
@@ -137,7 +132,6 @@ fn on_way(
         route.extend(lanes::way(network, leg[0], leg[1]).ok_or("no way leads through all places of its route")?);
     }
     let on = lanes::along(network, via[0], s_m, route);
-    let Some(lane) = lane else { return Ok(Spot::on(network, OnLane { offset_m, ..on })) };
     let here = Spot::on(network, OnLane { offset_m: 0.0, ..on });
     let (road, _) = network.lanes[on.lane as usize].name.rsplit_once('/').unwrap_or_default();
     let beside = if lane == 0 { if on_right(network, on) { -1 } else { 1 } } else { lane };

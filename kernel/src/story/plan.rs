@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use glam::Vec2;
+
 use super::script::{self, Action, Condition, Doer, ElementKind, Position, Priority, RoleId, Script, When};
 use super::state::{Change, Mark, Met, Progress, StoryState};
 
@@ -78,18 +80,31 @@ pub struct Plan {
     referred: BTreeMap<usize, Vec<Element>>,
 }
 
-/// Most elements of one name that a condition refers to.
+/// Most elements of one name that a condition refers to, and most elements and parts of them that all conditions do: they are looked
+/// at in every tick.
 const NAMESAKES: usize = 100;
+const REFERRED: usize = 100_000;
 
 /// An element by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Element {
     Act(usize),
     Group(usize),
-    /// The group that plays it, and its own number.
-    Manoeuvre(usize, usize),
+    /// The group that plays it, the first of its events and how many they are.
+    Manoeuvre(usize, usize, usize),
     Event(usize),
-    Deed(usize),
+    /// What its actors do, one deed each.
+    Action(usize, usize),
+}
+
+impl Element {
+    /// How many others tell what it has come to.
+    fn parts(&self) -> usize {
+        match self {
+            Self::Action(_, count) | Self::Manoeuvre(_, _, count) => *count,
+            Self::Act(_) | Self::Group(_) | Self::Event(_) => 1,
+        }
+    }
 }
 
 impl Plan {
@@ -123,7 +138,7 @@ impl Plan {
             let from = self.deeds.len();
             for (_, of, action) in &event.actions {
                 let stations_m: Arc<[f32]> = match action {
-                    Action::Follow(path) => stations_m(path.corners.iter().map(|(place, _)| place)).into(),
+                    Action::Follow(path) => stations_m(path.corners.iter().map(|(place, _)| known(place))).into(),
                     _ => Arc::default(),
                 };
                 let action = Arc::new(action.clone());
@@ -146,25 +161,16 @@ impl Plan {
             Element::Act(act) => state.acts[act],
             Element::Group(group) => state.groups[group],
             Element::Event(event) => state.events[event],
-            Element::Deed(deed) => state.deeds[deed].mark,
-            Element::Manoeuvre(group, manoeuvre) => self.manoeuvre(state, group, manoeuvre),
+            Element::Action(first, count) => {
+                let deeds = state.deeds[first..first + count].iter().map(|deed| deed.mark);
+                together(Mark::NEW, deeds)
+            }
+            // It has no trigger of its own: it begins with its group.
+            Element::Manoeuvre(group, first, count) => {
+                together(state.groups[group], state.events[first..first + count].iter().copied())
+            }
         };
         self.referred.get(&condition).into_iter().flatten().map(of)
-    }
-
-    /// A manoeuvre goes on as long as one of its events does, and is over when all are.
-    fn manoeuvre(&self, state: &StoryState, group: usize, manoeuvre: usize) -> Mark {
-        let events = self.groups[group].events.clone().filter(|event| self.events[*event].manoeuvre == manoeuvre);
-        let marks: Vec<Mark> = events.map(|event| state.events[event]).collect();
-        let Some(last) = marks.iter().max_by_key(|mark| mark.at).copied() else { return Mark::NEW };
-        let over = marks.iter().all(Mark::is_complete);
-        let began = marks.iter().map(|mark| mark.began).filter(|at| *at > 0).min().unwrap_or_default();
-        let change = match last.change {
-            Change::Ended | Change::Skipped | Change::Stopped if !over => Change::None,
-            change => change,
-        };
-        let progress = if over { Progress::Complete } else { Progress::Running };
-        Mark { progress: if began > 0 { progress } else { Progress::Standby }, change, began, ..last }
     }
 
     /// Finds what conditions refer to.
@@ -181,17 +187,42 @@ impl Plan {
     }
 }
 
+/// What has parts goes on as long as one of them does, and is over when all are; before they begin it is as its whole.
+fn together(whole: Mark, parts: impl Iterator<Item = Mark>) -> Mark {
+    let marks: Vec<Mark> = parts.collect();
+    let Some(last) = marks.iter().max_by_key(|mark| mark.at).copied() else { return whole };
+    let over = marks.iter().all(Mark::is_complete);
+    let begun = marks.iter().map(|mark| mark.began).chain([whole.began]);
+    let began = begun.filter(|at| *at > 0).min().unwrap_or_default();
+    let change = match last.change {
+        Change::Ended | Change::Skipped | Change::Stopped if !over => Change::None,
+        change => change,
+    };
+    let progress = match began {
+        _ if over => Progress::Complete,
+        0 => Progress::Standby,
+        _ => Progress::Running,
+    };
+    Mark { progress, change, began, ..last }
+}
+
 /// The first condition that refers to what is not there, or to too much: where the text has it, and what is wrong.
 pub fn dangling(script: &Script) -> Option<(usize, String)> {
     let elements = Elements::of(script);
     let acts = script.acts.iter().flat_map(|act| [&act.start, &act.stop]);
     let events = script.acts.iter().flat_map(|act| &act.groups).flat_map(|group| &group.events);
     let triggers = [&script.stop].into_iter().chain(acts).chain(events.map(|event| &event.start));
+    let mut referred = 0;
     triggers.flat_map(|trigger| trigger.groups.iter().flatten()).find_map(|condition| {
         let When::Element { kind, path, at, .. } = &condition.when else { return None };
-        let (what, count) = (format!("{} {path:?}", kind.name()), elements.named(*kind, path).len());
+        let named = elements.named(*kind, path);
+        let (what, count) = (format!("{} {path:?}", kind.name()), named.len());
+        referred += named.iter().map(Element::parts).sum::<usize>();
         match count {
             0 => Some((*at, format!("there is no {what}"))),
+            _ if referred > REFERRED => {
+                Some((*at, format!("expected conditions that refer to at most {REFERRED} elements and parts of them")))
+            }
             1..=NAMESAKES => None,
             _ => Some((*at, format!("there are {count} elements {what}, expected at most {NAMESAKES}"))),
         }
@@ -221,7 +252,7 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// An element, its kind, and the names of those above it and its own, from the act on.
+/// An element, its kind, and the names of those above it and its own, from the story on.
 type Named<'a> = (ElementKind, Vec<&'a str>, Element);
 
 /// All elements of a script.
@@ -229,23 +260,27 @@ fn elements(script: &Script) -> Vec<Named<'_>> {
     let (mut found, mut last) = (Vec::new(), None);
     let (mut groups, mut events, mut deeds) = (0, 0, 0);
     for (number, act) in script.acts.iter().enumerate() {
-        found.push((ElementKind::Act, vec![&*act.name], Element::Act(number)));
+        found.push((ElementKind::Act, vec![&*act.story, &*act.name], Element::Act(number)));
         for group in &act.groups {
-            let at = vec![&*act.name, &*group.name];
+            let at = vec![&*act.story, &*act.name, &*group.name];
             found.push((ElementKind::Group, at.clone(), Element::Group(groups)));
             for event in &group.events {
                 let at = [&at[..], &[&*event.manoeuvre.1]].concat();
-                let manoeuvre = Element::Manoeuvre(groups, event.manoeuvre.0);
+                let manoeuvre = (groups, event.manoeuvre.0);
                 if last.replace(manoeuvre) != Some(manoeuvre) {
-                    found.push((ElementKind::Manoeuvre, at.clone(), manoeuvre));
+                    // Its events follow each other.
+                    let count = group.events.iter().filter(|other| other.manoeuvre.0 == manoeuvre.1).count();
+                    found.push((ElementKind::Manoeuvre, at.clone(), Element::Manoeuvre(groups, events, count)));
                 }
                 let at = [&at[..], &[&*event.name]].concat();
                 found.push((ElementKind::Event, at.clone(), Element::Event(events)));
                 for (name, of, _) in &event.actions {
-                    for _ in 0..doers(group, *of).count() {
-                        found.push((ElementKind::Action, [&at[..], &[&**name]].concat(), Element::Deed(deeds)));
-                        deeds += 1;
+                    let count = doers(group, *of).count();
+                    if count > 0 {
+                        let action = Element::Action(deeds, count);
+                        found.push((ElementKind::Action, [&at[..], &[&**name]].concat(), action));
                     }
+                    deeds += count;
                 }
                 events += 1;
             }
@@ -266,12 +301,17 @@ fn doers(group: &script::Group, of: Doer) -> impl Iterator<Item = Option<RoleId>
     each.chain(one)
 }
 
+/// Where a place is, seen from above, if that is known.
+fn known(place: &Position) -> Option<Vec2> {
+    if let Position::Known(spot) = place { Some(spot.plan()) } else { None }
+}
+
 /// Where the corners of a line are along it, metres.
-pub fn stations_m<'a>(corners: impl Iterator<Item = &'a Position>) -> Vec<f32> {
+pub fn stations_m(corners: impl Iterator<Item = Option<Vec2>>) -> Vec<f32> {
     let (mut at_m, mut before) = (0.0, None);
-    let station = |place: &Position| {
-        if let Position::Known(spot) = place {
-            at_m += before.replace(spot.plan()).map_or(0.0, |before: glam::Vec2| before.distance(spot.plan()));
+    let station = |corner: Option<Vec2>| {
+        if let Some(corner) = corner {
+            at_m += before.replace(corner).map_or(0.0, |before: Vec2| before.distance(corner));
         }
         at_m
     };

@@ -47,15 +47,15 @@ pub enum Position {
         /// Where the text says so, bytes from its beginning.
         at: usize,
     },
-    /// On a way.
-    Way {
+    /// On a route.
+    Route {
         /// Places that it leads through.
         via: Vec<Position>,
         /// From the first of them on along it, metres.
         s_m: f32,
-        /// OpenDRIVE id of the lane; nothing for the lane that the way is on.
-        lane: Option<i32>,
-        /// To the left of the lane's middle, seen along the reference line, metres.
+        /// OpenDRIVE id of the lane of the road there; 0 for the reference line.
+        lane: i32,
+        /// To the left of that, seen along the reference line, metres.
         offset_m: f32,
         /// How it faces.
         facing: Facing,

@@ -56,7 +56,7 @@ fn resolved(network: &RoadNetwork, place: &Position, of: impl Fn(RoleId) -> Opti
             let offset_m = there.offset_m + offset_m * sign;
             Some(places::turned(Spot::on(network, OnLane { offset_m, ..there }), *facing))
         }
-        Position::World { .. } | Position::Lane { .. } | Position::Road { .. } | Position::Way { .. } => None,
+        Position::World { .. } | Position::Lane { .. } | Position::Road { .. } | Position::Route { .. } => None,
     }
 }
 

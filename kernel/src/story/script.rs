@@ -49,11 +49,12 @@ impl Script {
         })
     }
 
-    /// Who comes onto the map in events.
+    /// Who comes onto the map in events; the ego car is there from the beginning.
     pub fn entrances(&self) -> impl Iterator<Item = RoleId> {
+        let ego = self.ego();
         let events = self.acts.iter().flat_map(|act| &act.groups).flat_map(|group| &group.events);
-        events.flat_map(|event| &event.actions).filter_map(|(_, doer, action)| match (doer, action) {
-            (Doer::Role(role), Action::Enter(_)) => Some(*role),
+        events.flat_map(|event| &event.actions).filter_map(move |(_, doer, action)| match (doer, action) {
+            (Doer::Role(role), Action::Enter(_)) if *role != ego => Some(*role),
             _ => None,
         })
     }
@@ -82,6 +83,8 @@ pub struct Role {
 /// An act: it begins by its trigger, and its groups play at the same time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Act {
+    /// The name of its story.
+    pub story: String,
     /// Its name.
     pub name: String,
     /// Those who play together.

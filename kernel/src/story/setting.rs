@@ -47,6 +47,23 @@ pub struct Environment {
 }
 
 impl Environment {
+    /// Of another text in its place what that says of a weather, where this text's own words count in it: others may have changed it
+    /// since.
+    pub fn replaced(&self, by: &Self, weather: &Weather) -> Self {
+        let one = |told: Option<f32>, is: f32| told.is_none_or(|told| told == is);
+        let two = |told: Option<[f32; 2]>, is: [f32; 2]| told.is_none_or(|told| told == is);
+        let sun = [weather.sun_altitude_deg, weather.sun_azimuth_deg];
+        let water = [weather.wetness_pct, weather.puddles_pct];
+        Self {
+            cloudiness_pct: by.cloudiness_pct.filter(|_| one(self.cloudiness_pct, weather.cloudiness_pct)),
+            wind_pct: by.wind_pct.filter(|_| one(self.wind_pct, weather.wind_pct)),
+            sun_deg: by.sun_deg.filter(|_| two(self.sun_deg, sun)),
+            precipitation_pct: by.precipitation_pct.filter(|_| one(self.precipitation_pct, weather.precipitation_pct)),
+            water_pct: by.water_pct.filter(|_| two(self.water_pct, water)),
+            fog_density_pct: by.fog_density_pct.filter(|_| one(self.fog_density_pct, weather.fog_density_pct)),
+        }
+    }
+
     /// Changes what the text says of a weather.
     pub fn change(&self, weather: &mut Weather) {
         let set = |to: &mut f32, value: Option<f32>| *to = value.unwrap_or(*to);

@@ -77,7 +77,10 @@ impl Stage {
             let [ego, other] = [plan.ego, role].map(|role| &script.cast[role]);
             return Err(said((other.at, format!("{} and {} begin in each other", other.name, ego.name))));
         }
-        Ok(Self { script: Arc::new(script), plan: Arc::new(plan), start: start.into() })
+        let ego_at = script.cast[plan.ego].at;
+        let stage = Self { script: Arc::new(script), plan: Arc::new(plan), start: start.into() };
+        stage.ego_road(network).map_err(|reason| said((ego_at, reason)))?;
+        Ok(stage)
     }
 
     /// Where the ego car begins, and how fast it is, m/s.
@@ -194,7 +197,7 @@ impl Stage {
     pub fn waiting<'a>(&'a self, state: &'a StoryState) -> impl Iterator<Item = &'a str> + 'a {
         let groups = self.script.acts.iter().flat_map(|act| &act.groups);
         let events = groups.flat_map(|group| &group.events).zip(&state.events);
-        events.filter(|(_, mark)| mark.change == Change::None).map(|(event, _)| event.name.as_str())
+        events.filter(|(_, mark)| mark.began == 0).map(|(event, _)| event.name.as_str())
     }
 
     /// A weather as the story has changed it so far.
@@ -228,6 +231,10 @@ impl Stage {
             } else if !state.actors[role].gone {
                 moves::advance(state, role, &seen);
             }
+        }
+        // What its drivers do now is not the story's.
+        if !state.carries_ego {
+            deeds::end_all(state, plan.ego, tick);
         }
     }
 

@@ -158,7 +158,7 @@ impl World {
     /// Traffic decides from the state of the previous tick, then physics moves what is near.
     fn move_everyone(&mut self) {
         let tick = self.parts.input.tick;
-        // People notice the weather once a second.
+        // People notice the weather once a second; what a story makes of it they know at once.
         let conditions = Conditions::of(&self.weather_at(tick - tick % seconds(1)));
         let water = Water::of(&self.weather_at(tick));
         let Scratch { obstacles, near, bodies: all, .. } = &mut self.scratch;

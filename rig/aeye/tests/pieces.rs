@@ -60,8 +60,7 @@ fn pieces_come_to_what_one_process_gives() {
     let dir = tempfile::tempdir().expect("a folder");
     let root = dir.path();
     street(&root.join("street.xodr"));
-    let recipe =
-        RECIPE.replace("../street", "street").replace("seeds = 1", "seeds = 2").replace("km = 0.001", "km = 0.01");
+    let recipe = RECIPE.replace("../street", "street").replace("seeds = 1", "seeds = 2");
     fs::write(root.join("recipe.toml"), recipe).expect("writable");
     assert_eq!(experiment(root, "--out alone").0, Some(0));
 

@@ -17,6 +17,8 @@ use crate::{toml_text, words};
 
 /// Most files of catalogs of a story.
 const CATALOGS: usize = 200;
+/// Longest name in a note, characters.
+const LONGEST_NAME: usize = 40;
 
 /// An ego car that begins faster is slowed down by its drivers where the map tells no limit, km/h.
 const SOON_SLOWER_KMH: f32 = 51.0;
@@ -110,13 +112,14 @@ fn notes(story: &Story) -> Vec<String> {
     let list = |all: Vec<String>| Some(all.join(", ")).filter(|all| !all.is_empty());
     let passed = story.passed_over().iter().map(|(line, element)| format!("<{element}> (line {line})"));
     notes.extend(list(passed.collect()).map(|passed| format!("passed over: {passed}")));
-    let guessed = story.guessed().map(|(name, kind)| format!("{name} a {}", words::road_user(kind)));
+    let short = |name: &str| name.chars().filter(|c| !c.is_control()).take(LONGEST_NAME).collect::<String>();
+    let guessed = story.guessed().map(|(name, kind)| format!("{} a {}", short(name), words::road_user(kind)));
     notes.extend(
         list(guessed.collect()).map(|them| format!("of a catalog that is not there, taken by their names: {them}")),
     );
     let ego = &story.script().cast[story.script().ego()].name;
     if !ego.to_lowercase().starts_with("ego") && !ego.eq_ignore_ascii_case("hero") {
-        notes.push(format!("{ego} is taken for the ego car"));
+        notes.push(format!("{} is taken for the ego car", short(ego)));
     }
     let ego_kmh = story.ego_mps() * 3.6;
     if ego_kmh > SOON_SLOWER_KMH {
@@ -150,7 +153,7 @@ fn catalogs(path: &Path, text: &str) -> Result<Vec<(String, String)>, String> {
     for file in files {
         match files::read_text(&file, most::TEXT) {
             Ok(text) => texts.push((file.display().to_string(), text)),
-            Err(error) => say(format!("{} is passed over", sentence(&error))),
+            Err(error) => say(format!("{}; passed over", sentence(&error))),
         }
         if texts.iter().map(|(_, text)| text.len() as u64).sum::<u64>() > most::STORY {
             return Err(format!("expected catalogs of at most {} MiB in all", most::STORY >> 20));

@@ -90,3 +90,84 @@ fn a_story_is_driven_recorded_and_verified() {
         aeye(&["drive", "--headless", "--scenario", text(&story), "--max-time", "5s", "--record", "no.mcap"]);
     assert!(code != 0 && said.contains("a.xosc: line 1: <OpenSCENARIO> has no <RoadNetwork>"), "{code} {said}");
 }
+
+#[test]
+fn what_is_drawn_of_a_story_and_cannot_be_played_is_told_before_anything_is_driven() {
+    let dir = tempfile::tempdir().unwrap();
+    let (story, out) = (dir.path().join("s.xosc"), dir.path().join("out"));
+    let bundled = kernel::story::BUNDLED.iter().find(|(name, _)| *name == "leader_brakes").expect("it is bundled").1;
+    let ranged = |value: &str| {
+        let range = r#"<ConstraintGroup><ValueConstraint rule="greaterOrEqual" value="-5"/><ValueConstraint rule="lessOrEqual" value="5"/></ConstraintGroup>"#;
+        let name = format!(
+            r#"<ParameterDeclaration name="drawn" parameterType="double" value="5">{range}</ParameterDeclaration>"#
+        );
+        let text = bundled.replacen("<ParameterDeclarations>", &format!("<ParameterDeclarations>{name}"), 1);
+        let teleport = text.find("<LanePosition ").expect("somebody begins on a lane");
+        let (before, after) = text.split_at(teleport);
+        let s = after.find(" s=\"").expect("at some place") + 4;
+        let end = s + after[s..].find('"').expect("its end");
+        format!("{before}{}{value}{}", &after[..s], &after[end..])
+    };
+    for (value, said) in [
+        ("${40 + 0 * sqrt($drawn * $drawn - 4)}", "it has no finite value"),
+        ("${40 + (5 - $drawn) * 10000}", "has no lane -1 at s "),
+    ] {
+        fs::write(&story, ranged(value)).unwrap();
+        let campaign =
+            ["campaign", "--scenario", text(&story), "--vary", "8", "--checkpoint", "truth", "--out", text(&out)];
+        let (code, sentence) = aeye(&campaign);
+        assert!(code == 2 && sentence.contains("s.xosc: draw ") && sentence.contains(said), "{code} {sentence}");
+        assert!(!out.exists());
+    }
+}
+
+/// Who leaves the map and comes again is deleted and added, and does not glide.
+#[test]
+fn who_leaves_and_comes_again_does_so_in_an_exported_story() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name);
+    let all =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../kernel/stories/leader_brakes.xosc")).unwrap();
+    let name = "Leader";
+    let trigger = |after_s: f32| {
+        format!(
+            r#"<StartTrigger><ConditionGroup><Condition name="t" delay="0" conditionEdge="none"><ByValueCondition><SimulationTimeCondition value="{after_s}" rule="greaterThan"/></ByValueCondition></Condition></ConditionGroup></StartTrigger>"#
+        )
+    };
+    let entity = |what: &str, after_s: f32| {
+        format!(
+            r#"<Event name="e{after_s}" priority="parallel"><Action name="a{after_s}"><GlobalAction><EntityAction entityRef="{name}">{what}</EntityAction></GlobalAction></Action>{}</Event>"#,
+            trigger(after_s)
+        )
+    };
+    let place = r#"<AddEntityAction><Position><RelativeLanePosition entityRef="Ego" dLane="0" ds="60"/></Position></AddEntityAction>"#;
+    let events = entity("<DeleteEntityAction/>", 1.0) + &entity(place, 2.0);
+    let end = all.find("</Maneuver>").expect("it has one");
+    fs::write(path("s.xosc"), format!("{}{events}{}", &all[..end], &all[end..])).unwrap();
+    let drive = ["drive", "--headless", "--checkpoint", "truth", "--max-time", "4s", "--record"];
+    for (story, record) in [("s.xosc", "a.mcap"), ("b.xosc", "b.mcap")] {
+        let (story, record) = (path(story), path(record));
+        let (code, said) = aeye(&[drive.as_slice(), &[text(&record), "--scenario", text(&story)]].concat());
+        assert_eq!(code, 0, "{said}");
+        if record.ends_with("a.mcap") {
+            let out = path("b.xosc");
+            let (code, said) = aeye(&["export", text(&record), "--format", "openscenario", "--out", text(&out)]);
+            assert_eq!(code, 0, "{said}");
+        }
+    }
+    let others = |file: &str| -> Vec<Vec<Vec3>> {
+        let recording = Recording::open(&path(file)).unwrap();
+        let mut replayer = Replayer::new(recording.log(), recording.network().unwrap()).unwrap();
+        let scenes = (0..200).map(|tick| {
+            replayer.run_to(tick).unwrap();
+            replayer.world().scene().actors.iter().map(|actor| actor.position).collect()
+        });
+        scenes.collect()
+    };
+    let (was, is) = (others("a.mcap"), others("b.mcap"));
+    let least = was.iter().map(Vec::len).min();
+    assert_eq!(was.iter().map(Vec::len).collect::<Vec<_>>(), is.iter().map(Vec::len).collect::<Vec<_>>());
+    assert!(least < was.iter().map(Vec::len).max(), "somebody leaves");
+    let apart = was.iter().flatten().zip(is.iter().flatten()).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    assert!(apart < 0.01, "{apart} m");
+}

@@ -11,7 +11,7 @@ use super::{environment, positions, signals, speeds, vary};
 /// Most corners of a line.
 const CORNERS: usize = 100_000;
 /// As hard as who moves within a lane or to another's side accelerates across it where the file does not say, m/s².
-const CALM_MPS2: f64 = 0.5;
+const CALM_MPS2: f32 = 0.5;
 
 /// The actions in an element of a choice; none where they change nothing here.
 pub fn private(action: Element<'_>, names: &Names<'_>) -> Result<Option<Action>, StoryError> {
@@ -68,6 +68,7 @@ fn appearance(action: Element<'_>) -> Result<Option<Action>, StoryError> {
     let takes_s =
         if animation.given("animationDuration")?.is_some() { animation.amount("animationDuration")? } else { 1.0 };
     let takes_ticks = ticks(takes_s.min(1e3)).max(1) as u32;
+    action.is_used();
     Ok(Some(Action::Door(Door { is_left: *is_left, open, takes_ticks })))
 }
 
@@ -80,7 +81,11 @@ fn activates(action: Element<'_>) -> Result<bool, StoryError> {
     };
     let Some(activation) = activation else { return Ok(false) };
     let is_on = |domain: &str| Ok::<_, StoryError>(activation.switch(domain)?.unwrap_or(false));
-    Ok(is_on("longitudinal")? || is_on("lateral")?)
+    let is_on = is_on("longitudinal")? || is_on("lateral")?;
+    if is_on {
+        action.is_used();
+    }
+    Ok(is_on)
 }
 
 /// A global action, and by whom it is done.
@@ -120,7 +125,7 @@ fn lane_offset(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryEr
     action.switch("continuous")?;
     let dynamics_of = action.need("LaneOffsetActionDynamics")?;
     let shape = dynamics_of.word("dynamicsShape", SHAPES)?;
-    let most_mps2 = dynamics_of.number_given("maxLateralAcc")?;
+    let most_mps2 = speeds::limit(dynamics_of, "maxLateralAcc", CALM_MPS2)?;
     let target = action.need("LaneOffsetTarget")?.choice()?;
     let (offset_m, role) = match target.tag() {
         "AbsoluteTargetLaneOffset" => (target.need_metres("value")?, None),
@@ -129,7 +134,7 @@ fn lane_offset(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryEr
     };
     // So fast that its greatest acceleration is the one of the file, or of a calm driver; `Takes::Time` cannot say it before
     // the way is known.
-    let takes = Takes::Rate(most_mps2.unwrap_or(CALM_MPS2).max(1e-3) as f32);
+    let takes = Takes::Rate(most_mps2);
     Ok(Action::LaneOffset(Dynamics { shape, takes }, offset_m, role))
 }
 
@@ -137,17 +142,16 @@ fn abreast(action: Element<'_>, names: &Names<'_>) -> Result<Action, StoryError>
     action.switch("continuous")?;
     action.given("coordinateSystem")?;
     let sides = [("any", None), ("leftToReferencedEntity", Some(true)), ("rightToReferencedEntity", Some(false))];
-    let most_mps2 = match action.child("DynamicConstraints") {
-        Some(constraints) => constraints.number_given("maxAcceleration")?,
-        None => None,
-    };
+    let constraints = action.child("DynamicConstraints");
+    let most_mps2 = constraints.map_or(Ok(CALM_MPS2), |given| speeds::limit(given, "maxAcceleration", CALM_MPS2))?;
+    let wanted_m = if action.given("distance")?.is_some() { Some(action.metres("distance")?.abs()) } else { None };
     Ok(Action::Abreast(Abreast {
         role: names.role(action, "entityRef")?,
         // On which side it is its sign does not say: `displacement` does.
-        wanted_m: action.number_given("distance")?.map(|distance_m| distance_m.abs() as f32),
+        wanted_m,
         free: action.switch("freespace")?.unwrap_or(false),
         is_left: action.word_given("displacement", &sides)?.flatten(),
-        most_mps2: most_mps2.unwrap_or(CALM_MPS2).max(1e-3) as f32,
+        most_mps2,
     }))
 }
 

@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use roxmltree::Node;
+use roxmltree::{Document, Node};
 
-use super::document::{self, BYTES, Shared, line_of};
+use super::document::{self, BYTES, Shared, line_of, shown};
 use crate::story::error::StoryError;
 
 /// How deep entries may refer to others.
@@ -65,7 +65,21 @@ pub fn put_in(text: &str, catalogs: &[(String, String)]) -> Result<String, Story
         let Some(next) = once(&text, &entries, broken.as_deref().unwrap_or_default())? else { return Ok(text) };
         text = next;
     }
-    Err(StoryError::at(1, format!("entries of its catalogs refer to each other more than {DEPTH} times")))
+    let document = document::parse(&text)?;
+    let first = references(&document).next().unwrap_or(document.root_element());
+    let name = shown(first.attribute("entryName").unwrap_or_default());
+    let reason =
+        format!("entries of its catalogs refer to each other more than {DEPTH} times, {name} the last of them");
+    Err(StoryError::at(line_of(first), reason))
+}
+
+/// The references of a text that are read; what is in one goes with it.
+fn references<'a>(document: &'a Document<'a>) -> impl Iterator<Item = Node<'a, 'a>> {
+    let is_reference = |n: &Node<'_, '_>| n.has_tag_name("CatalogReference");
+    let is_read = move |n: &Node<'_, '_>| {
+        !n.ancestors().skip(1).any(|above| UNREAD.contains(&above.tag_name().name()) || is_reference(&above))
+    };
+    document.descendants().filter(is_reference).filter(is_read)
 }
 
 /// Puts the entries of all references in; nothing where there is none.
@@ -73,12 +87,7 @@ fn once(text: &str, entries: &Entries<'_>, broken: &str) -> Result<Option<String
     let document = document::parse(text)?;
     let shared = Shared::of(&document);
     let (mut edits, mut bytes) = (Vec::new(), text.len());
-    let is_reference = |n: &Node<'_, '_>| n.has_tag_name("CatalogReference");
-    // What is in one that is replaced goes with it.
-    let is_read = |n: &Node<'_, '_>| {
-        !n.ancestors().skip(1).any(|above| UNREAD.contains(&above.tag_name().name()) || is_reference(&above))
-    };
-    for reference in document.descendants().filter(is_reference).filter(is_read) {
+    for reference in references(&document) {
         let named = |name: &str| {
             let text = reference.attribute(name).unwrap_or_default();
             shared.value(reference, text).unwrap_or_else(|_| text.to_owned())
@@ -90,15 +99,17 @@ fn once(text: &str, entries: &Entries<'_>, broken: &str) -> Result<Option<String
                     let most = format!("expected at most {} MiB with the entries of its catalogs", BYTES >> 20);
                     StoryError::at(line_of(reference), most)
                 };
-                let put = put(*found, &assigned(reference), BYTES.saturating_sub(bytes)).ok_or_else(too_much)?;
-                bytes += put.len();
+                // Declarations that are not put in are read all the same.
+                let read = found.range().len();
+                let left = BYTES.saturating_sub(bytes).checked_sub(read).ok_or_else(too_much)?;
+                let put = put(*found, &assigned(reference), left + read).ok_or_else(too_much)?;
+                bytes += put.len().max(read);
                 edits.push((reference.range(), put));
             }
             None if reference.parent_element().is_some_and(|n| n.has_tag_name("ScenarioObject")) => {}
             None => {
-                let shown = |text: &str| -> String { text.chars().filter(|c| !c.is_control()).take(40).collect() };
                 let reason = format!(
-                    "<CatalogReference> names {:?} of the catalog {:?}, which is in none of the files of <CatalogLocations>{broken}",
+                    "<CatalogReference> names {} of the catalog {}, which is in none of the files of <CatalogLocations>{broken}",
                     shown(&entry),
                     shown(&catalog)
                 );

@@ -108,7 +108,7 @@ pub const ELEMENTS: &[Row] = &[
     ("FromRoadCoordinates", Yes, ""),
     ("Gear", No, ""),
     ("GeoPosition", No, ""),
-    ("GlobalAction", Partly, "DeleteEntityAction, EnvironmentAction, TrafficSignalAction"),
+    ("GlobalAction", Partly, "AddEntityAction, DeleteEntityAction, EnvironmentAction, TrafficSignalAction"),
     ("InRoutePosition", Yes, ""),
     ("InfrastructureAction", Yes, ""),
     ("Init", Yes, ""),

@@ -20,8 +20,9 @@ const PARTS: usize = 10_000;
 const ATTRIBUTES: usize = 64;
 const NAMESPACES: usize = 32;
 const DEPTH: usize = 100;
-/// How many times values of parameters may name others.
+/// How many times values of parameters may name others, and the longest one, bytes: it is copied wherever it is named.
 const REFERENCES: usize = 8;
+const VALUE: usize = 4096;
 
 /// What all elements share.
 pub struct Shared {
@@ -30,6 +31,8 @@ pub struct Shared {
     /// Those that are known already.
     values: RefCell<BTreeMap<(usize, String), String>>,
     read: RefCell<BTreeSet<usize>>,
+    /// Those that are passed over as a rule and yet changed something.
+    used: RefCell<BTreeSet<usize>>,
     /// What is still left of [`PARTS`].
     parts: Cell<usize>,
 }
@@ -131,7 +134,8 @@ impl Shared {
                 parameters.entry(owner.id().get_usize()).or_default().insert(name, value.to_owned());
             }
         }
-        Self { parameters, values: RefCell::default(), read: RefCell::default(), parts: Cell::new(PARTS) }
+        let (values, read, used) = Default::default();
+        Self { parameters, values, read, used, parts: Cell::new(PARTS) }
     }
 
     /// The text of an attribute with the values of parameters for it, as they are in an element.
@@ -148,6 +152,9 @@ impl Shared {
             let declared = |at: &Node<'_, '_>| self.parameters.get(&at.id().get_usize()).and_then(|all| all.get(name));
             let Some(owner) = node.ancestors().find(|at| declared(at).is_some()) else { return Ok(None) };
             let value = declared(&owner).map_or("", String::as_str);
+            if value.len() > VALUE {
+                return Err(format!("expected a parameter of at most {VALUE} bytes, but it has {}", value.len()));
+            }
             let key = (owner.id().get_usize(), name.to_owned());
             if let Some(known) = self.values.borrow().get(&key) {
                 return Ok(Some(known.clone()));
@@ -173,7 +180,7 @@ impl Shared {
                 Some(Support::No) => return Err(refused(format!("<{tag}> is not supported"))),
                 Some(Support::Ignored) => {
                     // Its catalogs were put in.
-                    if tag == "CatalogLocations" {
+                    if tag == "CatalogLocations" || self.used.borrow().contains(&node.id().get_usize()) {
                         continue;
                     }
                     let first = passed.entry(tag).or_insert(node);
@@ -255,6 +262,11 @@ impl<'a> Element<'a> {
         self.metres(name)
     }
 
+    /// It changes something, though elements of its name are passed over as a rule.
+    pub fn is_used(&self) {
+        self.shared.used.borrow_mut().insert(self.node.id().get_usize());
+    }
+
     /// A refusal at its line.
     pub fn wrong(&self, reason: impl Into<String>) -> StoryError {
         StoryError::at(line_of(self.node), reason.into())
@@ -304,13 +316,13 @@ impl<'a> Element<'a> {
         value.map(Some).map_err(|why| self.wrong(format!("{name} of <{}> is {}: {why}", self.tag(), shown(text))))
     }
 
-    /// The value of the parameter that an attribute names; nothing where there is none of that name.
+    /// The value of the parameter that an attribute names; nothing where it names none.
     pub fn parameter(&self, attribute: &str) -> Result<Option<String>, StoryError> {
         let missing = || self.wrong(format!("<{}> has no {attribute}", self.tag()));
         let name = self.node.attribute(attribute).ok_or_else(missing)?.trim().trim_start_matches('$');
-        let is_declared = self.shared.parameters.values().any(|all| all.contains_key(name));
-        let value = || self.shared.value(self.node, &format!("${name}")).map_err(|why| self.wrong(why));
-        is_declared.then(value).transpose()
+        let wrong = |why: String| self.wrong(format!("{attribute} of <{}> is {}: {why}", self.tag(), shown(name)));
+        let value = || self.shared.value(self.node, &format!("${name}")).map_err(wrong);
+        (!name.is_empty()).then(value).transpose()
     }
 
     /// An attribute that must be there.

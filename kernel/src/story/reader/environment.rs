@@ -77,7 +77,9 @@ fn weather(weather: Element<'_>, found: &mut Environment) -> Result<(), StoryErr
     found.cloudiness_pct = oktas.or(weather.word_given("cloudState", CLOUDS)?);
     if let Some(sun) = weather.child("Sun") {
         let degrees = |rad: f32| rad * 180.0 / PI;
-        let (elevation_rad, azimuth_rad) = (sun.float("elevation")?, sun.float("azimuth")?);
+        // However often it goes round.
+        let azimuth_rad = libm::fmod(sun.number("azimuth")?, core::f64::consts::TAU) as f32;
+        let elevation_rad = sun.float("elevation")?;
         // The standard counts clockwise from north.
         let azimuth_deg = degrees(ops::wrap_angle(PI / 2.0 - azimuth_rad));
         let azimuth_deg = if azimuth_deg < 0.0 { azimuth_deg + 360.0 } else { azimuth_deg };

@@ -99,11 +99,13 @@ fn on_route(place: Element<'_>, names: &Names<'_>) -> Result<Position, StoryErro
     let via = waypoints(place.need("RouteRef")?.need("Route")?, names)?;
     let within = place.need("InRoutePosition")?.choice()?;
     let (lane, offset_m) = match within.tag() {
-        "FromLaneCoordinates" => (Some(within.whole("laneId")?), within.metres("laneOffset")?),
-        "FromRoadCoordinates" => (Some(0), within.need_metres("t")?),
+        "FromLaneCoordinates" => (within.whole("laneId")?, within.metres("laneOffset")?),
+        "FromRoadCoordinates" => (0, within.need_metres("t")?),
         _ => return Err(within.unsupported()),
     };
-    Ok(Position::Way { via, s_m: within.amount("pathS")?, lane, offset_m, facing, at: place.begins() })
+    within.amount("pathS")?;
+    let (s_m, offset_m) = (within.metres("pathS")?, names.left as f32 * offset_m);
+    Ok(Position::Route { via, s_m, lane, offset_m, facing, at: place.begins() })
 }
 
 /// Whether a place says how who is there faces, other than as traffic, the road or the role does.
@@ -113,7 +115,7 @@ pub fn says_heading(place: &Position) -> bool {
         Position::Known(_) => false,
         Position::Lane { facing, .. }
         | Position::Road { facing, .. }
-        | Position::Way { facing, .. }
+        | Position::Route { facing, .. }
         | Position::Beside { facing, .. }
         | Position::BesideRoad { facing, .. }
         | Position::BesideLane { facing, .. } => *facing != Facing::Relative(0.0),

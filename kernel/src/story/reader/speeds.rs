@@ -58,20 +58,22 @@ pub fn profile(action: Element<'_>) -> Result<Action, StoryError> {
 /// What `<DynamicConstraints>` says; rates of change of acceleration are not kept.
 fn limits(action: Element<'_>) -> Result<Limits, StoryError> {
     let Some(constraints) = action.child("DynamicConstraints") else { return Ok(USUAL) };
-    let or = |name: &str, usual: f32| {
-        let given = constraints.number_given(name)?.map(|value| value as f32);
-        match given {
-            Some(value) if value <= 0.0 => {
-                Err(constraints.wrong(format!("{name} of <DynamicConstraints> is {value}, expected a number above 0")))
-            }
-            given => Ok(given.map_or(usual, |value| value.min(1e3))),
-        }
-    };
     Ok(Limits {
-        acceleration_mps2: or("maxAcceleration", USUAL.acceleration_mps2)?,
-        deceleration_mps2: or("maxDeceleration", USUAL.deceleration_mps2)?,
-        most_mps: or("maxSpeed", USUAL.most_mps)?,
+        acceleration_mps2: limit(constraints, "maxAcceleration", USUAL.acceleration_mps2)?,
+        deceleration_mps2: limit(constraints, "maxDeceleration", USUAL.deceleration_mps2)?,
+        most_mps: limit(constraints, "maxSpeed", USUAL.most_mps)?,
     })
+}
+
+/// A limit by its name, or the usual one.
+pub fn limit(of: Element<'_>, name: &str, usual: f32) -> Result<f32, StoryError> {
+    let given = of.number_given(name)?.map(|value| value as f32);
+    match given {
+        Some(value) if value <= 0.0 => {
+            Err(of.wrong(format!("{name} of <{}> is {value}, expected a number above 0", of.tag())))
+        }
+        given => Ok(given.map_or(usual, |value| value.min(1e3))),
+    }
 }
 
 /// A gap that is kept.

@@ -2,7 +2,7 @@
 
 use crate::story::error::StoryError;
 use crate::story::script::{
-    Act, Action, Doer, Environment, Event, Group, Light, Position, Priority, RoleId, Shape, Takes, Trigger,
+    Act, Action, Doer, Environment, Event, Group, Light, Position, Priority, RoleId, Shape, SpeedTarget, Takes, Trigger,
 };
 
 use super::document::Element;
@@ -34,7 +34,7 @@ impl Beginning {
         self.actions = at_once;
         let groups: Vec<Group> = lasting.into_iter().map(opening).collect();
         let (start, stop) = (Trigger::default(), Trigger::default());
-        let act = (!groups.is_empty()).then(|| Act { name: String::new(), groups, start, stop });
+        let act = (!groups.is_empty()).then(|| Act { story: String::new(), name: String::new(), groups, start, stop });
         (self, act)
     }
 }
@@ -42,6 +42,7 @@ impl Beginning {
 /// Whether an action takes time.
 fn lasts(action: &Action) -> bool {
     match action {
+        Action::Speed(_, SpeedTarget::Faster(.., true) | SpeedTarget::Times(.., true)) => true,
         Action::Speed(dynamics, _) => {
             let none = matches!(dynamics.takes, Takes::Time(takes) | Takes::Distance(takes) if takes <= 0.0);
             dynamics.shape != Shape::Step && !none
@@ -81,8 +82,9 @@ pub fn read(board: Element<'_>, names: &Names<'_>) -> Result<Board, StoryError> 
     let mut acts: Vec<Act> = opening.into_iter().collect();
     for story in board.all("Story") {
         vary::pass_parameters(story)?;
+        let name = story.given("name")?.unwrap_or_default();
         for act in story.all("Act") {
-            acts.push(self::act(act, names)?);
+            acts.push(Act { story: name.clone(), ..self::act(act, names)? });
         }
     }
     Ok(Board { init, acts, stop: conditions::trigger(board.child("StopTrigger"), names)? })
@@ -104,8 +106,10 @@ fn init(actions: Element<'_>, names: &Names<'_>) -> Result<Beginning, StoryError
     for private in actions.all("Private") {
         let role = names.role(private, "entityRef")?;
         for action in private.all("PrivateAction") {
-            action.spend(1)?;
-            init.actions.extend(actions::private(action, names)?.map(|action| (role, action)));
+            let read = actions::private(action, names)?;
+            // What takes time is a group and an event of its own.
+            action.spend(read.as_ref().map_or(1, |action| if lasts(action) { 2 + parts(action) } else { 1 }))?;
+            init.actions.extend(read.map(|action| (role, action)));
         }
     }
     let is_placed = |role: RoleId| {
@@ -128,6 +132,7 @@ fn act(act: Element<'_>, names: &Names<'_>) -> Result<Act, StoryError> {
         groups.push(self::group(group, names)?);
     }
     Ok(Act {
+        story: String::new(),
         name: act.given("name")?.unwrap_or_default(),
         groups,
         start: conditions::trigger(act.child("StartTrigger"), names)?,

@@ -56,8 +56,7 @@ pub fn with_shares(text: &str, share: impl Fn(usize) -> f32) -> Option<String> {
         let Ok(Some([low, high])) = range(parameter) else { continue };
         // Rounding may carry the sum beyond the end.
         let value = (low + (high - low) * share(number)).min(high);
-        let is_whole = parameter.attribute("parameterType").is_some_and(|of| WHOLE.contains(&of));
-        let value = if is_whole { ops::round(value) } else { value };
+        let value = if is_whole(parameter) { ops::round(value) } else { value };
         values.push((parameter.attribute_node("value")?.range_value(), value.to_string()));
     }
     let mut varied = text.to_owned();
@@ -70,7 +69,7 @@ pub fn with_shares(text: &str, share: impl Fn(usize) -> f32) -> Option<String> {
 /// From where to where the first group of constraints lets a parameter be that is a number; it needs both ends, and the value
 /// without a draw lies between them.
 fn range(parameter: Node<'_, '_>) -> Result<Option<[f32; 2]>, StoryError> {
-    let is_number = parameter.attribute("parameterType").is_some_and(|of| of == "double" || WHOLE.contains(&of));
+    let is_number = parameter.attribute("parameterType") == Some("double") || is_whole(parameter);
     let group = parameter.children().find(|n| n.has_tag_name("ConstraintGroup")).filter(|_| is_number);
     let Some(group) = group else { return Ok(None) };
     let (mut low, mut high) = (None, None);
@@ -92,6 +91,7 @@ fn range(parameter: Node<'_, '_>) -> Result<Option<[f32; 2]>, StoryError> {
         end.get_or_insert(number(bound)?);
     }
     let (Some(low), Some(high)) = (low, high) else { return Ok(None) };
+    let (low, high) = if is_whole(parameter) { (low.ceil(), high.floor()) } else { (low, high) };
     let wrong = |reason: String| Err(StoryError::at(line_of(parameter), reason));
     if low > high {
         return wrong(format!("no number is from {low} to {high}, as <ConstraintGroup> asks for"));
@@ -100,6 +100,10 @@ fn range(parameter: Node<'_, '_>) -> Result<Option<[f32; 2]>, StoryError> {
         value if (low..=high).contains(&value) => Ok(Some([low, high])),
         value => wrong(format!("value of <ParameterDeclaration> is {value}, expected one from {low} to {high}")),
     }
+}
+
+fn is_whole(parameter: Node<'_, '_>) -> bool {
+    parameter.attribute("parameterType").is_some_and(|of| WHOLE.contains(&of))
 }
 
 fn number(of: Node<'_, '_>) -> Result<f32, StoryError> {

@@ -136,4 +136,18 @@ fn events_that_did_not_begin_are_told() {
         go_on(&mut world, seconds);
         assert_eq!(world.waiting_events().collect::<Vec<_>>(), expected);
     }
+    // Nor does what ends with its act begin.
+    let text = text(&(begins("Ego", -2, 500.0, 0.0) + &begins("Other", -1, 100.0, 10.0)), &slow("never", 9.0));
+    let act = text.rfind("</Act>").expect("it has one");
+    let stops = format!("<StopTrigger>{}</StopTrigger>", after(1.0));
+    let mut world = self::world(&(text[..act].to_owned() + &stops + &text[act..]));
+    go_on(&mut world, 2.0);
+    assert_eq!(world.waiting_events().collect::<Vec<_>>(), ["never"]);
+}
+
+#[test]
+fn parameters_that_are_not_declared_are_refused() {
+    let events = event("e", &speed("step", 0.0, "time", 0.0), &parameter("quick", "20", "equalTo"));
+    let error = Story::read(&text(&begins("Ego", -2, 500.0, 0.0), &events)).expect_err("there is none").to_string();
+    assert!(error.contains("parameterRef of <ParameterCondition> is \"quick\": "), "{error}");
 }

@@ -2,6 +2,7 @@
 
 mod actions;
 mod conditions;
+mod interruptions;
 mod library;
 mod lights;
 mod reading;

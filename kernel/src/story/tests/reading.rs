@@ -177,6 +177,101 @@ fn parameters_with_ranges_are_drawn_by_seed() {
 }
 
 #[test]
+fn what_a_scenario_says_otherwise_than_its_story_is_not_drawn() {
+    let declared = r#"<ParameterDeclaration name="fast" parameterType="double" value="20"/>"#;
+    let ranged = r#"<ParameterDeclaration name="fast" parameterType="double" value="22"><ConstraintGroup>
+<ValueConstraint rule="greaterOrEqual" value="16"/><ValueConstraint rule="lessOrEqual" value="24"/></ConstraintGroup></ParameterDeclaration>"#;
+    let weather = r#"<GlobalAction><EnvironmentAction><Environment name="e"><Weather cloudState="free">
+<Precipitation precipitationType="rain" precipitationIntensity="$fast"/></Weather></Environment></EnvironmentAction></GlobalAction>"#;
+    let ego = begins("Ego", -2, 500.0, 0.0).replace(r#"Speed value="0""#, r#"Speed value="$fast""#);
+    let text = text(&(weather.to_owned() + &ego + &begins("Other", -1, 100.0, 10.0)), "").replace(declared, ranged);
+    let told = scenario(&text);
+    let mut played = Scenario::default_for("road", 1);
+    played.play((**told.story.as_ref().expect("it has one")).clone());
+    assert!((played.rules.max_speed_kmh - 79.2).abs() < 0.01, "{:?}", played.rules);
+    let drawn = |scenario: &Scenario, seed: u64| {
+        let mut scenario = scenario.clone();
+        scenario.vary(seed).expect("it plays");
+        (scenario.rules.max_speed_kmh, scenario.weather.precipitation_pct)
+    };
+    let mut speeds: Vec<u32> = (0..20).map(|seed| drawn(&played, seed).0 as u32).collect();
+    speeds.sort_unstable();
+    assert!(speeds[0] < 65 && speeds[19] > 79, "{speeds:?}");
+    assert_ne!(drawn(&played, 1).1, played.weather.precipitation_pct);
+    let mut said = played.clone();
+    (said.rules.max_speed_kmh, said.weather.precipitation_pct) = (60.0, 7.0);
+    assert!((0..20).all(|seed| drawn(&said, seed) == (60.0, 7.0)));
+}
+
+#[test]
+fn whole_numbers_are_drawn_within_their_range() {
+    let declared = r#"<ParameterDeclaration name="fast" parameterType="double" value="20"/>"#;
+    let ranged = |low: &str, high: &str| {
+        format!(
+            r#"<ParameterDeclaration name="fast" parameterType="integer" value="1"><ConstraintGroup>
+<ValueConstraint rule="greaterOrEqual" value="{low}"/><ValueConstraint rule="lessOrEqual" value="{high}"/></ConstraintGroup></ParameterDeclaration>"#
+        )
+    };
+    let plain = text(&begins("Other", -1, 100.0, 10.0), "");
+    let story = Story::read(&plain.replace(declared, &ranged("-1.6", "1.6"))).expect("it is a story");
+    let mut drawn: Vec<f64> = (0..50).map(|seed| story.varied(seed).expect("it plays").drawn()[0].1).collect();
+    drawn.sort_by(f64::total_cmp);
+    drawn.dedup();
+    assert_eq!(drawn, [-1.0, 0.0, 1.0]);
+    let error = Story::read(&plain.replace(declared, &ranged("0.2", "0.8"))).expect_err("none is between").to_string();
+    assert!(error.contains("no number is from 1 to 0"), "{error}");
+}
+
+#[test]
+fn entries_of_catalogs_come_to_no_more_than_a_text_may_have() {
+    let declared: String = (0..12_000).map(|k| format!(r#"<ParameterDeclaration name="p{k}" value="1"/>"#)).collect();
+    let catalog = format!(
+        r#"<OpenSCENARIO><Catalog name="V"><Vehicle name="v"><ParameterDeclarations>{declared}</ParameterDeclarations></Vehicle>
+<Route name="r"><CatalogReference catalogName="V" entryName="r"/></Route></Catalog></OpenSCENARIO>"#
+    );
+    let catalogs = [("v.xosc".to_owned(), catalog)];
+    let plain = text(&begins("Other", -1, 100.0, 10.0), "");
+    let with = |entry: &str, times: usize| {
+        let references = format!("\n<CatalogReference catalogName=\"V\" entryName=\"{entry}\"/>").repeat(times);
+        Story::with_catalogs(&plain.replace("</Entities>", &format!("{references}</Entities>")), &catalogs)
+    };
+    assert!(with("v", 1).is_ok());
+    let error = with("v", 50_000).expect_err("it is too much").to_string();
+    assert!(error.contains("expected at most 16 MiB with the entries of its catalogs"), "{error}");
+    let line = plain[..plain.find("</Entities>").expect("it has some")].lines().count() + 2;
+    let error = with("r", 1).expect_err("it has no end").to_string();
+    assert!(error.starts_with(&format!("line {line}: ")) && error.contains("\"r\" the last of them"), "{error}");
+}
+
+#[test]
+fn the_sun_may_have_gone_round_often() {
+    for turns in [0.0, 1.0, -3.0, 1.5e8] {
+        let azimuth = 1.0 + turns * core::f64::consts::TAU;
+        let sun = format!(
+            r#"<GlobalAction><EnvironmentAction><Environment name="e"><Weather><Sun elevation="0.5" azimuth="{azimuth}"/></Weather>
+</Environment></EnvironmentAction></GlobalAction>"#
+        );
+        let story = Story::read(&text(&(sun + &begins("Other", -1, 100.0, 10.0)), "")).expect("it is a story");
+        let [_, azimuth_deg] = story.script().environment.sun_deg.expect("it is told");
+        assert!((azimuth_deg - 32.704).abs() < 0.01, "{turns}: {azimuth_deg}");
+    }
+}
+
+#[test]
+fn what_changes_something_is_not_said_to_be_passed_over() {
+    let door = r#"<PrivateAction><AppearanceAction><AnimationAction loop="false"><AnimationType><ComponentAnimation>
+<VehicleComponent vehicleComponentType="doorFrontLeft"/></ComponentAnimation></AnimationType><AnimationState state="1"/>
+</AnimationAction></AppearanceAction></PrivateAction>"#;
+    let lights = r#"<PrivateAction><AppearanceAction><LightStateAction/></AppearanceAction></PrivateAction>"#;
+    let passed = |action: &str| {
+        let text = text(&begins("Other", -1, 100.0, 10.0), &event("e", action, &after(1.0)));
+        let story = Story::read(&text).unwrap_or_else(|error| panic!("{error}"));
+        story.passed_over().iter().any(|(_, tag)| tag == "AppearanceAction")
+    };
+    assert!(passed(lights) && !passed(door));
+}
+
+#[test]
 fn bounds_that_are_no_numbers_or_leave_none_are_refused() {
     let plain = text(&begins("Other", -1, 100.0, 10.0), "");
     let declared = r#"<ParameterDeclaration name="fast" parameterType="double" value="20"/>"#;
@@ -218,6 +313,13 @@ fn hostile_texts_are_refused_soon() {
         r#"<EntityRef entityRef="Other"/></Actors>"#,
         r#"<EntityRef entityRef="Other"/><EntityRef entityRef="Other"/></Actors>"#,
     );
+    let long = format!(r#"value="{}""#, "x".repeat(5000));
+    let named = text(&init, "").replace(r#"value="20""#, &long).replace("name=\"act\"", "name=\"$fast\"");
+    let corner = r#"<Vertex><Position><RelativeObjectPosition entityRef="Ego" dx="10" dy="0"/></Position></Vertex>"#
+        .repeat(10_000);
+    let line = format!(r#"<Private entityRef="Other">{}</Private>"#, super::actions::follow("<None/>", &corner));
+    let waits = event("e", "<UserDefinedAction/>", &super::ways::told("maneuver", "manoeuvre", "completeState"));
+    let waits = waits.replace("<Action ", "<!--").replace("</Action>", "-->").repeat(1000);
     for (text, said) in [
         (deep, "expected at most 100 elements in each other"),
         (text(&init, &events.repeat(60_000)), "expected at most 10000 acts"),
@@ -227,6 +329,9 @@ fn hostile_texts_are_refused_soon() {
         ("x".repeat(17 << 20), "expected at most 16 MiB"),
         (text(&far, ""), "ds of <RelativeLanePosition> is \"1000000000\", expected metres"),
         (twice, "<Actors> names \"Other\" twice"),
+        (named, "expected a parameter of at most 4096 bytes, but it has 5000"),
+        (text(&(init.clone() + &line), ""), "expected at most 10000 acts"),
+        (text(&init, &waits), "expected conditions that refer to at most 100000 elements and parts of them"),
     ] {
         let error = Story::read(&text).expect_err(said).to_string();
         assert!(error.starts_with("line ") && error.contains(said) && error.len() < 500, "{said}: {error}");

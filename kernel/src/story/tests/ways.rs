@@ -4,14 +4,14 @@ use super::actions::{follow, position};
 use super::*;
 use crate::story::FIRST_STORY_ID;
 
-fn acquire(lane: i32, s_m: f32) -> String {
+pub fn acquire(lane: i32, s_m: f32) -> String {
     format!(
         r#"<PrivateAction><RoutingAction><AcquirePositionAction><Position>
 <LanePosition roadId="7" laneId="{lane}" s="{s_m}"/></Position></AcquirePositionAction></RoutingAction></PrivateAction>"#
     )
 }
 
-fn lane_change(target: &str, seconds: f32) -> String {
+pub fn lane_change(target: &str, seconds: f32) -> String {
     format!(
         r#"<PrivateAction><LateralAction><LaneChangeAction><LaneChangeActionDynamics dynamicsShape="linear" value="{seconds}"
 dynamicsDimension="time"/><LaneChangeTarget>{target}</LaneChangeTarget></LaneChangeAction></LateralAction></PrivateAction>"#
@@ -19,7 +19,7 @@ dynamicsDimension="time"/><LaneChangeTarget>{target}</LaneChangeTarget></LaneCha
 }
 
 /// A condition of a state of an element.
-fn told(kind: &str, name: &str, state: &str) -> String {
+pub fn told(kind: &str, name: &str, state: &str) -> String {
     format!(
         r#"<ConditionGroup><Condition name="" delay="0" conditionEdge="none"><ByValueCondition>
 <StoryboardElementStateCondition storyboardElementType="{kind}" storyboardElementRef="{name}" state="{state}"/>
@@ -27,11 +27,11 @@ fn told(kind: &str, name: &str, state: &str) -> String {
     )
 }
 
-const DELETE: &str =
+pub const DELETE: &str =
     r#"<GlobalAction><EntityAction entityRef="Other"><DeleteEntityAction/></EntityAction></GlobalAction>"#;
 
 /// Where somebody is as those who play see it.
-fn place(world: &World) -> [f32; 2] {
+pub fn place(world: &World) -> [f32; 2] {
     other(world).position.truncate().to_array()
 }
 
@@ -220,7 +220,7 @@ fn what_conditions_refer_to_is_there() {
 }
 
 /// A route over lane 1 on the right and then the one beside it.
-const ROUTE: &str = r#"<Route name="way" closed="false">
+pub const ROUTE: &str = r#"<Route name="way" closed="false">
 <Waypoint routeStrategy="shortest"><Position><LanePosition roadId="7" laneId="-1" s="50"/></Position></Waypoint>
 <Waypoint routeStrategy="shortest"><Position><LanePosition roadId="7" laneId="-2" s="400"/></Position></Waypoint></Route>"#;
 

@@ -9,8 +9,8 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
 
-use super::plan::Plan;
-use super::until::Goal;
+use super::plan::{Plan, seed_of};
+use super::until::{Goal, Until};
 
 /// What is driven, and until when.
 #[derive(Clone, Debug)]
@@ -64,11 +64,25 @@ pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     if let Some(file) = &file {
         maps.iter().try_for_each(|map| file.check_start(map))?;
     }
+    let Options { vary, goal, pedestrians, hazards, weather, run_seconds, seed, .. } = *options;
+    let (scenario, out) = (file.as_ref().map(|file| file.scenario.clone()), options.out.clone());
+    let plan = Plan { maps, scenario, vary, pedestrians, hazards, weather, run_seconds, seed, goal, out };
     if options.vary {
         check_varies(file.as_ref())?;
+        file.iter().try_for_each(|file| check_draws(file, &plan))?;
     }
-    let scenario = file.map(|file| file.scenario);
-    let Options { vary, goal, pedestrians, hazards, weather, run_seconds, seed, .. } = *options;
-    let out = options.out.clone();
-    Ok(Plan { maps, scenario, vary, pedestrians, hazards, weather, run_seconds, seed, goal, out })
+    Ok(plan)
+}
+
+/// Refuses a scenario of which something is drawn that cannot be played.
+fn check_draws(file: &ScenarioFile, plan: &Plan) -> anyhow::Result<()> {
+    let Until::Runs(runs) = plan.goal.until else { return Ok(()) };
+    for run in 0..runs {
+        let (seed, mut drawn) = (seed_of(plan.seed, run), file.scenario.clone());
+        let network = &plan.maps[plan.map_index(run)].network;
+        let fits = drawn.vary(seed).map_err(|error| error.to_string());
+        let fits = fits.and_then(|()| drawn.start_on(network).map_err(|error| error.to_string()));
+        fits.map_err(|reason| file.refusal(&format!("draw {} of {runs}, seed {seed}: {reason}", run + 1)))?;
+    }
+    Ok(())
 }

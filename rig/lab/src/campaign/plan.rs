@@ -48,9 +48,9 @@ impl Plan {
         let mut scenario = self.scenario.clone().unwrap_or_else(|| map.scenario(seed));
         scenario.map = map.network.name.clone();
         scenario.seed = seed;
-        // Both ends of the ranges play: `plan` looked.
-        if let Some(Ok(varied)) = scenario.story.as_ref().filter(|_| self.vary).map(|story| story.varied(seed)) {
-            scenario.play(varied);
+        // All that is drawn can be played: `options::plan` looked.
+        if self.vary {
+            let _ = scenario.vary(seed);
         }
         scenario.rules.max_seconds = self.run_seconds;
         self.weather.iter().for_each(|preset| scenario.take_weather(preset));

@@ -72,7 +72,7 @@ impl Facts {
     pub fn of(header: &CaseHeader, counterfactual: Option<&Counterfactual>) -> Self {
         let CaseHeader { manifest, info, annotation, summary, scene, digest } = header;
         let said = |name: &str| manifest.provenance.get(name).cloned();
-        let weather = manifest.scenario.weather_at(info.to);
+        let weather = scene.as_ref().map_or_else(|| manifest.scenario.weather_at(info.to), |scene| scene.weather);
         let intervention = summary.as_ref().and_then(|summary| summary.intervention).filter(|i| i.tick == info.to);
         let speed_mps = intervention.map(|intervention| intervention.speed_mps);
         let speed_mps = speed_mps.or_else(|| Some(scene.as_ref()?.ego.speed_mps)).filter(|speed| speed.is_finite());

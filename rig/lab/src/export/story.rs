@@ -24,8 +24,8 @@ use replay::Recording;
 use super::film::Counts;
 use super::options::{Export, Options};
 
-/// What tells stories that this program wrote.
-const AUTHOR: &str = "author=\"A-Eye\"";
+/// What tells stories that were exported: bundled ones, with which others begin theirs, have the same author.
+const EXPORTED: &str = "<Story name=\"recorded\"><Act name=\"as it was\">";
 /// Most vertices of all tracks.
 const VERTICES: usize = 1_000_000;
 /// Fastest that anybody goes, m/s, and hardest that it accelerates and brakes, m/s².
@@ -41,7 +41,10 @@ struct Track {
     /// Nothing for the ego car.
     kind: Option<ActorKind>,
     size_m: Vec3,
-    poses: Vec<Pose>,
+    /// From each time that it comes until it leaves.
+    stays: Vec<Vec<Pose>>,
+    /// The last tick in which it was there.
+    last: Tick,
 }
 
 /// Writes the story and its map, unless they are there.
@@ -57,12 +60,15 @@ pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) 
         bail!("interrupted; nothing of its export is kept");
     }
     let tracks = tracks(&scenes);
-    let vertices = tracks.iter().map(|track| track.poses.len()).sum::<usize>();
+    let vertices = tracks.iter().flat_map(|track| &track.stays).map(Vec::len).sum::<usize>();
     if vertices > VERTICES {
         bail!("its tracks have {vertices} vertices, expected at most {VERTICES}; --last, --from and --to ask for less");
     }
     let map = out.with_extension("xodr");
     let map_name = map.file_name().context("a story without a name")?.to_string_lossy().into_owned();
+    if map_name.starts_with('$') || map_name.trim() != map_name || map_name.contains(char::is_control) {
+        bail!("{}: a story cannot name the map {map_name:?} beside it; expected another name", out.display());
+    }
     let text = story(&tracks, &network, &map_name, (from, to));
     if let Err(error) = Story::read(&text) {
         say(format!("{}: A-Eye itself does not read it: {error}; --last, --from and --to ask for less", out.display()));
@@ -71,12 +77,18 @@ pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) 
     let there = |path: &Path| fs::read_to_string(path).ok();
     let kept = there(&out).as_ref() == Some(&text) && there(&map).as_ref() == Some(&map_text);
     if !kept {
-        let others = there(&out).filter(|story| !story.contains(AUTHOR)).map(|_| &out);
+        let others = there(&out).filter(|story| !story.contains(EXPORTED)).map(|_| &out);
         if let Some(path) = others.or_else(|| there(&map).filter(|known| *known != map_text).map(|_| &map)) {
             bail!("{}: exists already and is no export of this; expected another place", path.display());
         }
+        let is_new = !map.exists();
         output::write_file(&map, map_text.as_bytes())?;
-        output::write_file(&out, text.as_bytes())?;
+        output::write_file(&out, text.as_bytes()).inspect_err(|_| {
+            // Both or none.
+            if is_new {
+                let _ = fs::remove_file(&map);
+            }
+        })?;
     }
     let counts = Counts { frames: 0, poses: ticks.len(), events: 0 };
     Ok(Export { file: file.to_owned(), out, from, to, kept, counts })
@@ -97,7 +109,7 @@ fn heading_rad(rotation: Quat) -> f32 {
 
 /// Everybody in the scenes, the ego car first. A tick between two that are the same as it is left out.
 fn tracks(scenes: &[SceneSnapshot]) -> Vec<Track> {
-    let mut ego = Track { name: "Ego".to_owned(), kind: None, size_m: ego::SIZE_M, poses: Vec::new() };
+    let mut ego = Track { name: "Ego".to_owned(), kind: None, size_m: ego::SIZE_M, stays: Vec::new(), last: 0 };
     let mut others: BTreeMap<u32, Track> = BTreeMap::new();
     for scene in scenes {
         let (at, turned) = (scene.ego.position, scene.ego.rotation);
@@ -108,7 +120,8 @@ fn tracks(scenes: &[SceneSnapshot]) -> Vec<Track> {
                 name: format!("{:?}{}", actor.kind, actor.id),
                 kind: Some(actor.kind),
                 size_m: actor.kind.size_m(),
-                poses: Vec::new(),
+                stays: Vec::new(),
+                last: 0,
             });
             track.add((scene.tick, actor.position, heading_rad(actor.rotation)));
         }
@@ -118,18 +131,29 @@ fn tracks(scenes: &[SceneSnapshot]) -> Vec<Track> {
 
 impl Track {
     fn add(&mut self, pose: Pose) {
-        if let [.., before, last] = self.poses.as_slice()
+        let is_here = self.last + 1 == pose.0;
+        self.last = pose.0;
+        let Some(poses) = self.stays.last_mut().filter(|_| is_here) else {
+            self.stays.push(vec![pose]);
+            return;
+        };
+        if let [.., before, last] = poses.as_slice()
             && (before.1, before.2) == (last.1, last.2)
             && (last.1, last.2) == (pose.1, pose.2)
         {
-            self.poses.pop();
+            poses.pop();
         }
-        self.poses.push(pose);
+        poses.push(pose);
+    }
+
+    /// Where it was first.
+    fn first(&self) -> Pose {
+        self.stays[0][0]
     }
 
     /// As fast as in its first tick, m/s.
     fn begins_mps(&self) -> f32 {
-        match self.poses.as_slice() {
+        match self.stays[0].as_slice() {
             [(from, a, _), (to, b, _), ..] => a.distance(*b) / ((to - from) as f32 * TICK_S),
             _ => 0.0,
         }
@@ -141,7 +165,7 @@ fn story(tracks: &[Track], network: &RoadNetwork, map: &str, (from, to): (Tick, 
     let mut text = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<OpenSCENARIO>\n\
          <FileHeader revMajor=\"1\" revMinor=\"0\" date=\"2000-01-01T00:00:00\" description=\"On map {name}, from tick {from} on\" \
-         {AUTHOR}/>\n<CatalogLocations/>\n<RoadNetwork><LogicFile filepath=\"{}\"/></RoadNetwork>\n<Entities>\n",
+         author=\"A-Eye\"/>\n<CatalogLocations/>\n<RoadNetwork><LogicFile filepath=\"{}\"/></RoadNetwork>\n<Entities>\n",
         escaped(map)
     );
     tracks.iter().for_each(|track| entity(track, &mut text));
@@ -152,7 +176,7 @@ fn story(tracks: &[Track], network: &RoadNetwork, map: &str, (from, to): (Tick, 
         format!("<WorldPosition x=\"{x}\" y=\"{y}\" z=\"{}\" h=\"{heading_rad}\"/>", position.z)
     };
     for track in tracks {
-        let (_, position, heading_rad) = track.poses[0];
+        let (_, position, heading_rad) = track.first();
         let (name, at, mps) = (&track.name, world(position, heading_rad), track.begins_mps());
         // Writing to a string cannot fail.
         let _ = writeln!(
@@ -163,7 +187,7 @@ fn story(tracks: &[Track], network: &RoadNetwork, map: &str, (from, to): (Tick, 
              </SpeedActionTarget></SpeedAction></LongitudinalAction></PrivateAction></Private>"
         );
     }
-    text.push_str("</Actions></Init>\n<Story name=\"recorded\"><Act name=\"as it was\">\n");
+    let _ = write!(text, "</Actions></Init>\n{EXPORTED}\n");
     for track in tracks {
         group(track, (from, to), &world, &mut text);
     }
@@ -185,39 +209,69 @@ fn group(track: &Track, (from, to): (Tick, Tick), world: &impl Fn(Vec3, f32) -> 
     let _ = writeln!(
         text,
         "<ManeuverGroup name=\"group of {name}\" maximumExecutionCount=\"1\"><Actors selectTriggeringEntities=\"false\">\
-         <EntityRef entityRef=\"{name}\"/></Actors><Maneuver name=\"manoeuvre of {name}\"><Event name=\"event of {name}\" \
-         priority=\"overwrite\"><Action name=\"action of {name}\"><PrivateAction><RoutingAction><FollowTrajectoryAction>\
-         <Trajectory name=\"track of {name}\" closed=\"false\"><Shape><Polyline>"
+         <EntityRef entityRef=\"{name}\"/></Actors><Maneuver name=\"manoeuvre of {name}\">"
     );
-    let vertex = |time_s: f64, position: Vec3, heading_rad: f32, text: &mut String| {
-        let at = world(position, heading_rad);
+    let time_s = |tick: Tick| (tick - from) as f64 / f64::from(TICK_HZ);
+    for (number, poses) in track.stays.iter().enumerate() {
+        // Of all but the first stay their number is told.
+        let of = if number == 0 { name.clone() } else { format!("{name} again {number}") };
+        let (first, position, heading_rad) = poses[0];
+        let last = poses[poses.len() - 1].0;
+        let (comes, begin) = if number == 0 {
+            (String::new(), start(&of, -1.0))
+        } else {
+            let at =
+                format!("<AddEntityAction><Position>{}</Position></AddEntityAction>", world(position, heading_rad));
+            (entity_action(name, &format!("coming of {of}"), &at), start(&of, time_s(first) - f64::from(TICK_S) / 2.0))
+        };
+        let _ = writeln!(
+            text,
+            "<Event name=\"event of {of}\" priority=\"overwrite\">{comes}<Action name=\"action of {of}\">"
+        );
+        line(&of, poses, &time_s, world, text);
+        let _ = writeln!(text, "</Action>{begin}</Event>");
+        if last < to {
+            let leaves = entity_action(name, &format!("leaving of {of}"), "<DeleteEntityAction/>");
+            let end = start(&format!("leaving of {of}"), time_s(last));
+            let _ = writeln!(text, "<Event name=\"{of} leaves\" priority=\"overwrite\">{leaves}{end}</Event>");
+        }
+    }
+    text.push_str("</Maneuver></ManeuverGroup>\n");
+}
+
+fn entity_action(name: &str, action: &str, what: &str) -> String {
+    format!(
+        "<Action name=\"{action}\"><GlobalAction><EntityAction entityRef=\"{name}\">{what}</EntityAction></GlobalAction></Action>"
+    )
+}
+
+/// The action that follows a track.
+fn line(
+    of: &str,
+    poses: &[Pose],
+    time_s: &impl Fn(Tick) -> f64,
+    world: &impl Fn(Vec3, f32) -> String,
+    text: &mut String,
+) {
+    let _ = writeln!(
+        text,
+        "<PrivateAction><RoutingAction><FollowTrajectoryAction><Trajectory name=\"track of {of}\" closed=\"false\"><Shape><Polyline>"
+    );
+    let mut vertex = |tick: Tick, position: Vec3, heading_rad: f32| {
+        let (time_s, at) = (time_s(tick), world(position, heading_rad));
         let _ = writeln!(text, "<Vertex time=\"{time_s}\"><Position>{at}</Position></Vertex>");
     };
-    let time_s = |tick: Tick| (tick - from) as f64 / f64::from(TICK_HZ);
-    for (tick, position, heading_rad) in &track.poses {
-        vertex(time_s(*tick), *position, *heading_rad, text);
-    }
+    poses.iter().for_each(|(tick, position, heading_rad)| vertex(*tick, *position, *heading_rad));
     // A line has two ends.
-    if let [(tick, position, heading_rad)] = track.poses.as_slice() {
-        vertex(time_s(tick + 1), *position, *heading_rad, text);
+    if let [(tick, position, heading_rad)] = poses {
+        vertex(tick + 1, *position, *heading_rad);
     }
     let _ = writeln!(
         text,
         "</Polyline></Shape></Trajectory><TimeReference><Timing domainAbsoluteRelative=\"absolute\" scale=\"1\" \
          offset=\"0\"/></TimeReference><TrajectoryFollowingMode followingMode=\"position\"/></FollowTrajectoryAction>\
-         </RoutingAction></PrivateAction></Action>{}</Event>",
-        start(name, -1.0)
+         </RoutingAction></PrivateAction>"
     );
-    let last = track.poses[track.poses.len() - 1].0;
-    if last < to {
-        let _ = writeln!(
-            text,
-            "<Event name=\"{name} leaves\" priority=\"overwrite\"><Action name=\"leaving of {name}\"><GlobalAction><EntityAction \
-             entityRef=\"{name}\"><DeleteEntityAction/></EntityAction></GlobalAction></Action>{}</Event>",
-            start(&format!("leaving of {name}"), time_s(last))
-        );
-    }
-    text.push_str("</Maneuver></ManeuverGroup>\n");
 }
 
 fn entity(track: &Track, text: &mut String) {
