@@ -316,13 +316,14 @@ impl<'a> Element<'a> {
         value.map(Some).map_err(|why| self.wrong(format!("{name} of <{}> is {}: {why}", self.tag(), shown(text))))
     }
 
-    /// The value of the parameter that an attribute names; nothing where it names none.
+    /// The value of the parameter that an attribute names; nothing where none of that name is declared around it.
     pub fn parameter(&self, attribute: &str) -> Result<Option<String>, StoryError> {
         let missing = || self.wrong(format!("<{}> has no {attribute}", self.tag()));
         let name = self.node.attribute(attribute).ok_or_else(missing)?.trim().trim_start_matches('$');
-        let wrong = |why: String| self.wrong(format!("{attribute} of <{}> is {}: {why}", self.tag(), shown(name)));
-        let value = || self.shared.value(self.node, &format!("${name}")).map_err(wrong);
-        (!name.is_empty()).then(value).transpose()
+        let declared = |at: Node<'_, '_>| self.shared.parameters.get(&at.id().get_usize());
+        let is_declared = self.node.ancestors().any(|at| declared(at).is_some_and(|all| all.contains_key(name)));
+        let value = || self.shared.value(self.node, &format!("${name}")).map_err(|why| self.wrong(why));
+        is_declared.then(value).transpose()
     }
 
     /// An attribute that must be there.
