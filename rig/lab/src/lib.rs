@@ -22,6 +22,7 @@ pub mod report;
 pub mod rerender;
 pub mod share;
 pub mod shots;
+pub mod still;
 pub mod store;
 pub mod train;
 pub mod verify;

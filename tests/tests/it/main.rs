@@ -40,6 +40,7 @@ mod rig_ros2;
 mod rig_shards;
 mod rig_sight;
 mod rig_statistics;
+mod rig_still;
 mod rig_story;
 mod rig_study;
 mod rig_units;

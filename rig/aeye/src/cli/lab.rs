@@ -6,13 +6,17 @@ use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::film::Viewpoint;
 use kernel::time::{CLIP_FPS, Tick};
+use kernel::weather::WeatherPreset;
 use lab::compare::Gate;
 use lab::export::Format;
 use lab::redrive::Need;
 use lab::share::Share;
+use lab::still::{LAYERS, Layer};
 
 use super::library::verdict;
-use super::values::{CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, one_checkpoint, seconds, size};
+use super::values::{
+    CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, one_checkpoint, people, seconds, size, weather,
+};
 
 /// Arguments of `rerender`.
 #[derive(Args, Clone, Debug)]
@@ -44,6 +48,45 @@ pub struct RerenderArgs {
     /// Folder of the results. One that this command began with the same options is completed: what is whole and
     /// follows from the same files and checkpoints is kept.
     #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `render`.
+#[derive(Args, Clone, Debug)]
+#[command(override_usage = "aeye render [FILE] --out <FILE.png> [OPTIONS]")]
+pub struct RenderArgs {
+    /// A recording or case; without one, a run is simulated so far, with drivers who see the truth.
+    #[arg(value_parser = file(), value_name = "FILE", conflicts_with_all = ["map", "scenario", "seed", "weather", "pedestrians"])]
+    pub file: Option<PathBuf>,
+    /// A bundled map or an OpenDRIVE file (default: city).
+    #[arg(long, value_name = "NAME|FILE.xodr", conflicts_with = "scenario")]
+    pub map: Option<String>,
+    /// A scenario file, a story in OpenSCENARIO XML, or a bundled story by name, as cut_out.
+    #[arg(long, value_name = "FILE.toml|FILE.xosc|STORY")]
+    pub scenario: Option<PathBuf>,
+    /// Seed of everything random; replaces the scenario's.
+    #[arg(long)]
+    pub seed: Option<u64>,
+    /// Weather by CARLA's name, as `weather.preset` of scenarios; replaces the scenario's.
+    #[arg(long, value_parser = weather(), value_name = "NAME")]
+    pub weather: Option<WeatherPreset>,
+    /// People on foot, instead of as many as the scenario or the map's default has.
+    #[arg(long, value_parser = people, value_name = "N")]
+    pub pedestrians: Option<u16>,
+    /// Time of the run (default: that of the corner case or the end of a file, else 20s).
+    #[arg(long, value_parser = moment, value_name = "TIME")]
+    pub at: Option<Tick>,
+    /// From where: as both drivers see, from behind the car, or from above, north up.
+    #[arg(long, default_value = "driver", value_name = "driver|chase|top")]
+    pub camera: Viewpoint,
+    /// What of the picture: colour, classes in the colours of their tags, instances, or depth in parts of 1/256 m.
+    #[arg(long, default_value = "rgb", value_name = LAYERS)]
+    pub layer: Layer,
+    /// Size of the picture.
+    #[arg(long, default_value = "1280x640", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// Where it goes; a file that is there stays.
+    #[arg(long, value_name = "FILE.png")]
     pub out: PathBuf,
 }
 

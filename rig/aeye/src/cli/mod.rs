@@ -13,7 +13,7 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
-pub use lab::{CompareArgs, ExportArgs, RedriveArgs, ReportArgs, RerenderArgs};
+pub use lab::{CompareArgs, ExportArgs, RedriveArgs, RenderArgs, ReportArgs, RerenderArgs};
 pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, RebuildArgs, TrainArgs};
 pub use library::{LibraryArgs, QueryArgs};
 pub use live::{
@@ -55,6 +55,8 @@ pub enum Command {
     View(ViewArgs),
     /// Attach answers that were given after a drive.
     Questionnaire(QuestionnaireArgs),
+    /// One picture of a moment of a recording, or of a run that is simulated so far.
+    Render(RenderArgs),
     /// Render the window of recordings or cases through checkpoints.
     Rerender(RerenderArgs),
     /// Which corner cases another checkpoint fixes and breaks.

@@ -17,6 +17,7 @@ pub mod inspect;
 pub mod map;
 pub mod questionnaire;
 pub mod redrive;
+pub mod render;
 pub mod report;
 pub mod rerender;
 pub mod shell;

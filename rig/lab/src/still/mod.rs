@@ -1,0 +1,149 @@
+//! One picture of one moment: of a recording, or of a scenario that simulated drivers drive so far.
+
+mod layer;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+use base::failure::Usage;
+use base::json::Typed;
+use base::maps::Map;
+use base::progress::{self, Interrupt};
+use base::{asked, output};
+use drivers::crew::Crew;
+use drivers::film::Viewpoint;
+use drivers::session::SessionState;
+use drivers::simulate::lasting;
+use drivers::vision::{Eye, Vision};
+use kernel::time::{TICK_HZ, Tick, seconds};
+use kernel::{Scenario, SceneSnapshot, World};
+use measures::footage::decisive_tick;
+use render::{Frame, RenderOptions, Renderer};
+use serde::Serialize;
+
+pub use self::layer::{LAYERS, Layer};
+use super::looks::Size;
+use super::shots::{Shots, Stage};
+
+/// The moment of a run that none is asked for of: traffic has spread by then.
+const USUAL_TICK: Tick = seconds(20);
+
+/// What a picture is of.
+#[derive(Clone, Debug)]
+pub enum Subject {
+    /// A recording or case.
+    File(PathBuf),
+    /// A run that starts so, with simulated drivers who see the truth.
+    Run {
+        /// Where it takes place.
+        map: Box<Map>,
+        /// What it starts from.
+        scenario: Box<Scenario>,
+    },
+}
+
+/// A picture that is asked for.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// What it is of.
+    pub subject: Subject,
+    /// Its moment; none: where a file has its corner case or its end, 20 s after the beginning of a run.
+    pub tick: Option<Tick>,
+    /// From where it is taken.
+    pub camera: Viewpoint,
+    /// What of the picture.
+    pub layer: Layer,
+    /// Its width and height, pixels.
+    pub size: Size,
+    /// Where it goes.
+    pub out: PathBuf,
+}
+
+/// A picture that was made.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Still {
+    /// Where it is.
+    pub out: String,
+    /// Its moment.
+    pub tick: Tick,
+    /// What of the picture: `rgb`, `classes`, `instances` or `depth`.
+    pub layer: &'static str,
+    /// Its width and height, pixels.
+    pub size_px: [u32; 2],
+}
+
+/// What `aeye render` prints.
+impl Typed for Still {
+    const TYPE: &'static str = "aeye.still";
+}
+
+impl fmt::Display for Still {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { out, tick, layer, size_px: [width, height] } = self;
+        write!(f, "{out}: {layer} at {:.2} s (tick {tick}), {width}x{height} pixels", seconds_of(*tick))
+    }
+}
+
+/// Makes a picture, in a file that there is not yet.
+pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Still> {
+    let Options { subject, tick, camera, layer, size, out } = options;
+    if out.exists() {
+        bail!("{}: exists already; expected a new file", out.display());
+    }
+    if !asked::is_size(*size) {
+        return Err(Usage(format!("pictures of {}x{}; expected {}", size.0, size.1, asked::sizes())).into());
+    }
+    output::check_file(out)?;
+    let frame = match subject {
+        Subject::File(path) => of_file(path, *tick, *camera, *size)?,
+        Subject::Run { map, scenario } => {
+            let (scene, mut renderer) = of_run(map, scenario, tick.unwrap_or(USUAL_TICK), interrupt)?;
+            renderer.draw(&scene, &camera.camera(*size))?
+        }
+    };
+    output::write_file(out, &layer.png(&frame)?)?;
+    Ok(Still { out: out.display().to_string(), tick: frame.tick, layer: layer.name(), size_px: [size.0, size.1] })
+}
+
+fn of_file(path: &Path, tick: Option<Tick>, camera: Viewpoint, size: Size) -> anyhow::Result<Frame> {
+    let stage = Arc::new(Stage::open(path, &Arc::default())?);
+    let tick = tick.unwrap_or_else(|| decisive_tick(stage.recording().log()));
+    Ok(Shots::of_tick(&stage, tick, camera, size)?.draw(0)?.frame)
+}
+
+/// The scene at a tick of a run, and what drew the truth for its semantic driver.
+fn of_run(
+    map: &Map,
+    scenario: &Scenario,
+    tick: Tick,
+    interrupt: &Interrupt,
+) -> anyhow::Result<(SceneSnapshot, Renderer)> {
+    let network = &map.network;
+    let scenario = lasting(scenario.clone(), tick);
+    let mut world = World::new(&scenario, network)?;
+    let mut crew =
+        Crew::drawn(Vision::new(Renderer::new(network, &RenderOptions::default())?, Eye::Truth), scenario.seed);
+    let bar = progress::bar("ticks", tick);
+    while world.tick() < tick {
+        if interrupt.is_raised() {
+            bail!("interrupted at {:.2} s of the run", seconds_of(world.tick()));
+        }
+        if SessionState::of(&world) != SessionState::Driving {
+            let (ended, asked) = (seconds_of(world.tick()), seconds_of(tick));
+            return Err(
+                Usage(format!("the run ended after {ended:.2} s; expected no later time than {asked:.2} s")).into()
+            );
+        }
+        let (input, _) = crew.act(&world).context("the simulated drivers")?;
+        world.step(&input);
+        bar.set_position(world.tick());
+    }
+    bar.finish_and_clear();
+    Ok((world.scene(), crew.into_vision().into_renderer()))
+}
+
+fn seconds_of(tick: Tick) -> f64 {
+    tick as f64 / f64::from(TICK_HZ)
+}
