@@ -38,6 +38,17 @@ pub fn instance_of_actor(id: u32) -> u16 {
     }
 }
 
+/// The number that who has an instance has everywhere else: 0 the ego car, from [`FIRST_STORY_ID`] on who plays a story, from
+/// [`FIRST_PARKED_ID`] on a parked car.
+pub fn actor_of_instance(instance: u16) -> u32 {
+    match instance {
+        EGO_INSTANCE => 0,
+        FIRST_PARKED_INSTANCE.. => FIRST_PARKED_ID + u32::from(instance - FIRST_PARKED_INSTANCE),
+        FIRST_STORY_INSTANCE.. => FIRST_STORY_ID + u32::from(instance - FIRST_STORY_INSTANCE),
+        _ => u32::from(instance),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -46,6 +57,10 @@ mod tests {
     fn everybody_has_an_instance_of_its_own_and_a_door_that_of_its_car() {
         let ids =
             (1..400).chain((0..256).map(|role| FIRST_STORY_ID + role)).chain((0..400).map(|n| FIRST_PARKED_ID + n));
+        assert!(
+            ids.clone().all(|id| actor_of_instance(instance_of_actor(id)) == id)
+                && actor_of_instance(EGO_INSTANCE) == 0
+        );
         let mut instances: Vec<u16> = ids.map(instance_of_actor).chain([EGO_INSTANCE]).collect();
         assert!(instances.is_sorted());
         instances.dedup();

@@ -30,6 +30,6 @@ pub use camera::{Camera, Mount};
 pub use error::RenderError;
 pub use frame::Frame;
 pub use identity::identity;
-pub use instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE, instance_of_actor, instance_of_parked};
+pub use instance_ids::{EGO_INSTANCE, FIRST_PARKED_INSTANCE, actor_of_instance, instance_of_actor, instance_of_parked};
 pub use renderer::{Preset, RenderOptions, Renderer};
 pub use tags::SemanticTag;

@@ -91,7 +91,7 @@ def check_instances(folder, pictures):
         mask = coco.annToMask(annotation)
         assert mask.sum() == annotation["area"] == pycocotools.mask.area(coco.annToRLE(annotation))
         assert pycocotools.mask.toBbox(coco.annToRLE(annotation)).tolist() == annotation["bbox"]
-        number = (annotation["category_id"] << 16) + annotation["track_id"]
+        number = annotation["segment_id"]
         assert (mask == (pictures[annotation["image_id"]] == number)).all(), "another mask than in the panoptic picture"
     counted = sum((number >> 16) in THINGS for ids in pictures.values() for number in numpy.unique(ids).tolist())
     assert counted == len(annotations)

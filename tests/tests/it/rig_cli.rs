@@ -180,6 +180,9 @@ fn places_that_cannot_hold_results_are_refused_before_the_work() {
         let sentence = sentence_of(&[command, &["--out", &missing]].concat());
         assert!(sentence.starts_with(&missing) && sentence.ends_with("does not exist"), "{sentence}");
     }
+    let run = place("missing/run.mcap");
+    let sentence = sentence_of(&["drive", "--headless", "--record", &run]);
+    assert_eq!(sentence, format!("{run}: the folder {} does not exist", place("missing")));
     assert_eq!(fs::read_to_string(&file).expect("still there"), "a note");
     assert_eq!(names(dir.path()), ["file", "folder"]);
 }

@@ -93,7 +93,7 @@ fn every_pixel_is_in_the_segment_of_its_class_and_instance() {
     let counted = list(&instances, "annotations");
     assert_eq!(counted.len(), things.len());
     for instance in counted {
-        let id = (number(instance, "category_id") << 16) + number(instance, "track_id");
+        let id = number(instance, "segment_id");
         let mask = decoded(&instance["segmentation"]);
         assert!(mask == things[&(number(instance, "image_id"), id)], "{instance}");
         assert_eq!(told(instance), measured(&mask, 64));

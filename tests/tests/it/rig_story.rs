@@ -72,6 +72,17 @@ fn an_exported_story_plays_everybody_as_they_were() {
 }
 
 #[test]
+fn a_story_is_refused_on_another_map_than_its_own() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let campaign =
+        ["campaign", "--scenario", "cut_out", "--maps", "city", "--vary", "2", "--checkpoint", "truth", "--out"];
+    let (code, said) = aeye(&[campaign.as_slice(), &[text(&out)]].concat());
+    assert_eq!((code, said.as_str()), (2, "cut_out: plays on the roads of its own map; expected no --maps"));
+    assert!(!out.exists());
+}
+
+#[test]
 fn a_story_is_driven_recorded_and_verified() {
     let dir = tempfile::tempdir().unwrap();
     let (_, story) = exported(dir.path());

@@ -63,7 +63,7 @@ pub enum Command {
     Compare(CompareArgs),
     /// Drive corner cases on from before the intervention: was it necessary?
     Redrive(RedriveArgs),
-    /// Write recordings or cases with pictures and scene for Foxglove, Lichtblick or Rerun, as moving pictures, or as stories in OpenSCENARIO XML.
+    /// Write recordings or cases for others: Foxglove, Lichtblick and Rerun, moving pictures, OpenSCENARIO XML, OSI, COCO, OpenLABEL, ROS 2.
     Export(ExportArgs),
     /// Find corner cases by what is known of them, and say what came of looking at them.
     Cases(Box<LibraryArgs>),

@@ -10,6 +10,7 @@ use base::json::Typed;
 use base::library;
 use base::library::case_path;
 use base::maps::{self, Map};
+use base::output;
 use base::progress::Interrupt;
 use base::room::NoRoom;
 use base::say::say;
@@ -59,6 +60,7 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
         print::text(&as_driven(scenario, &map)?)?;
         return Ok(Verdict::Ok);
     }
+    output::check_file(args.record())?;
     if args.headless {
         headless(args, &scenario, &map, json)?;
     } else {

@@ -55,6 +55,9 @@ fn check_varies(file: Option<&ScenarioFile>) -> anyhow::Result<()> {
 /// What the options come to.
 pub fn plan(options: &Options) -> anyhow::Result<Plan> {
     let file = options.scenario.as_deref().map(ScenarioFile::read).transpose()?;
+    if let Some(file) = file.as_ref().filter(|file| file.scenario.story.is_some() && !options.maps.is_empty()) {
+        return Err(file.refusal("plays on the roads of its own map; expected no --maps"));
+    }
     let maps = match &file {
         Some(file) if options.maps.is_empty() => vec![file.map.clone()],
         _ if options.maps.is_empty() => Map::find_all(&["all".to_owned()])?,

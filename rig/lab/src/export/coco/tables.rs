@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use kernel::time::{TICK_HZ, Tick};
-use render::SemanticTag;
 use render::tags::TAGS;
+use render::{SemanticTag, actor_of_instance};
 use serde::{Deserialize, Serialize};
 
 use super::segments::{Segment, is_thing, runs};
@@ -117,13 +117,15 @@ impl SegmentInfo {
     }
 }
 
-/// An instance in a picture; `track_id` is the same in all pictures.
+/// An instance in a picture; `track_id` is the same in all pictures, and the number that it has in the recording; `segment_id`
+/// is that of its segment in the panoptic picture.
 #[derive(Serialize)]
 pub struct Instance {
     pub id: usize,
     pub image_id: Tick,
     pub category_id: u8,
-    pub track_id: u16,
+    pub track_id: u32,
+    pub segment_id: u32,
     pub iscrowd: u8,
     pub area: u32,
     pub bbox: [u32; 4],
@@ -150,7 +152,8 @@ impl Instance {
             id: first + number,
             image_id: tick,
             category_id: segment.tag,
-            track_id: segment.instance,
+            track_id: actor_of_instance(segment.instance),
+            segment_id: *id,
             iscrowd: 0,
             area: segment.area_px,
             bbox: segment.box_px(),
