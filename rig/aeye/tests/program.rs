@@ -20,6 +20,7 @@ fn without_a_graphics_driver_each_command_says_what_to_install_and_leaves_nothin
     for command in [
         "drive --headless --max-time 4s --record new.mcap",
         "campaign --checkpoint truth --runs 1 --out new",
+        "render --at 1s --out new.png",
         "rerender run.mcap --checkpoint truth --out new",
         "compare run.mcap --checkpoint truth,early --out new",
         "report run.mcap --checkpoint truth --out new.html",
