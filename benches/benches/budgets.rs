@@ -8,11 +8,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use benches::scenes::{BusyDrive, SCALE_S, STEP_S, recorded, town};
+use benches::scenes::{BusyDrive, SCALE_S, STEP_S, bare, recorded, town};
 use benches::{Against, Budget, check, mean_seconds};
 use criterion::{BatchSize, Criterion};
 use kernel::RoadNetwork;
-use kernel::map::MapData;
 use kernel::time::CLIP_FPS;
 use perception::{Checkpoint, RgbView, Segmenter};
 use render::{Camera, RenderOptions, Renderer};
@@ -195,12 +194,12 @@ impl Sight {
 
 /// What the budgets of picture and prediction are held against.
 fn references(criterion: &mut Criterion, drive: &BusyDrive) -> Result<(), String> {
-    let nothing = MapData { surfaces: Vec::new(), props: Vec::new(), ..MapData::clone(&drive.scene.network) };
-    let mut bare = Renderer::new(&nothing.into(), &RenderOptions::default()).map_err(|e| e.to_string())?;
+    let mut renderer =
+        Renderer::new(&bare(&drive.scene.network), &RenderOptions::default()).map_err(|e| e.to_string())?;
     let mut empty = drive.snapshot.clone();
     empty.actors.clear();
     let camera = Camera::driver(SIZE.0, SIZE.1);
-    criterion.bench_function("reference/bare_draw", |b| b.iter(|| bare.draw(&empty, &camera).expect("a frame")));
+    criterion.bench_function("reference/bare_draw", |b| b.iter(|| renderer.draw(&empty, &camera).expect("a frame")));
     criterion.bench_function("reference/matrix_product", |b| b.iter(|| benches::matrix_product(384)));
     Ok(())
 }

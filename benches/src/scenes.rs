@@ -6,8 +6,9 @@ use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use kernel::map::MapData;
 use kernel::time::{TICK_HZ, Tick, seconds};
-use kernel::{SceneSnapshot, TickInput, World};
+use kernel::{RoadNetwork, SceneSnapshot, TickInput, World};
 use replay::{Log, Manifest, Provenance, Recorder, Recording};
 
 use ::tests::scenes::{Scene, busy_hamlet, follow_route};
@@ -89,6 +90,11 @@ pub fn town(actors: u16, columns: usize, rows: usize) -> TownDrive {
         end.step(&inputs[inputs.len() - 1]);
     }
     TownDrive { placed: world.scene().actors.len() as u32, world, inputs }
+}
+
+/// A map of which nothing is to be seen.
+pub fn bare(network: &RoadNetwork) -> RoadNetwork {
+    MapData { surfaces: Vec::new(), props: Vec::new(), ..MapData::clone(network) }.into()
 }
 
 /// The log of the first seconds of a scene, driven by [`follow_route`].

@@ -32,6 +32,8 @@ THINGS = {4: "Pedestrian", 10: "Vehicles"}
 PER_TICK = ["/clock", "/tf", "/odom"]
 MASKS = ["/camera/truth/compressed", f"/camera/predicted/{CHECKPOINT}/compressed"]
 PER_PICTURE = ["/actors", "/camera/camera_info", "/camera/image_raw/compressed", *MASKS]
+# Parked cars are numbered from here on.
+FIRST_PARKED = 1 << 16
 ONCE = ["/tf_static", "/camera/label_info"]
 
 
@@ -95,7 +97,7 @@ def check_instances(folder, pictures):
         assert (mask == (pictures[annotation["image_id"]] == number)).all(), "another mask than in the panoptic picture"
     counted = sum((number >> 16) in THINGS for ids in pictures.values() for number in numpy.unique(ids).tolist())
     assert counted == len(annotations)
-    return len(annotations), precision(coco, annotations)
+    return annotations, precision(coco, annotations)
 
 
 def precision(coco, annotations):
@@ -238,6 +240,16 @@ def check_labels(messages, labels):
     same(numbers(transform.rotation, "xyzw"), pose["quaternion"], 1e-6, "the camera's rotation")
 
 
+def check_tracks(instances, labels):
+    """Whoever is seen has the same number in both; the labels leave out parked cars that nobody moved."""
+    groups = {uid: thing["type"] for uid, thing in labels["objects"].items()}
+    for instance in instances:
+        uid, person = str(instance["track_id"]), THINGS[instance["category_id"]] == "Pedestrian"
+        assert uid in groups or instance["track_id"] >= FIRST_PARKED, f"{uid} is in no label"
+        # What is ridden counts as a vehicle, who rides on it as a person.
+        assert uid not in groups or not groups[uid].startswith("Human") or person, f"{uid}: {groups[uid]}"
+
+
 def check(aeye, file, folder):
     name = pathlib.Path(file).name
     coco, labels_file, bag = folder / "coco", folder / "labels.json", folder / "bag"
@@ -245,9 +257,10 @@ def check(aeye, file, folder):
     pictures, segments = check_panoptic(coco)
     assert len(pictures) == exported["frames"] and segments
     instances, ap = check_instances(coco, pictures)
-    print(f"{name}: pycocotools finds {len(pictures)} pictures, {segments} segments, {instances} instances, AP {ap}")
+    print(f"{name}: pycocotools finds {len(pictures)} pictures, {segments} segments, {len(instances)} instances, AP {ap}")
     assert export(aeye, file, "openlabel", labels_file)["frames"] == len(pictures)
     labels, checks, verdict = check_openlabel(labels_file, file)
+    check_tracks(instances, labels)
     parts = ", ".join(f"{len(labels.get(part, {}))} {part}" for part in ["frames", "objects", "events", "actions"])
     print(f"{name}: openlabel-checker finds nothing in {checks} checks of {parts}; verdict {verdict}")
     expected = export(aeye, file, "ros2", bag, "--checkpoint", CHECKPOINT)

@@ -7,8 +7,8 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use benches::scenes::BusyDrive;
-use kernel::map::{BUNDLED, MapData};
+use benches::scenes::{self, BusyDrive};
+use kernel::map::BUNDLED;
 use kernel::time::{CLIP_STRIDE_TICKS, TICK_HZ};
 use kernel::{RoadNetwork, SceneSnapshot};
 use nix::time::{ClockId, clock_gettime};
@@ -37,7 +37,8 @@ fn run(arguments: &[String]) -> Result<(), String> {
     let [width, height, drive_s, maps @ ..] = arguments else { return Err(USAGE.into()) };
     let number = |text: &String| text.parse::<u32>().map_err(|_| format!("{text}: expected a whole number; {USAGE}"));
     let camera = Camera::driver(number(width)?, number(height)?);
-    let drive_s = number(drive_s)?;
+    let drive_s =
+        Some(number(drive_s)?).filter(|s| *s > 0).ok_or_else(|| format!("0 seconds; expected 1 or more; {USAGE}"))?;
     let all = BUNDLED.map(String::from);
     println!("{:10} {:>8} {:>8} {:>8} {:>8} {:>8}", "map", "mean ms", "median", "p99", "most", "ratio");
     println!("{:10} {}", "snapshot", snapshot_costs_ms(&camera)?);
@@ -71,16 +72,15 @@ fn drive_costs_ms(scene: &Scene, camera: &Camera, drive_s: u32) -> Result<String
 fn costs_ms(
     network: &Arc<RoadNetwork>,
     camera: &Camera,
-    scenes: impl Iterator<Item = SceneSnapshot>,
+    shown: impl Iterator<Item = SceneSnapshot>,
 ) -> Result<String, String> {
-    let nothing = MapData { surfaces: Vec::new(), props: Vec::new(), ..MapData::clone(network) };
     let open = |network| Renderer::new(network, &RenderOptions::default()).map_err(|e| e.to_string());
-    let (mut renderer, mut bare) = (open(network)?, open(&nothing.into())?);
+    let (mut renderer, mut bare) = (open(network)?, open(&scenes::bare(network))?);
     let (mut costs, mut bare_costs) = (Vec::new(), Vec::new());
-    for mut shown in scenes {
-        costs.push(cost_ms(|| renderer.draw(&shown, camera))?);
-        shown.actors.clear();
-        bare_costs.push(cost_ms(|| bare.draw(&shown, camera))?);
+    for mut scene in shown {
+        costs.push(cost_ms(|| renderer.draw(&scene, camera))?);
+        scene.actors.clear();
+        bare_costs.push(cost_ms(|| bare.draw(&scene, camera))?);
     }
     let mean = |costs: &[f64]| costs.iter().sum::<f64>() / costs.len() as f64;
     let (mut costs, bare_costs) = (costs.split_off(WARM_UP_PICTURES), bare_costs.split_off(WARM_UP_PICTURES));

@@ -2,6 +2,8 @@
 
 use kernel::time::{TICK_HZ, Tick};
 
+use crate::failure::Usage;
+
 /// Pixels of the greatest picture, 4096x4096: what every adapter draws and reads back in one piece.
 pub const MOST_PIXELS: u32 = 1 << 24;
 /// Most ticks of a time, half a year.
@@ -11,6 +13,12 @@ const MOST_TICKS: f64 = 1e9;
 pub fn is_size((width, height): (u32, u32)) -> bool {
     let is_side = |side: u32| (8..=8192).contains(&side);
     is_side(width) && is_side(height) && width * height <= MOST_PIXELS
+}
+
+/// Refuses pictures that cannot have this size, pixels.
+pub fn check_size(size: (u32, u32)) -> Result<(), Usage> {
+    let (width, height) = size;
+    if is_size(size) { Ok(()) } else { Err(Usage(format!("pictures of {width}x{height}; expected {}", sizes()))) }
 }
 
 /// What is expected of a size.

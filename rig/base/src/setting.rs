@@ -9,6 +9,9 @@ use kernel::weather::WeatherPreset;
 use crate::maps::Map;
 use crate::scenario_file::ScenarioFile;
 
+/// Map of a run when none is named.
+const DEFAULT_MAP: &str = "city";
+
 /// Where runs take place: a map, whose default scenarios they drive, or a scenario of a file.
 #[derive(Clone, Debug)]
 pub struct Setting {
@@ -18,6 +21,14 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// The scenario that is asked for, else the map, else the usual one.
+    pub fn of(scenario: Option<&Path>, map: Option<&str>) -> anyhow::Result<Self> {
+        match scenario {
+            Some(path) => Self::of_scenario(path),
+            None => Self::of_map(map.unwrap_or(DEFAULT_MAP)),
+        }
+    }
+
     /// A bundled map by name, or an OpenDRIVE file by its path.
     pub fn of_map(name: &str) -> anyhow::Result<Self> {
         Ok(Self { map: Map::find(name)?, scenario: None })

@@ -156,10 +156,7 @@ impl Shots {
     }
 
     fn of(stage: &Arc<Stage>, ticks: Vec<Tick>, viewpoint: Viewpoint, size: Size) -> anyhow::Result<Self> {
-        if !asked::is_size(size) {
-            let (width, height) = size;
-            return Err(Usage(format!("pictures of {width}x{height}; expected {}", asked::sizes())).into());
-        }
+        asked::check_size(size)?;
         let scenes = Mutex::new((0, Vec::new()));
         Ok(Self { stage: stage.clone(), camera: viewpoint.camera(size), ticks, scenes })
     }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
+use render::actor_of_instance;
 use serde_json::Value;
 use tests::command::aeye;
 use tests::files::contents;
@@ -94,6 +95,7 @@ fn every_pixel_is_in_the_segment_of_its_class_and_instance() {
     assert_eq!(counted.len(), things.len());
     for instance in counted {
         let id = number(instance, "segment_id");
+        assert_eq!(number(instance, "track_id"), u64::from(actor_of_instance(id as u16)), "{instance}");
         let mask = decoded(&instance["segmentation"]);
         assert!(mask == things[&(number(instance, "image_id"), id)], "{instance}");
         assert_eq!(told(instance), measured(&mask, 64));

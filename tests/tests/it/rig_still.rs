@@ -27,7 +27,7 @@ fn a_picture_of_a_file_is_the_one_that_others_make_of_it() {
     for (layer, folder) in [("rgb", "rgb"), ("classes", "labels")] {
         let command = format!("render --size 64x32 --layer {layer}");
         let picture = still(&command, &[&case], &dir.path().join(format!("{layer}.png")));
-        assert!(picture == last(folder), "{layer} of the takeover, which none is asked for instead of");
+        assert!(picture == last(folder), "{layer} of the takeover, the usual moment of a case");
         let same = still(&command, &[&recording], &dir.path().join(format!("{layer}-again.png")));
         assert!(picture == same, "{layer} of the recording");
     }

@@ -33,8 +33,6 @@ use crate::cli::DriveArgs;
 use crate::exit::Verdict;
 use crate::print::{self, print};
 
-/// Map of a drive when none is named.
-const DEFAULT_MAP: &str = "city";
 /// Lanes, or ranges of them, in a line of the comment that lists them.
 const LANES_A_LINE: usize = 12;
 
@@ -71,10 +69,7 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
 
 /// What the run starts from, and where.
 fn scenario(args: &DriveArgs) -> anyhow::Result<(Scenario, Map)> {
-    let setting = match &args.scenario {
-        Some(path) => Setting::of_scenario(path)?,
-        None => Setting::of_map(args.map.as_deref().unwrap_or(DEFAULT_MAP))?,
-    };
+    let setting = Setting::of(args.scenario.as_deref(), args.map.as_deref())?;
     let setting = if args.embed_map { setting.embedded() } else { setting };
     let changes = Changes {
         hazards: args.hazards,

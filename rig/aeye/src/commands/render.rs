@@ -8,9 +8,6 @@ use crate::cli::RenderArgs;
 use crate::exit::Verdict;
 use crate::print;
 
-/// Map of a run when none is named.
-const DEFAULT_MAP: &str = "city";
-
 /// Runs `aeye render`.
 pub fn run(args: &RenderArgs, json: bool) -> anyhow::Result<Verdict> {
     let RenderArgs { at: tick, camera, layer, size, out, .. } = args.clone();
@@ -23,10 +20,7 @@ fn subject(args: &RenderArgs) -> anyhow::Result<Subject> {
     if let Some(file) = &args.file {
         return Ok(Subject::File(file.clone()));
     }
-    let setting = match &args.scenario {
-        Some(path) => Setting::of_scenario(path)?,
-        None => Setting::of_map(args.map.as_deref().unwrap_or(DEFAULT_MAP))?,
-    };
+    let setting = Setting::of(args.scenario.as_deref(), args.map.as_deref())?;
     let changes = Changes { weather: args.weather, pedestrians: args.pedestrians, ..Changes::default() };
     let scenario = Box::new(setting.scenario(args.seed, &changes));
     Ok(Subject::Run { map: Box::new(setting.map), scenario })

@@ -92,9 +92,7 @@ pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Still>
     if out.exists() {
         bail!("{}: exists already; expected a new file", out.display());
     }
-    if !asked::is_size(*size) {
-        return Err(Usage(format!("pictures of {}x{}; expected {}", size.0, size.1, asked::sizes())).into());
-    }
+    asked::check_size(*size)?;
     output::check_file(out)?;
     let frame = match subject {
         Subject::File(path) => of_file(path, *tick, *camera, *size)?,
