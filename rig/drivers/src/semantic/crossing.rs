@@ -159,7 +159,7 @@ mod tests {
         for look in 0..10 {
             let t_s = 0.1 * look as f32;
             let (x_m, y_m) = (from.0 + t_s * velocity_mps.0, from.1 + t_s * velocity_mps.1);
-            tracks.look(&[Contact { x_m, depth_error_m: 0.0, y_m, is_person, on_road: !is_person }]);
+            tracks.look(&[Contact { is_person, on_road: !is_person, ..Contact::of_car((x_m, y_m)) }]);
             (0..6).for_each(|_| tracks.carry(STILL));
         }
         tracks
@@ -186,7 +186,7 @@ mod tests {
         let within_a_row = |depth_error_m: f32, looks: u32| {
             let mut tracks = Tracks::default();
             for _ in 0..looks {
-                tracks.look(&[Contact { x_m: 40.0, depth_error_m, y_m: 3.5, is_person: false, on_road: true }]);
+                tracks.look(&[Contact { depth_error_m, ..Contact::of_car((40.0, 3.5)) }]);
                 (0..6).for_each(|_| tracks.carry(STILL));
             }
             give_way_m(Arc { curvature: 0.09 }, &turning_left(0.0), &tracks).is_some()

@@ -37,6 +37,8 @@ const STEER_RATE: f32 = 1.6;
 const PASSED_LIGHT_M: f32 = 10.0;
 /// The car waits for what it would have to stand before within this, metres.
 const IN_THE_WAY_M: f32 = 3.0;
+/// Slower than this it may be driving off beside somebody whom it no longer sees, m/s.
+const CREEPING_MPS: f32 = 3.0;
 
 /// Drives by the mask and the HUD alone.
 #[derive(Clone, Debug, Default)]
@@ -119,7 +121,8 @@ impl SemanticBot {
         let give_way_m = if gives_way { crossing::give_way_m(arc, &dash, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
         let after_turn_m = speed::after_turn_m(&self.contacts, &self.tracks, arc, &dash);
-        let scene = Scene { obstacle_m: self.room.stop_in_m(), after_turn_m, give_way_m, has_lights: self.has_lights };
+        let obstacle_m = self.room.stop_in_m().into_iter().chain(self.beside_m(arc, &dash)).reduce(f32::min);
+        let scene = Scene { obstacle_m, after_turn_m, give_way_m, has_lights: self.has_lights };
         let vigour = self.temper.vigour();
         match self.squeeze.way() {
             None => (arc, speed::wish(sight, arc, &dash, scene, vigour)),
@@ -137,6 +140,11 @@ impl SemanticBot {
         let walks = crossing::walkers_m(&self.people, arc, speed_mps);
         let drives = crossing::vehicles_m(&self.tracks, arc, speed_mps);
         walks.into_iter().chain(drives).reduce(f32::min)
+    }
+
+    /// The same, while the car creeps or drives off, because of what it no longer sees beside it.
+    fn beside_m(&self, arc: Arc, dash: &Dash) -> Option<f32> {
+        self.squeeze.beside_m(arc).filter(|_| dash.speed_mps < CREEPING_MPS)
     }
 
     /// Takes in a new mask.
@@ -161,7 +169,8 @@ impl SemanticBot {
     fn make_room(&mut self, sight: &Sight<'_>, arc: Arc, dash: &Dash) {
         self.looked_ticks = 0;
         let stands = speed::obstacle(&self.contacts, &self.tracks, arc, dash.speed_mps);
-        self.is_blocked = stands.is_some_and(|ahead| ahead.stop_in_m < IN_THE_WAY_M);
+        let beside_m = self.beside_m(arc, dash);
+        self.is_blocked = stands.map(|ahead| ahead.stop_in_m).into_iter().chain(beside_m).any(|m| m < IN_THE_WAY_M);
         let crosses = self.crosses_m(arc, dash.speed_mps).map(Ahead::standing);
         self.room.look(stands.into_iter().chain(crosses).reduce(Ahead::nearer));
         self.squeeze.look(sight, &self.contacts, &[&self.tracks, &self.people], arc);

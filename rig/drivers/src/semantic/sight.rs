@@ -23,14 +23,26 @@ const LEAVING_M: f32 = 1.0;
 
 /// Whether a point of the car's frame lies well within the picture's sides.
 pub fn is_in_picture((x_m, y_m): (f32, f32)) -> bool {
+    is_in_front((x_m, y_m.abs() + LEAVING_M))
+}
+
+/// Whether a point of the car's frame lies between the picture's sides, be it too near to be seen.
+pub fn is_in_front((x_m, y_m): (f32, f32)) -> bool {
     let camera = Camera::driver(2, 1);
-    y_m.abs() + LEAVING_M < (x_m - camera.position.x) * kernel::ops::tan(0.5 * camera.fov_x_rad)
+    y_m.abs() < (x_m - camera.position.x) * kernel::ops::tan(0.5 * camera.fov_x_rad)
 }
 
 /// The point at a distance that is seen in the same columns as another one.
 pub fn on_ray((seen_x_m, seen_y_m): (f32, f32), x_m: f32) -> (f32, f32) {
     let camera_x_m = Camera::driver(2, 1).position.x;
     (x_m, seen_y_m * (x_m - camera_x_m) / (seen_x_m - camera_x_m))
+}
+
+/// Where something stands whose lowest part hangs so high above the ground and hides a point of it.
+pub fn nearer((x_m, y_m): (f32, f32), hangs_m: f32) -> (f32, f32) {
+    let camera = Camera::driver(2, 1).position;
+    let share = 1.0 - hangs_m / camera.z;
+    (camera.x + (x_m - camera.x) * share, y_m * share)
 }
 
 /// What a piece of ground shows.
@@ -57,10 +69,20 @@ pub struct Contact {
     pub depth_error_m: f32,
     /// Metres to the left.
     pub y_m: f32,
+    /// So high it is seen to be, metres: less than it is where the picture cuts it.
+    pub height_m: f32,
     /// A person, not a vehicle.
     pub is_person: bool,
     /// The pixel below it is asphalt or paint.
     pub on_road: bool,
+}
+
+#[cfg(test)]
+impl Contact {
+    /// A car's, on the road, at a distance that is known.
+    pub fn of_car((x_m, y_m): (f32, f32)) -> Self {
+        Self { x_m, y_m, depth_error_m: 0.0, height_m: 1.4, is_person: false, on_road: true }
+    }
 }
 
 /// A mask with the geometry of the camera that both drivers look through.
@@ -209,12 +231,13 @@ impl<'a> Sight<'a> {
         let ahead_m = self.focal_px * self.camera.position.z / below_px;
         let (x_m, depth_error_m) = (self.camera.position.x + ahead_m, 0.5 * ahead_m / below_px);
         let height_m = if is_person { PERSON_HEIGHT_M } else { VEHICLE_HEIGHT_M };
-        let expected_rows = height_m * self.focal_px / ahead_m;
-        let is_tall_enough = rows >= LEAST_ROWS && rows as f32 >= LEAST_SHARE * expected_rows;
+        let seen_m = rows as f32 * ahead_m / self.focal_px;
+        let is_tall_enough = rows >= LEAST_ROWS && seen_m >= LEAST_SHARE * height_m;
         let below = (row < self.mask.height).then(|| ground_of(self.tag(column, row)));
         let on_road = below.is_none_or(|ground| ground != Ground::Other);
         let y_m = self.column_y_m(column, x_m);
-        (is_tall_enough && x_m < FARTHEST_M).then_some(Contact { x_m, depth_error_m, y_m, is_person, on_road })
+        let contact = Contact { x_m, depth_error_m, y_m, height_m: seen_m, is_person, on_road };
+        (is_tall_enough && x_m < FARTHEST_M).then_some(contact)
     }
 
     /// What borders the lane around a point of a row: metres to the left and to the right of

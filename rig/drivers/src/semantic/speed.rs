@@ -214,7 +214,7 @@ mod tests {
     fn a_car_creeps_by_a_parked_one_that_is_too_near_for_driving_by() {
         let beside = |room_m: f32| {
             let y_m = -HALF_WIDTH_M - room_m;
-            Contact { x_m: 6.0, depth_error_m: 0.0, y_m, is_person: false, on_road: true }
+            Contact::of_car((6.0, y_m))
         };
         let (nobody, ahead) = (Tracks::default(), Arc { curvature: 0.0 });
         let stops = |room_m, speed_mps| obstacle(&[beside(room_m)], &nobody, ahead, speed_mps).is_some();
@@ -226,13 +226,13 @@ mod tests {
     fn who_is_beside_the_straight_car_may_be_in_the_way_of_the_turning_one() {
         let sharp = Arc { curvature: -0.125 };
         let (x_m, y_m) = sharp.beside(5.0, HALF_WIDTH_M + 0.6);
-        let beside = Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
+        let beside = Contact::of_car((x_m, y_m));
         assert!(obstacle(&[beside], &Tracks::default(), sharp, 2.0).is_some());
     }
 
     #[test]
     fn a_turn_is_driven_slowly_towards_whom_it_may_end_behind() {
-        let at = |x_m: f32, y_m: f32| Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
+        let at = |x_m: f32, y_m: f32| Contact::of_car((x_m, y_m));
         let dash =
             |junction_m| Dash { speed_mps: 5.0, limit_mps: 13.9, turn: Turn::Right, junction_m, ..Dash::default() };
         let found = |contact, curvature| after_turn_m(&[contact], &Tracks::default(), Arc { curvature }, &dash(0.0));

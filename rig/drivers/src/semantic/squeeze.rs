@@ -6,7 +6,7 @@ use kernel::time::TICK_S;
 
 use super::arc::{Arc, HALF_WIDTH_M, Point, SHARPEST};
 use super::moved::Moved;
-use super::sight::{Contact, Ground, Sight};
+use super::sight::{self, Contact, Ground, Sight};
 use super::tracks::Tracks;
 
 /// So long the car stands before it tries, seconds.
@@ -28,11 +28,41 @@ const FREE_M: f32 = 5.5;
 const MOVING_MPS: f32 = 0.5;
 const LET_PASS_M: f32 = 15.0;
 
-/// Where something touches the ground.
+/// What is lowest of a vehicle where no wheel is seen is its bumper, which hangs so much above the ground, metres: it seems
+/// farther away than it is. That of a vehicle from so high on hangs higher.
+const BUMPER_M: f32 = 0.2;
+const HIGH_BUMPER_M: f32 = 0.35;
+const HIGH_FROM_M: f32 = 2.0;
+/// Who was not looked at for so long may have gone, seconds.
+const FORGOTTEN_S: f32 = 45.0;
+/// Who moves is this near to where it was seen, metres.
+const ONE_BODY_M: f32 = 3.0;
+
+/// Where somebody's lowest part is, the ground that it hides, and how long ago that was seen.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
     at: Point,
+    hides: Point,
     is_person: bool,
+    unseen_s: f32,
+}
+
+impl Spot {
+    fn of(contact: &Contact) -> Self {
+        let hides = (contact.x_m, contact.y_m);
+        let bumper_m = if contact.height_m < HIGH_FROM_M { BUMPER_M } else { HIGH_BUMPER_M };
+        let at = if contact.is_person { hides } else { sight::nearer(hides, bumper_m) };
+        Self { at, hides, is_person: contact.is_person, unseen_s: 0.0 }
+    }
+
+    /// Metres before the front of the car along an arc until it would touch it; none if it would not.
+    fn touches_m(&self, arc: Arc) -> Option<f32> {
+        let (s_m, left_m) = arc.project(self.at.0, self.at.1);
+        let beside_m = if self.is_person { BESIDE_WALKER_M } else { BESIDE_VEHICLE_M };
+        let room_m = left_m.abs() - if s_m < FRONT_M { HALF_WIDTH_M } else { arc.swept_m(left_m) };
+        let least_m = if s_m < FRONT_M { NEXT_TO_M } else { beside_m };
+        (self.at.0 > 0.0 && room_m < least_m).then_some((s_m - FRONT_M).max(0.0))
+    }
 }
 
 /// A way beside what stands there.
@@ -65,9 +95,10 @@ impl Squeeze {
     /// Carries what is known along while the car moves; `waits` for something that stands in its way.
     pub fn carry(&mut self, moved: Moved, waits: bool) {
         for spot in self.seen.iter_mut().chain(&mut self.gone) {
-            spot.at = moved.shift(spot.at);
+            (spot.at, spot.hides) = (moved.shift(spot.at), moved.shift(spot.hides));
         }
-        self.gone.retain(|spot| spot.at.0 > 0.0);
+        self.gone.iter_mut().for_each(|spot| spot.unseen_s += TICK_S);
+        self.gone.retain(|spot| spot.at.0 > 0.0 && spot.unseen_s < FORGOTTEN_S);
         self.since_look_m += moved.forward_m;
         self.driven_m += moved.forward_m;
         if let Some(way) = &mut self.way {
@@ -77,28 +108,34 @@ impl Squeeze {
             self.driven_m = 0.0;
         }
         if self.driven_m > FARTHEST_M {
-            *self = Self::default();
+            (self.stood_s, self.way, self.driven_m) = (0.0, None, 0.0);
         }
     }
 
     /// Takes in a mask: the way beside what it shows that turns least from the wanted one.
     pub fn look(&mut self, sight: &Sight<'_>, contacts: &[Contact], others: &[&Tracks], wanted: Arc) {
-        let spot = |c: &Contact| Spot { at: (c.x_m, c.y_m), is_person: c.is_person };
-        let seen = std::mem::replace(&mut self.seen, contacts.iter().map(spot).collect());
+        let seen = std::mem::replace(&mut self.seen, contacts.iter().map(Spot::of).collect());
         // Who leaves the picture of a car that stands has driven off.
         if std::mem::take(&mut self.since_look_m) > 0.0 {
-            self.gone.extend(seen.into_iter().filter(|spot| is_hidden(sight, spot.at)));
+            self.gone.extend(seen.into_iter().filter(|spot| is_hidden(sight, spot.hides)));
         }
+        let moving = || others.iter().flat_map(|others| others.moving(MOVING_MPS)).map(|track| track.at);
+        let is_of = |at: Point, spot: &Spot| ops::hypot(at.0 - spot.at.0, at.1 - spot.at.1) < ONE_BODY_M;
+        self.gone.retain(|spot| moving().all(|at| !is_of(at, spot)));
         if self.stood_s < WAITED_S {
             return;
         }
         let is_near = |at: Point| at.0 > 0.0 && ops::hypot(at.0, at.1) < LET_PASS_M;
-        let mut moving = others.iter().flat_map(|others| others.moving(MOVING_MPS));
-        self.way = if moving.any(|track| is_near(track.at)) {
+        self.way = if moving().any(is_near) {
             self.way.map(|way| Way { free_m: 0.0, ..way })
         } else {
             self.best(sight, wanted)
         };
+    }
+
+    /// Metres before the front of the car along an arc until it would touch what left the picture; none if it would not.
+    pub fn beside_m(&self, arc: Arc) -> Option<f32> {
+        self.gone.iter().filter_map(|spot| spot.touches_m(arc)).reduce(f32::min)
     }
 
     fn best(&self, sight: &Sight<'_>, wanted: Arc) -> Option<Way> {
@@ -113,14 +150,7 @@ impl Squeeze {
 
     /// Metres before the front of the car along an arc until it would touch something.
     fn free_m(&self, arc: Arc) -> f32 {
-        let touches_m = |spot: &Spot| {
-            let (s_m, left_m) = arc.project(spot.at.0, spot.at.1);
-            let beside_m = if spot.is_person { BESIDE_WALKER_M } else { BESIDE_VEHICLE_M };
-            let room_m = left_m.abs() - if s_m < FRONT_M { HALF_WIDTH_M } else { arc.swept_m(left_m) };
-            let least_m = if s_m < FRONT_M { NEXT_TO_M } else { beside_m };
-            (spot.at.0 > 0.0 && room_m < least_m).then_some((s_m - FRONT_M).max(0.0))
-        };
-        self.seen.iter().chain(&self.gone).filter_map(touches_m).fold(f32::INFINITY, f32::min)
+        self.seen.iter().chain(&self.gone).filter_map(|spot| spot.touches_m(arc)).fold(f32::INFINITY, f32::min)
     }
 }
 
@@ -128,13 +158,16 @@ fn is_hidden(sight: &Sight<'_>, at: Point) -> bool {
     sight.ground(at.0, at.1) == Ground::Unseen
 }
 
-/// Whether the car stays on the road along an arc, as far as the ground is seen.
+/// Whether the middle of the car's front goes where the ground is seen or right below the picture, and its sides on the road
+/// as far as they are seen.
 fn is_road(sight: &Sight<'_>, arc: Arc) -> bool {
     let stays = |s_m: f32| {
-        [-HALF_WIDTH_M, HALF_WIDTH_M].into_iter().all(|left_m| {
-            let (x_m, y_m) = arc.beside(s_m, left_m);
-            sight.ground(x_m, y_m) != Ground::Other
-        })
+        let is_before = sight::is_in_front(arc.beside(s_m, 0.0));
+        is_before
+            && [-HALF_WIDTH_M, HALF_WIDTH_M].into_iter().all(|left_m| {
+                let (x_m, y_m) = arc.beside(s_m, left_m);
+                sight.ground(x_m, y_m) != Ground::Other
+            })
     };
     (0..=4).all(|metre| stays(FRONT_M + f32::from(metre as u8)))
 }
@@ -157,8 +190,8 @@ mod tests {
         act(&Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids }, 0.0))
     }
 
-    fn contact((x_m, y_m): Point, is_person: bool) -> Contact {
-        Contact { x_m, y_m, depth_error_m: 0.0, is_person, on_road: true }
+    fn contact(at: Point, is_person: bool) -> Contact {
+        Contact { is_person, ..Contact::of_car(at) }
     }
 
     fn vehicle_rear(x_m: f32, right_m: f32, left_m: f32) -> Vec<Contact> {
@@ -246,5 +279,56 @@ mod tests {
             assert_eq!(points.iter().find(is_hit), None, "after {driven_m} m");
         }
         assert!(driven_m > 10.0, "{driven_m} m");
+    }
+
+    /// What was seen at the picture's edge after the car crept a metre, and is not seen any more.
+    fn left_behind(contact: Contact, others: &[&Tracks]) -> Squeeze {
+        let mut squeeze = Squeeze::default();
+        on_asphalt(|sight| squeeze.look(sight, &[contact], others, STRAIGHT));
+        squeeze.carry(Moved { forward_m: 1.0, turned_rad: 0.0 }, true);
+        on_asphalt(|sight| squeeze.look(sight, &[], others, STRAIGHT));
+        squeeze
+    }
+
+    #[test]
+    fn what_left_the_picture_beside_the_car_is_in_the_way_of_a_turn_until_it_is_forgotten() {
+        let mut squeeze = left_behind(Contact::of_car((6.2, 2.2)), &[]);
+        let left = Arc { curvature: 0.15 };
+        assert!(squeeze.beside_m(left).is_some_and(|m| m < 2.0), "{:?}", squeeze.beside_m(left));
+        assert_eq!([STRAIGHT, Arc { curvature: -0.15 }].map(|arc| squeeze.beside_m(arc)), [None; 2]);
+        (0..(FORGOTTEN_S / TICK_S) as usize + 2).for_each(|_| squeeze.carry(STILL, true));
+        assert_eq!(squeeze.beside_m(left), None);
+    }
+
+    #[test]
+    fn who_drives_off_is_not_remembered_where_it_stood() {
+        let mut driving = Tracks::default();
+        for look in 0..10 {
+            driving.look(&[Contact::of_car((5.2 + 0.1 * look as f32, 2.0))]);
+            (0..6).for_each(|_| driving.carry(STILL));
+        }
+        assert_eq!(left_behind(Contact::of_car((6.2, 2.2)), &[&driving]).beside_m(Arc { curvature: 0.15 }), None);
+    }
+
+    /// The lower edge of a bumper hides ground that is farther away.
+    #[test]
+    fn bumpers_are_nearer_than_the_ground_that_they_hide_and_those_of_lorries_nearer_still() {
+        let camera = render::Camera::driver(2, 1).position;
+        let at = |height_m: f32, is_person: bool| {
+            Spot::of(&Contact { height_m, is_person, ..Contact::of_car((camera.x + 6.0, 3.0)) }).at
+        };
+        let (car, lorry) = (at(1.4, false), at(2.8, false));
+        assert!((car.0 - camera.x - 5.2).abs() < 1e-3 && (car.1 - 2.6).abs() < 1e-3, "{car:?}");
+        assert!((lorry.0 - camera.x - 4.6).abs() < 1e-3, "{lorry:?}");
+        assert_eq!(at(1.7, true), (camera.x + 6.0, 3.0), "feet are on the ground");
+    }
+
+    /// Nothing is known of what lies beside the picture: the pavement, perhaps.
+    #[test]
+    fn it_does_not_turn_out_of_its_picture() {
+        on_asphalt(|sight| {
+            assert!([0.0, 0.1, -0.1].into_iter().all(|curvature| is_road(sight, Arc { curvature })));
+            assert!(!is_road(sight, Arc { curvature: SHARPEST }) && !is_road(sight, Arc { curvature: -SHARPEST }));
+        });
     }
 }

@@ -239,13 +239,7 @@ mod tests {
                 tracks.moving(1.5).map(|track| track.at).next()
             };
             for tenths in 0..15 {
-                look(&[Contact {
-                    x_m: 12.0,
-                    depth_error_m: 0.0,
-                    y_m: y_m(0.1 * tenths as f32),
-                    is_person: false,
-                    on_road: true,
-                }]);
+                look(&[Contact::of_car((12.0, y_m(0.1 * tenths as f32)))]);
             }
             let unseen: Vec<Point> = (0..60).map_while(|_| look(&[])).collect();
             (unseen.len(), unseen.last().copied())
@@ -263,8 +257,7 @@ mod tests {
         let moved = Moved { forward_m: 0.1, turned_rad: 0.0 };
         // The car drives at 6 m/s; a vehicle crosses from the left at 4 m/s, another one stands.
         for look in 0..30 {
-            let contact =
-                |x_m: f32, y_m: f32| Contact { x_m, depth_error_m: 0.0, y_m, is_person: false, on_road: true };
+            let contact = |x_m: f32, y_m: f32| Contact::of_car((x_m, y_m));
             let away = 40.0 - 0.6 * look as f32;
             let crossing = 12.0 - 0.4 * look as f32;
             tracks.look(&[contact(away, crossing + 0.5), contact(away, crossing), contact(away + 2.0, -9.0)]);
