@@ -21,6 +21,7 @@ mod rain;
 mod renderer;
 mod scenery;
 mod shadows;
+mod sieve;
 pub mod tags;
 mod view;
 pub mod wind;

@@ -11,6 +11,7 @@ use crate::horizon::{Horizon, Occluder};
 use crate::instance_ids::{instance_of_parked, parked_number};
 use crate::mesh::model::Detail;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, surface};
+use crate::sieve::Sieve;
 use crate::view::View;
 
 /// Pieces smaller than this many pixels are left out.
@@ -25,6 +26,8 @@ const FLAT_M: f32 = 0.003;
 /// A piece of the static world at one level of detail.
 #[derive(Clone, Debug, Default)]
 struct Level {
+    /// Its vertices in [`Scenery::vertices`].
+    vertices: Range<u32>,
     /// Ranges in [`Scenery::indices`], one for each finish.
     ranges: [Range<u32>; FINISHES],
 }
@@ -51,6 +54,7 @@ impl Piece {
 pub(crate) struct Scenery {
     pub(crate) vertices: Vec<Vertex>,
     indices: Vec<u32>,
+    /// The last one is the plain, which all others hide.
     pieces: Vec<Piece>,
     houses: Vec<Occluder>,
 }
@@ -59,7 +63,7 @@ impl Scenery {
     pub(crate) fn new(network: &RoadNetwork) -> Self {
         let houses = network.props.iter().filter_map(Occluder::of).collect();
         let mut scenery = Self { houses, ..Default::default() };
-        for mut cell in surface::cells(network).into_iter().chain([surface::plain(network)]) {
+        for mut cell in surface::cells(network) {
             let levels = Detail::ALL.map(|detail| {
                 cell = simplify::simplified(&cell, detail.error_m().max(FLAT_M));
                 cell.clone()
@@ -69,6 +73,8 @@ impl Scenery {
         for (object, parked) in numbered(network) {
             scenery.add(Detail::ALL.map(|detail| placed(object, parked, detail)), parked);
         }
+        let plain = surface::plain(network);
+        scenery.add(Detail::ALL.map(|_| plain.clone()), None);
         scenery
     }
 
@@ -93,7 +99,7 @@ impl Scenery {
             self.indices.extend(mesh.triangles[finish].iter().flatten().map(|i| i + first));
             start..self.indices.len() as u32
         });
-        Level { ranges }
+        Level { vertices: first..self.vertices.len() as u32, ranges }
     }
 
     /// The skyline of the houses around an eye.
@@ -102,20 +108,23 @@ impl Scenery {
     }
 
     /// Indices of what a view sees for each finish, front to back, without the parked cars that are gone.
-    pub(crate) fn visible(&self, view: &View, gone: &[usize]) -> [Vec<u32>; FINISHES] {
-        let large = |p: &&Piece| view.pixels(2.0 * p.radius_m, p.centre, p.radius_m) > SMALLEST_PX;
-        let mut seen: Vec<(f32, &Piece)> = self
-            .pieces
-            .iter()
-            .filter(|p| p.stands(gone))
-            .filter(|p| view.sees(p.centre, p.radius_m))
-            .filter(large)
-            .map(|p| (p.centre.truncate().distance(view.eye.truncate()) - p.radius_m, p))
-            .collect();
+    pub(crate) fn visible(&self, view: &View, gone: &[usize], sieve: &mut Sieve) -> [Vec<u32>; FINISHES] {
+        let large = |p: &Piece| view.pixels(2.0 * p.radius_m, p.centre, p.radius_m) > SMALLEST_PX;
+        let is_seen = |p: &&Piece| p.stands(gone) && view.sees(p.centre, p.radius_m) && large(p);
+        let near_m = |p: &Piece| p.centre.truncate().distance(view.eye.truncate()) - p.radius_m;
+        let (others, plain) = self.pieces.split_at(self.pieces.len() - 1);
+        let mut seen: Vec<(f32, &Piece)> = others.iter().filter(is_seen).map(|p| (near_m(p), p)).collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut horizon = self.horizon(view.eye);
         seen.retain(|(_, p)| !horizon.hides(p.centre, p.radius_m));
-        self.gather(seen.into_iter().map(|(_, p)| &p.levels[view.detail(p.centre, p.radius_m) as usize]))
+        let mut lists: [Vec<u32>; FINISHES] = Default::default();
+        for piece in seen.into_iter().map(|(_, piece)| piece).chain(plain) {
+            let level = &piece.levels[view.detail(piece.centre, piece.radius_m) as usize];
+            let vertices = &self.vertices[level.vertices.start as usize..level.vertices.end as usize];
+            let indices = level.ranges.iter().map(|range| self.indices_of(range));
+            sieve.sift(vertices, level.vertices.start, indices.zip(&mut lists));
+        }
+        lists
     }
 
     /// Indices of all coarse pieces that come closer than `reach_m` to the line through `centre`
@@ -123,17 +132,12 @@ impl Scenery {
     pub(crate) fn near_line(&self, centre: Vec3, direction: Vec3, reach_m: f32, gone: &[usize]) -> Vec<u32> {
         let near = |p: &&Piece| (p.centre - centre).reject_from(direction).length() < reach_m + p.radius_m;
         let pieces = self.pieces.iter().filter(|p| p.stands(gone)).filter(near);
-        self.gather(pieces.map(|p| &p.levels[Detail::Coarse as usize])).concat()
+        let levels = pieces.map(|p| &p.levels[Detail::Coarse as usize]);
+        levels.flat_map(|level| level.ranges.iter().flat_map(|range| self.indices_of(range))).copied().collect()
     }
 
-    fn gather<'a>(&self, levels: impl Iterator<Item = &'a Level>) -> [Vec<u32>; FINISHES] {
-        let mut lists: [Vec<u32>; FINISHES] = Default::default();
-        for level in levels {
-            for (list, range) in lists.iter_mut().zip(&level.ranges) {
-                list.extend_from_slice(&self.indices[range.start as usize..range.end as usize]);
-            }
-        }
-        lists
+    fn indices_of(&self, range: &Range<u32>) -> &[u32] {
+        &self.indices[range.start as usize..range.end as usize]
     }
 }
 

@@ -23,8 +23,26 @@ pub const DIRECTION: Vec2 = Vec2::new(0.8, 0.6);
 /// Horizontal displacement of a vertex of full sway whose place at rest is `at` (x and y), metres:
 /// `DIRECTION * REACH_M * wind * (BEND.x + BEND.y * sin(SWING_RADPS * t + WAVE . at))`.
 pub fn offset(weather: &Weather, tick: Tick, at: Vec2) -> Vec2 {
-    let swing = ops::sin(phase_rad(tick) + WAVE.dot(at));
-    DIRECTION * (strength_m(weather) * (BEND.x + BEND.y * swing))
+    Gusts::new(weather, tick).offset(at)
+}
+
+/// The wind at a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gusts {
+    phase_rad: f32,
+    strength_m: f32,
+}
+
+impl Gusts {
+    pub(crate) fn new(weather: &Weather, tick: Tick) -> Self {
+        Self { phase_rad: phase_rad(tick), strength_m: strength_m(weather) }
+    }
+
+    /// As [`offset`].
+    pub(crate) fn offset(&self, at: Vec2) -> Vec2 {
+        let swing = ops::sin(self.phase_rad + WAVE.dot(at));
+        DIRECTION * (self.strength_m * (BEND.x + BEND.y * swing))
+    }
 }
 
 /// Phase of the gusts at a tick, radians, wrapped so that it stays exact over hours.
