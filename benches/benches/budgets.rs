@@ -14,7 +14,7 @@ use criterion::{BatchSize, Criterion};
 use kernel::RoadNetwork;
 use kernel::time::CLIP_FPS;
 use perception::{Checkpoint, RgbView, Segmenter};
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 use replay::Replayer;
 
 /// The size of the bundled checkpoints, pixels.
@@ -158,7 +158,7 @@ impl Sight {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../perception/checkpoints/early.onnx");
         let checkpoint = Checkpoint::load(&path).map_err(|e| e.to_string())?;
         let segmenter = Segmenter::new(&checkpoint, SIZE.0 as usize, SIZE.1 as usize).map_err(|e| e.to_string())?;
-        let renderer = Renderer::new(network, &RenderOptions::default()).map_err(|e| e.to_string())?;
+        let renderer = Renderer::new(network, &AdapterChoice::default()).map_err(|e| e.to_string())?;
         Ok(Self { renderer, segmenter, camera: Camera::driver(SIZE.0, SIZE.1) })
     }
 
@@ -195,7 +195,7 @@ impl Sight {
 /// What the budgets of picture and prediction are held against.
 fn references(criterion: &mut Criterion, drive: &BusyDrive) -> Result<(), String> {
     let mut renderer =
-        Renderer::new(&bare(&drive.scene.network), &RenderOptions::default()).map_err(|e| e.to_string())?;
+        Renderer::new(&bare(&drive.scene.network), &AdapterChoice::default()).map_err(|e| e.to_string())?;
     let mut empty = drive.snapshot.clone();
     empty.actors.clear();
     let camera = Camera::driver(SIZE.0, SIZE.1);

@@ -264,6 +264,7 @@ class Recording:
         to: float | None = None,
         fps: int = 10,
         size: tuple[int, int] = (256, 128),
+        quality: Literal["plain", "standard", "fine"] | None = None,
         camera: Literal["driver", "chase", "top"] = "driver",
     ) -> Frames:
         """The frames of a window.
@@ -271,7 +272,7 @@ class Recording:
         Those are the last seconds before the takeover (or the collision that nobody prevented, else the end), as `aeye
         rerender` draws them, or, with `from_` or `to` or with `last=None`, those between two times of the run (seconds;
         None: its start, its end), cut to what the file holds: a case begins at `first_tick`. `size` is (width, height)
-        in pixels, `fps` a divisor of 60.
+        in pixels, `quality` how good they are (None: as usual), `fps` a divisor of 60.
 
         Raises InputError where there is nothing in the window, or a value cannot be.
         """
@@ -281,6 +282,7 @@ class Recording:
         tick: int,
         *,
         size: tuple[int, int] = (256, 128),
+        quality: Literal["plain", "standard", "fine"] | None = None,
         camera: Literal["driver", "chase", "top"] = "driver",
     ) -> Frame:
         """The picture of a tick.
@@ -480,6 +482,7 @@ def campaign(
     pedestrians: int | None = None,
     hazards: Literal["none", "natural", "raised"] | None = None,
     weather: str | None = None,
+    quality: Literal["plain", "standard", "fine"] | None = None,
     max_time: float = 240.0,
     seed: int = 1,
     jobs: int | None = None,
@@ -491,7 +494,8 @@ def campaign(
     and `campaign.json` go to the folder `out`. Ctrl-C ends it; what was driven stays, and the same call goes on there.
 
     `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
-    scenario's, or all bundled ones), `weather` is one of CARLA's names. `vary` are as many runs, each with values drawn for those
+    scenario's, or all bundled ones), `weather` is one of CARLA's names, `quality` how good the pictures are that networks look
+    at. `vary` are as many runs, each with values drawn for those
     parameters of the scenario's story that have ranges. A run takes at most `max_time` simulated seconds.
     `jobs` worlds are simulated at the same time (None: one a core); the results do not depend on it.
 
@@ -558,6 +562,7 @@ def compare(
     gates: list[str] | None = None,
     no_worse_than: str | None = None,
     size: tuple[int, int] | None = None,
+    quality: Literal["plain", "standard", "fine"] | None = None,
     jobs: int | None = None,
     shard: tuple[int, int] | None = None,
 ) -> dict[str, Any]:
@@ -570,7 +575,7 @@ def compare(
     `early`, `full`, `truth`, ONNX files or `External`. Only those cases count on whose takeover a campaign came to one of the
     verdicts `verdict`, where it is given. `gates` are conditions on all others, as in `ped_iou>=0.5`, and
     `no_worse_than` names a checkpoint than which no other may be worse; `gates` of what is given says which were passed.
-    Pictures have the `size`, (width, height) (None: that of the first network). `jobs` frames are looked at at the same
+    Pictures have the `size`, (width, height) (None: that of the first network), and the `quality` (None: the usual). `jobs` frames are looked at at the same
     time (None: one a core); the results do not depend on it.
 
     With `shard`, (i, n), it looks at every n-th file alone and gives what `aeye compare --shard --json` prints; folders of all

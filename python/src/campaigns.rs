@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use crate::errors::input;
 use crate::external::{Checkpoint, Raised, choices};
 use crate::given::{Given, OneOrMore, Pair, Whole, named, within};
-use crate::values::{jobs_at_once, level, people, preset, share, whole_seconds};
+use crate::values::{self, jobs_at_once, level, people, preset, share, whole_seconds};
 use crate::work::{parsed, tabled, work};
 
 const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, more than 0";
@@ -19,8 +19,8 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 /// `campaign.json` go to the folder `out`. Ctrl-C ends it; what was driven stays, and the same call goes on there.
 ///
 /// `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
-/// scenario's, or all bundled ones), `hazards` is `none`, `natural` or `raised`, `weather` one of CARLA's names. A run
-/// takes at most `max_time` simulated seconds. `jobs` worlds are simulated at the same time (None: one a core); the
+/// scenario's, or all bundled ones), `hazards` is `none`, `natural` or `raised`, `weather` one of CARLA's names. Networks look at
+/// pictures of the `quality` `plain`, `standard` or `fine` (None: the usual). A run takes at most `max_time` simulated seconds. `jobs` worlds are simulated at the same time (None: one a core); the
 /// results do not depend on it.
 ///
 /// With `shard`, (i, n), it drives every n-th run alone, up to `runs` or `vary`, into a folder for `collect`, and gives what `aeye
@@ -32,12 +32,12 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 #[pyo3(
     signature = (
         checkpoint, out, *, runs = None, vary = None, km = None, cases = None, pedestrian_cases = None, maps = None, scenario = None,
-        pedestrians = None, hazards = None, weather = None, max_time = Given::of(240.0), seed = Given::of(Whole(1)),
-        jobs = None, shard = None
+        pedestrians = None, hazards = None, weather = None, quality = None, max_time = Given::of(240.0),
+        seed = Given::of(Whole(1)), jobs = None, shard = None
     ),
     text_signature = "(checkpoint, out, *, runs=None, vary=None, km=None, cases=None, pedestrian_cases=None, maps=None, \
-                      scenario=None, pedestrians=None, hazards=None, weather=None, max_time=240.0, seed=1, jobs=None, \
-                      shard=None)"
+                      scenario=None, pedestrians=None, hazards=None, weather=None, quality=None, max_time=240.0, seed=1, \
+                      jobs=None, shard=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn campaign<'py>(
@@ -54,6 +54,7 @@ pub fn campaign<'py>(
     pedestrians: Option<Given<Whole>>,
     hazards: Option<Given<String>>,
     weather: Option<Given<String>>,
+    quality: Option<Given<String>>,
     max_time: Given<f64>,
     seed: Given<Whole>,
     jobs: Option<Given<Whole>>,
@@ -80,6 +81,7 @@ pub fn campaign<'py>(
         pedestrians,
         hazards: level(hazards)?,
         weather: preset(weather)?,
+        quality: values::quality(quality)?,
         run_seconds: whole_seconds(max_time, "max_time", 10..=86_400)?,
         seed: seed.within("seed", 0..=u64::MAX)?,
         jobs: jobs_at_once(jobs)?,

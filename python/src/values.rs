@@ -14,6 +14,7 @@ use kernel::weather::WeatherPreset;
 use lab::share::Share;
 use numpy::PyUntypedArray;
 use pyo3::prelude::*;
+use render::Quality;
 
 use crate::errors::{file, input, raise};
 use crate::given::{Given, Pair, Whole, named, within};
@@ -73,6 +74,12 @@ pub fn preset(name: Option<Given<String>>) -> PyResult<Option<WeatherPreset>> {
     let names = || WeatherPreset::names().collect::<Vec<_>>().join(", ");
     let found = WeatherPreset::find(&name).copied().map(Some);
     found.ok_or_else(|| input(format!("weather=\"{name}\"; expected one of {}", names())))
+}
+
+/// The quality of pictures of a name.
+pub fn quality(name: Option<Given<String>>) -> PyResult<Quality> {
+    let Some(name) = named(name, "quality")? else { return Ok(Quality::default()) };
+    name.parse().map_err(|expected| input(format!("quality=\"{name}\"; {expected}")))
 }
 
 /// A time in whole seconds.

@@ -27,7 +27,7 @@ pub struct AdapterInfo {
     pub backend: String,
     /// Driver and its version.
     pub driver: String,
-    /// Whether it is a CPU in disguise; such adapters get the cheap preset.
+    /// Whether it is a CPU in disguise.
     pub is_cpu: bool,
 }
 

@@ -3,6 +3,8 @@
 use glam::{Quat, Vec3};
 use kernel::scene::EgoScene;
 
+use crate::Quality;
+
 /// What a camera is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {
@@ -29,6 +31,8 @@ pub struct Camera {
     pub width: u32,
     /// Rows.
     pub height: u32,
+    /// How good its pictures are.
+    pub quality: Quality,
 }
 
 /// From optical axes (x right, y down, z along the view) to those of a [`Camera`].
@@ -71,12 +75,18 @@ impl Camera {
         // The view's x axis looks down, its z axis (up in the picture) points north, its y axis west.
         let rotation = Quat::from_mat3(&glam::Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y));
         let position = Vec3::new(0.0, 0.0, above);
-        Self { mount: Mount::EgoPlace, position, rotation, fov_x_rad, width, height }
+        Self { mount: Mount::EgoPlace, position, rotation, fov_x_rad, ..Self::level(width, height) }
     }
 
     fn level(width: u32, height: u32) -> Self {
         let fov_x_rad = core::f32::consts::FRAC_PI_2;
-        Self { mount: Mount::World, position: Vec3::ZERO, rotation: Quat::IDENTITY, fov_x_rad, width, height }
+        let quality = Quality::default();
+        Self { mount: Mount::World, position: Vec3::ZERO, rotation: Quat::IDENTITY, fov_x_rad, width, height, quality }
+    }
+
+    /// The same with pictures of another quality.
+    pub fn at(self, quality: Quality) -> Self {
+        Self { quality, ..self }
     }
 
     /// What its pixels are, row by row as a 3x3 matrix: square, without distortion, the middle of the first one at

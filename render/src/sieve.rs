@@ -29,6 +29,8 @@ pub(crate) struct Sieve {
     view: View,
     /// Samples across and down.
     size: Vec2,
+    /// Whether pixels' corners are samples too.
+    corners: bool,
     /// Of the wind at the tick of the picture.
     gusts: Gusts,
     /// Everything is kept.
@@ -38,11 +40,11 @@ pub(crate) struct Sieve {
 }
 
 impl Sieve {
-    /// For a picture of so many samples of a view.
-    pub(crate) fn new(view: &View, size: [u32; 2], scene: &SceneSnapshot) -> Self {
+    /// For a picture of so many samples of a view, and as many corners.
+    pub(crate) fn new(view: &View, size: [u32; 2], corners: bool, scene: &SceneSnapshot) -> Self {
         let size = Vec2::new(size[0] as f32, size[1] as f32);
         let gusts = Gusts::new(&scene.weather, scene.tick);
-        Self { view: *view, size, gusts, keeps_all: false, places: Vec::new() }
+        Self { view: *view, size, corners, gusts, keeps_all: false, places: Vec::new() }
     }
 
     /// One that leaves nothing out.
@@ -67,7 +69,7 @@ impl Sieve {
             }
             for triangle in indices.chunks_exact(3) {
                 let corners = [triangle[0], triangle[1], triangle[2]].map(|i| self.places[(i - first) as usize]);
-                if may_be_seen(corners, self.size) {
+                if self.may_show(corners) {
                     kept.extend_from_slice(triangle);
                 }
             }
@@ -79,6 +81,12 @@ impl Sieve {
         let mut kept = Vec::new();
         self.sift(vertices, 0, core::iter::once((indices, &mut kept)));
         kept
+    }
+
+    fn may_show(&self, triangle: [Place; 3]) -> bool {
+        // Corners lie where the samples would of a picture that is larger by half a pixel on each side.
+        let larger = |p: Place| p + Vec3::new(0.5, 0.5, 0.0);
+        may_be_seen(triangle, self.size) || self.corners && may_be_seen(triangle.map(larger), self.size + 1.0)
     }
 
     fn place(&mut self, vertices: &[Vertex]) {

@@ -37,6 +37,12 @@ impl View {
         }
     }
 
+    /// The view of a picture of this size as its pixels' corners see it, of which it has one column and one row more.
+    pub(crate) fn at_corners(self, width: u32, height: u32) -> Self {
+        let wider = |tan: f32, side: u32| tan * ((side + 1) as f32 / side as f32);
+        Self { tan_x: wider(self.tan_x, width), tan_y: wider(self.tan_y, height), ..self }
+    }
+
     /// Whether any of a sphere can be in the picture.
     pub(crate) fn sees(&self, centre: Vec3, radius_m: f32) -> bool {
         let rel = centre - self.eye;

@@ -13,7 +13,7 @@ use drivers::episode::{Episode, STEP_TICKS, hud};
 use drivers::readout::Readout;
 use drivers::vision::{Eye, Optics};
 use kernel::{Controls, Seat};
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 
 const USAGE: &str = "usage: episode_speed DRIVES ROUNDS STEPS JOBS";
 
@@ -39,7 +39,7 @@ fn main() -> ExitCode {
 fn drive(drives: usize, steps: usize, jobs: usize) -> anyhow::Result<String> {
     let map = Map::find("city")?;
     // Devices are made before the clock starts, as they are kept from reset to reset.
-    let made: Result<Vec<_>, _> = (0..jobs).map(|_| Renderer::new(&map.network, &RenderOptions::default())).collect();
+    let made: Result<Vec<_>, _> = (0..jobs).map(|_| Renderer::new(&map.network, &AdapterChoice::default())).collect();
     let devices = std::sync::Mutex::new(made?);
     let begin = Instant::now();
     let device = || {

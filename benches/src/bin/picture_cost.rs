@@ -12,7 +12,7 @@ use kernel::map::BUNDLED;
 use kernel::time::{CLIP_STRIDE_TICKS, TICK_HZ};
 use kernel::{RoadNetwork, SceneSnapshot};
 use nix::time::{ClockId, clock_gettime};
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 
 use ::tests::scenes::{Scene, follow_route, scene};
 
@@ -74,7 +74,7 @@ fn costs_ms(
     camera: &Camera,
     shown: impl Iterator<Item = SceneSnapshot>,
 ) -> Result<String, String> {
-    let open = |network| Renderer::new(network, &RenderOptions::default()).map_err(|e| e.to_string());
+    let open = |network| Renderer::new(network, &AdapterChoice::default()).map_err(|e| e.to_string());
     let (mut renderer, mut bare) = (open(network)?, open(&scenes::bare(network))?);
     let (mut costs, mut bare_costs) = (Vec::new(), Vec::new());
     for mut scene in shown {

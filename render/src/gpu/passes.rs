@@ -3,22 +3,24 @@
 use std::ops::Range;
 
 use super::pipelines::{self, Layouts, Pipelines};
+use super::targets::Samples;
 use super::{Gpu, GrowingBuffer, SceneUniform, Targets, readback, textures};
 use crate::SemanticTag;
 use crate::blob::BlobVertex;
 use crate::mesh::{FINISHES, Finish, Vertex};
+use crate::quality::Shadows;
 
 /// What a frame draws.
 pub(crate) struct Draws<'a> {
-    pub(crate) uniform: SceneUniform,
+    /// As pixels' middles see it, and as their corners do.
+    pub(crate) uniforms: [SceneUniform; 2],
     pub(crate) moving_vertices: &'a [Vertex],
     pub(crate) moving_indices: &'a [u32],
     /// Indices of the static world for each finish.
     pub(crate) fixed_indices: [Vec<u32>; FINISHES],
     /// Indices of the static world to draw the shadow map with; `None` keeps the map as it is.
     pub(crate) casters: Option<Vec<u32>>,
-    /// Whether moving things are in the shadow map too.
-    pub(crate) moving_casts: bool,
+    pub(crate) shadows: Shadows,
     /// Number of the shadow map; a new one is the next in order.
     pub(crate) shadow_map: usize,
     pub(crate) blobs: &'a [BlobVertex],
@@ -33,21 +35,32 @@ pub(crate) struct Draws<'a> {
 /// Pipelines and the buffers they read.
 pub(crate) struct Passes {
     layouts: Layouts,
-    shadow_taps: u32,
-    dry: Pipelines,
-    /// Those for fog, water and rain, made when they are needed first.
-    weather: Option<Pipelines>,
+    /// With shadows of what stands still and of what moves, made when they are needed first.
+    styles: [Option<Style>; 2],
     /// The one for pictures without colours, made when it is needed first.
     classes: Option<wgpu::RenderPipeline>,
-    uniform: wgpu::Buffer,
-    scene_group: wgpu::BindGroup,
-    shadow_side: u32,
+    /// For pixels' middles and for their corners.
+    scenes: [SceneBinding; 2],
     shadow_sampler: wgpu::Sampler,
-    shadow_maps: Vec<ShadowMap>,
     fixed: wgpu::Buffer,
     moving: GrowingBuffer,
     blobs: GrowingBuffer,
     indices: GrowingBuffer,
+}
+
+/// The scene as one grid of samples sees it.
+struct SceneBinding {
+    uniform: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+/// Pipelines and maps for one kind of shadows.
+struct Style {
+    shadows: Shadows,
+    dry: Pipelines,
+    /// Those for fog, water and rain, made when they are needed first.
+    weather: Option<Pipelines>,
+    maps: Vec<ShadowMap>,
 }
 
 /// A shadow map, to draw to and to read.
@@ -63,7 +76,7 @@ fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingRes
 }
 
 impl Passes {
-    pub(crate) fn new(gpu: &Gpu, fixed: &[Vertex], shadow_side: u32, shadow_taps: u32) -> Self {
+    pub(crate) fn new(gpu: &Gpu, fixed: &[Vertex]) -> Self {
         use wgpu::{BindingResource as R, BufferUsages as U};
         let layouts = Layouts::new(gpu);
         let buffer = |size: usize, usage: U| {
@@ -75,21 +88,19 @@ impl Passes {
                 mapped_at_creation: false,
             })
         };
-        let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
         let vertices = buffer(size_of_val(fixed).max(size_of::<Vertex>()), U::VERTEX);
         gpu.queue.write_buffer(&vertices, 0, bytemuck::cast_slice(fixed));
         let (noise, noise_sampler) = (textures::noise_view(gpu), textures::noise_sampler(gpu));
-        let scene = [uniform.as_entire_binding(), R::TextureView(&noise), R::Sampler(&noise_sampler)];
+        let scenes = core::array::from_fn(|_| {
+            let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
+            let scene = [uniform.as_entire_binding(), R::TextureView(&noise), R::Sampler(&noise_sampler)];
+            SceneBinding { group: bind(gpu, &layouts.scene, &scene), uniform }
+        });
         Self {
-            dry: Pipelines::new(gpu, &layouts, shadow_taps, false),
-            weather: None,
+            styles: [None, None],
             classes: None,
-            shadow_taps,
-            scene_group: bind(gpu, &layouts.scene, &scene),
-            shadow_side,
+            scenes,
             shadow_sampler: textures::shadow_sampler(gpu),
-            shadow_maps: Vec::new(),
-            uniform,
             fixed: vertices,
             moving: GrowingBuffer::new(gpu, U::VERTEX),
             blobs: GrowingBuffer::new(gpu, U::VERTEX),
@@ -100,7 +111,9 @@ impl Passes {
 
     /// Draws a frame and copies its planes to the read-back buffer.
     pub(crate) fn submit(&mut self, gpu: &Gpu, draws: &Draws<'_>, targets: &Targets) {
-        gpu.queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&draws.uniform));
+        for (scene, uniform) in self.scenes.iter().zip(&draws.uniforms) {
+            gpu.queue.write_buffer(&scene.uniform, 0, bytemuck::bytes_of(uniform));
+        }
         self.moving.write(gpu, draws.moving_vertices);
         self.blobs.write(gpu, draws.blobs);
         let ranges = self.write_indices(gpu, draws);
@@ -110,7 +123,7 @@ impl Passes {
         } else {
             self.class_pass(gpu, &mut encoder, &ranges, targets);
         }
-        readback::record(&mut encoder, targets);
+        readback::record(&mut encoder, targets, draws.colours);
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -122,17 +135,18 @@ impl Passes {
         draws: &Draws<'_>,
         targets: &Targets,
     ) {
-        while self.shadow_maps.len() <= draws.shadow_map {
-            self.shadow_maps.push(self.new_shadow_map(gpu));
-        }
-        if draws.weather && self.weather.is_none() {
-            self.weather = Some(Pipelines::new(gpu, &self.layouts, self.shadow_taps, true));
-        }
-        let pipelines = self.weather.as_ref().filter(|_| draws.weather).unwrap_or(&self.dry);
+        let index = usize::from(draws.shadows.moving);
+        let mut style = self.styles[index].take().unwrap_or_else(|| Style::new(gpu, &self.layouts, draws.shadows));
+        style.prepare(gpu, &self.layouts, &self.shadow_sampler, draws);
         if draws.casters.is_some() {
-            self.shadow_pass(encoder, ranges, draws);
+            self.shadow_pass(encoder, &style, ranges, draws);
         }
-        self.main_pass(encoder, pipelines, ranges, draws, targets);
+        for (samples, scene) in
+            [Some(&targets.middles), targets.corners.as_ref()].into_iter().flatten().zip(&self.scenes)
+        {
+            self.main_pass(encoder, &style, ranges, draws, (samples, scene));
+        }
+        self.styles[index] = Some(style);
     }
 
     fn write_indices(&mut self, gpu: &Gpu, draws: &Draws<'_>) -> Ranges {
@@ -148,23 +162,16 @@ impl Passes {
         Ranges { moving: 0..draws.moving_indices.len() as u32, fixed, casters }
     }
 
-    fn new_shadow_map(&self, gpu: &Gpu) -> ShadowMap {
-        use wgpu::BindingResource as R;
-        let view = textures::shadow_view(gpu, self.shadow_side);
-        let group = bind(gpu, &self.layouts.shadow, &[R::TextureView(&view), R::Sampler(&self.shadow_sampler)]);
-        ShadowMap { view, group }
-    }
-
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, draws: &Draws<'_>) {
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, style: &Style, ranges: &Ranges, draws: &Draws<'_>) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
-            depth_stencil_attachment: Some(depth_attachment(&self.shadow_maps[draws.shadow_map].view, 1.0)),
+            depth_stencil_attachment: Some(depth_attachment(&style.maps[draws.shadow_map].view, 1.0)),
             ..Default::default()
         });
-        pass.set_pipeline(&self.dry.shadow);
-        pass.set_bind_group(0, &self.scene_group, &[]);
+        pass.set_pipeline(&style.dry.shadow);
+        pass.set_bind_group(0, &self.scenes[0].group, &[]);
         self.draw_mesh(&mut pass, &self.fixed, &ranges.casters);
-        if draws.moving_casts {
+        if draws.shadows.moving {
             self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
         }
     }
@@ -173,7 +180,7 @@ impl Passes {
     fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, targets: &Targets) {
         let pipeline = self.classes.get_or_insert_with(|| pipelines::classes(gpu, &self.layouts)).clone();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-        let (ids, depth) = (view(&targets.ids), view(&targets.depth));
+        let (ids, depth) = (view(&targets.middles.ids), view(&targets.middles.depth));
         let sky = wgpu::Color { r: f64::from(SemanticTag::Sky as u8), ..wgpu::Color::TRANSPARENT };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("classes"),
@@ -181,7 +188,7 @@ impl Passes {
             depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.scene_group, &[]);
+        pass.set_bind_group(0, &self.scenes[0].group, &[]);
         pass.set_pipeline(&pipeline);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
         for finish in [Finish::Facade, Finish::Plain, Finish::Grainy] {
@@ -192,21 +199,22 @@ impl Passes {
     fn main_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        pipelines: &Pipelines,
+        style: &Style,
         ranges: &Ranges,
         draws: &Draws<'_>,
-        targets: &Targets,
+        (samples, scene): (&Samples, &SceneBinding),
     ) {
+        let pipelines = style.pipelines(draws);
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
-        let (colour, ids, depth) = (view(&targets.colour), view(&targets.ids), view(&targets.depth));
+        let (colour, ids, depth) = (view(&samples.colour), view(&samples.ids), view(&samples.depth));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("main"),
             color_attachments: &[&colour, &ids].map(|view| Some(colour_attachment(view, wgpu::Color::TRANSPARENT))),
             depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.scene_group, &[]);
-        pass.set_bind_group(1, &self.shadow_maps[draws.shadow_map].group, &[]);
+        pass.set_bind_group(0, &scene.group, &[]);
+        pass.set_bind_group(1, &style.maps[draws.shadow_map].group, &[]);
         // Nearest and most covering first: hidden fragments are cheap.
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
@@ -234,6 +242,29 @@ impl Passes {
             pass.set_index_buffer(self.indices.buffer.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(range.clone(), 0, 0..1);
         }
+    }
+}
+
+impl Style {
+    fn new(gpu: &Gpu, layouts: &Layouts, shadows: Shadows) -> Self {
+        Self { shadows, dry: Pipelines::new(gpu, layouts, shadows.taps, false), weather: None, maps: Vec::new() }
+    }
+
+    /// Makes what is lacking for a picture.
+    fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, draws: &Draws<'_>) {
+        use wgpu::BindingResource as R;
+        while self.maps.len() <= draws.shadow_map {
+            let view = textures::shadow_view(gpu, self.shadows.side);
+            let group = bind(gpu, &layouts.shadow, &[R::TextureView(&view), R::Sampler(sampler)]);
+            self.maps.push(ShadowMap { view, group });
+        }
+        if draws.weather && self.weather.is_none() {
+            self.weather = Some(Pipelines::new(gpu, layouts, self.shadows.taps, true));
+        }
+    }
+
+    fn pipelines(&self, draws: &Draws<'_>) -> &Pipelines {
+        self.weather.as_ref().filter(|_| draws.weather).unwrap_or(&self.dry)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use kernel::time::Tick;
 
+use super::targets::Samples;
 use super::{Gpu, Targets};
 use crate::{Frame, RenderError, SemanticTag};
 
@@ -9,16 +10,18 @@ use crate::{Frame, RenderError, SemanticTag};
 const NEAR_M: f32 = 0.1;
 
 /// Records the way from the targets to the read-back buffer.
-pub(super) fn record(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
-    match &targets.resolve {
-        Some(resolve) => resolve.record(encoder, [targets.width, targets.height], &targets.readback),
-        None => copy(encoder, targets),
+pub(super) fn record(encoder: &mut wgpu::CommandEncoder, targets: &Targets, colours: bool) {
+    let resolve = targets.resolve.as_ref();
+    if let Some(resolve) = resolve.filter(|resolve| colours || resolve.planes > 1) {
+        resolve.record(encoder, [targets.width, targets.height], &targets.readback);
     }
+    copy(encoder, targets, resolve.map_or(0, |resolve| resolve.planes));
 }
 
-/// Copies the targets as they are.
-fn copy(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
-    for (plane, texture) in (0..).zip([&targets.colour, &targets.ids, &targets.depth]) {
+/// Copies the planes from the `first` on as they are.
+fn copy(encoder: &mut wgpu::CommandEncoder, targets: &Targets, first: u32) {
+    let Samples { colour, ids, depth } = &targets.middles;
+    for (plane, texture) in (0..).zip([colour, ids, depth]).skip(first as usize) {
         let layout = wgpu::TexelCopyBufferLayout {
             offset: plane * targets.plane_bytes(),
             bytes_per_row: Some(targets.stride_bytes()),

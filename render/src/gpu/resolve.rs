@@ -1,44 +1,52 @@
-//! From several samples a pixel to one.
+//! From samples to pixels, where they are not the same.
 
 use super::{Gpu, shaders};
 
-/// Brings several samples a pixel down to one.
+/// A compute pass that reads textures of samples and writes the first planes of a picture.
 pub(super) struct Resolve {
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
-    /// The three planes, as the read-back buffer has them.
-    planes: wgpu::Buffer,
+    /// What it writes, as the read-back buffer has it.
+    written: wgpu::Buffer,
+    /// How many planes that are: the colours, or all three.
+    pub(super) planes: u32,
 }
 
 impl Resolve {
-    /// `samples` are the colour, id and depth textures.
-    pub(super) fn new(gpu: &Gpu, samples: [&wgpu::Texture; 3], stride_bytes: u32, plane_bytes: u64) -> Self {
-        let text = shaders::source("resolve").unwrap_or_default();
+    /// `shader` binds `inputs` and then so many planes.
+    pub(super) fn new(
+        gpu: &Gpu,
+        shader: &str,
+        inputs: &[&wgpu::Texture],
+        planes: u32,
+        [stride_bytes, plane_bytes]: [u32; 2],
+    ) -> Self {
+        let text = shaders::source(shader).unwrap_or_default();
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("resolve"),
+            label: Some(shader),
             source: wgpu::ShaderSource::Wgsl(text.into()),
         });
         let constants = [("STRIDE", f64::from(stride_bytes / 4))];
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("resolve"),
+            label: Some(shader),
             layout: None,
             module: &module,
-            entry_point: Some("resolve"),
+            entry_point: None,
             compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         });
-        let planes = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        let plane_bytes = u64::from(plane_bytes);
+        let written = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("planes"),
-            size: 3 * plane_bytes,
+            size: u64::from(planes) * plane_bytes,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        let views = samples.map(|t| t.create_view(&Default::default()));
-        let size = std::num::NonZeroU64::new(plane_bytes);
+        let views: Vec<_> = inputs.iter().map(|t| t.create_view(&Default::default())).collect();
         let inputs = views.iter().map(wgpu::BindingResource::TextureView);
-        let outputs = (0..3).map(|plane| {
-            let offset = plane * plane_bytes;
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &planes, offset, size })
+        let outputs = (0..planes).map(|plane| {
+            let (offset, size) = (u64::from(plane) * plane_bytes, std::num::NonZeroU64::new(plane_bytes));
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &written, offset, size })
         });
         let entries: Vec<_> = (0..)
             .zip(inputs.chain(outputs))
@@ -46,7 +54,7 @@ impl Resolve {
             .collect();
         let layout = &pipeline.get_bind_group_layout(0);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries });
-        Self { pipeline, group, planes }
+        Self { pipeline, group, written, planes }
     }
 
     /// Records the way from the samples to the read-back buffer of a picture.
@@ -57,6 +65,6 @@ impl Resolve {
         pass.set_bind_group(0, &self.group, &[]);
         pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1);
         drop(pass);
-        encoder.copy_buffer_to_buffer(&self.planes, 0, readback, 0, self.planes.size());
+        encoder.copy_buffer_to_buffer(&self.written, 0, readback, 0, self.written.size());
     }
 }

@@ -13,16 +13,14 @@ const SOURCES: [(&str, &str); 6] = [
     ("rain", include_str!("../shaders/rain.wgsl")),
 ];
 
-/// The only shader that does not need the scene.
-const RESOLVE: &str = include_str!("../shaders/resolve.wgsl");
+/// The shaders that do not need the scene.
+const RESOLVES: [(&str, &str); 2] =
+    [("resolve", include_str!("../shaders/resolve.wgsl")), ("quincunx", include_str!("../shaders/quincunx.wgsl"))];
 
 /// The whole text of a shader; `None` for a name that is none.
 pub(super) fn source(name: &str) -> Option<String> {
-    if name == "resolve" {
-        return Some(RESOLVE.into());
-    }
-    let (_, own) = SOURCES.iter().find(|(n, _)| *n == name)?;
-    Some(format!("{SCENE}{own}"))
+    let find = |list: &[(&str, &'static str)]| list.iter().find(|(n, _)| *n == name).map(|(_, text)| *text);
+    find(&RESOLVES).map(str::to_owned).or_else(|| Some(format!("{SCENE}{}", find(&SOURCES)?)))
 }
 
 #[cfg(test)]
@@ -33,7 +31,7 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        for name in SOURCES.iter().map(|(name, _)| *name).chain(["resolve"]) {
+        for (name, _) in SOURCES.iter().chain(&RESOLVES) {
             let text = source(name).unwrap();
             let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&text)));
             let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());

@@ -2,32 +2,39 @@
 
 use super::Gpu;
 use super::resolve::Resolve;
+use crate::quality::Means;
 
 /// Formats of the colour, id and depth targets.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const IDS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// What is drawn of one grid of samples.
+pub(super) struct Samples {
+    pub(super) colour: wgpu::Texture,
+    pub(super) ids: wgpu::Texture,
+    pub(super) depth: wgpu::Texture,
+}
+
 /// Targets of one image size. All three planes take four bytes a pixel.
 pub(crate) struct Targets {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    pub(super) colour: wgpu::Texture,
-    pub(super) ids: wgpu::Texture,
-    pub(super) depth: wgpu::Texture,
+    pub(super) middles: Samples,
+    /// One column and one row more.
+    pub(super) corners: Option<Samples>,
     /// Three planes, one after the other, that the processor can read.
     pub(super) readback: wgpu::Buffer,
-    /// Where a pixel has several samples.
+    /// Where pixels are not samples as they are.
     pub(super) resolve: Option<Resolve>,
 }
 
-impl Targets {
-    /// `samples`: samples a pixel along each axis.
-    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32, samples: u32) -> Self {
+impl Samples {
+    fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let texture = |format: wgpu::TextureFormat| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
-                size: wgpu::Extent3d { width: width * samples, height: height * samples, depth_or_array_layers: 1 },
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
@@ -38,16 +45,34 @@ impl Targets {
                 view_formats: &[],
             })
         };
+        Self { colour: texture(COLOUR), ids: texture(IDS), depth: texture(DEPTH) }
+    }
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32, means: Means) -> Self {
+        let Means { samples, corners, .. } = means;
         let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
             size: 3 * plane_bytes(width, height),
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let (colour, ids, depth) = (texture(COLOUR), texture(IDS), texture(DEPTH));
-        let (stride, plane) = (stride_bytes(width), plane_bytes(width, height));
-        let resolve = (samples > 1).then(|| Resolve::new(gpu, [&colour, &ids, &depth], stride, plane));
-        Self { width, height, colour, ids, depth, readback, resolve }
+        let middles = Samples::new(gpu, width * samples, height * samples);
+        let corners = corners.then(|| Samples::new(gpu, width + 1, height + 1));
+        let bytes = [stride_bytes(width), plane_bytes(width, height) as u32];
+        let Samples { colour, ids, depth } = &middles;
+        let resolve = match &corners {
+            Some(corners) => Some(Resolve::new(gpu, "quincunx", &[colour, &corners.colour], 1, bytes)),
+            None => (samples > 1).then(|| Resolve::new(gpu, "resolve", &[colour, ids, depth], 3, bytes)),
+        };
+        Self { width, height, middles, corners, readback, resolve }
+    }
+
+    /// Whether pictures of this size and quality can be drawn to them.
+    pub(crate) fn is_for(&self, width: u32, height: u32, means: Means) -> bool {
+        let samples = [self.middles.colour.width(), self.middles.colour.height()];
+        samples == [width, height].map(|side| side * means.samples) && self.corners.is_some() == means.corners
     }
 
     /// Bytes a row takes in the read-back buffer.

@@ -7,6 +7,7 @@ use base::failure::Usage;
 use base::files::check_name;
 use perception::classes::TAGS;
 use perception::{BUNDLED, Mask, RgbView, TRUTH};
+use render::Quality;
 
 /// How an identity begins, as no digest does.
 const EXTERNAL: &str = "external ";
@@ -24,6 +25,7 @@ pub struct External {
     name: String,
     version: String,
     size: (u32, u32),
+    quality: Quality,
     sight: Arc<dyn Sight>,
 }
 
@@ -36,7 +38,7 @@ impl External {
             return Err(Usage(format!("the name {name} is that of a checkpoint of this program; expected another")));
         }
         check_version(version)?;
-        Ok(Self { name: name.to_owned(), version: version.to_owned(), size, sight })
+        Ok(Self { name: name.to_owned(), version: version.to_owned(), size, quality: Quality::default(), sight })
     }
 
     /// What it is called in results.
@@ -57,6 +59,16 @@ impl External {
     /// Width and height of the pictures it looks at, pixels.
     pub fn size(&self) -> (u32, u32) {
         self.size
+    }
+
+    /// How good the pictures are that it looks at.
+    pub fn quality(&self) -> Quality {
+        self.quality
+    }
+
+    /// The same for pictures of another quality.
+    pub fn of_quality(self, quality: Quality) -> Self {
+        Self { quality, ..self }
     }
 
     /// The same for pictures of another size.

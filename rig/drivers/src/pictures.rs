@@ -1,6 +1,7 @@
 //! What drivers at screens are shown, as people ask for it.
 
 use perception::Compute;
+use render::Quality;
 
 /// How the live rig makes its pictures.
 #[derive(Clone, Debug)]
@@ -9,10 +10,19 @@ pub struct Pictures {
     pub image_size: (u32, u32),
     /// Size of the semantic driver's mask, pixels (default: the checkpoint's own).
     pub mask_size: Option<(u32, u32)>,
+    /// How good the pictures are that the network looks at.
+    pub quality: Quality,
     /// What computes the networks.
     pub inference: Compute,
     /// Monitors that the safety driver's view is spread over.
     pub screens: Screens,
+}
+
+impl Pictures {
+    /// Size and quality of the pictures that networks look at.
+    pub fn of_networks(&self) -> (Option<(u32, u32)>, Quality) {
+        (self.mask_size, self.quality)
+    }
 }
 
 /// Monitors that a view is spread over.

@@ -2,6 +2,7 @@
 
 use anyhow::anyhow;
 use perception::Compute;
+use render::{Camera, Quality};
 use replay::Provenance;
 
 use crate::checkpoint::CheckpointChoice;
@@ -9,7 +10,7 @@ use crate::external;
 use crate::vision::{DEFAULT_SIZE, EXTERNAL, Eye};
 
 /// What a recording says about the eye behind its masks.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordedEye {
     /// Name of the checkpoint; empty when nothing is said.
     pub name: String,
@@ -17,8 +18,8 @@ pub struct RecordedEye {
     pub digest: String,
     /// The version of a function of somebody's own program, which no file holds.
     pub external: Option<String>,
-    /// Width and height of the pictures it looked at, pixels.
-    pub size: (u32, u32),
+    /// The camera of the pictures it looked at.
+    pub camera: Camera,
     /// Adapter and driver that drew them; empty when nothing is said.
     pub adapter: String,
     /// What computed it; the CPU when nothing is said.
@@ -29,10 +30,10 @@ impl RecordedEye {
     /// As the provenance of a recording has it.
     pub fn of(provenance: &Provenance) -> anyhow::Result<Self> {
         let said = |name: &str| provenance.get(name).cloned().unwrap_or_default();
-        let size = match provenance.get("camera") {
-            None => DEFAULT_SIZE,
-            Some(camera) => camera_size(camera)
-                .ok_or_else(|| anyhow!("provenance \"camera\" is {camera:?}; expected as in \"driver 256x128\""))?,
+        let expected = "expected as in \"driver 256x128\" or \"driver 256x128 standard\"";
+        let camera = match provenance.get("camera") {
+            None => Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1),
+            Some(text) => camera_of(text).ok_or_else(|| anyhow!("provenance \"camera\" is {text:?}; {expected}"))?,
         };
         let compute = match provenance.get("inference") {
             None => Compute::default(),
@@ -42,7 +43,12 @@ impl RecordedEye {
         };
         let (name, adapter, external) = (said("checkpoint"), said("adapter"), provenance.get(EXTERNAL).cloned());
         let digest = digest_of(provenance).unwrap_or_default();
-        Ok(Self { name, digest, external, size, adapter, compute })
+        Ok(Self { name, digest, external, camera, adapter, compute })
+    }
+
+    /// Width and height of the pictures, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.camera.width, self.camera.height)
     }
 
     /// Finds it among ground truth, these checkpoints and the bundled ones, by its digest; the CPU computes
@@ -57,7 +63,8 @@ impl RecordedEye {
         if eye.compute() == self.compute {
             return Ok(Some(eye));
         }
-        Ok(Some(Eye::open_on(self.compute, &choice, Some(self.size)).unwrap_or(eye)))
+        let on_it = Eye::open_on(self.compute, &choice, Some(self.size()));
+        Ok(Some(on_it.map_or(eye, |eye| eye.at(self.camera.quality))))
     }
 
     /// A sentence for where it is not found; `option` names the file on the command line.
@@ -79,7 +86,7 @@ impl RecordedEye {
     fn choice(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<(CheckpointChoice, Eye)>> {
         let bundled = perception::BUNDLED.map(CheckpointChoice::Bundled);
         for choice in choices.iter().chain(&bundled).chain(&[CheckpointChoice::Truth]) {
-            let eye = Eye::open_at(choice, self.size)?;
+            let eye = Eye::open_at(choice, self.size())?.at(self.camera.quality);
             if eye.digest() == self.digest {
                 return Ok(Some((choice.clone(), eye)));
             }
@@ -95,23 +102,32 @@ pub fn digest_of(provenance: &Provenance) -> Option<String> {
     external.or_else(|| provenance.get("checkpoint_digest").cloned())
 }
 
-/// `driver WxH`.
-fn camera_size(camera: &str) -> Option<(u32, u32)> {
-    let (width, height) = camera.strip_prefix("driver ")?.split_once('x')?;
+/// From `driver WxH` or `driver WxH QUALITY`.
+fn camera_of(text: &str) -> Option<Camera> {
+    let said = text.strip_prefix("driver ")?;
+    let (size, quality) = match said.split_once(' ') {
+        Some((size, name)) => (size, name.parse().ok()?),
+        None => (said, Quality::unsaid()),
+    };
+    let (width, height) = size.split_once('x')?;
     let side = |text: &str| text.parse().ok().filter(|pixels| (1..=8192).contains(pixels));
-    Some((side(width)?, side(height)?))
+    Some(Camera::driver(side(width)?, side(height)?).at(quality))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vision::camera_text;
 
     #[test]
-    fn a_camera_has_a_size() {
-        assert_eq!(camera_size("driver 256x128"), Some((256, 128)));
-        for wrong in ["", "driver", "driver 256", "driver 0x128", "driver 256x128x3", "roof 256x128"] {
-            assert_eq!(camera_size(wrong), None, "{wrong}");
+    fn a_camera_has_a_size_and_a_quality() {
+        for quality in Quality::ALL {
+            let camera = Camera::driver(256, 128).at(quality);
+            assert_eq!(camera_of(&camera_text(&camera)), Some(camera));
         }
+        assert_eq!(camera_of("driver 64x32"), Some(Camera::driver(64, 32)), "as it was before there were qualities");
+        let wrong = ["", "driver", "driver 256", "driver 0x128", "driver 256x128x3", "roof 256x128", "driver 2x1 best"];
+        wrong.iter().for_each(|wrong| assert_eq!(camera_of(wrong), None, "{wrong}"));
     }
 
     #[test]
@@ -132,7 +148,7 @@ mod tests {
             name: "some".into(),
             digest: digest.into(),
             external: None,
-            size: (32, 16),
+            camera: Camera::driver(32, 16),
             adapter: String::new(),
             compute: Compute::Cpu,
         };

@@ -40,7 +40,7 @@ pub fn manifest_with(who: [&str; 2], scenario: &Scenario, map: &Map, eye: &Eye) 
         ("frame_ticks", FRAME_TICKS.to_string()),
         ("latency_ticks", LATENCY_TICKS.to_string()),
     ];
-    let mut provenance = vision::provenance(eye, eye.size());
+    let mut provenance = vision::provenance(eye, &eye.camera());
     provenance.extend(entries.map(|(name, value)| (name.to_owned(), value)));
     provenance.extend(Temper::entries(bots.map(|(seat, _)| seat), scenario.seed));
     Manifest::new(scenario, &map.network, map.foreign.clone(), provenance)

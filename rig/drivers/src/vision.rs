@@ -9,7 +9,7 @@ use base::failure::Usage;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
 use kernel::{SceneSnapshot, World};
 use perception::{BUNDLED, Checkpoint, Compute, Mask, RgbView, Segmenter};
-use render::{Camera, Frame, RenderError, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Frame, Quality, RenderError, Renderer};
 use replay::{MaskShown, Provenance};
 
 use crate::MaskView;
@@ -35,6 +35,8 @@ pub enum Eye {
         checkpoint: Box<Checkpoint>,
         /// Itself, ready for its size.
         segmenter: Box<Segmenter>,
+        /// Of the pictures it looks at.
+        quality: Quality,
     },
     /// A function of whoever uses these libraries.
     External(External),
@@ -64,7 +66,16 @@ impl Eye {
         let own = || checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
         let (width, height) = size.map_or_else(own, |(width, height)| (width as usize, height as usize));
         let segmenter = Box::new(Segmenter::on(compute, &checkpoint, width, height)?);
-        Ok(Self::Network { checkpoint, segmenter })
+        Ok(Self::Network { checkpoint, segmenter, quality: Quality::default() })
+    }
+
+    /// The same for pictures of another quality; truth is the same in all of them.
+    pub fn at(self, quality: Quality) -> Self {
+        match self {
+            Self::Truth => Self::Truth,
+            Self::Network { checkpoint, segmenter, .. } => Self::Network { checkpoint, segmenter, quality },
+            Self::External(external) => Self::External(external.of_quality(quality)),
+        }
     }
 
     /// `truth`, or the checkpoint's name: that of its file without the ending, or what its user calls it.
@@ -100,6 +111,21 @@ impl Eye {
             Self::Network { segmenter, .. } => (segmenter.size().0 as u32, segmenter.size().1 as u32),
             Self::External(external) => external.size(),
         }
+    }
+
+    /// How good the pictures are that it looks at.
+    pub fn quality(&self) -> Quality {
+        match self {
+            Self::Truth => Quality::default(),
+            Self::Network { quality, .. } => *quality,
+            Self::External(external) => external.quality(),
+        }
+    }
+
+    /// The driver's camera, which takes those pictures.
+    pub fn camera(&self) -> Camera {
+        let (width, height) = self.size();
+        Camera::driver(width, height).at(self.quality())
     }
 
     /// Whether it looks at colours.
@@ -158,28 +184,31 @@ const OF_EYE: [&str; 4] = ["checkpoint", "checkpoint_digest", EXTERNAL, "inferen
 pub(crate) const EXTERNAL: &str = "external";
 
 /// What recordings say about how their masks came about: through which checkpoint, computed by what,
-/// from pictures of which size, drawn by which adapter with which driver.
-pub fn provenance(eye: &Eye, (width, height): (u32, u32)) -> Provenance {
+/// from pictures of which size and quality, drawn by which adapter with which driver.
+pub fn provenance(eye: &Eye, camera: &Camera) -> Provenance {
     let which = match eye {
         Eye::External(external) => (EXTERNAL, external.version().to_owned()),
         _ => ("checkpoint_digest", eye.digest()),
     };
-    let entries = [
-        ("checkpoint", eye.name().to_owned()),
-        which,
-        ("camera", format!("driver {width}x{height}")),
-        ("adapter", adapter()),
-    ];
+    let entries =
+        [("checkpoint", eye.name().to_owned()), which, ("camera", camera_text(camera)), ("adapter", adapter())];
     // Nothing is said of the CPU, which is the rule.
     let elsewhere = Some(eye.compute()).filter(|compute| *compute != Compute::Cpu);
     let inference = elsewhere.map(|compute| ("inference", compute.name().to_owned()));
     entries.into_iter().chain(inference).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
+/// A driver's camera in words, as in `driver 256x128 standard`. Nothing is said of pictures that are plain.
+pub fn camera_text(camera: &Camera) -> String {
+    let Camera { width, height, quality, .. } = camera;
+    let size = format!("driver {width}x{height}");
+    if *quality == Quality::unsaid() { size } else { format!("{size} {}", quality.name()) }
+}
+
 /// Says in a recording's provenance that from now on this eye looks, and no longer the one that did.
 pub fn replace_eye(provenance: &mut Provenance, eye: &Eye) {
     provenance.retain(|name, _| !OF_EYE.contains(&name.as_str()));
-    provenance.extend(self::provenance(eye, eye.size()));
+    provenance.extend(self::provenance(eye, &eye.camera()));
 }
 
 /// Name and driver of the adapter that draws for drivers; empty where there is none.
@@ -189,7 +218,7 @@ pub fn adapter() -> String {
 
 /// As [`adapter`]; the error says what to install where there is none.
 pub fn find_adapter() -> anyhow::Result<String> {
-    let found = RenderOptions::default().adapter.find()?;
+    let found = AdapterChoice::default().find()?;
     Ok(format!("{}, {}", found.name, found.driver))
 }
 
@@ -216,8 +245,7 @@ pub struct Optics {
 impl Optics {
     /// Looks at the renderer's map through an eye.
     pub fn new(renderer: Renderer, eye: Eye) -> Self {
-        let (width, height) = eye.size();
-        Self { renderer, eye, camera: Camera::driver(width, height), with_colours: false }
+        Self { renderer, camera: eye.camera(), eye, with_colours: false }
     }
 
     /// The same for somebody who looks at the colours of the eye's pictures, too.

@@ -29,7 +29,7 @@ use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Scenario, Seat, TickInput, World};
 use lab::redrive::{EARLY_TICKS, is_near_miss};
 use measures::criticality::{SAMPLE_TICKS, Sample, Sampler};
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 
 /// Thresholds that look on.
 const TRIED: [f32; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
@@ -59,7 +59,7 @@ fn main() -> anyhow::Result<()> {
             }
             let map = &maps[run % maps.len()];
             let scenario = Scenario { map: map.network.name.clone(), seed: seed + run as u64, ..scenario.clone() };
-            let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, Eye::open(&choice)?);
+            let vision = Vision::new(Renderer::new(&map.network, &AdapterChoice::default())?, Eye::open(&choice)?);
             let watched = watch(&scenario, map, vision, run as u64, is_blind)?;
             let mut found = found.lock().expect("no thread panics");
             say(format_args!("run {run} on {}: {:.2} km", map.network.name, watched.km));

@@ -7,7 +7,7 @@ use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{RoadNetwork, SceneSnapshot};
 use perception::Mask;
-use render::{Camera, Frame, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Frame, Quality, Renderer};
 
 /// The eyes that a command line asks for, and the size of the pictures that they all look at: the one that is
 /// asked for, else that which the first network takes. Others see those pictures resampled.
@@ -34,16 +34,14 @@ fn own_size(choices: &[CheckpointChoice]) -> anyhow::Result<Size> {
 /// A renderer for each map, all with the driver's camera.
 pub struct Studio {
     camera: Camera,
-    options: RenderOptions,
     /// By digest of the map.
     renderers: BTreeMap<u128, Renderer>,
 }
 
 impl Studio {
-    /// For pictures of one size.
-    pub fn new((width, height): (u32, u32)) -> Self {
-        let options = RenderOptions::default();
-        Self { camera: Camera::driver(width, height), options, renderers: BTreeMap::new() }
+    /// For pictures of one size and quality.
+    pub fn new((width, height): (u32, u32), quality: Quality) -> Self {
+        Self { camera: Camera::driver(width, height).at(quality), renderers: BTreeMap::new() }
     }
 
     /// The driver's camera.
@@ -55,7 +53,7 @@ impl Studio {
     pub fn draw(&mut self, network: &RoadNetwork, scene: &SceneSnapshot) -> anyhow::Result<Frame> {
         let renderer = match self.renderers.entry(network.digest) {
             Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => entry.insert(Renderer::new(network, &self.options)?),
+            Entry::Vacant(entry) => entry.insert(Renderer::new(network, &AdapterChoice::default())?),
         };
         Ok(renderer.draw(scene, &self.camera)?)
     }

@@ -12,7 +12,7 @@ use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use kernel::{RoadNetwork, SceneSnapshot};
 use measures::footage::{Asked, Window, scenes};
-use render::{Camera, Frame, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Frame, Quality, Renderer};
 use replay::{Log, Manifest, Recording};
 
 use super::looks::Size;
@@ -51,7 +51,7 @@ impl Workshop {
     fn draw(&self, network: &RoadNetwork, scene: &SceneSnapshot, camera: &Camera) -> anyhow::Result<Frame> {
         let mut renderer = match take(&self.renderers, |(map, _)| *map == network.digest) {
             Some((_, renderer)) => renderer,
-            None => Renderer::new(network, &RenderOptions::default())?,
+            None => Renderer::new(network, &AdapterChoice::default())?,
         };
         let frame = renderer.draw(scene, camera)?;
         keep(&self.renderers, (network.digest, renderer));
@@ -159,6 +159,11 @@ impl Shots {
         asked::check_size(size)?;
         let scenes = Mutex::new((0, Vec::new()));
         Ok(Self { stage: stage.clone(), camera: viewpoint.camera(size), ticks, scenes })
+    }
+
+    /// The same at another quality.
+    pub fn at(self, quality: Quality) -> Self {
+        Self { camera: self.camera.at(quality), ..self }
     }
 
     /// Their ticks.

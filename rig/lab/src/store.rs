@@ -9,6 +9,7 @@ use base::library::Entry;
 use base::output::{self, OutputFolder};
 use drivers::vision::Eye;
 use kernel::time::Tick;
+use render::Quality;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
@@ -26,6 +27,8 @@ pub struct Key {
     pub fps: u32,
     /// Width and height of the pictures, pixels.
     pub size: (u32, u32),
+    /// How good the pictures are.
+    pub quality: String,
     /// Version of the program, hence of the measures.
     pub program: String,
     /// Identity of the kernel that replays.
@@ -44,13 +47,14 @@ pub struct Settings {
     last_ticks: Tick,
     fps: u32,
     size: (u32, u32),
+    quality: Quality,
     machine: Machine,
 }
 
 impl Settings {
-    /// For windows of so many ticks at so many frames a second, drawn in one size on this machine.
-    pub fn new(last_ticks: Tick, fps: u32, size: (u32, u32)) -> Self {
-        Self { last_ticks, fps, size, machine: Machine::this() }
+    /// For windows of so many ticks at so many frames a second, drawn in one size and quality on this machine.
+    pub fn new(last_ticks: Tick, fps: u32, size: (u32, u32), quality: Quality) -> Self {
+        Self { last_ticks, fps, size, quality, machine: Machine::this() }
     }
 
     /// The key of what is found out about a file, by an eye or without any.
@@ -60,6 +64,7 @@ impl Settings {
             last_ticks: self.last_ticks,
             fps: self.fps,
             size: self.size,
+            quality: self.quality.name().into(),
             program: env!("CARGO_PKG_VERSION").into(),
             kernel: kernel::identity(),
             renderer: render::identity(),
@@ -231,7 +236,19 @@ mod tests {
     fn key(log: &str) -> Key {
         let [log, program, kernel, renderer, arch, adapter] = [log, "1", "1", "1", "x86", "cpu"].map(str::to_owned);
         let machine = Machine { arch, cpu_features: Vec::new(), adapter };
-        Key { log, last_ticks: 180, fps: 10, size: (64, 32), program, kernel, renderer, machine, checkpoint: None }
+        let quality = "plain".into();
+        Key {
+            log,
+            last_ticks: 180,
+            fps: 10,
+            size: (64, 32),
+            quality,
+            program,
+            kernel,
+            renderer,
+            machine,
+            checkpoint: None,
+        }
     }
 
     #[test]

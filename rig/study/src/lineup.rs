@@ -5,7 +5,7 @@ use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::{self, DEFAULT_SIZE, Eye};
 use kernel::rng::{self, Stream};
 use perception::{Compute, Mask};
-use render::Frame;
+use render::{Camera, Frame, Quality};
 use replay::Provenance;
 
 use crate::Study;
@@ -49,19 +49,19 @@ impl Cast {
 /// The eyes that may drive.
 pub struct Lineup {
     eyes: Vec<Eye>,
-    /// Width and height of the pictures, pixels.
-    size: (u32, u32),
+    /// Of the pictures.
+    camera: Camera,
     cast: Cast,
 }
 
 impl Lineup {
-    /// Opens the candidates of a blind session, or else the one checkpoint. All of them look at pictures
+    /// Opens the candidates of a blind session, or else the one checkpoint. All of them look at pictures of one quality and
     /// of one size, so that it gives nothing away: the one asked for, or else that of the first. All of
     /// them are computed by the same.
     pub fn open(
         study: &Study,
         checkpoint: &CheckpointChoice,
-        size: Option<(u32, u32)>,
+        (size, quality): (Option<(u32, u32)>, Quality),
         compute: Compute,
         seed: u64,
     ) -> anyhow::Result<Self> {
@@ -73,9 +73,11 @@ impl Lineup {
         let first = Eye::open_on(compute, first, wanted)?;
         let size = wanted.unwrap_or(first.size());
         let others = others.iter().map(|choice| Eye::open_on(compute, choice, Some(size)));
-        let eyes = std::iter::once(Ok(first)).chain(others).collect::<anyhow::Result<Vec<_>>>()?;
-        let cast = Cast { seed, public_name: public_name(&eyes), provenances: provenances(&eyes, size) };
-        Ok(Self { eyes, size, cast })
+        let eyes = std::iter::once(Ok(first)).chain(others).map(|eye| Ok(eye?.at(quality)));
+        let eyes = eyes.collect::<anyhow::Result<Vec<_>>>()?;
+        let camera = Camera::driver(size.0, size.1).at(quality);
+        let cast = Cast { seed, public_name: public_name(&eyes), provenances: provenances(&eyes, &camera) };
+        Ok(Self { eyes, camera, cast })
     }
 
     /// Who drives which run.
@@ -83,9 +85,9 @@ impl Lineup {
         &self.cast
     }
 
-    /// Width and height of the pictures, pixels.
-    pub fn size(&self) -> (u32, u32) {
-        self.size
+    /// Of the pictures.
+    pub fn camera(&self) -> Camera {
+        self.camera
     }
 
     /// What the eye that drives a run makes of a frame. The failure of a blind one does not tell which.
@@ -110,12 +112,12 @@ fn public_name(eyes: &[Eye]) -> String {
     }
 }
 
-fn provenances(eyes: &[Eye], size: (u32, u32)) -> Vec<Provenance> {
+fn provenances(eyes: &[Eye], camera: &Camera) -> Vec<Provenance> {
     let names: Vec<&str> = eyes.iter().map(Eye::name).collect();
     let of = |eye: &Eye| {
         let blind = [(BLIND, format!("one of {} checkpoints", names.len())), (CANDIDATES, names.join(", "))];
         let blind = blind.into_iter().filter(|_| names.len() > 1).map(|(key, value)| (key.to_owned(), value));
-        vision::provenance(eye, size).into_iter().chain(blind).collect()
+        vision::provenance(eye, camera).into_iter().chain(blind).collect()
     };
     eyes.iter().map(of).collect()
 }
@@ -146,15 +148,17 @@ mod tests {
     fn candidates_differ_in_nothing_that_is_shown() {
         let study =
             Study { blind: vec![CheckpointChoice::Truth, CheckpointChoice::Bundled("early")], ..Default::default() };
-        let lineup = Lineup::open(&study, &CheckpointChoice::Truth, Some((64, 32)), Compute::Cpu, 3).expect("bundled");
+        let lineup =
+            Lineup::open(&study, &CheckpointChoice::Truth, (Some((64, 32)), Quality::Standard), Compute::Cpu, 3)
+                .expect("bundled");
         let cast = lineup.cast();
-        assert_eq!((cast.public_name(), lineup.size()), ("blind, one of 2", (64, 32)));
+        assert_eq!((cast.public_name(), lineup.camera().width), ("blind, one of 2", 64));
         for eye in &lineup.eyes {
             assert!(matches!(eye, Eye::Truth) || eye.size() == (64, 32));
         }
         let told: Vec<_> = cast.provenances.iter().map(|p| super::super::tellable(p, false)).collect();
         assert_eq!(told[0], told[1]);
-        assert!(told[0].contains_key("camera") && !told[0].contains_key("checkpoint"));
+        assert!(told[0]["camera"] == "driver 64x32 standard" && !told[0].contains_key("checkpoint"));
         let names: Vec<_> = cast.provenances.iter().map(|p| p["checkpoint"].clone()).collect();
         assert_eq!(names, ["truth", "early"]);
     }

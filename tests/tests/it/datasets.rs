@@ -13,7 +13,7 @@ use drivers::vision::{Eye, Vision};
 use lab::dataset::{FrameLine, Manifest, Part, cases, mix, natural, rebuild};
 use lab::redrive::{Counterfactual, Need};
 use perception::training::Split;
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Quality, Renderer};
 use replay::{Annotation, Case, Label, Recording};
 use tests::files::contents;
 use tests::recordings::{TAKEOVER, recorded, recorded_in};
@@ -27,6 +27,7 @@ fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
         frames: 2,
         test_frames: 1,
         size: (64, 32),
+        quality: Quality::default(),
         maps: vec!["rural".into(), "city".into()],
         pedestrians: Some(20),
         seed: 5,
@@ -43,6 +44,7 @@ fn cases_args(files: &[&Path], out: PathBuf) -> cases::Options {
         verdict: Vec::new(),
         split: "train".into(),
         size: (64, 32),
+        quality: Quality::default(),
         jobs: None,
         out,
     }
@@ -182,7 +184,7 @@ fn cases_are_taken_by_the_verdict_on_their_takeover() {
     assert_eq!(said, "on none of the corner cases the verdict is needless");
     let ((recording, case), scene) = &cases[0];
     let recording = Recording::open(recording).unwrap();
-    let vision = Vision::new(Renderer::new(&scene.network, &RenderOptions::default()).unwrap(), Eye::Truth);
+    let vision = Vision::new(Renderer::new(&scene.network, &AdapterChoice::default()).unwrap(), Eye::Truth);
     let (found, _) = Counterfactual::of(&recording, &scene.network, vision).unwrap();
     fs::write(case.with_file_name("a.counterfactual.json"), found.encode().unwrap()).unwrap();
     assert_eq!(make(found.verdict, "one").unwrap().train_frames, 30);

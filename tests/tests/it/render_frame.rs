@@ -3,11 +3,11 @@
 
 use glam::{Quat, Vec3};
 use kernel::{Scenario, World, map};
-use render::{AdapterChoice, Camera, Frame, Preset, RenderError, RenderOptions, Renderer, SemanticTag};
+use render::{AdapterChoice, Camera, Frame, Quality, RenderError, Renderer, SemanticTag};
 use tests::street;
 
 fn renderer() -> Renderer {
-    Renderer::new(&street::network(), &RenderOptions { preset: Preset::Cheap, ..Default::default() }).unwrap()
+    Renderer::new(&street::network(), &AdapterChoice::default()).unwrap()
 }
 
 #[test]
@@ -26,29 +26,55 @@ fn a_frame_is_the_same_whatever_was_drawn_before() {
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
-fn both_presets_give_the_same_truth() {
+fn every_quality_gives_the_same_truth() {
     let camera = Camera::driver(192, 96);
-    let mut cheap = renderer();
-    let mut full =
-        Renderer::new(&street::network(), &RenderOptions { preset: Preset::Full, ..Default::default() }).unwrap();
+    let mut renderer = renderer();
     for moment in 0..4 {
         let scene = street::scene(moment);
-        let (a, b) = (cheap.draw(&scene, &camera).unwrap(), full.draw(&scene, &camera).unwrap());
-        let differing = a.fine_ids.iter().zip(&b.fine_ids).filter(|(x, y)| x != y).count();
-        assert!(differing * 1000 < a.fine_ids.len(), "{differing} pixels differ at moment {moment}");
-        assert_ne!(a.rgb, b.rgb);
+        let [plain, standard, fine] = Quality::ALL.map(|quality| renderer.draw(&scene, &camera.at(quality)).unwrap());
+        assert!(plain.rgb != standard.rgb && standard.rgb != fine.rgb);
+        assert!(Frame { rgb: Vec::new(), ..plain.clone() } == Frame { rgb: Vec::new(), ..standard }, "moment {moment}");
+        let differing = plain.fine_ids.iter().zip(&fine.fine_ids).filter(|(x, y)| x != y).count();
+        assert!(differing * 1000 < plain.fine_ids.len(), "{differing} pixels differ at moment {moment}");
     }
+}
+
+/// Against two plain pictures: one of the pixels' middles, and one that is larger by half a pixel on each side, of their
+/// corners.
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn half_of_a_standard_pixel_is_its_middle_and_half_its_corners() {
+    let (width, height) = (192usize, 96usize);
+    let middles = Camera::driver(width as u32, height as u32);
+    let wider = kernel::ops::tan(0.5 * middles.fov_x_rad) * (width + 1) as f32 / width as f32;
+    let fov_x_rad = 2.0 * kernel::ops::atan2(wider, 1.0);
+    let corners = Camera { fov_x_rad, ..Camera::driver(width as u32 + 1, height as u32 + 1) };
+    let scene = street::scene(2);
+    let mut renderer = renderer();
+    let [plain, corners] = [middles, corners].map(|camera| renderer.draw(&scene, &camera).unwrap().rgb);
+    let standard = renderer.draw(&scene, &middles.at(Quality::Standard)).unwrap().rgb;
+    let square = |byte: u8| (f64::from(byte) / 255.0).powi(2);
+    let far = (0..standard.len()).filter(|i| {
+        let (x, y, channel) = (i / 3 % width, i / 3 / width, i % 3);
+        let corner = |dx, dy| square(corners[3 * ((y + dy) * (width + 1) + x + dx) + channel]);
+        let sum = corner(0, 0) + corner(1, 0) + corner(0, 1) + corner(1, 1);
+        let expected = 255.0 * (0.5 * square(plain[*i]) + 0.125 * sum).sqrt();
+        (f64::from(standard[*i]) - expected).abs() > 1.5
+    });
+    // The larger picture's own rounding moves edges across a few samples.
+    let (far, all) = (far.count(), standard.len());
+    assert!(far * 200 < all, "{far} of {all}");
 }
 
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn classes_alone_are_those_of_the_picture_with_colours() {
-    for preset in [Preset::Cheap, Preset::Full] {
-        let new = || Renderer::new(&street::network(), &RenderOptions { preset, ..Default::default() }).unwrap();
+    for quality in Quality::ALL {
+        let new = renderer;
         let (mut whole, mut both) = (new(), new());
         for moment in 0..6 {
             let scene = street::scene(moment);
-            for camera in [Camera::driver(256, 128), Camera::chase(320, 200)] {
+            for camera in [Camera::driver(256, 128), Camera::chase(320, 200)].map(|camera| camera.at(quality)) {
                 let frame = whole.draw(&scene, &camera).unwrap();
                 let classes = both.draw_classes(&scene, &camera).unwrap();
                 assert!(classes.rgb.is_empty() && classes.class_ids.iter().any(|id| *id != classes.class_ids[0]));
@@ -117,7 +143,7 @@ fn what_cannot_be_drawn_is_refused() {
 
 #[test]
 fn an_unknown_adapter_is_refused_with_what_to_do() {
-    let options = RenderOptions { adapter: AdapterChoice::Named("no such adapter".into()), ..Default::default() };
+    let options = AdapterChoice::Named("no such adapter".into());
     let sentence = Renderer::new(&street::network(), &options).err().unwrap().to_string();
     assert!(sentence.contains("no such adapter") && sentence.contains("mesa-vulkan-drivers"), "{sentence}");
 }
@@ -132,8 +158,7 @@ fn windows_do_not_flicker_when_the_car_creeps() {
     // Between houses whose windows lie near the boundary of two kinds.
     scene.ego.position = Vec3::new(421.4912, 1007.1074, 3.630_859_4);
     scene.ego.rotation = Quat::from_xyzw(-0.000_244_140_63, -0.000_671_386_7, -0.303_588_87, 0.952_819_8);
-    let options = RenderOptions { preset: Preset::Cheap, ..Default::default() };
-    let mut renderer = Renderer::new(&network, &options).unwrap();
+    let mut renderer = Renderer::new(&network, &AdapterChoice::default()).unwrap();
     let before = renderer.draw(&scene, &Camera::driver(640, 360)).unwrap();
     scene.ego.position += scene.ego.rotation * Vec3::X * 0.001;
     let after = renderer.draw(&scene, &Camera::driver(640, 360)).unwrap();

@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use render::{Camera, Frame, Preset, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Frame, Renderer};
 use tests::street;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../render/golden_pictures.txt");
@@ -76,8 +76,7 @@ fn difference(golden: &str, drawn: &str) -> Option<String> {
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_street_looks_as_the_golden_pictures_say() {
-    let options = RenderOptions { preset: Preset::Cheap, ..Default::default() };
-    let mut renderer = Renderer::new(&street::network(), &options).expect("an adapter");
+    let mut renderer = Renderer::new(&street::network(), &AdapterChoice::default()).expect("an adapter");
     let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
     let drawn = MOMENTS.map(|moment| picture(&renderer.draw(&street::scene(moment), &camera).expect("a frame")));
     let differing = |golden: &str| -> Vec<String> {

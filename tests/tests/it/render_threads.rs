@@ -4,7 +4,7 @@ use std::sync::Barrier;
 use std::{fs, thread};
 
 use kernel::World;
-use render::{AdapterChoice, Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 use tests::scenes::busy_city;
 
 const THREADS: u32 = 4;
@@ -26,7 +26,7 @@ fn renderers_on_many_threads_do_not_meet_in_the_driver() {
     let snapshot = World::new(&scene.scenario, &scene.network).expect("a world").scene();
     let all_are_there = Barrier::new(THREADS as usize);
     let draw_all = &|number: u32| {
-        let mut renderer = Renderer::new(&scene.network, &RenderOptions::default()).expect("a renderer");
+        let mut renderer = Renderer::new(&scene.network, &AdapterChoice::default()).expect("a renderer");
         let mut draw = |turn: u32| {
             let camera = Camera::driver(128 + 64 * ((turn + number) % 3), 128);
             renderer.draw(&snapshot, &camera).expect("a picture").rgb.len()

@@ -3,12 +3,11 @@
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::weather::WeatherPreset;
-use render::{Camera, Frame, Preset, RenderOptions, Renderer, SemanticTag};
+use render::{AdapterChoice, Camera, Frame, Renderer, SemanticTag};
 use tests::street;
 
 fn renderer() -> Renderer {
-    let options = RenderOptions { preset: Preset::Cheap, ..Default::default() };
-    Renderer::new(&street::network(), &options).expect("an adapter")
+    Renderer::new(&street::network(), &AdapterChoice::default()).expect("an adapter")
 }
 
 /// The street in a weather with the sun where it was.

@@ -11,7 +11,7 @@ use drivers::simulate;
 use drivers::vision::{Eye, Vision};
 use lab::campaign::{Plan, RunLine, Task, Until, drive_all};
 use lab::share::Share;
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 use replay::Recording;
 
 fn plan(out: &Path) -> Plan {
@@ -132,7 +132,7 @@ fn at_any_moment_the_file_holds_all_but_the_last_second() {
     let map = Map::find("rural").expect("bundled");
     let mut scenario = map.scenario(3);
     scenario.rules.max_seconds = 8;
-    let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default()).expect("an adapter"), Eye::Truth);
+    let vision = Vision::new(Renderer::new(&map.network, &AdapterChoice::default()).expect("an adapter"), Eye::Truth);
     let file = File::create(&path).expect("writable");
     let mut looked = 0;
     // What a process killed at this moment leaves is what the file system holds now.

@@ -10,7 +10,7 @@ use aeye::exit::{self, Verdict};
 use base::failure::sentence;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::events::EventKind;
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Quality, Renderer};
 use replay::{Case, Recording};
 use serde_json::Value;
 use tests::files::contents;
@@ -49,6 +49,7 @@ fn args(files: &[&Path], checkpoint: &[CheckpointChoice], out: &Path) -> Compare
         gate: vec![],
         no_worse_than: None,
         size: Some(SIZE),
+        quality: Quality::default(),
         jobs: Some(2),
         shard: None,
         out: out.to_owned(),
@@ -64,7 +65,7 @@ fn compared(args: &CompareArgs, expected: Verdict) -> Value {
 fn first_visible(case: &Path, hazard: &str) -> Option<u64> {
     let instance: u16 = hazard.split(' ').next_back().unwrap().parse().unwrap();
     let recording = Recording::open(case).unwrap();
-    let mut renderer = Renderer::new(&recording.network().unwrap(), &RenderOptions::default()).unwrap();
+    let mut renderer = Renderer::new(&recording.network().unwrap(), &AdapterChoice::default()).unwrap();
     let mut pixels = |scene| {
         let frame = renderer.draw(scene, &Camera::driver(SIZE.0, SIZE.1)).unwrap();
         frame.instance_ids.iter().filter(|id| **id == instance).count()

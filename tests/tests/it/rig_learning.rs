@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use lab::eval::people;
 use perception::classes::PEDESTRIAN_TAG;
-use render::{Camera, Frame, Preset, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Frame, Renderer};
 use tests::scenes::{busy_city, busy_hamlet};
 
 /// The pedestrians of a frame, by number in the order of their ids: the instances as a dataset has them,
@@ -29,8 +29,7 @@ fn people_are_about_as_far_away_as_the_renderer_measured() {
     let camera = Camera::driver(256, 128);
     let (mut near, mut errors) = (0, Vec::new());
     for scene in [busy_city(), busy_hamlet()] {
-        let options = RenderOptions { preset: Preset::Cheap, ..Default::default() };
-        let mut renderer = Renderer::new(&scene.network, &options).unwrap();
+        let mut renderer = Renderer::new(&scene.network, &AdapterChoice::default()).unwrap();
         let mut world = scene.world();
         let mut level_ticks = 0;
         while world.tick() < 1800 {

@@ -15,7 +15,7 @@ use kernel::Controls;
 use kernel::arbiter::Outcome;
 use lab::redrive::Counterfactual;
 use measures::Criticality;
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 use replay::{Case, Recording, verify};
 use serde_json::Value;
 use tests::files::contents;
@@ -149,7 +149,7 @@ fn a_counterfactual_is_kept_for_its_recording_alone() {
     let dir = tempfile::tempdir().unwrap();
     let case = Recording::open(&case(dir.path())).unwrap();
     let network = case.network().unwrap();
-    let vision = Vision::new(Renderer::new(&network, &RenderOptions::default()).unwrap(), Eye::Truth);
+    let vision = Vision::new(Renderer::new(&network, &AdapterChoice::default()).unwrap(), Eye::Truth);
     let (found, vision) = Counterfactual::of(&case, &network, vision).unwrap();
     assert_eq!(found.harm.is_some(), found.harm_after_s.is_some());
     assert_eq!(Counterfactual::of(&case, &network, vision).unwrap().0, found);

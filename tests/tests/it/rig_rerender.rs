@@ -10,6 +10,7 @@ use aeye::commands::rerender;
 use aeye::exit::Verdict;
 use base::failure::sentence;
 use drivers::checkpoint::CheckpointChoice;
+use render::Quality;
 use replay::Recording;
 use tests::files::contents;
 use tests::recordings::recorded_in;
@@ -29,7 +30,17 @@ fn library(folder: &Path) -> PathBuf {
 fn args(files: &[&Path], checkpoint: &[CheckpointChoice], jobs: u16, out: &Path) -> RerenderArgs {
     let files = files.iter().map(|file| file.to_path_buf()).collect();
     let (checkpoint, out) = (checkpoint.to_vec(), out.to_owned());
-    RerenderArgs { files, checkpoint, last: 60, fps: 10, size: Some((128, 64)), jobs: Some(jobs), shard: None, out }
+    RerenderArgs {
+        files,
+        checkpoint,
+        last: 60,
+        fps: 10,
+        size: Some((128, 64)),
+        quality: Quality::default(),
+        jobs: Some(jobs),
+        shard: None,
+        out,
+    }
 }
 
 fn rerendered(args: &RerenderArgs) -> BTreeMap<PathBuf, Vec<u8>> {

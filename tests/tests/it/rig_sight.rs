@@ -1,7 +1,7 @@
 //! Whom the simulated safety driver sees is whom the renderer shows: two ways to the same answer.
 
 use drivers::safety::in_sight;
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 use tests::scenes;
 
 /// So many pixels of somebody are a sight, in a picture of 512x256.
@@ -13,7 +13,7 @@ const NEAR_M: f32 = 55.0;
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn who_is_seen_is_in_the_picture_and_who_is_hidden_is_not() {
     let (mut world, network) = (scenes::busy_city().world(), scenes::busy_city().network);
-    let mut renderer = Renderer::new(&network, &RenderOptions::default()).unwrap();
+    let mut renderer = Renderer::new(&network, &AdapterChoice::default()).unwrap();
     let camera = Camera::driver(512, 256);
     let (mut shown, mut missed, mut hidden, mut imagined) = (0, 0, 0, 0);
     for second in 0..60 {

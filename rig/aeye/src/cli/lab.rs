@@ -12,10 +12,12 @@ use lab::export::Format;
 use lab::redrive::Need;
 use lab::share::Share;
 use lab::still::{LAYERS, Layer};
+use render::Quality;
 
 use super::library::verdict;
 use super::values::{
-    CHECKPOINT, CHECKPOINTS, duration, file, frame_rate, jobs, moment, one_checkpoint, people, seconds, size, weather,
+    CHECKPOINT, CHECKPOINTS, QUALITY, duration, file, frame_rate, jobs, moment, one_checkpoint, people, quality,
+    seconds, size, weather,
 };
 
 /// Arguments of `rerender`.
@@ -38,6 +40,9 @@ pub struct RerenderArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
+    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
+    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
+    pub quality: Quality,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -85,6 +90,9 @@ pub struct RenderArgs {
     /// Size of the picture.
     #[arg(long, default_value = "1280x640", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
+    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
+    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
+    pub quality: Quality,
     /// Where it goes; a file that is there stays.
     #[arg(long, value_name = "FILE.png")]
     pub out: PathBuf,
@@ -124,6 +132,9 @@ pub struct ExportArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
+    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
+    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
+    pub quality: Quality,
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -159,6 +170,9 @@ pub struct CompareArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
+    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
+    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
+    pub quality: Quality,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,

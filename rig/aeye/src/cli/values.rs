@@ -11,6 +11,7 @@ use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
+use render::Quality;
 
 /// What stands for a checkpoint in help.
 pub const CHECKPOINT: &str = "early|full|truth|FILE.onnx";
@@ -59,6 +60,14 @@ pub fn preset() -> impl TypedValueParser<Value = Preset> {
 pub fn hazards() -> impl TypedValueParser<Value = HazardLevel> {
     PossibleValuesParser::new(HazardLevel::ALL.map(HazardLevel::name))
         .try_map(|name| HazardLevel::named(&name).ok_or("no such level"))
+}
+
+/// The quality of pictures where none is asked for.
+pub const QUALITY: &str = "plain";
+
+/// A quality of pictures by its name.
+pub fn quality() -> impl TypedValueParser<Value = Quality> {
+    PossibleValuesParser::new(Quality::ALL.map(Quality::name)).try_map(|name| name.parse::<Quality>())
 }
 
 /// A weather with a name.

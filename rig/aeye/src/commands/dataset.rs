@@ -16,6 +16,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         frames,
         test_frames,
         size,
+        quality,
         maps,
         pedestrians,
         seed,
@@ -30,6 +31,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         frames,
         test_frames,
         size,
+        quality,
         maps,
         pedestrians,
         seed,
@@ -47,8 +49,8 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
 
 /// Runs `aeye dataset cases`.
 pub fn cases(args: &CasesArgs, json: bool) -> anyhow::Result<Verdict> {
-    let CasesArgs { files, label, verdict, split, size, jobs, out } = args.clone();
-    let options = cases::Options { files, label, verdict, split, size, jobs, out };
+    let CasesArgs { files, label, verdict, split, size, quality, jobs, out } = args.clone();
+    let options = cases::Options { files, label, verdict, split, size, quality, jobs, out };
     let manifest = cases::make(&options, &Interrupt::listen())?;
     print(json, &manifest, || manifest.sentence(&options.out))?;
     Ok(Verdict::Ok)

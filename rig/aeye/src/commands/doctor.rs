@@ -9,7 +9,7 @@ use base::maps::Map;
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{TickInput, World};
 use perception::Compute;
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 use serde::Serialize;
 
 use super::windows::{self, LiveFigures};
@@ -121,7 +121,7 @@ fn measure(args: &DoctorArgs, findings: &mut Findings) -> anyhow::Result<()> {
     let ((), s) = seconds_of(|| (0..TICKS).for_each(|_| drop(world.step(&TickInput::default()))));
     each("world step".into(), 1e3 * s / f64::from(TICKS), 1e3 / f64::from(kernel::time::TICK_HZ));
 
-    let mut renderer = Renderer::new(&map.network, &RenderOptions::default())?;
+    let mut renderer = Renderer::new(&map.network, &AdapterChoice::default())?;
     let seen = args.pictures.mask_size.unwrap_or(DEFAULT_SIZE);
     let mut sizes = vec![seen, args.pictures.image_size];
     sizes.dedup();

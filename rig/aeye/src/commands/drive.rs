@@ -22,7 +22,7 @@ use kernel::scenario::{EgoStart, driving_lanes};
 use kernel::{Scenario, World};
 use measures::RunFigures;
 use perception::Compute;
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 use replay::Recording;
 use serde::Serialize;
 use study::{Lineup, Study};
@@ -123,12 +123,13 @@ fn tell(path: &Path, figures: &RunFigures, json: bool) -> anyhow::Result<()> {
 fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<()> {
     let study = Study::from(&args.study);
     let about = study.provenance()?;
-    let mut lineup = Lineup::open(&study, &args.checkpoint, None, Compute::Cpu, scenario.seed)?;
+    let mut lineup =
+        Lineup::open(&study, &args.checkpoint, (None, args.pictures.quality), Compute::Cpu, scenario.seed)?;
     let eye = lineup.of_run(1).clone();
     let mut manifest = simulate::manifest(scenario, map, &eye);
     manifest.provenance.extend(lineup.cast().provenance_of_run(1).clone());
     manifest.provenance.extend(about);
-    let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default())?, eye);
+    let vision = Vision::new(Renderer::new(&map.network, &AdapterChoice::default())?, eye);
     let no_room = NoRoom::default().of_run(scenario, map)?;
 
     let mut publisher = args.foxglove().map(Publisher::bind).transpose()?;

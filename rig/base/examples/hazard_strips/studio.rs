@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 use kernel::RoadNetwork;
 use kernel::scene::ActorKind;
-use render::{Camera, EGO_INSTANCE, Frame, Mount, Preset, RenderOptions, Renderer, instance_of_actor};
+use render::{AdapterChoice, Camera, EGO_INSTANCE, Frame, Mount, Quality, Renderer, instance_of_actor};
 
 use super::caption;
 use super::drive::Film;
@@ -25,7 +25,7 @@ pub struct Studio(Renderer);
 
 impl Studio {
     pub fn new(network: &RoadNetwork) -> anyhow::Result<Self> {
-        Ok(Self(Renderer::new(network, &RenderOptions { preset: Preset::Full, ..RenderOptions::default() })?))
+        Ok(Self(Renderer::new(network, &AdapterChoice::default())?))
     }
 
     /// The moment in whose pictures most is to be seen of those that it is about.
@@ -122,5 +122,6 @@ fn camera(shot: &Shot, film: &Film, moment: &Moment, at: usize) -> Option<Camera
         fov_x_rad: shot.fov_deg.to_radians(),
         width: WIDTH,
         height: HEIGHT,
+        quality: Quality::Fine,
     })
 }

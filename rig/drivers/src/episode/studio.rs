@@ -5,7 +5,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use kernel::RoadNetwork;
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 
 use crate::vision::{Eye, Optics};
 
@@ -83,7 +83,7 @@ impl Studio {
     }
 
     fn build(&self, network: &RoadNetwork) -> anyhow::Result<Optics> {
-        let renderer = Renderer::new(network, &RenderOptions::default())?.with_shadow_maps(self.drives);
+        let renderer = Renderer::new(network, &AdapterChoice::default())?.with_shadow_maps(self.drives);
         let optics = Optics::new(renderer, self.eye.clone());
         Ok(if self.with_colours { optics.with_colours() } else { optics })
     }

@@ -1,7 +1,7 @@
 //! An agent that copies a bot drives its run; company and the length of steps change nothing.
 
 use kernel::time::seconds;
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 use replay::{Log, Recording};
 
 use super::*;
@@ -19,13 +19,13 @@ fn city() -> (Map, Scenario) {
 /// The same run by two bots.
 fn bots_drive() -> Log {
     let (map, scenario) = city();
-    let vision = Vision::new(Renderer::new(&map.network, &RenderOptions::default()).expect("a driver"), Eye::Truth);
+    let vision = Vision::new(Renderer::new(&map.network, &AdapterChoice::default()).expect("a driver"), Eye::Truth);
     let (bytes, _) = simulate::drive(&scenario, &map, vision, Vec::new(), |_| true).expect("a drive");
     Recording::from_bytes(&bytes).expect("readable").into_log()
 }
 
 fn optics(map: &Map) -> Optics {
-    Optics::new(Renderer::new(&map.network, &RenderOptions::default()).expect("a driver"), Eye::Truth)
+    Optics::new(Renderer::new(&map.network, &AdapterChoice::default()).expect("a driver"), Eye::Truth)
 }
 
 #[test]

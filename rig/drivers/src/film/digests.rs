@@ -9,7 +9,7 @@ use base::progress;
 use base::say::printable;
 use base::words::count;
 use kernel::time::Tick;
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 use replay::MaskShown;
 use serde::Serialize;
 
@@ -97,7 +97,7 @@ fn remake(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<Digests> 
     if rebuilt.is_empty() {
         bail!("all of its masks are of frames from before its first tick");
     }
-    let (width, height) = film.eye.size;
+    let (width, height) = film.eye.size();
     Ok(Digests {
         file: film.path.display().to_string(),
         checkpoint: eye.name().to_owned(),
@@ -126,12 +126,10 @@ fn rebuild(film: &Film, eye: &mut Eye) -> anyhow::Result<BTreeMap<Tick, u64>> {
     let frames = film.log().masks.iter().map(|mask| mask.tick_of_frame).filter(|tick| film.holds(*tick));
     let mut digests: BTreeMap<Tick, u64> = frames.map(|tick| (tick, 0)).collect();
     let mut reel = Reel::new(film.log(), &film.network)?;
-    let mut renderer = Renderer::new(&film.network, &RenderOptions::default())?;
-    let (width, height) = film.eye.size;
-    let camera = Camera::driver(width, height);
+    let mut renderer = Renderer::new(&film.network, &AdapterChoice::default())?;
     let bar = progress::bar("masks", digests.len() as u64);
     for (tick, digest) in &mut digests {
-        let frame = eye.draw(&mut renderer, &reel.at(*tick)?.scene, &camera)?;
+        let frame = eye.draw(&mut renderer, &reel.at(*tick)?.scene, &film.eye.camera)?;
         *digest = digest_of(&eye.see(frame)?.ids);
         bar.inc(1);
     }

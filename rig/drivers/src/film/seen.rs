@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use base::image::Image;
 use kernel::time::Tick;
-use render::{Camera, Renderer};
+use render::Renderer;
 use replay::MaskShown;
 
 use super::Film;
@@ -82,9 +82,8 @@ impl<'a> SeenTrack<'a> {
     fn rebuilt(&mut self, tick_of_frame: Tick, renderer: &mut Renderer) -> anyhow::Result<Option<&Rebuilt>> {
         if self.last.as_ref().is_none_or(|last| last.tick_of_frame != tick_of_frame) {
             let Some(eye) = &mut self.eye else { return Ok(None) };
-            let (width, height) = self.film.eye.size;
             let moment = self.reel.at(tick_of_frame)?;
-            let frame = eye.draw(renderer, &moment.scene, &Camera::driver(width, height))?;
+            let frame = eye.draw(renderer, &moment.scene, &self.film.eye.camera)?;
             let mask = eye.see(frame)?;
             let image = Image { width: mask.width, height: mask.height, rgb: render::tags::colours(&mask.ids) };
             self.last = Some(Rebuilt { tick_of_frame, digest: digest_of(&mask.ids), image: Arc::new(image) });

@@ -27,7 +27,7 @@ use kernel::arbiter::Phase;
 use kernel::events::EventKind;
 use kernel::time::{Tick, seconds};
 use kernel::{Scenario, SceneSnapshot, Seat, TickInput, World};
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 
 /// Longest drive, seconds, and how much longer than who drives on those drive who look out.
 const LONGEST_S: u32 = 30;
@@ -83,7 +83,7 @@ fn main() -> anyhow::Result<()> {
 fn try_out(file: &ScenarioFile, crews: &[Who], seed: u64, draws: u64) -> anyhow::Result<Vec<Vec<Came>>> {
     let (next, found) = (AtomicU64::new(0), Mutex::new(vec![vec![Came::default(); draws as usize]; crews.len()]));
     let work = || -> anyhow::Result<()> {
-        let mut renderer = Renderer::new(&file.map.network, &RenderOptions::default())?;
+        let mut renderer = Renderer::new(&file.map.network, &AdapterChoice::default())?;
         loop {
             let draw = next.fetch_add(1, Ordering::Relaxed);
             if draw >= draws {

@@ -8,7 +8,7 @@ use base::scenario_file::ScenarioFile;
 use base::{output, png};
 use kernel::SceneSnapshot;
 use kernel::time::{TICK_HZ, Tick, seconds};
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 
 use super::{Who, drawn, drive};
 
@@ -21,7 +21,7 @@ pub fn strip(file: &Path, seed: u64, folder: &Path) -> anyhow::Result<()> {
     let story = ScenarioFile::read(file)?;
     let kept = seconds(PICTURES as u32 - 1) as usize + 1;
     let mut scenes: VecDeque<SceneSnapshot> = VecDeque::new();
-    let renderer = Renderer::new(&story.map.network, &RenderOptions::default())?;
+    let renderer = Renderer::new(&story.map.network, &AdapterChoice::default())?;
     let (came, mut renderer) =
         drive(&drawn(&story.scenario, seed)?, &story.map, &Who::On, Tick::MAX, renderer, |scene| {
             scenes.push_back(scene);

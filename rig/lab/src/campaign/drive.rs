@@ -49,7 +49,8 @@ pub fn drive_shard(options: &Options, share: Share, interrupt: &Interrupt) -> an
 pub(super) fn open(options: &Options) -> anyhow::Result<(Plan, Vec<Eye>)> {
     check_names(&options.checkpoint)?;
     let plan = plan(options)?;
-    let eyes = options.checkpoint.iter().map(Eye::open).collect::<Result<Vec<_>, _>>()?;
+    let eyes = options.checkpoint.iter().map(|choice| Ok(Eye::open(choice)?.at(options.quality)));
+    let eyes = eyes.collect::<anyhow::Result<Vec<_>>>()?;
     AdapterChoice::default().find()?;
     Ok((plan, eyes))
 }

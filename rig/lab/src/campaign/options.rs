@@ -8,6 +8,7 @@ use base::scenario_file::ScenarioFile;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
+use render::Quality;
 
 use super::plan::{Plan, seed_of};
 use super::until::{Goal, Until};
@@ -33,6 +34,8 @@ pub struct Options {
     pub hazards: Option<HazardLevel>,
     /// Weather, if not as the scenario or the map's default says.
     pub weather: Option<WeatherPreset>,
+    /// How good the pictures are that networks look at.
+    pub quality: Quality,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign; run `i` follows from it and `i` alone.

@@ -8,7 +8,7 @@ use base::maps;
 use drivers::simulate::{self, manifest};
 use drivers::vision::{Eye, Vision};
 use kernel::World;
-use render::{RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 use replay::{Case, ForeignMap, Recording};
 
 use super::aside::Aside;
@@ -150,7 +150,7 @@ impl<'a> Runner<'a> {
     fn vision(&mut self, index: usize) -> anyhow::Result<Vision> {
         let renderer = match self.renderers.remove(&index) {
             Some(renderer) => renderer,
-            None => Renderer::new(&self.task.plan.maps[index].network, &RenderOptions::default())?,
+            None => Renderer::new(&self.task.plan.maps[index].network, &AdapterChoice::default())?,
         };
         Ok(Vision::new(renderer, self.eye.clone()))
     }

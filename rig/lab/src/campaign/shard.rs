@@ -9,6 +9,7 @@ use base::json::{self, Typed};
 use base::maps::Map;
 use base::output;
 use drivers::vision::Eye;
+use render::Quality;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -42,6 +43,9 @@ impl Typed for Shard {
 pub struct ShardPlan {
     /// What the semantic driver sees; each of them drives the same runs.
     pub checkpoints: Vec<Named>,
+    /// How good the pictures are that they look at.
+    #[serde(default = "Quality::unsaid")]
+    pub quality: Quality,
     /// Maps, in turn.
     pub maps: Vec<Named>,
     /// Whether the files of foreign maps stand in the recordings.
@@ -89,6 +93,7 @@ impl ShardPlan {
         let scenario = plan.scenario.as_ref().map(|scenario| hex(blake3::hash(scenario.to_toml().as_bytes())));
         Self {
             checkpoints: eyes.iter().map(checkpoint).collect(),
+            quality: eyes.iter().map(Eye::quality).max_by_key(|quality| *quality as u8).unwrap_or_default(),
             maps: plan.maps.iter().map(map).collect(),
             embed_map: plan.maps.iter().filter_map(|map| map.foreign.as_ref()).any(|map| map.embedded),
             scenario,

@@ -63,7 +63,7 @@ pub fn measure(
     let (groups, mut failed) = by_eye(due, jobs);
     let bar = progress::bar("cases", due.len() as u64);
     let (index, mut measured) = (Mutex::new(index), 0);
-    for ((_, size), (eye, numbers)) in groups {
+    for (eye, numbers) in groups.into_values() {
         let Some(eye) = eye.find(recorded)? else {
             let sentence = || anyhow::anyhow!(eye.not_found("--recorded-checkpoint"));
             failed.extend(numbers.iter().map(|number| Failure::new(&due[*number].shown, &sentence())));
@@ -76,7 +76,7 @@ pub fn measure(
         };
         let (work, all): (_, Vec<usize>) = (Looking { files: &files, keep, bar: &bar }, (0..files.len()).collect());
         let eyes = [eye];
-        let studios = Studios::default();
+        let (size, studios) = (eyes[0].size(), Studios::new(eyes[0].quality()));
         let pipeline = Pipeline { work: &work, files: &all, size, eyes: &eyes, jobs, interrupt, studios };
         let (_, unread) = pipeline.run()?;
         if interrupt.is_raised() {
@@ -89,8 +89,8 @@ pub fn measure(
     Ok((measured, failed))
 }
 
-/// Which cases were driven through which eye, by its digest and the size of its pictures.
-type Groups = BTreeMap<(String, (u32, u32)), (RecordedEye, Vec<usize>)>;
+/// Which cases were driven through which eye, by its digest and its camera in words.
+type Groups = BTreeMap<(String, String), (RecordedEye, Vec<usize>)>;
 
 /// Numbers of the cases by the eye that they were driven through, and those that do not say.
 fn by_eye(due: &[Due], jobs: usize) -> (Groups, Vec<Failure>) {
@@ -100,7 +100,10 @@ fn by_eye(due: &[Due], jobs: usize) -> (Groups, Vec<Failure>) {
     let (mut groups, mut failed) = (Groups::new(), Vec::new());
     for (number, eye) in collect_in_order(jobs, due.len(), read).into_iter().enumerate() {
         match eye {
-            Ok(eye) => groups.entry((eye.digest.clone(), eye.size)).or_insert((eye, Vec::new())).1.push(number),
+            Ok(eye) => {
+                let key = (eye.digest.clone(), vision::camera_text(&eye.camera));
+                groups.entry(key).or_insert((eye, Vec::new())).1.push(number);
+            }
             Err(error) => failed.push(Failure::new(&due[number].shown, &error)),
         }
     }

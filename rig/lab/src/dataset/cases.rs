@@ -13,6 +13,7 @@ use drivers::vision;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::footage::Footage;
 use perception::cityscapes::Place;
+use render::Quality;
 use replay::{Label, Recording};
 
 use super::manifest::Manifest;
@@ -36,6 +37,8 @@ pub struct Options {
     pub split: String,
     /// Size of the pictures.
     pub size: (u32, u32),
+    /// How good the pictures are.
+    pub quality: Quality,
     /// Cases drawn at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the dataset; must not exist, be empty, or hold this dataset already.
@@ -55,7 +58,8 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     }
     let found = keep_judged(found, |(path, _)| path, &args.verdict)?;
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    build(&CasesRecipe { split: args.split.clone(), size: args.size, cases }, &files, &args.out, args.jobs, interrupt)
+    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality: args.quality, cases };
+    build(&recipe, &files, &args.out, args.jobs, interrupt)
 }
 
 /// The corner cases among files and folders, each once. One that cannot be read is an error: a dataset is whole.
@@ -98,7 +102,7 @@ pub(super) fn build(
         return Ok(finished);
     }
     let adapter = vision::find_adapter()?;
-    let (pending, studios) = (PendingFolder::new(out)?, Studios::default());
+    let (pending, studios) = (PendingFolder::new(out)?, Studios::new(recipe.quality));
     let bar = progress::bar("cases", files.len() as u64);
     let draw = |scene: usize| {
         studios.with(recipe.size, |studio| {
@@ -142,7 +146,13 @@ impl Shoot<'_> {
             let place = Place { split: &self.recipe.split, city: &case.map, scene: scene as u32, frame: number };
             cityscapes::write(self.folder, &place, &frame)?;
             let state_hash = footage.log.hash(frame.tick);
-            lines.push(FrameLine::new(&place, &frame, (snapshot, state_hash), &drive, self.adapter));
+            lines.push(FrameLine::new(
+                &place,
+                (&frame, self.studio.camera()),
+                (snapshot, state_hash),
+                &drive,
+                self.adapter,
+            ));
         }
         Ok(Some(lines))
     }

@@ -20,7 +20,7 @@ use base::spread::{jobs, on_threads};
 use drivers::vision;
 use kernel::World;
 use perception::cityscapes::Place;
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Quality, Renderer};
 
 use super::drive::ExpertDrive;
 use super::manifest::{Manifest, PARTS};
@@ -46,6 +46,8 @@ pub struct Options {
     pub test_frames: u32,
     /// Size of the pictures.
     pub size: (u32, u32),
+    /// How good the pictures are.
+    pub quality: Quality,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
     pub maps: Vec<String>,
     /// People on foot in each scene, instead of as many as the map's default scenario has.
@@ -108,7 +110,6 @@ fn shoot(
     (share, threads): (Share, Option<u16>),
     interrupt: &Interrupt,
 ) -> anyhow::Result<Shot> {
-    let options = RenderOptions::default();
     let adapter = vision::find_adapter()?;
     let folder = OutputFolder::open(out)?;
     let parts = Parts::open(out, recipe, &adapter)?;
@@ -126,7 +127,7 @@ fn shoot(
         let map = &maps[scene.map];
         let renderer = match &mut renderers[scene.map] {
             Some(renderer) => renderer,
-            none => none.insert(Renderer::new(&map.network, &options)?),
+            none => none.insert(Renderer::new(&map.network, &AdapterChoice::default())?),
         };
         let mut studio = Studio { recipe, out, adapter: &adapter, renderer, interrupt, bar: &bar, no_room: &no_room };
         parts.keep(scene.split, scene.number, &studio.shoot(scene, map)?)
@@ -176,6 +177,7 @@ impl NaturalRecipe {
             frames: args.frames,
             test_frames: args.test_frames,
             size: args.size,
+            quality: args.quality,
             pedestrians: args.pedestrians,
             maps: maps.iter().map(MapUsed::new).collect(),
         };
@@ -245,13 +247,14 @@ impl Studio<'_> {
             bail!("{}: interrupted; the same command completes it", self.out.display());
         }
         let ((width, height), snapshot) = (self.recipe.size, world.scene());
-        let frame = self.renderer.draw(&snapshot, &Camera::driver(width, height))?;
+        let camera = Camera::driver(width, height).at(self.recipe.quality);
+        let frame = self.renderer.draw(&snapshot, &camera)?;
         let map = &self.recipe.maps[scene.map].name;
         let place = Place { split: scene.split, city: map, scene: scene.number, frame: number };
         cityscapes::write(self.out, &place, &frame)?;
         self.bar.inc(1);
         let drive = Drive { recording: String::new(), seed: world.scenario().seed, label: None };
-        Ok(FrameLine::new(&place, &frame, (&snapshot, Some(world.hash().0 as u32)), &drive, self.adapter))
+        Ok(FrameLine::new(&place, (&frame, &camera), (&snapshot, Some(world.hash().0 as u32)), &drive, self.adapter))
     }
 
     /// Writes the recording of a drive; gives its digest.

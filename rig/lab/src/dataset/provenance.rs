@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use anyhow::anyhow;
 use base::files::check_name;
 use base::json::{Typed, json_line};
+use drivers::vision::camera_text;
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::time::Tick;
 use perception::cityscapes::{Kind, Place};
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES, train_id};
-use render::Frame;
+use render::{Camera, Frame};
 use serde::{Deserialize, Serialize};
 
 use crate::cityscapes;
@@ -47,7 +48,7 @@ pub struct FrameLine {
     /// What the corner case was labelled as.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
-    /// Which camera, and the size of its picture.
+    /// Which camera, and size and quality of its picture.
     pub camera: String,
     /// Version of the renderer.
     pub renderer: String,
@@ -134,7 +135,7 @@ impl FrameLine {
     /// That of a frame drawn just now by an adapter from a scene of a drive.
     pub(super) fn new(
         place: &Place<'_>,
-        frame: &Frame,
+        (frame, camera): (&Frame, &Camera),
         (scene, state_hash): (&SceneSnapshot, Option<u32>),
         drive: &Drive<'_>,
         adapter: &str,
@@ -153,7 +154,7 @@ impl FrameLine {
             state_hash: state_hash.map(|hash| format!("{hash:08x}")),
             weather: scene.weather.into(),
             label: drive.label.map(str::to_owned),
-            camera: format!("driver {}x{}", frame.width, frame.height),
+            camera: camera_text(camera),
             renderer: render::identity(),
             adapter: adapter.to_owned(),
             class_pixels: class_pixels(&frame.class_ids),

@@ -3,6 +3,7 @@
 use base::files::{check_name, most};
 use base::maps::Map;
 use kernel::time::Tick;
+use render::Quality;
 use serde::{Deserialize, Serialize};
 
 use super::provenance::Part;
@@ -54,6 +55,15 @@ impl Recipe {
             Self::Mix(recipe) => recipe.natural.size(),
         }
     }
+
+    /// How good the pictures are.
+    pub fn quality(&self) -> Quality {
+        match self {
+            Self::Natural(recipe) => recipe.quality,
+            Self::Cases(recipe) => recipe.quality,
+            Self::Mix(recipe) => recipe.natural.quality(),
+        }
+    }
 }
 
 /// What a natural dataset is made from.
@@ -75,6 +85,9 @@ pub struct NaturalRecipe {
     pub test_frames: u32,
     /// Width and height of the pictures, pixels.
     pub size: (u32, u32),
+    /// How good the pictures are.
+    #[serde(default = "Quality::unsaid")]
+    pub quality: Quality,
     /// People on foot, where not as many as in the map's default scenario.
     pub pedestrians: Option<u16>,
     /// The scenes' maps, in turn.
@@ -137,6 +150,9 @@ pub struct CasesRecipe {
     pub split: String,
     /// Width and height of the pictures, pixels.
     pub size: (u32, u32),
+    /// How good the pictures are.
+    #[serde(default = "Quality::unsaid")]
+    pub quality: Quality,
     /// The cases, in the order of their scenes' numbers.
     pub cases: Vec<CaseUsed>,
 }

@@ -10,6 +10,7 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::footage::Footage;
 use perception::ConfusionMatrix;
+use render::Quality;
 use serde::Serialize;
 
 use crate::figures::{Figures, decimal};
@@ -40,13 +41,13 @@ struct Cell {
 pub fn shots(
     cases: &[PathBuf],
     checkpoints: &[PathBuf],
-    size: (u32, u32),
+    (size, quality): ((u32, u32), Quality),
     with_truth: bool,
     seen: &mut Seen,
 ) -> anyhow::Result<Vec<Shot>> {
     let choices: Vec<_> = checkpoints.iter().cloned().map(CheckpointChoice::File).collect();
     let (mut eyes, _) = open_eyes(&choices, Some(size))?;
-    let mut studio = Studio::new(size);
+    let mut studio = Studio::new(size, quality);
     let mut shots = Vec::new();
     for path in cases.iter().take(CASES) {
         let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;

@@ -9,6 +9,7 @@ use base::toml_text;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::CLIP_FRAMES;
 use perception::training::TrainOptions;
+use render::Quality;
 use serde::{Deserialize, Serialize};
 
 use crate::dataset::recipe::{MOST_IN_A_SPLIT, MOST_MAPS, check_size};
@@ -21,6 +22,9 @@ pub struct Recipe {
     pub seed: u64,
     /// Width and height of all pictures, pixels.
     pub size: (u32, u32),
+    /// How good the pictures are.
+    #[serde(default = "Quality::unsaid")]
+    pub quality: Quality,
     /// Maps, in turn.
     pub maps: Vec<String>,
     /// The initial data.

@@ -152,6 +152,7 @@ impl Stages<'_> {
             frames: n.frames,
             test_frames: n.test_frames,
             size: self.recipe.size,
+            quality: self.recipe.quality,
             maps: self.recipe.maps.clone(),
             pedestrians: None,
             seed: self.recipe.seed,
@@ -225,6 +226,7 @@ impl Stages<'_> {
             pedestrians,
             hazards: None,
             weather: None,
+            quality: self.recipe.quality,
             run_seconds,
             seed: self.recipe.seed,
             jobs: self.jobs,
@@ -253,6 +255,7 @@ impl Stages<'_> {
                 verdict: Vec::new(),
                 split: split.into(),
                 size: self.recipe.size,
+                quality: self.recipe.quality,
                 jobs: self.jobs,
                 out: self.dataset(name),
             };

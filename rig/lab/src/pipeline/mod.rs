@@ -14,7 +14,7 @@ use base::library::Entry;
 use base::progress::Interrupt;
 use drivers::vision::Eye;
 use measures::footage::Footage;
-use render::Frame;
+use render::{Frame, Quality};
 
 use super::looks::Studio;
 
@@ -105,16 +105,23 @@ pub struct Pipeline<'a, W> {
 }
 
 /// Renderers that outlast the threads that draw with them.
-#[derive(Default)]
-pub struct Studios(Mutex<Vec<Studio>>);
+pub struct Studios {
+    quality: Quality,
+    free: Mutex<Vec<Studio>>,
+}
 
 impl Studios {
+    /// For pictures of one quality.
+    pub fn new(quality: Quality) -> Self {
+        Self { quality, free: Mutex::default() }
+    }
+
     /// Calls `draw` with a set for pictures of one size.
     pub fn with<T>(&self, size: (u32, u32), draw: impl FnOnce(&mut Studio) -> T) -> T {
-        let free = lock(&self.0).pop();
-        let mut studio = free.unwrap_or_else(|| Studio::new(size));
+        let free = lock(&self.free).pop();
+        let mut studio = free.unwrap_or_else(|| Studio::new(size, self.quality));
         let value = draw(&mut studio);
-        lock(&self.0).push(studio);
+        lock(&self.free).push(studio);
         value
     }
 }

@@ -21,7 +21,7 @@ use base::files::{self, most};
 use base::json::Typed;
 use kernel::time::{TICK_HZ, Tick};
 use kernel::{RoadNetwork, Scenario};
-use render::{AdapterChoice, RenderOptions, Renderer};
+use render::{AdapterChoice, Renderer};
 use replay::{Log, Recording};
 use serde::{Deserialize, Serialize};
 
@@ -282,7 +282,7 @@ fn forks_of(
         }
         let seeing = match vision.take() {
             Some(vision) => vision,
-            None => Vision::new(Renderer::new(&network, &RenderOptions::default())?, eye.clone()),
+            None => Vision::new(Renderer::new(&network, &AdapterChoice::default())?, eye.clone()),
         };
         let (course, after) = variant(args, &log, &network, variation).drive(&log, &network, seeing)?;
         vision = Some(after.with_eye(eye.clone()));

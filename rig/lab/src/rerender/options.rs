@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{TICK_HZ, Tick};
+use render::Quality;
 
 /// What is drawn and looked at again.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub struct Options {
     pub fps: u32,
     /// Size of the pictures; none: that which the first network takes.
     pub size: Option<(u32, u32)>,
+    /// How good the pictures are.
+    pub quality: Quality,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began with the same options is completed: what is whole and
@@ -28,5 +31,6 @@ pub struct Options {
 /// The options that pictures in a folder have in common, as they are given.
 pub fn of_pictures(args: &Options, (width, height): (u32, u32)) -> Vec<String> {
     let last_s = args.last as f64 / f64::from(TICK_HZ);
-    vec![format!("--last {last_s}s"), format!("--fps {}", args.fps), format!("--size {width}x{height}")]
+    let size = format!("--size {width}x{height}");
+    vec![format!("--last {last_s}s"), format!("--fps {}", args.fps), size, format!("--quality {}", args.quality.name())]
 }

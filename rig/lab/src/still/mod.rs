@@ -20,7 +20,7 @@ use drivers::vision::{Eye, Vision};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Scenario, SceneSnapshot, World};
 use measures::footage::decisive_tick;
-use render::{Frame, RenderOptions, Renderer};
+use render::{AdapterChoice, Frame, Quality, Renderer};
 use serde::Serialize;
 
 pub use self::layer::{LAYERS, Layer};
@@ -57,6 +57,8 @@ pub struct Options {
     pub layer: Layer,
     /// Its width and height, pixels.
     pub size: Size,
+    /// How good the pictures are.
+    pub quality: Quality,
     /// Where it goes.
     pub out: PathBuf,
 }
@@ -88,27 +90,31 @@ impl fmt::Display for Still {
 
 /// Makes a picture, in a file that there is not yet.
 pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Still> {
-    let Options { subject, tick, camera, layer, size, out } = options;
+    let Options { subject, tick, camera, layer, size, quality, out } = options;
     if out.exists() {
         bail!("{}: exists already; expected a new file", out.display());
     }
     asked::check_size(*size)?;
     output::check_file(out)?;
     let frame = match subject {
-        Subject::File(path) => of_file(path, *tick, *camera, *size)?,
+        Subject::File(path) => of_file(path, *tick, (*camera, *size, *quality))?,
         Subject::Run { map, scenario } => {
             let (scene, mut renderer) = of_run(map, scenario, tick.unwrap_or(USUAL_TICK), interrupt)?;
-            renderer.draw(&scene, &camera.camera(*size))?
+            renderer.draw(&scene, &camera.camera(*size).at(*quality))?
         }
     };
     output::write_file(out, &layer.png(&frame)?)?;
     Ok(Still { out: out.display().to_string(), tick: frame.tick, layer: layer.name(), size_px: [size.0, size.1] })
 }
 
-fn of_file(path: &Path, tick: Option<Tick>, camera: Viewpoint, size: Size) -> anyhow::Result<Frame> {
+fn of_file(
+    path: &Path,
+    tick: Option<Tick>,
+    (camera, size, quality): (Viewpoint, Size, Quality),
+) -> anyhow::Result<Frame> {
     let stage = Arc::new(Stage::open(path, &Arc::default())?);
     let tick = tick.unwrap_or_else(|| decisive_tick(stage.recording().log()));
-    Ok(Shots::of_tick(&stage, tick, camera, size)?.draw(0)?.frame)
+    Ok(Shots::of_tick(&stage, tick, camera, size)?.at(quality).draw(0)?.frame)
 }
 
 /// The scene at a tick of a run, and what drew the truth for its semantic driver.
@@ -122,7 +128,7 @@ fn of_run(
     let scenario = lasting(scenario.clone(), tick);
     let mut world = World::new(&scenario, network)?;
     let mut crew =
-        Crew::drawn(Vision::new(Renderer::new(network, &RenderOptions::default())?, Eye::Truth), scenario.seed);
+        Crew::drawn(Vision::new(Renderer::new(network, &AdapterChoice::default())?, Eye::Truth), scenario.seed);
     let bar = progress::bar("ticks", tick);
     while world.tick() < tick {
         if interrupt.is_raised() {

@@ -8,7 +8,7 @@ use base::image::Image;
 use base::newest::Newest;
 use drivers::vision::digest_of;
 use perception::Mask;
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 use study::Lineup;
 use viewers::feed::{Look, ShownMask, View};
 
@@ -38,13 +38,12 @@ pub fn watch_as_semantic(
     clock: SessionClock,
     show: impl Fn(),
 ) -> anyhow::Result<()> {
-    let (width, height) = lineup.size();
-    let camera = Camera::driver(width, height);
+    let camera = lineup.camera();
     watch(&board.feed.scene, &board.feed.semantic, show, |look| {
         let frame = renderer.draw(&look.scene, &camera)?;
-        let Mask { ids, .. } = lineup.see(look.run, frame)?;
+        let Mask { width, height, ids } = lineup.see(look.run, frame)?;
         let rgb = render::tags::colours(&ids);
-        let image = Image { width: width as usize, height: height as usize, rgb };
+        let image = Image { width, height, rgb };
         let mask = ShownMask { digest: digest_of(&ids), ids };
         Ok(view(look, image, Some(mask), clock.now_us()))
     })
@@ -52,7 +51,7 @@ pub fn watch_as_semantic(
 
 /// A renderer for one of the drivers.
 pub fn renderer(network: &kernel::RoadNetwork) -> anyhow::Result<Renderer> {
-    Ok(Renderer::new(network, &RenderOptions::default())?)
+    Ok(Renderer::new(network, &AdapterChoice::default())?)
 }
 
 fn watch(

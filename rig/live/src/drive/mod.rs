@@ -82,7 +82,7 @@ pub fn drive(options: Options) -> anyhow::Result<()> {
     let Options { map, scenario, seats, calibration, force, foxglove, checkpoint, pictures, study, record, tell } =
         options;
     output::check_file(&record)?;
-    let lineup = Lineup::open(&study, &checkpoint, pictures.mask_size, pictures.inference, scenario.seed)?;
+    let lineup = Lineup::open(&study, &checkpoint, pictures.of_networks(), pictures.inference, scenario.seed)?;
     let plan = Plan {
         about: about(&study, &lineup, &scenario),
         map,
@@ -110,7 +110,7 @@ pub fn trial(choice: &CheckpointChoice, pictures: &Pictures, seconds: u32) -> an
     let dir = tempfile::tempdir()?;
     let map = Map::find(kernel::map::BUNDLED[0])?;
     let (study, scenario) = (Study::default(), map.scenario(1));
-    let lineup = Lineup::open(&study, choice, pictures.mask_size, pictures.inference, scenario.seed)?;
+    let lineup = Lineup::open(&study, choice, pictures.of_networks(), pictures.inference, scenario.seed)?;
     let plan = Plan {
         about: about(&study, &lineup, &scenario),
         scenario,
@@ -154,6 +154,8 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) ->
         Screens::Three => Camera::driver_row(width, height).to_vec(),
         Screens::One => vec![Camera::driver(width, height)],
     };
+    let quality = safety_renderer.quality_for_people();
+    let cameras: Vec<_> = cameras.into_iter().map(|camera| camera.at(quality)).collect();
     std::thread::scope(|scope| {
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Safety));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use base::image::Image;
 use kernel::time::CLIP_TICKS;
 use measures::footage::Footage;
-use render::{Camera, RenderOptions, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 
 /// Frames a second.
 const FPS: u32 = 2;
@@ -26,7 +26,7 @@ impl Strip {
     /// That of a case.
     pub fn of(case: &Path) -> anyhow::Result<Self> {
         let footage = Footage::read(case, CLIP_TICKS, FPS)?;
-        let mut renderer = Renderer::new(&footage.network, &RenderOptions::default())?;
+        let mut renderer = Renderer::new(&footage.network, &AdapterChoice::default())?;
         let camera = Camera::driver(SIZE.0, SIZE.1);
         let (mut images, mut classes) = (Vec::new(), Vec::new());
         for scene in &footage.scenes {

@@ -66,8 +66,14 @@ impl Bench {
         let seats = Seats::with_source(choices.clone(), Vec::new(), Box::new(devices.clone()));
         let map = Map::find("rural").unwrap();
         let (study, scenario) = (Study::default(), map.scenario(1));
-        let lineup =
-            Lineup::open(&study, &CheckpointChoice::Truth, None, perception::Compute::Cpu, scenario.seed).unwrap();
+        let lineup = Lineup::open(
+            &study,
+            &CheckpointChoice::Truth,
+            (None, render::Quality::Plain),
+            perception::Compute::Cpu,
+            scenario.seed,
+        )
+        .unwrap();
         let plan = Plan {
             about: about(&study, &lineup, &scenario),
             cast: lineup.cast().clone(),

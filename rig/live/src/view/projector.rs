@@ -11,7 +11,7 @@ use drivers::film::{Film, Viewpoint};
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::{ConfusionMatrix, Mask};
-use render::{Frame, RenderOptions, Renderer};
+use render::{AdapterChoice, Frame, Renderer};
 
 use super::layers::{self, Layer};
 
@@ -61,7 +61,7 @@ pub struct Projector<'a> {
 impl<'a> Projector<'a> {
     /// With the eyes to choose from, and the one that the run was driven through, if it is at hand.
     pub fn new(film: &'a Film, eyes: Vec<Eye>, recorded: Option<Eye>) -> anyhow::Result<Self> {
-        let renderer = || Renderer::new(&film.network, &RenderOptions::default());
+        let renderer = || Renderer::new(&film.network, &AdapterChoice::default());
         Ok(Self {
             film,
             reel: Reel::new(film.log(), &film.network)?,
@@ -99,13 +99,15 @@ impl<'a> Projector<'a> {
     fn take(&mut self, request: &Request) -> anyhow::Result<Shown> {
         let moment = self.reel.at(request.tick)?;
         let wants = |layers: &[Layer]| request.layers.iter().any(|layer| layers.contains(layer));
-        let (large, small) = (large_size(self.film.eye.size), self.film.eye.size);
+        let (large, small) = (large_size(self.film.eye.size()), self.film.eye.size());
         let mut take = Take::default();
         if wants(&[Layer::Rgb, Layer::Truth]) {
-            take.large = Some(self.large.draw(&moment.scene, &request.viewpoint.camera(large))?);
+            let camera = request.viewpoint.camera(large).at(self.large.quality_for_people());
+            take.large = Some(self.large.draw(&moment.scene, &camera)?);
         }
         if wants(&[Layer::Prediction, Layer::Difference, Layer::Confidence]) {
-            let frame = self.small.draw(&moment.scene, &request.viewpoint.camera(small))?;
+            let camera = request.viewpoint.camera(small).at(self.film.eye.camera.quality);
+            let frame = self.small.draw(&moment.scene, &camera)?;
             let eye = &mut self.eyes[request.checkpoint];
             let (mask, confidence) = if wants(&[Layer::Confidence]) {
                 eye.see_with_confidence(&frame)?
@@ -199,7 +201,7 @@ mod tests {
     /// A few seconds driven through `early`.
     fn film(folder: &std::path::Path) -> Film {
         let map = Map::find("rural").expect("bundled");
-        let renderer = Renderer::new(&map.network, &RenderOptions::default()).expect("an adapter");
+        let renderer = Renderer::new(&map.network, &AdapterChoice::default()).expect("an adapter");
         let vision = Vision::new(renderer, Eye::open(&EARLY).expect("bundled"));
         let path = folder.join("drive.mcap");
         let file = std::fs::File::create(&path).expect("writable");

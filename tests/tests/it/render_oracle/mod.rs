@@ -6,7 +6,7 @@ mod pose;
 
 use kernel::map::bundled;
 use kernel::{RoadNetwork, SceneSnapshot};
-use render::{Camera, Frame, RenderOptions, Renderer, SemanticTag};
+use render::{AdapterChoice, Camera, Frame, Renderer, SemanticTag};
 use tests::{scenes, street};
 
 use bvh::Bvh;
@@ -88,7 +88,7 @@ impl Tally {
 
 /// Draws moments of a map and compares them all.
 fn agree(network: &RoadNetwork, scenes: impl Iterator<Item = SceneSnapshot>) {
-    let mut renderer = Renderer::new(network, &RenderOptions::default()).unwrap();
+    let mut renderer = Renderer::new(network, &AdapterChoice::default()).unwrap();
     let mut tally = Tally::new();
     for scene in scenes {
         let frame = renderer.draw(&scene, &Camera::driver(WIDTH, HEIGHT)).unwrap();

@@ -68,7 +68,7 @@ fn controls(controls: &Controls) -> String {
 fn on_screen(ui: &mut Ui, film: &Film, shown: &Shown) {
     Grid::new("mask").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         let eye = if film.eye.name.is_empty() { "not said" } else { &film.eye.name };
-        row(ui, "driven through", format!("{eye}, {}x{}", film.eye.size.0, film.eye.size.1), PLAIN);
+        row(ui, "driven through", format!("{eye}, {}x{}", film.eye.size().0, film.eye.size().1), PLAIN);
         let Some(Seen { logged, rebuilt }) = &shown.seen else {
             row(ui, "mask on the screen", "none", Color32::GRAY);
             return;
