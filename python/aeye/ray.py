@@ -53,6 +53,7 @@ def campaign(
     pedestrians: int | None = None,
     hazards: Literal["none", "natural", "raised"] | None = None,
     weather: str | None = None,
+    quality: Literal["plain", "standard", "fine"] | None = None,
     max_time: float = 240.0,
     seed: int = 1,
     cores: int = 1,
@@ -94,6 +95,7 @@ def campaign(
         "pedestrians": pedestrians,
         "hazards": hazards,
         "weather": weather,
+        "quality": quality,
         "max_time": max_time,
         "seed": seed,
     }

@@ -23,7 +23,7 @@ impl Quality {
     /// Every one, from the cheapest.
     pub const ALL: [Self; 3] = [Self::Plain, Self::Standard, Self::Fine];
 
-    /// That of files which say none: they are from before there were others.
+    /// That of files which say none. Programs from before there were names drew the like of `fine` on GPUs and did not say so.
     pub fn unsaid() -> Self {
         Self::Plain
     }

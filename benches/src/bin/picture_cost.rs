@@ -1,7 +1,7 @@
 //! Drives through each bundled map and says what a picture costs on the way: the process's CPU time, as every thread of a
 //! software renderer spends it.
 //!
-//! `picture_cost WIDTH HEIGHT SECONDS [MAP]...` prints a line for each map. The ratio is to pictures of nothing of the same
+//! `picture_cost WIDTH HEIGHT QUALITY SECONDS [MAP]...` prints a line for each map. The ratio is to pictures of nothing of the same
 //! size in the same run.
 
 use std::process::ExitCode;
@@ -12,11 +12,11 @@ use kernel::map::BUNDLED;
 use kernel::time::{CLIP_STRIDE_TICKS, TICK_HZ};
 use kernel::{RoadNetwork, SceneSnapshot};
 use nix::time::{ClockId, clock_gettime};
-use render::{AdapterChoice, Camera, Renderer};
+use render::{AdapterChoice, Camera, Quality, Renderer};
 
 use ::tests::scenes::{Scene, follow_route, scene};
 
-const USAGE: &str = "usage: picture_cost WIDTH HEIGHT SECONDS [MAP]...";
+const USAGE: &str = "usage: picture_cost WIDTH HEIGHT QUALITY SECONDS [MAP]...";
 /// Traffic has spread by then.
 const WARM_UP_S: u32 = 20;
 /// Pictures that are drawn before any is counted.
@@ -34,9 +34,10 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &[String]) -> Result<(), String> {
-    let [width, height, drive_s, maps @ ..] = arguments else { return Err(USAGE.into()) };
+    let [width, height, quality, drive_s, maps @ ..] = arguments else { return Err(USAGE.into()) };
     let number = |text: &String| text.parse::<u32>().map_err(|_| format!("{text}: expected a whole number; {USAGE}"));
-    let camera = Camera::driver(number(width)?, number(height)?);
+    let quality: Quality = quality.parse().map_err(|expected| format!("{quality}: {expected}; {USAGE}"))?;
+    let camera = Camera::driver(number(width)?, number(height)?).at(quality);
     let drive_s =
         Some(number(drive_s)?).filter(|s| *s > 0).ok_or_else(|| format!("0 seconds; expected 1 or more; {USAGE}"))?;
     let all = BUNDLED.map(String::from);

@@ -72,7 +72,8 @@ impl Targets {
     /// Whether pictures of this size and quality can be drawn to them.
     pub(crate) fn is_for(&self, width: u32, height: u32, means: Means) -> bool {
         let samples = [self.middles.colour.width(), self.middles.colour.height()];
-        samples == [width, height].map(|side| side * means.samples) && self.corners.is_some() == means.corners
+        let fits = samples == [width, height].map(|side| side * means.samples);
+        fits && (self.width, self.height) == (width, height) && self.corners.is_some() == means.corners
     }
 
     /// Bytes a row takes in the read-back buffer.

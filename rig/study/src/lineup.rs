@@ -75,6 +75,8 @@ impl Lineup {
         let others = others.iter().map(|choice| Eye::open_on(compute, choice, Some(size)));
         let eyes = std::iter::once(Ok(first)).chain(others).map(|eye| Ok(eye?.at(quality)));
         let eyes = eyes.collect::<anyhow::Result<Vec<_>>>()?;
+        // Truth is the same at every quality.
+        let quality = if eyes.iter().any(Eye::needs_colours) { quality } else { Quality::default() };
         let camera = Camera::driver(size.0, size.1).at(quality);
         let cast = Cast { seed, public_name: public_name(&eyes), provenances: provenances(&eyes, &camera) };
         Ok(Self { eyes, camera, cast })

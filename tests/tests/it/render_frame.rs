@@ -39,6 +39,19 @@ fn every_quality_gives_the_same_truth() {
     }
 }
 
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn pictures_of_one_quality_leave_nothing_behind_for_another() {
+    let (scene, mut used) = (street::scene(5), renderer());
+    // As many samples, at first nine a pixel.
+    let cameras =
+        [(64, 32, Quality::Fine), (192, 96, Quality::Plain), (192, 96, Quality::Standard), (64, 32, Quality::Fine)];
+    for (width, height, quality) in cameras {
+        let camera = Camera::driver(width, height).at(quality);
+        assert!(used.draw(&scene, &camera).unwrap() == renderer().draw(&scene, &camera).unwrap(), "{camera:?}");
+    }
+}
+
 /// Against two plain pictures: one of the pixels' middles, and one that is larger by half a pixel on each side, of their
 /// corners.
 #[test]

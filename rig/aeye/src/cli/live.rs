@@ -168,7 +168,7 @@ impl From<&StudyArgs> for Study {
 }
 
 impl PictureArgs {
-    /// Whether anything is asked for that is not the default.
+    /// Whether anything is asked for that only windows have a use for.
     pub fn is_special(&self) -> bool {
         let Self { image_size, mask_size, inference, screens, .. } = self;
         Ok(*image_size) != size(IMAGE_SIZE)

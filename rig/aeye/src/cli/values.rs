@@ -157,6 +157,11 @@ mod tests {
     use super::*;
 
     #[test]
+    fn pictures_are_as_good_as_the_renderer_draws_them_unless_asked_otherwise() {
+        assert_eq!(QUALITY.parse(), Ok(Quality::default()));
+    }
+
+    #[test]
     fn a_checkpoint_is_no_file() {
         assert!(is_checkpoint(Path::new("truth")) && is_checkpoint(Path::new("runs/c.onnx")));
         assert!(!is_checkpoint(Path::new("early.case.mcap")) && !is_checkpoint(Path::new("./early")));

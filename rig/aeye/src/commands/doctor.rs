@@ -123,15 +123,17 @@ fn measure(args: &DoctorArgs, findings: &mut Findings) -> anyhow::Result<()> {
 
     let mut renderer = Renderer::new(&map.network, &AdapterChoice::default())?;
     let seen = args.pictures.mask_size.unwrap_or(DEFAULT_SIZE);
-    let mut sizes = vec![seen, args.pictures.image_size];
-    sizes.dedup();
-    for (width, height) in sizes {
-        let camera = Camera::driver(width, height);
+    let ((width, height), image) = (seen, args.pictures.image_size);
+    let small = Camera::driver(width, height).at(args.pictures.quality);
+    let mut cameras = vec![small, Camera::driver(image.0, image.1).at(renderer.quality_for_people())];
+    cameras.dedup();
+    for camera in cameras {
+        let (width, height) = (camera.width, camera.height);
         let ms = milliseconds(|| renderer.draw(&world.scene(), &camera).map(drop).map_err(Into::into))?;
         each(format!("frame {width}x{height}"), ms, FRAME_MS);
     }
 
-    let frame = renderer.draw(&world.scene(), &Camera::driver(seen.0, seen.1))?;
+    let frame = renderer.draw(&world.scene(), &small)?;
     for compute in Compute::ALL {
         let opened = Eye::open_on(compute, &args.checkpoint, args.pictures.mask_size);
         let mut eye = match opened {

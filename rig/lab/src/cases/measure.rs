@@ -64,6 +64,7 @@ pub fn measure(
     let bar = progress::bar("cases", due.len() as u64);
     let (index, mut measured) = (Mutex::new(index), 0);
     for (eye, numbers) in groups.into_values() {
+        let camera = eye.camera;
         let Some(eye) = eye.find(recorded)? else {
             let sentence = || anyhow::anyhow!(eye.not_found("--recorded-checkpoint"));
             failed.extend(numbers.iter().map(|number| Failure::new(&due[*number].shown, &sentence())));
@@ -76,7 +77,7 @@ pub fn measure(
         };
         let (work, all): (_, Vec<usize>) = (Looking { files: &files, keep, bar: &bar }, (0..files.len()).collect());
         let eyes = [eye];
-        let (size, studios) = (eyes[0].size(), Studios::new(eyes[0].quality()));
+        let (size, studios) = ((camera.width, camera.height), Studios::new(camera.quality));
         let pipeline = Pipeline { work: &work, files: &all, size, eyes: &eyes, jobs, interrupt, studios };
         let (_, unread) = pipeline.run()?;
         if interrupt.is_raised() {

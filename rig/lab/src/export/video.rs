@@ -70,7 +70,8 @@ fn source(stage: &Stage, shots: &Shots, args: &Options, screen: &Screen<'_>) -> 
     let eyes: Vec<String> = screen.eyes.iter().map(Eye::digest).collect();
     let recording = blake3::Hash::from_bytes(stage.recording().digest()).to_hex();
     let (camera, adapter, version) = (args.camera.name(), drivers::vision::adapter(), env!("CARGO_PKG_VERSION"));
-    let all = (recording.as_str(), shots.ticks(), args.fps, screen.size, camera, eyes, adapter, version);
+    let pictures = (screen.size, args.quality, camera);
+    let all = (recording.as_str(), shots.ticks(), args.fps, pictures, eyes, adapter, version);
     blake3::hash(format!("{all:?}").as_bytes()).to_hex().to_string()
 }
 

@@ -356,10 +356,11 @@ fn line(
 
 /// What the semantic bot looks through.
 fn eye_of(args: &Options, log: &Log) -> anyhow::Result<Eye> {
-    if let Some(choice) = &args.checkpoint {
-        return Eye::open(choice);
-    }
     let recorded = RecordedEye::of(&log.manifest.provenance)?;
+    if let Some(choice) = &args.checkpoint {
+        // The pictures stay as good as they were, so that the network alone is another.
+        return Ok(Eye::open(choice)?.at(recorded.camera.quality));
+    }
     let found = recorded.find(&args.recorded)?;
     found.with_context(|| recorded.not_found("--recorded-checkpoint"))
 }

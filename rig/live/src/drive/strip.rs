@@ -27,7 +27,7 @@ impl Strip {
     pub fn of(case: &Path) -> anyhow::Result<Self> {
         let footage = Footage::read(case, CLIP_TICKS, FPS)?;
         let mut renderer = Renderer::new(&footage.network, &AdapterChoice::default())?;
-        let camera = Camera::driver(SIZE.0, SIZE.1);
+        let camera = Camera::driver(SIZE.0, SIZE.1).at(renderer.quality_for_people());
         let (mut images, mut classes) = (Vec::new(), Vec::new());
         for scene in &footage.scenes {
             let frame = renderer.draw(scene, &camera)?;
