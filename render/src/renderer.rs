@@ -173,8 +173,8 @@ mod tests {
                 differing += sifted.rgb.chunks(3).zip(whole.rgb.chunks(3)).filter(|(a, b)| a != b).count();
                 assert!(Frame { rgb: whole.rgb.clone(), ..sifted } == whole, "{name}, lane {lane}");
             }
-            // Lavapipe 22.3 draws a triangle at the edge of a sample now so, now so, by what it draws beside it; four pixels
-            // share a corner.
+            // Single corners differ on lavapipe 22.3, though no triangle that was left out covers them: two at most, each of four
+            // pixels.
             assert!(differing <= 8, "{name}: {differing} pixels");
         }
     }
