@@ -59,7 +59,7 @@ impl Index {
         let mut index = Self { db, path: path.to_owned(), home };
         index.db.busy_timeout(WAIT).and_then(|()| schema::distrust(&index.db)).map_err(|error| told(path, error))?;
         if access == Access::Write {
-            index.read(schema::keep_pages)?;
+            index.set(schema::keep_pages)?;
         }
         index.check(access)?;
         Ok(index)
@@ -67,13 +67,11 @@ impl Index {
 
     /// Refuses what is no index of this version; makes the tables of a new one.
     fn check(&mut self, access: Access) -> anyhow::Result<()> {
-        // As of one moment: another process may be making it.
-        let look = |db: &Connection| schema::look(&*db.unchecked_transaction()?);
-        let mut found = self.read(look)?;
+        let mut found = self.read(schema::look)?;
         if found == Found::Nothing && access == Access::Write {
-            self.read(schema::lay_out)?;
+            self.set(schema::lay_out)?;
             self.write(|db| if schema::look(db)? == Found::Nothing { schema::create(db) } else { Ok(()) })?;
-            found = self.read(look)?;
+            found = self.read(schema::look)?;
         }
         let path = self.path.display();
         match found {
@@ -102,8 +100,14 @@ impl Index {
         self.home.join(way)
     }
 
-    /// Looks at it.
+    /// Looks at it as it is at one moment, whatever another process writes meanwhile.
     pub fn read<T>(&self, work: impl FnOnce(&Connection) -> rusqlite::Result<T>) -> anyhow::Result<T> {
+        let step = || work(&*self.db.unchecked_transaction()?);
+        step().map_err(|error| told(&self.path, error))
+    }
+
+    /// Sets how this process uses it.
+    fn set(&self, work: impl FnOnce(&Connection) -> rusqlite::Result<()>) -> anyhow::Result<()> {
         work(&self.db).map_err(|error| told(&self.path, error))
     }
 
@@ -209,5 +213,25 @@ mod tests {
             "{refused}"
         );
         second.write(|_| Ok(())).expect("free again");
+    }
+
+    /// Cases are first found and then read one by one; between both nobody may replace them.
+    #[test]
+    fn what_is_read_is_of_one_moment() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("cases.sqlite");
+        let first = Index::open(&path, Access::Write).expect("made");
+        let mut second = Index::open(&path, Access::Write).expect("there");
+        second.db.busy_timeout(Duration::from_millis(10)).expect("a time");
+        let tags = |db: &Connection| db.query_row("SELECT count(*) FROM tags", [], |row| row.get::<_, u32>(0));
+        let mut tag = || second.write(|db| db.execute("INSERT INTO tags VALUES ('a', 'b')", []));
+        let seen = first.read(|db| {
+            let before = tags(db)?;
+            tag().expect_err("it is being read");
+            Ok((before, tags(db)?))
+        });
+        assert_eq!(seen.expect("read"), (0, 0));
+        tag().expect("free again");
+        assert_eq!(first.read(tags).expect("read"), 1);
     }
 }

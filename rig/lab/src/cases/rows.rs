@@ -77,7 +77,8 @@ impl<'a> Writer<'a> {
                 "INSERT OR REPLACE INTO cases (place, path, stamp, copy, situation, label, perception_caused, verdict, \
                  map, weather, conditions, hazards, checkpoint, blind, tick, speed_mps, fork_min_ttc_s, x_m, y_m, \
                  ahead_x, ahead_y, nearest, nearest_m, map_digest, digest, identity, checkpoint_digest, seed, kernel, \
-                 comment) VALUES (?, ?, ?, 0, 0, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                 comment) SELECT ?1, ?2, ?3, 0, 0, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ? \
+                 WHERE NOT EXISTS (SELECT 1 FROM cases WHERE place = ?1 AND stamp = ?3)",
             )?,
             broken: db.prepare("INSERT OR REPLACE INTO broken (place, path, stamp, error) VALUES (?, ?, ?, ?)")?,
             no_case: db.prepare("DELETE FROM cases WHERE place = ?")?,
@@ -88,7 +89,7 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// A file and what is known of it.
+    /// A file and what is known of it. Where another process wrote that meanwhile, its group is known, too, and stays.
     pub fn case(&mut self, (place, path, stamp): (&str, &str, &str), facts: &Facts) -> rusqlite::Result<()> {
         let spot = facts.spot.as_ref();
         self.whole.execute([place])?;
