@@ -11,6 +11,7 @@ use kernel::time::{TICK_HZ, Tick};
 use crate::camera::EGO_MIDDLE_M;
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
+use crate::light::ShadowBox;
 use crate::mesh::actor::{actor_model, ego_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
@@ -26,16 +27,24 @@ const EYE_ROOM_M: f32 = 0.5;
 const FLASH_TICKS: Tick = TICK_HZ as Tick * 2 / 3;
 const AMBER: [u8; 3] = [255, 158, 32];
 
-/// Shadows may reach this far into the picture from actors beside it, metres.
-const SHADOW_M: f32 = 6.0;
+/// Whoever is smaller than this many pixels casts no shadow.
+const SMALLEST_CASTER_PX: f32 = 4.0;
 
-/// All that moves, as one mesh, and what its shadows need.
+/// All that moves, as one mesh.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Moving {
     pub(crate) vertices: Vec<Vertex>,
+    /// Triangles that are seen.
     pub(crate) indices: Vec<u32>,
-    /// Boxes of actors that throw a shadow: their frame and size.
-    pub(crate) shadows: Vec<(Affine3A, Vec3)>,
+    /// Triangles that cast shadows into the picture, seen or not.
+    pub(crate) casters: Vec<u32>,
+}
+
+/// What something that moves is in a picture.
+#[derive(Clone, Copy)]
+struct Role {
+    is_seen: bool,
+    casts: bool,
 }
 
 /// The models that have been needed so far.
@@ -53,74 +62,90 @@ impl Cast {
         Self { parked_looks, ..Self::default() }
     }
 
-    /// Poses what a view sees, nearest first.
+    /// Poses what a view sees, nearest first, and what casts a shadow into it, if one may be cast.
     pub(crate) fn pose(
         &mut self,
         scene: &SceneSnapshot,
         heads: &[LightHead],
-        view: &View,
-        mut horizon: Horizon,
+        (view, mut horizon): (&View, Horizon),
+        shadow: Option<&ShadowBox>,
         moving: &mut Moving,
     ) {
         moving.vertices.clear();
         moving.indices.clear();
-        moving.shadows.clear();
-        self.pose_ego(&scene.ego, scene.tick, view, moving);
-        let near = |a: &ActorScene| {
-            let (centre, radius) = sphere(a);
-            centre.truncate().distance(view.eye.truncate()) - radius - SHADOW_M
-        };
-        let mut seen: Vec<(f32, &ActorScene)> = scene.actors.iter().map(|a| (near(a), a)).collect();
-        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (_, actor) in seen {
+        moving.casters.clear();
+        self.pose_ego(&scene.ego, scene.tick, (view, shadow), moving);
+        let around = |actor: &ActorScene| {
             let (centre, radius) = sphere(actor);
-            if !horizon.hides(centre, radius + SHADOW_M) {
-                self.pose_actor(actor, scene.tick, view, moving);
+            shadow.map_or((centre, radius), |shadow| shadow.around_shadow(centre, radius))
+        };
+        let near = |actor: &ActorScene| {
+            let (centre, radius) = around(actor);
+            centre.truncate().distance(view.eye.truncate()) - radius
+        };
+        let mut all: Vec<(f32, &ActorScene)> = scene.actors.iter().map(|a| (near(a), a)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, actor) in all {
+            let (centre, radius) = around(actor);
+            if view.sees(centre, radius) && !horizon.hides(centre, radius) {
+                self.pose_actor(actor, scene.tick, (view, shadow), moving);
             }
         }
         for head in heads {
-            self.pose_head(head, scene.lights[head.group as usize], view, moving);
+            self.pose_head(head, scene.lights[head.group as usize], (view, shadow), moving);
         }
     }
 
-    fn pose_ego(&mut self, ego: &EgoScene, tick: Tick, view: &View, moving: &mut Moving) {
+    fn pose_ego(
+        &mut self,
+        ego: &EgoScene,
+        tick: Tick,
+        (view, shadow): (&View, Option<&ShadowBox>),
+        moving: &mut Moving,
+    ) {
         let frame =
             Affine3A::from_rotation_translation(ego.rotation, ego.position + ego.rotation * Vec3::X * EGO_MIDDLE_M);
         let size = ActorKind::Car.size_m();
-        moving.shadows.push((frame, size));
-        if view.sees(frame.translation.into(), size.length()) {
-            moving.append(ego_model(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, flashing(ego.lamps, tick));
-        }
+        let role = Role { is_seen: view.sees(frame.translation.into(), size.length()), casts: shadow.is_some() };
+        moving.append(ego_model(), frame, [0.0, ego.speed_mps], (EGO_INSTANCE, flashing(ego.lamps, tick)), role);
     }
 
-    fn pose_actor(&mut self, actor: &ActorScene, tick: Tick, view: &View, moving: &mut Moving) {
-        let size = actor.kind.size_m();
+    fn pose_actor(
+        &mut self,
+        actor: &ActorScene,
+        tick: Tick,
+        (view, shadow): (&View, Option<&ShadowBox>),
+        moving: &mut Moving,
+    ) {
         let (centre, radius) = sphere(actor);
-        let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
         let pixels = view.pixels(2.0 * radius, centre, radius);
-        if pixels > 4.0 && view.sees(centre, radius + SHADOW_M) {
-            moving.shadows.push((frame, size));
-        }
-        if pixels < SMALLEST_PX || !view.sees(centre, radius) || is_around(actor, view.eye) {
+        let role = Role {
+            is_seen: pixels >= SMALLEST_PX && view.sees(centre, radius) && !is_around(actor, view.eye),
+            casts: pixels >= SMALLEST_CASTER_PX && shadow.is_some_and(|shadow| shadow.reaches(centre, radius)),
+        };
+        if !(role.is_seen || role.casts) {
             return;
         }
         let detail = view.detail(centre, radius);
+        let detail = if role.is_seen { detail } else { detail.max(Detail::Coarse) };
         let parked = parked_number(actor.id).and_then(|number| self.parked_looks.get(number));
         let variant = parked.copied().unwrap_or(actor.variant);
         let model = self
             .models
             .entry((actor.kind, variant, detail))
             .or_insert_with(|| actor_model(actor.kind, variant, detail));
-        moving.append(
-            model,
-            frame,
-            [actor.phase_rad, actor.speed_mps],
-            instance_of_actor(actor.id),
-            flashing(actor.lamps, tick),
-        );
+        let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
+        let painted = (instance_of_actor(actor.id), flashing(actor.lamps, tick));
+        moving.append(model, frame, [actor.phase_rad, actor.speed_mps], painted, role);
     }
 
-    fn pose_head(&mut self, head: &LightHead, phase: LightPhase, view: &View, moving: &mut Moving) {
+    fn pose_head(
+        &mut self,
+        head: &LightHead,
+        phase: LightPhase,
+        (view, shadow): (&View, Option<&ShadowBox>),
+        moving: &mut Moving,
+    ) {
         let centre = head.position + Vec3::Z * head.height_m;
         if !view.sees(centre, 1.0) || view.pixels(1.0, centre, 0.0) < SMALLEST_PX {
             return;
@@ -128,7 +153,8 @@ impl Cast {
         let detail = view.detail(centre, 1.0);
         let mesh = self.heads.entry((phase, detail)).or_insert_with(|| signal::head(phase, detail));
         let frame = Affine3A::from_rotation_translation(glam::Quat::from_rotation_z(head.facing_rad), centre);
-        moving.append_mesh(mesh, frame, 0, 0);
+        let casts = shadow.is_some_and(|shadow| shadow.reaches(centre, 1.0));
+        moving.append_mesh(mesh, frame, (0, 0), Role { is_seen: true, casts });
     }
 }
 
@@ -146,17 +172,22 @@ fn is_around(actor: &ActorScene, eye: Vec3) -> bool {
 }
 
 impl Moving {
-    fn append(&mut self, model: &Model, frame: Affine3A, [phase, speed]: [f32; 2], instance: u16, lamps: u8) {
+    /// Appends a model; `painted` are its instance and the lamps that shine.
+    fn append(&mut self, model: &Model, frame: Affine3A, [phase, speed]: [f32; 2], painted: (u16, u8), role: Role) {
         for (part, pose) in model.parts.iter().zip(model.pose(phase, speed)) {
-            self.append_mesh(&part.mesh, frame * pose, instance, lamps);
+            self.append_mesh(&part.mesh, frame * pose, painted, role);
         }
     }
 
-    fn append_mesh(&mut self, mesh: &Mesh, frame: Affine3A, instance: u16, lamps: u8) {
+    fn append_mesh(&mut self, mesh: &Mesh, frame: Affine3A, (instance, lamps): (u16, u8), role: Role) {
         let first = self.vertices.len() as u32;
         self.vertices.extend(mesh.vertices.iter().map(|v| posed(v, &frame, instance, lamps)));
         let plain = &mesh.triangles[Finish::Plain as usize];
-        self.indices.extend(plain.iter().flatten().map(|i| i + first));
+        for (list, _) in
+            [(&mut self.indices, role.is_seen), (&mut self.casters, role.casts)].into_iter().filter(|it| it.1)
+        {
+            list.extend(plain.iter().flatten().map(|i| i + first));
+        }
     }
 }
 
@@ -196,7 +227,7 @@ mod tests {
         let scene = SceneSnapshot { tick, ego, actors, lights: Vec::new(), weather };
         let view = View::new(&Camera::chase(320, 200), &scene.ego);
         let mut moving = Moving::default();
-        Cast::default().pose(&scene, &[], &view, Horizon::new(view.eye, &[], 100.0), &mut moving);
+        Cast::default().pose(&scene, &[], (&view, Horizon::new(view.eye, &[], 100.0)), None, &mut moving);
         moving.vertices
     }
 

@@ -6,7 +6,6 @@
 
 mod actors;
 pub mod adapter;
-mod blob;
 pub mod camera;
 mod error;
 mod frame;

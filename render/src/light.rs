@@ -30,6 +30,8 @@ impl Light {
         let white = Vec3::new(1.0, 0.95, 0.87).lerp(Vec3::new(1.0, 0.68, 0.4), warm);
         let grey = Vec3::new(0.62, 0.66, 0.72);
         let (rain, mist) = (0.01 * weather.precipitation_pct, 0.01 * weather.fog_density_pct);
+        // Broken clouds let the sun through, a closed cover does not: its light comes from all of the sky then.
+        let cover = smooth(0.35, 1.0, clouds);
         // What comes through rain clouds and fog; all of it without them.
         let (beam, dim) = ((1.0 - 0.9 * rain) * (1.0 - 0.8 * mist), 1.0 - 0.3 * rain);
         let zenith = Vec3::new(0.14, 0.32, 0.72).lerp(grey, 0.35 * clouds) * day + Vec3::new(0.006, 0.008, 0.018);
@@ -37,8 +39,9 @@ impl Light {
         let horizon = haze.lerp(grey, 0.3 * clouds) * (0.95 * day) + Vec3::splat(0.015);
         Self {
             sun,
-            sun_light: white * (2.5 * smooth(-0.02, 0.2, sun.z) * (1.0 - 0.45 * clouds) * beam),
-            sky_light: Vec3::new(0.5, 0.6, 0.78).lerp(grey, 0.5 * clouds) * (day * (0.95 + 0.3 * clouds) * dim)
+            sun_light: white * (2.5 * smooth(-0.02, 0.2, sun.z) * (1.0 - 0.2 * clouds) * (1.0 - 0.97 * cover) * beam),
+            sky_light: Vec3::new(0.5, 0.6, 0.78).lerp(grey, 0.5 * clouds)
+                * (day * (0.95 + 0.3 * clouds + 0.75 * cover) * dim)
                 + Vec3::splat(0.02),
             ground_light: Vec3::new(0.36, 0.34, 0.31) * day + Vec3::splat(0.015),
             horizon: horizon.lerp(grey * (0.7 * day), 0.8 * rain),
@@ -65,6 +68,9 @@ pub(crate) struct ShadowBox {
 /// Depth of the shadow map before and behind its centre, metres.
 const SHADOW_DEPTH_M: f32 = 400.0;
 
+/// Shadows of what moves are not looked for any farther from it, metres.
+const LONGEST_SHADOW_M: f32 = 60.0;
+
 impl ShadowBox {
     /// A box ahead of a camera, on a grid so that it seldom changes.
     pub(crate) fn ahead_of(eye: Vec3, ahead: Vec3, sun: Vec3, reach_m: f32) -> Self {
@@ -73,6 +79,17 @@ impl ShadowBox {
         let wanted = (eye + flat * (0.7 * reach_m)) / step;
         let centre = Vec3::new(ops::round(wanted.x), ops::round(wanted.y), ops::round(wanted.z)) * step;
         Self { centre, sun, reach_m }
+    }
+
+    /// Whether anything in a sphere may cast a shadow on the map.
+    pub(crate) fn reaches(&self, centre: Vec3, radius_m: f32) -> bool {
+        (centre - self.centre).reject_from(self.sun).length() < core::f32::consts::SQRT_2 * self.reach_m + radius_m
+    }
+
+    /// A sphere around what stands on the ground in another one, and its shadow.
+    pub(crate) fn around_shadow(&self, centre: Vec3, radius_m: f32) -> (Vec3, f32) {
+        let length_m = if self.sun.z > 0.0 { (2.0 * radius_m / self.sun.z).min(LONGEST_SHADOW_M) } else { 0.0 };
+        (centre - self.sun * (0.5 * length_m), radius_m + 0.5 * length_m)
     }
 
     /// From the world to uv (v down) and depth (0 nearest to the sun) of the map.
@@ -97,6 +114,30 @@ mod tests {
         assert!((light.sun - Vec3::new(0.0, 0.866, 0.5)).length() < 1e-3);
         let night = Light::new(&Weather { sun_altitude_deg: -30.0, ..weather });
         assert!(night.sun_light.length() < 1e-6 && night.sky_light.length() < 0.1);
+    }
+
+    #[test]
+    fn a_closed_cover_of_clouds_casts_no_shadows_and_is_not_dark() {
+        let light = |clouds: f32| Light::new(&Weather::dry(clouds, 0.0, 60.0, 0.0));
+        let (clear, closed) = (light(0.0), light(100.0));
+        assert!(closed.sun_light.length() < 0.03 * clear.sun_light.length());
+        let on_the_ground = |light: &Light| (light.sun_light * light.sun.z + light.sky_light).element_sum();
+        let share = on_the_ground(&closed) / on_the_ground(&clear);
+        assert!((0.5..0.9).contains(&share), "{share}");
+        let lights: Vec<f32> = (0..=10).map(|i| on_the_ground(&light(10.0 * i as f32))).collect();
+        assert!(lights.is_sorted_by(|a, b| a >= b), "{lights:?}");
+    }
+
+    #[test]
+    fn a_shadow_lies_in_the_sphere_around_it() {
+        for altitude_deg in [10.0, 30.0, 75.0] {
+            let sun = Light::new(&Weather::dry(0.0, 0.0, altitude_deg, 40.0)).sun;
+            let shadow = ShadowBox { centre: Vec3::ZERO, sun, reach_m: 64.0 };
+            let top = Vec3::new(5.0, 2.0, 1.8);
+            let (centre, radius_m) = shadow.around_shadow(top * Vec3::new(1.0, 1.0, 0.5), 1.0);
+            let tip = top - sun * (top.z / sun.z);
+            assert!(centre.distance(tip) < radius_m && centre.distance(top) < radius_m, "{altitude_deg}");
+        }
     }
 
     #[test]

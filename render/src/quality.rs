@@ -15,7 +15,7 @@ pub enum Quality {
     /// shares with its neighbours (quincunx; NVIDIA 2001, "HRAA: High-resolution antialiasing"). Two samples a pixel come close to
     /// what four on a grid show.
     Standard,
-    /// Nine samples a pixel and shadows of everything, for GPUs.
+    /// Nine samples a pixel and finer shadows, for GPUs.
     Fine,
 }
 
@@ -39,9 +39,9 @@ impl Quality {
 
     pub(crate) fn means(self) -> Means {
         match self {
-            Self::Plain => Means { samples: 1, corners: false, shadows: STILL },
-            Self::Standard => Means { samples: 1, corners: true, shadows: STILL },
-            Self::Fine => Means { samples: 3, corners: false, shadows: MOVING },
+            Self::Plain => Means { samples: 1, corners: false, shadows: COARSE },
+            Self::Standard => Means { samples: 1, corners: true, shadows: COARSE },
+            Self::Fine => Means { samples: 3, corners: false, shadows: FINE },
         }
     }
 }
@@ -66,10 +66,8 @@ pub(crate) struct Means {
 }
 
 /// How the sun's shadows are drawn.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Shadows {
-    /// Whether what moves casts some, in every picture anew; it has blobs under it otherwise.
-    pub(crate) moving: bool,
     /// Of the map, texels.
     pub(crate) side: u32,
     /// Samples of the map along each axis.
@@ -77,8 +75,8 @@ pub(crate) struct Shadows {
     pub(crate) reach_m: f32,
 }
 
-const STILL: Shadows = Shadows { moving: false, side: 1024, taps: 1, reach_m: 64.0 };
-const MOVING: Shadows = Shadows { moving: true, side: 4096, taps: 3, reach_m: 128.0 };
+const COARSE: Shadows = Shadows { side: 1024, taps: 1, reach_m: 64.0 };
+const FINE: Shadows = Shadows { side: 4096, taps: 3, reach_m: 128.0 };
 
 #[cfg(test)]
 mod tests {

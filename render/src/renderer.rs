@@ -1,10 +1,10 @@
 //! The renderer: one map on one adapter.
 
+use glam::Vec3;
 use kernel::map::LightHead;
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::actors::{Cast, Moving};
-use crate::blob::{self, BlobVertex};
 use crate::gpu::{Draws, Gpu, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
 use crate::rain;
@@ -25,7 +25,6 @@ pub struct Renderer {
     light_groups: usize,
     cast: Cast,
     moving: Moving,
-    blobs: Vec<BlobVertex>,
     targets: Option<Targets>,
     shadows: ShadowMaps,
 }
@@ -48,7 +47,6 @@ impl Renderer {
             light_groups: network.light_groups.len(),
             cast: Cast::new(parked_looks(network)),
             moving: Moving::default(),
-            blobs: Vec::new(),
             targets: None,
             shadows: ShadowMaps::new(1),
         })
@@ -86,34 +84,24 @@ impl Renderer {
         let seen = if takes_corners { corners } else { view };
         let light = Light::new(&scene.weather);
         let horizon = self.scenery.horizon(view.eye);
-        self.cast.pose(scene, &self.heads, &seen, horizon, &mut self.moving);
-        self.blobs.clear();
-        if colours && !means.shadows.moving {
-            for (frame, size) in &self.moving.shadows {
-                blob::append(&mut self.blobs, frame, *size, light.sun);
-            }
-        }
+        let shadow = ShadowBox::ahead_of(view.eye, view.ahead, light.sun, means.shadows.reach_m);
+        let shines = colours && light.sun_light != Vec3::ZERO;
+        self.cast.pose(scene, &self.heads, (&seen, horizon), shines.then_some(&shadow), &mut self.moving);
         let samples = [width, height].map(|side| side * means.samples);
         let sieve = Sieve::new(&view, samples, takes_corners, scene);
-        // Shadows of what moves also come from what the picture does not show.
-        let mut sieve = if self.sifts && !means.shadows.moving { sieve } else { sieve.open() };
-        let shadow = ShadowBox::ahead_of(view.eye, view.ahead, light.sun, means.shadows.reach_m);
+        let mut sieve = if self.sifts { sieve } else { sieve.open() };
         let gone = gone(scene);
-        let (shadow_map, is_cast) = match (colours, means.shadows.moving) {
-            (false, _) => (0, true),
-            (true, true) => (0, false),
-            (true, false) => self.shadows.find(shadow, gone.clone()),
-        };
+        let (shadow_map, is_cast) = if colours { self.shadows.find(shadow, gone.clone()) } else { (0, true) };
         let texel = 1.0 / means.shadows.side as f32;
         let draws = Draws {
             uniforms: [view, corners].map(|view| SceneUniform::new(&view, scene, &light, shadow.matrix(), texel)),
             moving_vertices: &self.moving.vertices,
             moving_indices: &sieve.sifted(&self.moving.vertices, &self.moving.indices),
             fixed_indices: self.scenery.visible(&seen, &gone, &mut sieve),
-            casters: (!is_cast).then(|| self.scenery.near_line(shadow.centre, light.sun, 1.42 * shadow.reach_m, &gone)),
+            moving_casters: &self.moving.casters,
+            casters: (!is_cast).then(|| self.scenery.casters(&shadow, &gone)),
             shadows: means.shadows,
             shadow_map,
-            blobs: &self.blobs,
             colours,
             weather: rain::is_drawn(&scene.weather),
             drops: rain::drops(&scene.weather),
@@ -141,41 +129,4 @@ impl Renderer {
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::Quat;
-    use kernel::scene::EgoScene;
-    use kernel::{Scenario, World, map};
-
-    use super::*;
-
-    /// From places all over a map, in a storm that bends trees.
-    #[test]
-    fn what_is_left_out_before_it_is_drawn_is_in_no_picture() {
-        for name in ["old_town", "rural"] {
-            let network = map::bundled(name).expect("it is bundled");
-            let world = World::new(&Scenario::default_for(name, 7), &network).expect("it fits");
-            let mut renderer = Renderer::new(&network, &AdapterChoice::default()).expect("an adapter");
-            let step = network.lanes.len() / 8;
-            let mut differing = 0;
-            for (i, lane) in (0..network.lanes.len()).step_by(step).enumerate() {
-                let mut scene = world.scene();
-                scene.weather.wind_pct = 90.0;
-                let point = network.lane_point(lane as u32, 0.3 * network.lanes[lane].length_m);
-                let rotation = Quat::from_rotation_z(point.heading_rad + 0.1 * i as f32);
-                scene.ego = EgoScene { position: point.position, rotation, ..scene.ego };
-                let camera = if i % 2 == 0 { Camera::driver(256, 128) } else { Camera::chase(211, 133) };
-                let mut draw = |sifts: bool, quality: Quality| {
-                    renderer.sifts = sifts;
-                    renderer.draw(&scene, &camera.at(quality)).expect("drawn")
-                };
-                assert!(draw(true, Quality::Plain) == draw(false, Quality::Plain), "{name}, lane {lane}");
-                let [sifted, whole] = [true, false].map(|sifts| draw(sifts, Quality::Standard));
-                differing += sifted.rgb.chunks(3).zip(whole.rgb.chunks(3)).filter(|(a, b)| a != b).count();
-                assert!(Frame { rgb: whole.rgb.clone(), ..sifted } == whole, "{name}, lane {lane}");
-            }
-            // Single corners differ on lavapipe 22.3, though no triangle that was left out covers them: two at most, each of four
-            // pixels.
-            assert!(differing <= 8, "{name}: {differing} pixels");
-        }
-    }
-}
+mod tests;

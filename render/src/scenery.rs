@@ -9,8 +9,9 @@ use kernel::scene::ActorKind;
 
 use crate::horizon::{Horizon, Occluder};
 use crate::instance_ids::{instance_of_parked, parked_number};
+use crate::light::ShadowBox;
 use crate::mesh::model::Detail;
-use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, surface};
+use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, skirt, surface};
 use crate::sieve::Sieve;
 use crate::view::View;
 
@@ -22,6 +23,9 @@ const HOUSES_M: f32 = 160.0;
 
 /// Surfaces are simplified by as much as nobody sees, metres.
 const FLAT_M: f32 = 0.003;
+
+/// Skirts are so many times as deep as surfaces are displaced.
+const SKIRT: f32 = 3.0;
 
 /// A piece of the static world at one level of detail.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +70,7 @@ impl Scenery {
         for mut cell in surface::cells(network) {
             let levels = Detail::ALL.map(|detail| {
                 cell = simplify::simplified(&cell, detail.error_m().max(FLAT_M));
-                cell.clone()
+                skirt::with_skirt(&cell, SKIRT * detail.error_m())
             });
             scenery.add(levels, None);
         }
@@ -127,13 +131,19 @@ impl Scenery {
         lists
     }
 
-    /// Indices of all coarse pieces that come closer than `reach_m` to the line through `centre`
-    /// along `direction`, all finishes together, without the parked cars that are gone.
-    pub(crate) fn near_line(&self, centre: Vec3, direction: Vec3, reach_m: f32, gone: &[usize]) -> Vec<u32> {
-        let near = |p: &&Piece| (p.centre - centre).reject_from(direction).length() < reach_m + p.radius_m;
+    /// Indices of all coarse pieces that may cast a shadow on a map, all finishes together, without the parked cars that are
+    /// gone.
+    pub(crate) fn casters(&self, shadow: &ShadowBox, gone: &[usize]) -> Vec<u32> {
+        let near = |p: &&Piece| shadow.reaches(p.centre, p.radius_m);
         let pieces = self.pieces.iter().filter(|p| p.stands(gone)).filter(near);
         let levels = pieces.map(|p| &p.levels[Detail::Coarse as usize]);
         levels.flat_map(|level| level.ranges.iter().flat_map(|range| self.indices_of(range))).copied().collect()
+    }
+
+    /// Draws everything at its finest from now on.
+    #[cfg(test)]
+    pub(crate) fn keep_finest(&mut self) {
+        self.pieces.iter_mut().for_each(|piece| piece.levels = Detail::ALL.map(|_| piece.levels[0].clone()));
     }
 
     fn indices_of(&self, range: &Range<u32>) -> &[u32] {
@@ -190,7 +200,8 @@ mod tests {
         let city = kernel::map::bundled("city").expect("a bundled map");
         let scenery = Scenery::new(&city);
         let (car, _) = numbered(&city).find(|(_, parked)| *parked == Some(5)).expect("the city has parked cars");
-        let drawn = |gone: &[usize]| scenery.near_line(car.position, Vec3::Z, 0.5, gone).len();
+        let shadow = ShadowBox { centre: car.position, sun: Vec3::Z, reach_m: 0.5 };
+        let drawn = |gone: &[usize]| scenery.casters(&shadow, gone).len();
         assert!(drawn(&[5]) < drawn(&[]));
         assert_eq!(drawn(&[900]), drawn(&[]));
     }

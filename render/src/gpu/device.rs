@@ -15,9 +15,14 @@ pub(crate) struct Gpu {
 impl Gpu {
     pub(crate) fn open(choice: &AdapterChoice) -> Result<Self, RenderError> {
         let (adapter, info) = choice.open()?;
+        // Roads of a hundred kilometres are one buffer.
+        let max_buffer_size = adapter.limits().max_buffer_size;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("a-eye"),
-            required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
+            required_limits: wgpu::Limits {
+                max_buffer_size,
+                ..wgpu::Limits::default().using_resolution(adapter.limits())
+            },
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))

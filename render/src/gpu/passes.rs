@@ -6,7 +6,6 @@ use super::pipelines::{self, Layouts, Pipelines};
 use super::targets::Samples;
 use super::{Gpu, GrowingBuffer, SceneUniform, Targets, readback, textures};
 use crate::SemanticTag;
-use crate::blob::BlobVertex;
 use crate::mesh::{FINISHES, Finish, Vertex};
 use crate::quality::Shadows;
 
@@ -18,12 +17,13 @@ pub(crate) struct Draws<'a> {
     pub(crate) moving_indices: &'a [u32],
     /// Indices of the static world for each finish.
     pub(crate) fixed_indices: [Vec<u32>; FINISHES],
+    /// Indices of what moves and casts a shadow into the picture, whether it is seen or not.
+    pub(crate) moving_casters: &'a [u32],
     /// Indices of the static world to draw the shadow map with; `None` keeps the map as it is.
     pub(crate) casters: Option<Vec<u32>>,
     pub(crate) shadows: Shadows,
     /// Number of the shadow map; a new one is the next in order.
     pub(crate) shadow_map: usize,
-    pub(crate) blobs: &'a [BlobVertex],
     /// Whether colours are to be drawn, not classes and instances alone.
     pub(crate) colours: bool,
     /// Whether fog, water or rain is to be drawn.
@@ -35,8 +35,8 @@ pub(crate) struct Draws<'a> {
 /// Pipelines and the buffers they read.
 pub(crate) struct Passes {
     layouts: Layouts,
-    /// With shadows of what stands still and of what moves, made when they are needed first.
-    styles: [Option<Style>; 2],
+    /// One for each kind of shadows that was needed.
+    styles: Vec<Style>,
     /// The one for pictures without colours, made when it is needed first.
     classes: Option<wgpu::RenderPipeline>,
     /// For pixels' middles and for their corners.
@@ -44,7 +44,6 @@ pub(crate) struct Passes {
     shadow_sampler: wgpu::Sampler,
     fixed: wgpu::Buffer,
     moving: GrowingBuffer,
-    blobs: GrowingBuffer,
     indices: GrowingBuffer,
 }
 
@@ -60,13 +59,11 @@ struct Style {
     dry: Pipelines,
     /// Those for fog, water and rain, made when they are needed first.
     weather: Option<Pipelines>,
-    maps: Vec<ShadowMap>,
-}
-
-/// A shadow map, to draw to and to read.
-struct ShadowMap {
-    view: wgpu::TextureView,
-    group: wgpu::BindGroup,
+    /// Shadow maps of what stands still.
+    still: Vec<wgpu::Texture>,
+    /// One of everything, for the picture at hand.
+    all: wgpu::Texture,
+    all_group: wgpu::BindGroup,
 }
 
 fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
@@ -97,13 +94,12 @@ impl Passes {
             SceneBinding { group: bind(gpu, &layouts.scene, &scene), uniform }
         });
         Self {
-            styles: [None, None],
+            styles: Vec::new(),
             classes: None,
             scenes,
             shadow_sampler: textures::shadow_sampler(gpu),
             fixed: vertices,
             moving: GrowingBuffer::new(gpu, U::VERTEX),
-            blobs: GrowingBuffer::new(gpu, U::VERTEX),
             indices: GrowingBuffer::new(gpu, U::INDEX),
             layouts,
         }
@@ -115,7 +111,6 @@ impl Passes {
             gpu.queue.write_buffer(&scene.uniform, 0, bytemuck::bytes_of(uniform));
         }
         self.moving.write(gpu, draws.moving_vertices);
-        self.blobs.write(gpu, draws.blobs);
         let ranges = self.write_indices(gpu, draws);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if draws.colours {
@@ -135,18 +130,17 @@ impl Passes {
         draws: &Draws<'_>,
         targets: &Targets,
     ) {
-        let index = usize::from(draws.shadows.moving);
-        let mut style = self.styles[index].take().unwrap_or_else(|| Style::new(gpu, &self.layouts, draws.shadows));
-        style.prepare(gpu, &self.layouts, &self.shadow_sampler, draws);
-        if draws.casters.is_some() {
-            self.shadow_pass(encoder, &style, ranges, draws);
-        }
+        let style = self.styles.iter().position(|style| style.shadows == draws.shadows);
+        let style = style.map(|index| self.styles.swap_remove(index));
+        let mut style = style.unwrap_or_else(|| Style::new(gpu, &self.layouts, draws.shadows, &self.shadow_sampler));
+        style.prepare(gpu, &self.layouts, draws);
+        self.shadow_passes(encoder, &style, ranges, draws);
         for (samples, scene) in
             [Some(&targets.middles), targets.corners.as_ref()].into_iter().flatten().zip(&self.scenes)
         {
             self.main_pass(encoder, &style, ranges, draws, (samples, scene));
         }
-        self.styles[index] = Some(style);
+        self.styles.push(style);
     }
 
     fn write_indices(&mut self, gpu: &Gpu, draws: &Draws<'_>) -> Ranges {
@@ -157,23 +151,40 @@ impl Passes {
             start..all.len() as u32
         };
         let fixed = core::array::from_fn(|finish| push(&draws.fixed_indices[finish]));
+        let moving_casters = push(draws.moving_casters);
         let casters = push(draws.casters.as_deref().unwrap_or_default());
         self.indices.write(gpu, &all);
-        Ranges { moving: 0..draws.moving_indices.len() as u32, fixed, casters }
+        Ranges { moving: 0..draws.moving_indices.len() as u32, fixed, moving_casters, casters }
     }
 
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, style: &Style, ranges: &Ranges, draws: &Draws<'_>) {
+    /// What stands still is drawn where it is not known yet; what moves, over a copy of that.
+    fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, style: &Style, ranges: &Ranges, draws: &Draws<'_>) {
+        let still = &style.still[draws.shadow_map];
+        if draws.casters.is_some() {
+            self.shadow_pass(encoder, style, (still, wgpu::LoadOp::Clear(1.0)), (&self.fixed, &ranges.casters));
+        }
+        encoder.copy_texture_to_texture(still.as_image_copy(), style.all.as_image_copy(), still.size());
+        if !ranges.moving_casters.is_empty() {
+            let moving = (&self.moving.buffer, &ranges.moving_casters);
+            self.shadow_pass(encoder, style, (&style.all, wgpu::LoadOp::Load), moving);
+        }
+    }
+
+    fn shadow_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        style: &Style,
+        (map, load): (&wgpu::Texture, wgpu::LoadOp<f32>),
+        (vertices, casters): (&wgpu::Buffer, &Range<u32>),
+    ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
-            depth_stencil_attachment: Some(depth_attachment(&style.maps[draws.shadow_map].view, 1.0)),
+            depth_stencil_attachment: Some(depth_attachment(&map.create_view(&Default::default()), load)),
             ..Default::default()
         });
         pass.set_pipeline(&style.dry.shadow);
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
-        self.draw_mesh(&mut pass, &self.fixed, &ranges.casters);
-        if draws.shadows.moving {
-            self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
-        }
+        self.draw_mesh(&mut pass, vertices, casters);
     }
 
     /// Classes, instances and depth: the sky is where nothing is.
@@ -185,7 +196,7 @@ impl Passes {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("classes"),
             color_attachments: &[None, Some(colour_attachment(&ids, sky))],
-            depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
+            depth_stencil_attachment: Some(depth_attachment(&depth, wgpu::LoadOp::Clear(0.0))),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
@@ -210,23 +221,17 @@ impl Passes {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("main"),
             color_attachments: &[&colour, &ids].map(|view| Some(colour_attachment(view, wgpu::Color::TRANSPARENT))),
-            depth_stencil_attachment: Some(depth_attachment(&depth, 0.0)),
+            depth_stencil_attachment: Some(depth_attachment(&depth, wgpu::LoadOp::Clear(0.0))),
             ..Default::default()
         });
         pass.set_bind_group(0, &scene.group, &[]);
-        pass.set_bind_group(1, &style.maps[draws.shadow_map].group, &[]);
+        pass.set_bind_group(1, &style.all_group, &[]);
         // Nearest and most covering first: hidden fragments are cheap.
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
         for finish in [Finish::Facade, Finish::Plain, Finish::Grainy] {
             pass.set_pipeline(&pipelines.world[finish as usize]);
             self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
-        }
-        let blobs = draws.blobs.len() as u32;
-        if blobs > 0 {
-            pass.set_pipeline(&pipelines.blob);
-            pass.set_vertex_buffer(0, self.blobs.buffer.slice(..));
-            pass.draw(0..blobs, 0..1);
         }
         pass.set_pipeline(&pipelines.sky);
         pass.draw(0..3, 0..1);
@@ -246,17 +251,24 @@ impl Passes {
 }
 
 impl Style {
-    fn new(gpu: &Gpu, layouts: &Layouts, shadows: Shadows) -> Self {
-        Self { shadows, dry: Pipelines::new(gpu, layouts, shadows.taps, false), weather: None, maps: Vec::new() }
+    fn new(gpu: &Gpu, layouts: &Layouts, shadows: Shadows, sampler: &wgpu::Sampler) -> Self {
+        use wgpu::BindingResource as R;
+        let all = textures::shadow_map(gpu, shadows.side);
+        let view = all.create_view(&Default::default());
+        Self {
+            shadows,
+            dry: Pipelines::new(gpu, layouts, shadows.taps, false),
+            weather: None,
+            still: Vec::new(),
+            all_group: bind(gpu, &layouts.shadow, &[R::TextureView(&view), R::Sampler(sampler)]),
+            all,
+        }
     }
 
     /// Makes what is lacking for a picture.
-    fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, draws: &Draws<'_>) {
-        use wgpu::BindingResource as R;
-        while self.maps.len() <= draws.shadow_map {
-            let view = textures::shadow_view(gpu, self.shadows.side);
-            let group = bind(gpu, &layouts.shadow, &[R::TextureView(&view), R::Sampler(sampler)]);
-            self.maps.push(ShadowMap { view, group });
+    fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, draws: &Draws<'_>) {
+        while self.still.len() <= draws.shadow_map {
+            self.still.push(textures::shadow_map(gpu, self.shadows.side));
         }
         if draws.weather && self.weather.is_none() {
             self.weather = Some(Pipelines::new(gpu, layouts, self.shadows.taps, true));
@@ -272,6 +284,7 @@ impl Style {
 struct Ranges {
     moving: Range<u32>,
     fixed: [Range<u32>; FINISHES],
+    moving_casters: Range<u32>,
     casters: Range<u32>,
 }
 
@@ -280,7 +293,7 @@ fn colour_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::Rend
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
-fn depth_attachment(view: &wgpu::TextureView, clear: f32) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };
+fn depth_attachment(view: &wgpu::TextureView, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }

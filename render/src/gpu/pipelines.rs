@@ -18,7 +18,6 @@ pub(super) struct Pipelines {
     /// One for each [`crate::mesh::Finish`].
     pub(super) world: [wgpu::RenderPipeline; FINISHES],
     pub(super) sky: wgpu::RenderPipeline,
-    pub(super) blob: wgpu::RenderPipeline,
     pub(super) rain: wgpu::RenderPipeline,
     pub(super) shadow: wgpu::RenderPipeline,
 }
@@ -142,7 +141,7 @@ impl Pipelines {
         let weather = ("WEATHER", f64::from(u8::from(weather)));
         let scene_only = pipeline_layout(gpu, &[Some(&layouts.scene)]);
         let with_shadow = pipeline_layout(gpu, &[Some(&layouts.scene), Some(&layouts.shadow)]);
-        let [world, sky, blob, shadow, rain] = ["world", "sky", "blob", "shadow", "rain"].map(|name| module(gpu, name));
+        let [world, sky, shadow, rain] = ["world", "sky", "shadow", "rain"].map(|name| module(gpu, name));
         let opaque = [Some(COLOUR.into()), Some(IDS.into())];
         let base = Recipe {
             module: &world,
@@ -169,18 +168,6 @@ impl Pipelines {
                 constants: &[("SKY_TAG", f64::from(SemanticTag::Sky as u8)), weather],
                 depth_write: false,
                 depth_compare: wgpu::CompareFunction::Equal,
-                ..base
-            }
-            .make(gpu),
-            blob: Recipe {
-                module: &blob,
-                layout: &scene_only,
-                fragment: Some("fragment"),
-                buffers: &[Some(blob_vertices())],
-                targets: &[Some(darkening()), Some(untouched())],
-                constants: &[],
-                cull: false,
-                depth_write: false,
                 ..base
             }
             .make(gpu),
@@ -219,22 +206,6 @@ fn world_vertices() -> wgpu::VertexBufferLayout<'static> {
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &ATTRIBUTES,
     }
-}
-
-fn blob_vertices() -> wgpu::VertexBufferLayout<'static> {
-    const ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32];
-    wgpu::VertexBufferLayout { array_stride: 16, step_mode: wgpu::VertexStepMode::Vertex, attributes: &ATTRIBUTES }
-}
-
-/// What is there, times one minus alpha.
-fn darkening() -> wgpu::ColorTargetState {
-    let component = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::Zero,
-        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
-        operation: wgpu::BlendOperation::Add,
-    };
-    let blend = Some(wgpu::BlendState { color: component, alpha: component });
-    wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::COLOR }
 }
 
 /// What comes, as far as its alpha says, over what is there.

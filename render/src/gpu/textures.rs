@@ -33,19 +33,21 @@ pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }
 
-/// A depth texture that can be drawn to and sampled.
-pub(super) fn shadow_view(gpu: &Gpu, side: u32) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+/// A depth texture that can be drawn to, copied and sampled.
+pub(super) fn shadow_map(gpu: &Gpu, side: u32) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shadow"),
         size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: wgpu::TextureFormat::Depth32Float,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
-    });
-    texture.create_view(&Default::default())
+    })
 }
 
 /// Bilinear and repeating, with a hard choice of the mip level.

@@ -39,6 +39,10 @@ pub mod style {
     pub const BRICK: u8 = 0b0010_0000;
     /// Light bands between the storeys.
     pub const BANDS: u8 = 0b0100_0000;
+    /// A door on the ground floor, in one of the first [`DOOR_COLUMNS`] columns.
+    pub const DOOR: u8 = 0b1000_0000;
+    /// Columns that a front with a door has at least.
+    pub const DOOR_COLUMNS: f32 = 3.0;
 }
 
 /// A house that fills a box of `size` metres.
@@ -77,14 +81,21 @@ fn corners(size: Vec3, grow: f32, z: f32) -> [Vec3; 4] {
     [Vec3::new(-x, -y, z), Vec3::new(x, -y, z), Vec3::new(x, y, z), Vec3::new(-x, y, z)]
 }
 
-/// The four walls; u counts window columns, v storeys.
+/// The wall that looks at the street, along the x axis.
+const STREET_FRONT: usize = 1;
+
+/// The four walls; u counts window columns, v storeys. Doors and shops are on the side of the street.
 fn fronts(mesh: &mut Mesh, front: Paint, size: Vec3, eaves: f32, floors: f32) {
     let (floor, roof) = (corners(size, 0.0, 0.0), corners(size, 0.0, eaves));
     for i in 0..4 {
         let j = (i + 1) % 4;
-        let columns = ((floor[j] - floor[i]).length() / 2.7).floor().max(1.0);
+        let (least, code) = match i {
+            STREET_FRONT => (style::DOOR_COLUMNS, front.code | style::DOOR),
+            _ => (1.0, front.code & !style::SHOP),
+        };
+        let columns = ((floor[j] - floor[i]).length() / 2.7).floor().max(least);
         let uv = [(0.0, 0.0), (columns, 0.0), (columns, floors), (0.0, floors)].map(|(u, v)| Vec2::new(u, v));
-        mesh.quad_uv(front, [floor[i], floor[j], roof[j], roof[i]], uv);
+        mesh.quad_uv(front.coded(code), [floor[i], floor[j], roof[j], roof[i]], uv);
     }
 }
 
@@ -110,7 +121,7 @@ fn flat_roof(mesh: &mut Mesh, front: Paint, size: Vec3, eaves: f32, variety: &mu
     let stone = Paint::plain(TAG, front.colour).shaded(1.12);
     mesh.walls(stone, &corners(size, 0.22, eaves), &corners(size, 0.22, eaves + 0.3));
     let under = corners(size, 0.22, eaves);
-    mesh.polygon(stone.shaded(0.6), &[under[3], under[2], under[1], under[0]]);
+    mesh.polygon(stone, &[under[3], under[2], under[1], under[0]]);
     rim(mesh, stone, size, [0.22, 0.0], eaves + 0.3);
     let wall = Paint::plain(TAG, front.colour);
     mesh.walls(wall, &corners(size, 0.0, eaves + 0.3), &corners(size, 0.0, size.z));
@@ -140,6 +151,8 @@ fn gabled_roof(mesh: &mut Mesh, tiles: Paint, front: Paint, size: Vec3, eaves: f
     let drop = OVERHANG_M * (size.z - eaves) / b;
     let (x, y, z) = (a + OVERHANG_M, b + OVERHANG_M, eaves - drop);
     let (ridge, thick) = (size.z, 0.18);
+    // Painted boards, which only the ground lights.
+    let under = Paint::plain(TAG, [232, 228, 218]);
     for side in [-1.0f32, 1.0] {
         let slope = |up: f32| {
             let mut s = [
@@ -154,7 +167,7 @@ fn gabled_roof(mesh: &mut Mesh, tiles: Paint, front: Paint, size: Vec3, eaves: f
             s
         };
         mesh.polygon(tiles, &slope(thick));
-        mesh.polygon(tiles.shaded(0.4), &slope(0.0));
+        mesh.polygon(under, &slope(0.0));
         let board = Paint::plain(TAG, [222, 218, 208]);
         let fascia = [
             at(side * x, side * y, z),
@@ -199,7 +212,7 @@ fn hipped_roof(mesh: &mut Mesh, tiles: Paint, size: Vec3, eaves: f32) {
         );
     }
     mesh.polygon(
-        Paint::plain(TAG, [200, 196, 186]).shaded(0.6),
+        Paint::plain(TAG, [232, 228, 218]),
         &[at(-x, y, eaves), at(x, y, eaves), at(x, -y, eaves), at(-x, -y, eaves)],
     );
 }

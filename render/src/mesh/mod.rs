@@ -16,6 +16,7 @@ pub mod prop;
 pub mod shape;
 pub mod signal;
 pub mod simplify;
+pub mod skirt;
 pub mod structure;
 pub mod surface;
 pub mod tram;

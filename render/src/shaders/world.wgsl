@@ -23,8 +23,7 @@ struct Lit {
     @location(2) shadow: vec3f,
     @location(3) uv_param: vec3f,
     @location(4) @interpolate(flat) ids: u32,
-    @location(5) haze: f32,
-    @location(6) from_eye: vec3f,
+    @location(5) from_eye: vec3f,
 }
 
 struct Pixel {
@@ -47,8 +46,6 @@ fn lit(in: VertexIn) -> Lit {
     out.uv_param = vec3f(in.uv, in.colour_param.a);
     out.ids = in.ids;
     out.from_eye = world - scene.eye;
-    let distance = length(out.from_eye);
-    out.haze = min(distance / 1400.0, 0.9);
     return out;
 }
 
@@ -93,9 +90,11 @@ fn sunshine(at: vec3f) -> f32 {
 
 fn finish(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
     var colour = shade + sunlit * sunshine(in.shadow);
-    colour = mix(colour, scene.horizon * 0.8, in.haze * in.haze);
+    let distance = length(in.from_eye);
+    let haze = min(distance / 1400.0, 0.9);
+    colour = mix(colour, scene.horizon * 0.8, haze * haze);
     if WEATHER {
-        colour = fogged(colour, length(in.from_eye));
+        colour = fogged(colour, distance);
     }
     return Pixel(to_screen(colour), in.ids);
 }
@@ -206,7 +205,7 @@ fn fragment_facade(in: Lit) -> Pixel {
     let low = select(select(0.3, 0.34, ground), 0.16, shop);
     let high = select(0.7 + 0.05 * f32((code >> 2u) & 3u), 0.8, shop);
     let door_at = floor(hash(vec2f(seed, 3.0)) * 3.0);
-    let door = ground && cell.x == door_at;
+    let door = ground && cell.x == door_at && (code & 128u) != 0u;
 
     let x0 = select(0.5 - half_width, 0.3, door);
     let x1 = 1.0 - x0;

@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use render::{AdapterChoice, Camera, Frame, Renderer};
+use render::{AdapterChoice, Camera, Frame, Quality, Renderer};
 use tests::street;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../render/golden_pictures.txt");
@@ -78,12 +78,15 @@ fn difference(golden: &str, drawn: &str) -> Option<String> {
 fn a_street_looks_as_the_golden_pictures_say() {
     let mut renderer = Renderer::new(&street::network(), &AdapterChoice::default()).expect("an adapter");
     let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
-    let drawn = MOMENTS.map(|moment| picture(&renderer.draw(&street::scene(moment), &camera).expect("a frame")));
+    let which: Vec<(Quality, u32)> = Quality::ALL.into_iter().flat_map(|q| MOMENTS.map(|moment| (q, moment))).collect();
+    let draw = |&(quality, moment): &(Quality, u32)| renderer.draw(&street::scene(moment), &camera.at(quality));
+    let drawn: Vec<String> = which.iter().map(draw).map(|frame| picture(&frame.expect("a frame"))).collect();
     let differing = |golden: &str| -> Vec<String> {
         let golden: Vec<_> = golden.split("\n\n").collect();
-        let differences = drawn.iter().zip(MOMENTS).enumerate().map(|(i, (drawn, moment))| {
+        let differences = drawn.iter().zip(&which).enumerate().map(|(i, (drawn, (quality, moment)))| {
             let golden = golden.get(i).copied().unwrap_or_default();
-            difference(golden.trim_end(), drawn.trim_end()).map(|what| format!("moment {moment}: {what}"))
+            difference(golden.trim_end(), drawn.trim_end())
+                .map(|what| format!("{} at moment {moment}: {what}", quality.name()))
         });
         differences.flatten().collect()
     };
