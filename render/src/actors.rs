@@ -13,6 +13,7 @@ use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
 use crate::mesh::actor::{actor_model, ego_model};
 use crate::mesh::model::{Detail, Model};
+use crate::mesh::motion::Motion;
 use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
 use crate::view::View;
 
@@ -89,7 +90,7 @@ impl Cast {
         let size = ActorKind::Car.size_m();
         moving.shadows.push((frame, size));
         if view.sees(frame.translation.into(), size.length()) {
-            moving.append(ego_model(), frame, [0.0, ego.speed_mps], EGO_INSTANCE, flashing(ego.lamps, tick));
+            moving.append(ego_model(), frame, &Motion::of_ego(ego), EGO_INSTANCE, flashing(ego.lamps, tick));
         }
     }
 
@@ -111,13 +112,7 @@ impl Cast {
             .models
             .entry((actor.kind, variant, detail))
             .or_insert_with(|| actor_model(actor.kind, variant, detail));
-        moving.append(
-            model,
-            frame,
-            [actor.phase_rad, actor.speed_mps],
-            instance_of_actor(actor.id),
-            flashing(actor.lamps, tick),
-        );
+        moving.append(model, frame, &Motion::of_actor(actor), instance_of_actor(actor.id), flashing(actor.lamps, tick));
     }
 
     fn pose_head(&mut self, head: &LightHead, phase: LightPhase, view: &View, moving: &mut Moving) {
@@ -146,9 +141,9 @@ fn is_around(actor: &ActorScene, eye: Vec3) -> bool {
 }
 
 impl Moving {
-    fn append(&mut self, model: &Model, frame: Affine3A, [phase, speed]: [f32; 2], instance: u16, lamps: u8) {
-        for (part, pose) in model.parts.iter().zip(model.pose(phase, speed)) {
-            self.append_mesh(&part.mesh, frame * pose, instance, lamps);
+    fn append(&mut self, model: &Model, frame: Affine3A, motion: &Motion, instance: u16, lamps: u8) {
+        for (mesh, pose) in model.posed(motion) {
+            self.append_mesh(mesh, frame * pose, instance, lamps);
         }
     }
 

@@ -10,14 +10,14 @@ use super::{car, heavy, loose, person, tram, two_wheeler, wheeled};
 /// The model of an actor.
 pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
     match kind {
-        ActorKind::Car => Model::rigid(car::car(variant, detail)),
-        ActorKind::Truck => Model::rigid(heavy::truck(variant, detail)),
-        ActorKind::Bus => Model::rigid(heavy::bus(variant, detail)),
+        ActorKind::Car => car::car(variant, detail),
+        ActorKind::Truck => heavy::truck(variant, detail),
+        ActorKind::Bus => heavy::bus(variant, detail),
         ActorKind::Motorcycle => two_wheeler::motorcycle(variant, detail),
         ActorKind::Bicycle => two_wheeler::bicycle(variant, detail),
-        ActorKind::Van => Model::rigid(heavy::van(variant, detail)),
-        ActorKind::Suv => Model::rigid(car::suv(variant, detail)),
-        ActorKind::Emergency => Model::rigid(heavy::emergency(detail)),
+        ActorKind::Van => heavy::van(variant, detail),
+        ActorKind::Suv => car::suv(variant, detail),
+        ActorKind::Emergency => heavy::emergency(detail),
         ActorKind::Scooter => two_wheeler::scooter(variant, detail),
         ActorKind::CargoBike => two_wheeler::cargo_bike(variant, detail),
         ActorKind::Pedestrian => person::walker(variant, detail),
@@ -36,7 +36,7 @@ pub const EGO_VARIANT: u32 = 2;
 /// The model of the ego car; the origin is the middle of its footprint.
 pub fn ego_model() -> &'static Model {
     static EGO: OnceLock<Model> = OnceLock::new();
-    EGO.get_or_init(|| actor_model(ActorKind::Car, EGO_VARIANT, Detail::Fine))
+    EGO.get_or_init(|| car::steered(EGO_VARIANT))
 }
 
 #[cfg(test)]
@@ -44,6 +44,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
+    use crate::mesh::motion::Motion;
 
     /// Mirrors and heads may stand out by this, metres.
     const OVER_M: f32 = 0.18;
@@ -54,8 +55,8 @@ mod tests {
             for (detail, variant) in Detail::ALL.into_iter().flat_map(|detail| (0..12).map(move |v| (detail, v))) {
                 let (model, size) = (actor_model(kind, variant, detail), kind.size_m());
                 let mut most = Vec3::ZERO;
-                for (part, pose) in model.parts.iter().zip(model.pose(0.0, 0.0)) {
-                    let corners = part.mesh.vertices.iter().map(|v| pose.transform_point3(Vec3::from(v.position)));
+                for (mesh, pose) in model.posed(&Motion::default()) {
+                    let corners = mesh.vertices.iter().map(|v| pose.transform_point3(Vec3::from(v.position)));
                     most = corners.fold(most, |most, p| most.max(Vec3::new(p.x.abs() * 2.0, p.y.abs() * 2.0, p.z)));
                 }
                 let over = (most - size) * Vec3::new(0.5, 0.5, 1.0);
