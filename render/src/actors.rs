@@ -244,4 +244,11 @@ mod tests {
         assert_eq!(shining(lamps::HEADLIGHTS | lamps::LEFT, off), [white], "head lamps do not flash");
         assert_eq!(shining(lamps::HEADLIGHTS | lamps::BRAKE | lamps::LEFT, 0), [red, AMBER, white]);
     }
+
+    #[test]
+    fn all_of_a_car_is_one_instance() {
+        let vertices = drawn(0, 0, vec![actor(ActorKind::Car, 12.0, 0)]);
+        let of = |instance: u16| vertices.iter().filter(|v| v.instance == instance).count();
+        assert!(of(1) > 0 && of(EGO_INSTANCE) > 0 && of(1) + of(EGO_INSTANCE) == vertices.len());
+    }
 }

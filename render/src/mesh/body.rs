@@ -100,12 +100,12 @@ impl<'a> Body<'a> {
             let inside = |&(x, z): &Point| Vec3::new(x, side * (self.half_width - ARCH_DEPTH_M), z);
             let outside = |&(x, z): &Point| self.at(x, self.belt_z(x), z, side);
             let mut wall: Vec<Vec3> = arch.iter().map(inside).collect();
-            if side < 0.0 {
+            if side > 0.0 {
                 wall.reverse();
             }
             mesh.polygon(shade, &wall);
             for pair in arch.windows(2) {
-                let (a, b) = if side > 0.0 { (&pair[0], &pair[1]) } else { (&pair[1], &pair[0]) };
+                let (a, b) = if side > 0.0 { (&pair[1], &pair[0]) } else { (&pair[0], &pair[1]) };
                 mesh.polygon(shade, &[outside(a), outside(b), inside(b), inside(a)]);
             }
         }
@@ -152,4 +152,33 @@ impl<'a> Body<'a> {
 /// Height of the line from `a` to `b` at `x`.
 fn level(a: Point, b: Point, x: f32) -> f32 {
     a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SemanticTag;
+
+    #[test]
+    fn arches_are_open_and_what_is_seen_in_them_looks_at_the_wheel() {
+        let belt = [(2.0, 0.5), (1.9, 0.8), (-0.1, 1.0), (-2.0, 0.9), (-2.1, 0.5)];
+        let mut whole = Mesh::default();
+        let paint = Paint::plain(SemanticTag::Vehicles, [200; 3]);
+        Body::new(0.9, &belt).with_arches(&[1.2, -1.2], 0.32).add_to(&mut whole, paint);
+        let at = |i: u32| Vec3::from_array(whole.vertices[i as usize].position);
+        let (mut flanks, mut recesses) = (0, 0);
+        for [a, b, c] in whole.all_triangles() {
+            let (middle, normal) = ((at(a) + at(b) + at(c)) / 3.0, (at(b) - at(a)).cross(at(c) - at(a)));
+            let hub = Vec3::new(1.2 * middle.x.signum(), 0.8 * middle.y.signum(), 0.32);
+            if whole.vertices[a as usize].colour[0] == 18 && middle.z > CLEARANCE_M + 1e-3 {
+                recesses += 1;
+                assert!(normal.dot(hub - middle) > 0.0, "{middle} looks away");
+            } else if middle.y.abs() > 0.8 && middle.z < 0.7 {
+                flanks += 1;
+                assert!((middle - hub).with_y(0.0).length() > 0.32, "{middle} is where the wheel is");
+                assert!(normal.y * middle.y > 0.0, "{middle} looks inwards");
+            }
+        }
+        assert!(recesses == 4 * (3 + 8) && flanks > 20, "{recesses}, {flanks}");
+    }
 }

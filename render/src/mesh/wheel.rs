@@ -13,7 +13,7 @@ use crate::SemanticTag;
 pub(super) const RUBBER: [u8; 3] = [26, 26, 28];
 const RIM: [u8; 3] = [150, 152, 156];
 const CAP: [u8; 3] = [70, 72, 76];
-/// Between the spokes: as they stand, as they are half blurred, and the mean of both.
+/// Between the spokes: at rest and half blurred; and what spokes and gaps are together when nobody can tell them apart.
 const GAP: [u8; 3] = [30, 31, 33];
 const FADED_GAP: [u8; 3] = [76, 77, 80];
 const BLUR: [u8; 3] = [104, 106, 109];
