@@ -7,9 +7,9 @@
 //! to_model(part) = to_model(parent) * translation(pivot) * rotation(joint.axis(), joint.angle(motion))
 //! ```
 //!
-//! and left out at speeds where it is not shown. The parent of a part without one is the model itself, whose origin is the centre of its
-//! footprint on the ground (x forward, y left, z up). Wind then moves vertices in the world by
-//! [`crate::wind::offset`].
+//! and left out at speeds where it is not shown. The parent of a part without one is the model
+//! itself, whose origin is the centre of its footprint on the ground (x forward, y left, z up). Wind
+//! then moves vertices in the world by [`crate::wind::offset`].
 
 use glam::{Affine3A, Quat, Vec3, Vec3A};
 use kernel::ops;
