@@ -14,6 +14,7 @@ use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
 use crate::light::ShadowBox;
 use crate::mesh::actor::{actor_model, ego_model};
 use crate::mesh::model::{Detail, Model};
+use crate::mesh::motion::Motion;
 use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
 use crate::view::View;
 
@@ -107,7 +108,7 @@ impl Cast {
             Affine3A::from_rotation_translation(ego.rotation, ego.position + ego.rotation * Vec3::X * EGO_MIDDLE_M);
         let size = ActorKind::Car.size_m();
         let role = Role { is_seen: view.sees(frame.translation.into(), size.length()), casts: shadow.is_some() };
-        moving.append(ego_model(), frame, [0.0, ego.speed_mps], (EGO_INSTANCE, flashing(ego.lamps, tick)), role);
+        moving.append(ego_model(), frame, &Motion::of_ego(ego), (EGO_INSTANCE, flashing(ego.lamps, tick)), role);
     }
 
     fn pose_actor(
@@ -136,7 +137,7 @@ impl Cast {
             .or_insert_with(|| actor_model(actor.kind, variant, detail));
         let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
         let painted = (instance_of_actor(actor.id), flashing(actor.lamps, tick));
-        moving.append(model, frame, [actor.phase_rad, actor.speed_mps], painted, role);
+        moving.append(model, frame, &Motion::of_actor(actor), painted, role);
     }
 
     fn pose_head(
@@ -173,9 +174,9 @@ fn is_around(actor: &ActorScene, eye: Vec3) -> bool {
 
 impl Moving {
     /// Appends a model; `painted` are its instance and the lamps that shine.
-    fn append(&mut self, model: &Model, frame: Affine3A, [phase, speed]: [f32; 2], painted: (u16, u8), role: Role) {
-        for (part, pose) in model.parts.iter().zip(model.pose(phase, speed)) {
-            self.append_mesh(&part.mesh, frame * pose, painted, role);
+    fn append(&mut self, model: &Model, frame: Affine3A, motion: &Motion, painted: (u16, u8), role: Role) {
+        for (mesh, pose) in model.posed(motion) {
+            self.append_mesh(mesh, frame * pose, painted, role);
         }
     }
 
@@ -279,5 +280,12 @@ mod tests {
         }
         assert_eq!(shining(lamps::HEADLIGHTS | lamps::LEFT, off), [white], "head lamps do not flash");
         assert_eq!(shining(lamps::HEADLIGHTS | lamps::BRAKE | lamps::LEFT, 0), [red, AMBER, white]);
+    }
+
+    #[test]
+    fn all_of_a_car_is_one_instance() {
+        let vertices = drawn(0, 0, vec![actor(ActorKind::Car, 12.0, 0)]);
+        let of = |instance: u16| vertices.iter().filter(|v| v.instance == instance).count();
+        assert!(of(1) > 0 && of(EGO_INSTANCE) > 0 && of(1) + of(EGO_INSTANCE) == vertices.len());
     }
 }

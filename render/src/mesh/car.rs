@@ -2,8 +2,10 @@
 
 use glam::Vec3;
 
-use super::model::Detail;
+use super::body::{Body, CLEARANCE_M};
+use super::model::{Detail, Model};
 use super::variety::Variety;
+use super::wheel::{Axles, OUTER_M, RUBBER};
 use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 
@@ -23,11 +25,9 @@ const LACQUERS: [[u8; 3]; 12] = [
 ];
 
 pub(super) const GLASS: [u8; 3] = [30, 38, 46];
-pub(super) const RUBBER: [u8; 3] = [26, 26, 28];
 /// Brake lamps and indicators that are off, which also in the sun look darker than those that shine.
 pub(super) const BRAKE_LAMP: [u8; 3] = [96, 10, 12];
 pub(super) const INDICATOR: [u8; 3] = [132, 70, 18];
-pub(super) const RIM: [u8; 3] = [150, 152, 156];
 
 /// Side view of a car: points (x, z) in metres, the origin below its middle, all at rest height.
 struct Shape {
@@ -85,21 +85,30 @@ const SHAPES: [Shape; 4] = [
     },
 ];
 
-/// Gap between the body and the ground.
-const CLEARANCE_M: f32 = 0.22;
-
 /// A car of class Vehicles.
-pub fn car(variant: u32, detail: Detail) -> Mesh {
+pub fn car(variant: u32, detail: Detail) -> Model {
     let mut variety = Variety::of(variant);
     let shape = &SHAPES[variety.bits() as usize % SHAPES.len()];
-    shaped(&mut variety, shape, detail)
+    shaped(&mut variety, shape, Vec3::ONE, detail)
 }
 
+/// The finest of that car, with arches in which its front wheels can be seen to steer.
+pub fn steered(variant: u32) -> Model {
+    let mut variety = Variety::of(variant);
+    let shape = &SHAPES[variety.bits() as usize % SHAPES.len()];
+    let lacquer = lacquer(&mut variety);
+    let body = Body::new(shape.half_width, shape.belt).with_arches(&shape.axles, shape.wheel_radius);
+    let Axles { x_m, y_m, radius_m } = shape.axles(Vec3::ONE);
+    let axles = Axles { x_m, y_m: y_m - IN_ARCH_M, radius_m };
+    axles.under(shape.finished(&body, lacquer, Detail::Fine), lacquer.tag, Detail::Fine)
+}
+
+/// Wheels in arches stand so much farther in, metres.
+const IN_ARCH_M: f32 = 0.04;
+
 /// A sport utility vehicle of class Vehicles, a little larger than the cars of that shape.
-pub fn suv(variant: u32, detail: Detail) -> Mesh {
-    let mut mesh = shaped(&mut Variety::of(variant), &SHAPES[3], detail);
-    mesh.scale(Vec3::new(1.02, 1.03, 1.03));
-    mesh
+pub fn suv(variant: u32, detail: Detail) -> Model {
+    shaped(&mut Variety::of(variant), &SHAPES[3], Vec3::new(1.02, 1.03, 1.03), detail)
 }
 
 /// The open door of a car of that variant, seen from the middle of its footprint; its hinge is behind.
@@ -121,26 +130,40 @@ fn lacquer(variety: &mut Variety) -> Paint {
     Paint::plain(SemanticTag::Vehicles, variety.colour(&LACQUERS)).glossy(110)
 }
 
-fn shaped(variety: &mut Variety, shape: &Shape, detail: Detail) -> Mesh {
+fn shaped(variety: &mut Variety, shape: &Shape, scale: Vec3, detail: Detail) -> Model {
     let lacquer = lacquer(variety);
-    let mut mesh = Mesh::default();
     if detail == Detail::Rough {
+        let mut mesh = Mesh::default();
         silhouette(&mut mesh, lacquer, shape);
-        return mesh;
+        mesh.scale(scale);
+        return Model::rigid(mesh);
     }
-    body(&mut mesh, lacquer, shape);
-    cabin(&mut mesh, lacquer, shape, detail);
-    for x in shape.axles {
-        for side in [-1.0, 1.0] {
-            let hub = Vec3::new(x, side * (shape.half_width - 0.1), shape.wheel_radius);
-            wheel(&mut mesh, lacquer.tag, hub, side, shape.wheel_radius, detail);
+    let mut mesh = shape.finished(&Body::new(shape.half_width, shape.belt), lacquer, detail);
+    mesh.scale(scale);
+    shape.axles(scale).under(mesh, lacquer.tag, detail)
+}
+
+impl Shape {
+    /// All of a car but its wheels.
+    fn finished(&self, body: &Body<'_>, lacquer: Paint, detail: Detail) -> Mesh {
+        let mut mesh = Mesh::default();
+        body.add_to(&mut mesh, lacquer);
+        cabin(&mut mesh, lacquer, self, detail);
+        lights(&mut mesh, self);
+        if detail == Detail::Fine {
+            trim(&mut mesh, lacquer, self);
+        }
+        mesh
+    }
+
+    /// The axles of a car made larger; tyres stand out of the flanks a little, as those have no arches.
+    fn axles(&self, scale: Vec3) -> Axles {
+        Axles {
+            x_m: self.axles.map(|x| x * scale.x).to_vec(),
+            y_m: (self.half_width + 0.01) * scale.y - OUTER_M,
+            radius_m: self.wheel_radius * scale.z,
         }
     }
-    lights(&mut mesh, shape);
-    if detail == Detail::Fine {
-        trim(&mut mesh, lacquer, shape);
-    }
-    mesh
 }
 
 /// Body and cabin as two solids on dark wheels, with both pairs of lamps.
@@ -156,29 +179,6 @@ fn silhouette(mesh: &mut Mesh, paint: Paint, shape: &Shape) {
     mesh.walls(dark.colour(GLASS).glossy(230), &ring(a.0, d.0, w - 0.1, a.1), &ring(b.0, c.0, w - 0.26, b.1));
     mesh.polygon(paint, &ring(b.0, c.0, w - 0.26, b.1));
     lights(mesh, shape);
-}
-
-/// Flanks, bonnet, boot and underside, with the upper edges bevelled.
-fn body(mesh: &mut Mesh, paint: Paint, shape: &Shape) {
-    let w = shape.half_width;
-    let inset = |z: f32| w - 0.10 * ((z - 0.6) / 0.4).clamp(0.0, 1.0);
-    let low = |x: f32, side: f32| Vec3::new(x, side * (w - 0.04), CLEARANCE_M);
-    let edge = |(x, z): (f32, f32), side: f32| Vec3::new(x, side * inset(z), z);
-    let waist = |(x, z): (f32, f32), side: f32| Vec3::new(x, side * w, (0.5 * (z + CLEARANCE_M)).min(0.6));
-    for pair in shape.belt.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        mesh.polygon(paint, &[edge(a, 1.0), edge(b, 1.0), edge(b, -1.0), edge(a, -1.0)]);
-        for (p, q, side) in [(a, b, 1.0), (b, a, -1.0)] {
-            mesh.polygon(paint, &[waist(p, side), waist(q, side), edge(q, side), edge(p, side)]);
-            mesh.polygon(paint.shaded(0.8), &[low(p.0, side), low(q.0, side), waist(q, side), waist(p, side)]);
-        }
-    }
-    let (front, rear) = (shape.belt[0], shape.belt[shape.belt.len() - 1]);
-    let dark = paint.shaded(0.45);
-    mesh.polygon(dark, &[low(front.0, -1.0), low(front.0, 1.0), edge(front, 1.0), edge(front, -1.0)]);
-    mesh.polygon(dark, &[low(rear.0, 1.0), low(rear.0, -1.0), edge(rear, -1.0), edge(rear, 1.0)]);
-    let shade = Paint::plain(paint.tag, [18, 18, 18]);
-    mesh.polygon(shade, &[low(rear.0, 1.0), low(front.0, 1.0), low(front.0, -1.0), low(rear.0, -1.0)]);
 }
 
 /// Windows all round, roof, and the pillars between.
@@ -221,20 +221,6 @@ fn pillars(mesh: &mut Mesh, paint: Paint, shape: &Shape, side: f32) {
     strip(shift(a, 0.02), shift(b, 0.02), 0.1);
     strip(middle, above, 0.09);
     strip(shift(d, 0.14), shift(c, 0.14), 0.16);
-}
-
-/// A wheel whose face looks to `side` (the sign of y).
-pub(super) fn wheel(mesh: &mut Mesh, tag: SemanticTag, hub: Vec3, side: f32, radius: f32, detail: Detail) {
-    let sides = if detail == Detail::Fine { 14 } else { 8 };
-    let tyre = Paint::plain(tag, RUBBER);
-    let out = Vec3::Y * side;
-    let (inner, outer) = (hub - out * 0.1, hub + out * 0.11);
-    mesh.tube(tyre, inner, outer, radius, radius, sides);
-    mesh.disc(tyre, outer, out, radius, sides);
-    if detail == Detail::Fine {
-        mesh.disc(tyre.colour(RIM).glossy(80), outer + out * 0.006, out, radius * 0.66, 10);
-        mesh.disc(tyre.colour([70, 72, 76]), outer + out * 0.01, out, radius * 0.22, 6);
-    }
 }
 
 /// Head lamps, brake lamps, indicators and number plates.

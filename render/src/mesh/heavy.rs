@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 
-use super::car::{BRAKE_LAMP, GLASS, INDICATOR, facing, wheel};
-use super::model::Detail;
+use super::car::{BRAKE_LAMP, GLASS, INDICATOR, facing};
+use super::model::{Detail, Model};
 use super::variety::Variety;
+use super::wheel::{Axles, OUTER_M};
 use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 
@@ -49,31 +50,27 @@ pub(super) fn lamps(mesh: &mut Mesh, tag: SemanticTag, length: f32, half_width: 
     facing(mesh, plate, -end, [-0.26, 0.26], [0.5, 0.62]);
 }
 
-/// Wheels whose faces stand out of the flanks a little, as those have no arches.
-fn wheels(mesh: &mut Mesh, tag: SemanticTag, axles: &[f32], half_width: f32, detail: Detail) {
-    for &x in axles {
-        for side in [-1.0, 1.0] {
-            wheel(mesh, tag, Vec3::new(x, side * (half_width - 0.09), 0.48), side, 0.48, detail);
-        }
-    }
+/// Axles of a vehicle whose wheels stand out of its flanks a little, as those have no arches.
+fn axles(x_m: &[f32], half_width: f32) -> Axles {
+    Axles { x_m: x_m.to_vec(), y_m: half_width + 0.02 - OUTER_M, radius_m: 0.48 }
 }
 
 /// A lorry or a van of class Truck, 7 m long.
-pub fn truck(variant: u32, detail: Detail) -> Mesh {
+pub fn truck(variant: u32, detail: Detail) -> Model {
     let mut variety = Variety::of(variant);
     let tag = SemanticTag::Truck;
     let cab = Paint::plain(tag, variety.colour(&CABS)).glossy(90);
     let cargo = Paint::plain(tag, variety.colour(&BOXES)).glossy(30);
     let mut mesh = Mesh::default();
-    if variety.one_in(3) {
+    let axles = if variety.one_in(3) {
         van_body(&mut mesh, cab);
-        wheels(&mut mesh, tag, &[2.1, -1.9], 1.1, detail);
+        axles(&[2.1, -1.9], 1.1)
     } else {
         lorry(&mut mesh, cab, cargo);
-        wheels(&mut mesh, tag, &[2.5, -1.6, -2.7], 1.18, detail);
-    }
+        axles(&[2.5, -1.6, -2.7], 1.18)
+    };
     lamps(&mut mesh, tag, 7.0, 1.1);
-    mesh
+    axles.under(mesh, tag, detail)
 }
 
 fn lorry(mesh: &mut Mesh, cab: Paint, cargo: Paint) {
@@ -88,15 +85,15 @@ fn lorry(mesh: &mut Mesh, cab: Paint, cargo: Paint) {
 }
 
 /// A van of class Vehicles, 4.9 m long.
-pub fn van(variant: u32, detail: Detail) -> Mesh {
-    let mut variety = Variety::of(variant);
-    small_van(Paint::plain(SemanticTag::Vehicles, variety.colour(&CABS)).glossy(90), detail)
+pub fn van(variant: u32, detail: Detail) -> Model {
+    let paint = Paint::plain(SemanticTag::Vehicles, Variety::of(variant).colour(&CABS)).glossy(90);
+    small_van_axles().under(small_van_body(paint), paint.tag, detail)
 }
 
 /// A patrol car or ambulance of class Vehicles: a white van with a red band, and a blue bar on its roof.
-pub fn emergency(detail: Detail) -> Mesh {
+pub fn emergency(detail: Detail) -> Model {
     let tag = SemanticTag::Vehicles;
-    let mut mesh = small_van(Paint::plain(tag, [236, 236, 232]).glossy(90), detail);
+    let mut mesh = small_van_body(Paint::plain(tag, [236, 236, 232]).glossy(90));
     side_windows(&mut mesh, Paint::plain(tag, [196, 30, 34]), [-2.3, 2.3], 0.955, [0.62, 0.82]);
     mesh.cuboid(Paint::plain(tag, [60, 60, 64]), Vec3::new(0.75, -0.6, 1.98), Vec3::new(1.05, 0.6, 2.06));
     mesh.cuboid(
@@ -104,17 +101,23 @@ pub fn emergency(detail: Detail) -> Mesh {
         Vec3::new(0.72, -0.62, 2.06),
         Vec3::new(1.08, 0.62, 2.22),
     );
+    small_van_axles().under(mesh, tag, detail)
+}
+
+/// How much smaller the small van is than the large one.
+const SMALL: Vec3 = Vec3::new(0.695, 0.855, 0.735);
+
+fn small_van_body(paint: Paint) -> Mesh {
+    let mut mesh = Mesh::default();
+    van_body(&mut mesh, paint);
+    lamps(&mut mesh, paint.tag, 7.0, 1.1);
+    mesh.scale(SMALL);
     mesh
 }
 
-/// The large van made smaller.
-fn small_van(paint: Paint, detail: Detail) -> Mesh {
-    let mut mesh = Mesh::default();
-    van_body(&mut mesh, paint);
-    wheels(&mut mesh, paint.tag, &[2.1, -1.9], 1.1, detail);
-    lamps(&mut mesh, paint.tag, 7.0, 1.1);
-    mesh.scale(Vec3::new(0.695, 0.855, 0.735));
-    mesh
+fn small_van_axles() -> Axles {
+    let [front, rear] = [2.1, -1.9].map(|x| x * SMALL.x);
+    Axles { radius_m: 0.48 * SMALL.z, ..axles(&[front, rear], 1.12 * SMALL.y - 0.02) }
 }
 
 fn van_body(mesh: &mut Mesh, paint: Paint) {
@@ -130,7 +133,7 @@ fn van_body(mesh: &mut Mesh, paint: Paint) {
 }
 
 /// A city bus of class Bus, 11 m long.
-pub fn bus(variant: u32, detail: Detail) -> Mesh {
+pub fn bus(variant: u32, detail: Detail) -> Model {
     let mut variety = Variety::of(variant);
     let tag = SemanticTag::Bus;
     let livery = Paint::plain(tag, variety.colour(&LIVERIES)).glossy(80);
@@ -144,9 +147,8 @@ pub fn bus(variant: u32, detail: Detail) -> Mesh {
     bus_windows(&mut mesh, glass, detail);
     let skirt = livery.shaded(0.55);
     side_windows(&mut mesh, skirt, [-5.4, 5.4], 1.25, [0.34, 0.62]);
-    wheels(&mut mesh, tag, &[2.9, -3.0], 1.25, detail);
     lamps(&mut mesh, tag, 11.0, 1.2);
-    mesh
+    axles(&[2.9, -3.0], 1.25).under(mesh, tag, detail)
 }
 
 fn bus_windows(mesh: &mut Mesh, glass: Paint, detail: Detail) {

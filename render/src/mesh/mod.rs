@@ -5,12 +5,14 @@
 
 pub mod actor;
 pub mod barrier;
+mod body;
 pub mod building;
 pub mod car;
 pub mod furniture;
 pub mod heavy;
 pub mod loose;
 pub mod model;
+pub mod motion;
 pub mod person;
 pub mod prop;
 pub mod shape;
@@ -23,6 +25,7 @@ pub mod tram;
 pub mod tree;
 pub mod two_wheeler;
 pub mod variety;
+mod wheel;
 pub mod wheeled;
 
 use bytemuck::{Pod, Zeroable};

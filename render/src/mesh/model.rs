@@ -4,17 +4,18 @@
 //! it in the list. A part is posed by
 //!
 //! ```text
-//! to_model(part) = to_model(parent) * translation(pivot) * rotation(swing.axis, swing.angle(..))
+//! to_model(part) = to_model(parent) * translation(pivot) * rotation(joint.axis(), joint.angle(motion))
 //! ```
 //!
-//! where the parent of a part without one is the model itself, whose origin is the centre of its
-//! footprint on the ground (x forward, y left, z up). Wind then moves vertices in the world by
-//! [`crate::wind::offset`].
+//! and left out at speeds where it is not shown. The parent of a part without one is the model
+//! itself, whose origin is the centre of its footprint on the ground (x forward, y left, z up). Wind
+//! then moves vertices in the world by [`crate::wind::offset`].
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, Quat, Vec3, Vec3A};
 use kernel::ops;
 
-use super::Mesh;
+use super::motion::Motion;
+use super::{Mesh, Vertex};
 
 /// How a joint turns with the phase of the gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +46,40 @@ impl Swing {
     }
 }
 
+/// What turns a part against its parent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Joint {
+    /// It swings as its actor walks or pedals.
+    Swing(Swing),
+    /// It steers: turns about z as the front wheels do.
+    Steer,
+    /// It rolls: turns about y by the way driven over this radius, metres.
+    Roll {
+        /// The radius.
+        radius_m: f32,
+    },
+}
+
+impl Joint {
+    /// The axis in the part's frame, a unit vector.
+    pub fn axis(&self) -> Vec3 {
+        match self {
+            Self::Swing(swing) => swing.axis,
+            Self::Steer => Vec3::Z,
+            Self::Roll { .. } => Vec3::Y,
+        }
+    }
+
+    /// The angle at a moment, radians counter-clockwise about the axis.
+    pub fn angle(&self, motion: &Motion) -> f32 {
+        match self {
+            Self::Swing(swing) => swing.angle(motion.phase_rad, motion.speed_mps),
+            Self::Steer => motion.steer_rad,
+            Self::Roll { radius_m } => motion.rolled_m / radius_m,
+        }
+    }
+}
+
 /// A rigid part of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
@@ -53,7 +88,9 @@ pub struct Part {
     /// Where, in the parent's frame, metres.
     pub pivot: Vec3,
     /// How it turns; `None` keeps the parent's direction.
-    pub swing: Option<Swing>,
+    pub joint: Option<Joint>,
+    /// Speeds from and below which it is there, whichever way, m/s; `None` is always.
+    pub shown_mps: Option<[f32; 2]>,
     /// Triangles around the pivot.
     pub mesh: Mesh,
 }
@@ -93,12 +130,19 @@ impl Detail {
 impl Model {
     /// A model of one rigid mesh.
     pub fn rigid(mesh: Mesh) -> Self {
-        Self { parts: vec![Part { parent: None, pivot: Vec3::ZERO, swing: None, mesh }] }
+        let mut model = Self::default();
+        model.add(None, Vec3::ZERO, None, mesh);
+        model
+    }
+
+    /// Appends a part that is always there and gives its index.
+    pub fn add(&mut self, parent: Option<usize>, pivot: Vec3, swing: Option<Swing>, mesh: Mesh) -> usize {
+        self.add_part(Part { parent, pivot, joint: swing.map(Joint::Swing), shown_mps: None, mesh })
     }
 
     /// Appends a part and gives its index.
-    pub fn add(&mut self, parent: Option<usize>, pivot: Vec3, swing: Option<Swing>, mesh: Mesh) -> usize {
-        self.parts.push(Part { parent, pivot, swing, mesh });
+    pub fn add_part(&mut self, part: Part) -> usize {
+        self.parts.push(part);
         self.parts.len() - 1
     }
 
@@ -106,20 +150,51 @@ impl Model {
     pub fn scaled(mut self, factor: f32) -> Self {
         for part in &mut self.parts {
             part.pivot *= factor;
+            if let Some(Joint::Roll { radius_m }) = &mut part.joint {
+                *radius_m *= factor;
+            }
             part.mesh.scale(Vec3::splat(factor));
         }
         self
     }
 
-    /// The transform of each part to the model's frame.
-    pub fn pose(&self, phase_rad: f32, speed_mps: f32) -> Vec<Affine3A> {
+    /// The transform of each part to the model's frame, whether it is shown or not.
+    pub fn pose(&self, motion: &Motion) -> Vec<Affine3A> {
         let mut poses: Vec<Affine3A> = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
-            let turn =
-                part.swing.map_or(Quat::IDENTITY, |s| Quat::from_axis_angle(s.axis, s.angle(phase_rad, speed_mps)));
+            let turn = part.joint.map_or(Quat::IDENTITY, |j| Quat::from_axis_angle(j.axis(), j.angle(motion)));
             let local = Affine3A::from_rotation_translation(turn, part.pivot);
             poses.push(part.parent.map_or(local, |parent| poses[parent] * local));
         }
         poses
+    }
+
+    /// The meshes that are shown, with their transforms to the model's frame.
+    pub fn posed(&self, motion: &Motion) -> impl Iterator<Item = (&Mesh, Affine3A)> {
+        let speed_mps = motion.speed_mps.abs();
+        let parts = self.parts.iter().zip(self.pose(motion));
+        parts.filter(move |(part, _)| part.is_shown(speed_mps)).map(|(part, pose)| (&part.mesh, pose))
+    }
+
+    /// All that is shown of it while it stands, as one mesh.
+    pub fn at_rest(&self) -> Mesh {
+        let mut whole = Mesh::default();
+        for (mesh, pose) in self.posed(&Motion::default()) {
+            let first = whole.vertices.len();
+            whole.append(mesh, Vec3::ZERO);
+            for vertex in &mut whole.vertices[first..] {
+                let position = pose.transform_point3a(Vec3A::from_array(vertex.position)).to_array();
+                let n = pose.matrix3 * Vec3A::from_array(vertex.normal.map(f32::from));
+                *vertex = Vertex { position, normal: n.round().to_array().map(|n| n as i8), ..*vertex };
+            }
+        }
+        whole
+    }
+}
+
+impl Part {
+    /// Whether it is there at a speed, m/s, 0 or more.
+    pub fn is_shown(&self, speed_mps: f32) -> bool {
+        self.shown_mps.is_none_or(|[from, to]| (from..to).contains(&speed_mps))
     }
 }

@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 
-use super::car::{GLASS, RUBBER, facing};
+use super::car::{GLASS, facing};
 use super::heavy::{hull, lamps, side_windows};
 use super::model::Detail;
 use super::variety::Variety;
+use super::wheel::RUBBER;
 use super::{Mesh, Paint};
 use crate::SemanticTag;
 

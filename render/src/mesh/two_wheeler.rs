@@ -5,10 +5,11 @@ use core::f32::consts::TAU;
 use glam::Vec3;
 use kernel::ops;
 
-use super::car::{BRAKE_LAMP, INDICATOR, RUBBER};
+use super::car::{BRAKE_LAMP, INDICATOR};
 use super::model::{Detail, Model};
 use super::person::{Look, Seat, ride};
 use super::variety::Variety;
+use super::wheel::RUBBER;
 use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
 use crate::SemanticTag;
 

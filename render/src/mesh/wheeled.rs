@@ -5,11 +5,11 @@ use core::f32::consts::TAU;
 use glam::Vec3;
 use kernel::ops;
 
-use super::car::RUBBER;
 use super::model::{Detail, Model};
 use super::person::{Look, Seat, pusher, ride};
 use super::two_wheeler::{ring, sides};
 use super::variety::Variety;
+use super::wheel::RUBBER;
 use super::{Mesh, Paint};
 use crate::SemanticTag;
 

@@ -5,7 +5,8 @@ use glam::{DAffine3, DQuat, DVec3, Vec3};
 use kernel::map::{Prop, RoadNetwork};
 use kernel::scene::{SceneSnapshot, Weather};
 use render::mesh::actor::{actor_model, ego_model};
-use render::mesh::model::{Detail, Model};
+use render::mesh::model::{Detail, Joint, Model};
+use render::mesh::motion::Motion;
 use render::mesh::{Mesh, prop, signal, surface};
 
 use super::bvh::Triangle;
@@ -65,22 +66,33 @@ impl Collector {
         self.triangles.extend(triangles);
     }
 
-    fn add_model(&mut self, model: &Model, to_world: DAffine3, phase_rad: f32, speed_mps: f32) {
+    fn add_model(&mut self, model: &Model, to_world: DAffine3, motion: &Motion) {
         let mut frames: Vec<DAffine3> = Vec::new();
+        let speed_mps = motion.speed_mps.abs();
         for part in &model.parts {
-            let angle = part.swing.map_or(0.0, |s| {
-                let full = f64::from(s.full_speed_mps);
-                let share = if full > 0.0 { (f64::from(speed_mps).abs() / full).min(1.0) } else { 1.0 };
-                let phase = f64::from(phase_rad) + f64::from(s.lead_rad);
-                f64::from(s.rest_rad) + f64::from(s.amplitude_rad) * phase.sin() * share
-            });
-            let axis = part.swing.map_or(DVec3::X, |s| wide(s.axis));
+            let (axis, angle) = part.joint.map_or((DVec3::X, 0.0), |joint| turned(&joint, motion));
             let parent = part.parent.map_or(to_world, |i| frames[i]);
             let joint = DAffine3::from_rotation_translation(DQuat::from_axis_angle(axis, angle), wide(part.pivot));
             let frame = parent * joint;
             frames.push(frame);
-            self.add(&part.mesh, frame);
+            if part.shown_mps.is_none_or(|[from, to]| from <= speed_mps && speed_mps < to) {
+                self.add(&part.mesh, frame);
+            }
         }
+    }
+}
+
+/// Axis and angle of a joint at a moment.
+fn turned(joint: &Joint, motion: &Motion) -> (DVec3, f64) {
+    match joint {
+        Joint::Swing(s) => {
+            let full = f64::from(s.full_speed_mps);
+            let share = if full > 0.0 { (f64::from(motion.speed_mps).abs() / full).min(1.0) } else { 1.0 };
+            let phase = f64::from(motion.phase_rad) + f64::from(s.lead_rad);
+            (wide(s.axis), f64::from(s.rest_rad) + f64::from(s.amplitude_rad) * phase.sin() * share)
+        }
+        Joint::Steer => (DVec3::Z, f64::from(motion.steer_rad)),
+        Joint::Roll { radius_m } => (DVec3::Y, f64::from(motion.rolled_m) / f64::from(*radius_m)),
     }
 }
 
@@ -102,11 +114,11 @@ pub fn triangles(network: &RoadNetwork, scene: &SceneSnapshot) -> Vec<Triangle> 
     for actor in &scene.actors {
         let model = actor_model(actor.kind, actor.variant, Detail::Fine);
         let frame = DAffine3::from_rotation_translation(turn(actor.rotation), wide(actor.position));
-        all.add_model(&model, frame, actor.phase_rad, actor.speed_mps);
+        all.add_model(&model, frame, &Motion::of_actor(actor));
     }
     let ego = DAffine3::from_rotation_translation(turn(scene.ego.rotation), wide(scene.ego.position));
     let middle = DAffine3::from_translation(DVec3::X * f64::from(kernel::ego::CENTRE_M.x));
-    all.add_model(ego_model(), ego * middle, 0.0, scene.ego.speed_mps);
+    all.add_model(ego_model(), ego * middle, &Motion::of_ego(&scene.ego));
     all.triangles
 }
 
