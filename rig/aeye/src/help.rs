@@ -7,7 +7,10 @@ use crate::cli::Cli;
 /// The commands by what they are for.
 const GROUPS: [(&str, &[&str]); 7] = [
     ("Drive", &["drive", "campaign", "demo"]),
-    ("Look at recordings", &["verify", "inspect", "statistics", "view", "render", "export", "questionnaire"]),
+    (
+        "Look at recordings",
+        &["verify", "inspect", "statistics", "view", "render", "gallery", "export", "questionnaire"],
+    ),
     ("Look at corner cases again", &["cases", "rerender", "compare", "redrive", "report"]),
     ("Learn", &["dataset", "train", "eval", "experiment"]),
     ("Maps", &["map"]),
@@ -16,7 +19,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
 ];
 
 /// A call of each command.
-const EXAMPLES: [&str; 30] = [
+const EXAMPLES: [&str; 31] = [
     "aeye drive --headless --map city --checkpoint early --max-time 2m --record drive.mcap",
     "aeye campaign --checkpoint early,full --km 5 --out runs",
     "aeye campaign --collect shards --out runs",
@@ -25,6 +28,7 @@ const EXAMPLES: [&str; 30] = [
     "aeye statistics runs more-runs --reference early",
     "aeye view runs/early-0003.mcap --checkpoint early,full",
     "aeye render --map suburb --weather HardRainSunset --at 30s --camera chase --out still.png",
+    "aeye gallery --maps city,town.xodr --out gallery",
     "aeye questionnaire p07.mcap p07-2.mcap --answers after.toml",
     "aeye rerender runs --checkpoint early,full --out pictures",
     "aeye compare runs --checkpoint early,full --gate \"ped_iou>=0.5,fixed>=1\" --out compared",

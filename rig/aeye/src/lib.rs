@@ -23,6 +23,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<Verdict> {
         Command::View(args) => commands::view::run(args, json),
         Command::Questionnaire(args) => commands::questionnaire::run(args, json),
         Command::Render(args) => commands::render::run(args, json),
+        Command::Gallery(args) => commands::gallery::run(args, json),
         Command::Rerender(args) => commands::rerender::run(args, json),
         Command::Compare(args) => commands::compare::run(args, json),
         Command::Cases(args) => commands::cases::run(args, json),

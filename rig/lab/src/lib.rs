@@ -11,6 +11,7 @@ pub mod eval;
 pub mod experiment;
 pub mod export;
 pub mod figures;
+pub mod gallery;
 pub mod inspect;
 pub mod looks;
 pub mod machine;

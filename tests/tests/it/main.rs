@@ -29,6 +29,7 @@ mod rig_criticality;
 mod rig_experiment;
 mod rig_export;
 mod rig_files;
+mod rig_gallery;
 mod rig_learning;
 mod rig_openlabel;
 mod rig_osi;

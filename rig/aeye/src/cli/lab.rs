@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::film::Viewpoint;
+use kernel::map::BUNDLED;
 use kernel::time::{CLIP_FPS, Tick};
 use kernel::weather::WeatherPreset;
 use lab::compare::Gate;
@@ -95,6 +96,32 @@ pub struct RenderArgs {
     pub quality: Quality,
     /// Where it goes; a file that is there stays.
     #[arg(long, value_name = "FILE.png")]
+    pub out: PathBuf,
+}
+
+/// Arguments of `gallery`.
+#[derive(Args, Clone, Debug)]
+pub struct GalleryArgs {
+    /// Bundled maps or OpenDRIVE files.
+    #[arg(long, value_delimiter = ',', default_values = BUNDLED, value_name = "NAME|FILE.xodr,...")]
+    pub maps: Vec<String>,
+    /// Seed of the runs.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Time of the runs.
+    #[arg(long, value_parser = moment, default_value = "20s", value_name = "TIME")]
+    pub at: Tick,
+    /// From where: as both drivers see, from behind the car, or from above, north up.
+    #[arg(long, default_value = "driver", value_name = "driver|chase|top")]
+    pub camera: Viewpoint,
+    /// Size of the pictures.
+    #[arg(long, default_value = "640x320", value_parser = size, value_name = "WxH")]
+    pub size: (u32, u32),
+    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
+    #[arg(long, default_value = "fine", value_parser = quality(), value_name = "NAME")]
+    pub quality: Quality,
+    /// Folder they go to; a gallery of the same options there is gone on with.
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
 

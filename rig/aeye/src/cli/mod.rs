@@ -13,7 +13,7 @@ mod values;
 use clap::{Parser, Subcommand};
 
 pub use campaign::{CampaignArgs, DemoArgs, ExperimentArgs};
-pub use lab::{CompareArgs, ExportArgs, RedriveArgs, RenderArgs, ReportArgs, RerenderArgs};
+pub use lab::{CompareArgs, ExportArgs, GalleryArgs, RedriveArgs, RenderArgs, ReportArgs, RerenderArgs};
 pub use learning::{CasesArgs, DatasetCommand, EvalArgs, MixArgs, NaturalArgs, RebuildArgs, TrainArgs};
 pub use library::{LibraryArgs, QueryArgs};
 pub use live::{
@@ -57,6 +57,8 @@ pub enum Command {
     Questionnaire(QuestionnaireArgs),
     /// One picture of a moment of a recording, or of a run that is simulated so far.
     Render(RenderArgs),
+    /// Pictures of every map at noon, dusk, in rain, fog and at night, with a page that shows them.
+    Gallery(GalleryArgs),
     /// Render the window of recordings or cases through checkpoints.
     Rerender(RerenderArgs),
     /// Which corner cases another checkpoint fixes and breaks.

@@ -13,6 +13,7 @@ pub mod drive;
 pub mod eval;
 pub mod experiment;
 pub mod export;
+pub mod gallery;
 pub mod inspect;
 pub mod map;
 pub mod questionnaire;

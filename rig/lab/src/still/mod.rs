@@ -118,7 +118,7 @@ fn of_file(
 }
 
 /// The scene at a tick of a run, and what drew the truth for its semantic driver.
-fn of_run(
+pub(crate) fn of_run(
     map: &Map,
     scenario: &Scenario,
     tick: Tick,
