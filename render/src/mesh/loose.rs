@@ -45,7 +45,7 @@ pub fn beacon(tag: SemanticTag, size: Vec3) -> Mesh {
     let half = 0.5 * size;
     let mut mesh = Mesh::default();
     mesh.cuboid(Paint::plain(tag, [40, 40, 42]), Vec3::new(-half.x, -half.y, 0.0), Vec3::new(half.x, half.y, 0.12));
-    let count = (size.z / 0.2).round().max(2.0) as u32;
+    let count = (size.z / 0.2).round().clamp(2.0, 12.0) as u32;
     let height = (size.z - 0.12) / count as f32;
     let thick = half.min(Vec3::splat(0.04)).x;
     let (x, y) = if size.x < size.y { (thick, half.y) } else { (half.x, thick) };
@@ -68,7 +68,7 @@ pub fn barricade(tag: SemanticTag, size: Vec3) -> Mesh {
             Vec3::new(x + 0.05, half.y, 0.9 * size.z),
         );
     }
-    let count = (size.x / 0.4).round().max(2.0) as u32;
+    let count = (size.x / 0.4).round().clamp(2.0, 24.0) as u32;
     let length = size.x / count as f32;
     for k in 0..count {
         let x = -half.x + length * k as f32;
