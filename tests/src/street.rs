@@ -2,8 +2,8 @@
 
 use glam::{Quat, Vec2, Vec3};
 use kernel::map::{
-    Junction, LightGroup, LightHead, MapData, Prop, PropKind, RoadNetwork, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD, Surface,
-    SurfaceKind,
+    FurnitureKind, Junction, LightGroup, LightHead, MapData, Prop, PropKind, RoadNetwork, SIGN_LIMIT, SIGN_STOP,
+    SIGN_YIELD, Surface, SurfaceKind,
 };
 use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, Weather, lamps, quantise};
 use kernel::signals::LightPhase;
@@ -118,8 +118,8 @@ fn props() -> Vec<Prop> {
     put(PropKind::Fence, 30.0, -7.2, 0.0, [12.0, 0.1, 1.2], 3);
     put(PropKind::Wall, 44.0, -7.2, 0.0, [10.0, 0.25, 1.4], 2);
     put(PropKind::GuardRail, 40.0, 7.0, 0.0, [12.0, 0.25, 0.8], 0);
-    put(PropKind::Furniture, 12.0, 6.0, 0.0, [0.6, 0.6, 1.1], 5);
-    put(PropKind::Furniture, 18.0, 6.2, back, [1.8, 0.6, 0.85], 2);
+    put(PropKind::Furniture, 12.0, 6.0, 0.0, [0.6, 0.6, 1.1], FurnitureKind::Cabinet.variant());
+    put(PropKind::Furniture, 18.0, 6.2, back, [1.8, 0.6, 0.85], FurnitureKind::Bench.variant());
     props
 }
 

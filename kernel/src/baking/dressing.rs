@@ -1,6 +1,7 @@
 //! Houses, trees, lamps and fences where a file has none: deterministic, and never on a lane.
 
 use std::collections::BTreeMap;
+use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
@@ -8,7 +9,7 @@ use super::rounding::{snap, snap3};
 use super::shapes::{corners, footprint};
 use super::source::Source;
 use crate::geometry::{corners_overlap, direction};
-use crate::map_data::{Lane, LaneId, LaneKind, Prop, PropKind};
+use crate::map_data::{FurnitureKind, Lane, LaneId, LaneKind, Prop, PropKind};
 use crate::ops;
 use crate::places::Roads;
 use crate::rng::{self, Stream};
@@ -129,7 +130,12 @@ impl Verge {
             match chance {
                 c if c < 0.45 => site.tree(at, 5.0 + 3.0 * chance),
                 c if c < 0.65 => _ = site.put(PropKind::Hedge, at, heading, Vec3::new(3.0, 0.9, 1.2), 0),
-                c if c < 0.7 => _ = site.put(PropKind::Furniture, at, heading, Vec3::new(1.6, 0.6, 0.9), 0),
+                c if c < 0.7 => {
+                    // Who sits there looks at the street.
+                    let along = if self.side > 0.0 { heading } else { ops::wrap_angle(heading + PI) };
+                    let bench = FurnitureKind::Bench.variant();
+                    site.put(PropKind::Furniture, at, along, Vec3::new(1.6, 0.6, 0.9), bench);
+                }
                 _ => {}
             }
             s += 5.0;

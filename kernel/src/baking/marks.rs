@@ -1,4 +1,4 @@
-//! Road marks as lines, for those who draw a map; the paint itself is in `surfaces`.
+//! Road marks as lines, for those who draw a map; the paint itself is in `paint`.
 
 use glam::Vec3;
 

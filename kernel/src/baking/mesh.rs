@@ -8,6 +8,13 @@ use crate::map_data::{Surface, SurfaceKind};
 /// Height of paint above the surface: enough for a depth buffer at 100 m, too little to see.
 pub(super) const PAINT_M: f32 = 16.0 / 1024.0;
 
+/// A strip of surface is cut at least this often, metres.
+const MAX_QUAD_M: f32 = 24.0;
+/// A strip of this many ribs is cut, however short it is.
+const MAX_RIBS: usize = 256;
+/// An edge that strays less than this from a line is straight, metres.
+const STRAIGHT_M: f32 = 0.003;
+
 /// A surface for each material.
 pub(super) struct Meshes(Vec<Surface>);
 
@@ -56,4 +63,33 @@ impl Surface {
             self.triangles.push(t);
         }
     }
+}
+
+/// Leaves out ribs between which a strip is straight.
+pub(super) fn thinned(ribs: &[[Vec3; 2]]) -> Vec<[Vec3; 2]> {
+    let mut kept: Vec<[Vec3; 2]> = Vec::new();
+    let mut from = 0;
+    for k in 0..ribs.len() {
+        let is_end = k == 0 || k + 1 == ribs.len();
+        if is_end || !is_straight(&ribs[from..=k + 1]) {
+            kept.push(ribs[k]);
+            from = k;
+        }
+    }
+    kept
+}
+
+/// Whether a strip without its inner ribs keeps its shape, and is not too long for its light and fog.
+fn is_straight(ribs: &[[Vec3; 2]]) -> bool {
+    let (first, last) = (ribs[0], ribs[ribs.len() - 1]);
+    let edge = |side: usize| {
+        let along = last[side] - first[side];
+        let squared = along.length_squared().max(1e-6);
+        squared < MAX_QUAD_M * MAX_QUAD_M
+            && ribs.iter().all(|rib| {
+                let off = rib[side] - first[side];
+                (off - along * (off.dot(along) / squared)).length_squared() < STRAIGHT_M * STRAIGHT_M
+            })
+    };
+    ribs.len() < MAX_RIBS && edge(0) && edge(1)
 }

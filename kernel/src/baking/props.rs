@@ -8,7 +8,9 @@ use super::notes::{Notes, Passed};
 use super::rounding::{snap, snap3};
 use super::shapes::{beside_lanes, footprint, least_rectangle, point};
 use super::source::Source;
-use crate::map_data::{LaneKind, LightHead, Prop, PropKind, SIGN_BUS_STOP, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
+use crate::map_data::{
+    FurnitureKind, LaneKind, LightHead, Prop, PropKind, SIGN_BUS_STOP, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD,
+};
 use crate::ops;
 use crate::places::Roads;
 
@@ -30,17 +32,16 @@ pub(super) fn bake(source: &Source, roads: &Roads<'_>, light_heads: &[LightHead]
             continue;
         }
         let mut pass = |why| notes.pass(Passed::Object, why, || said(object), || source.place_of_object(index));
-        let variant = object.id.0 as u32;
-        let Some(kind) = kind(object) else {
+        let Some((kind, named)) = kind(object) else {
             // Crosswalks are looked at elsewhere.
             if object.kind != xodr::ObjectType::Crosswalk {
                 pass("stands for nothing here");
             }
             continue;
         };
-        let (known, boxes) = (props.len(), boxes(&object.shape, kind, variant));
+        let (known, boxes) = (props.len(), boxes(&object.shape, kind, object.id.0 as u32));
         let has_shape = !boxes.is_empty();
-        props.extend(boxes.into_iter().filter(|p| !is_on_lane(roads, p)));
+        props.extend(boxes.into_iter().filter(|p| !is_on_lane(roads, p)).map(|p| furnished(p, named)));
         if props.len() == known {
             pass(if has_shape { "would stand on a driving lane" } else { "has no footprint, or no height" });
         }
@@ -83,51 +84,99 @@ fn said(object: &xodr::Object) -> String {
 }
 
 /// What an object is to us, by its type, else by its name; `None` for what does not stand up.
-fn kind(object: &xodr::Object) -> Option<PropKind> {
+fn kind(object: &xodr::Object) -> Option<(PropKind, FurnitureKind)> {
     use xodr::ObjectType as T;
+    let name = squeezed(&object.name);
+    let plain = |kind| (kind, FurnitureKind::Other);
+    // What a piece of furniture is by its name, whatever else that holds, as in `street bench`.
+    let furniture = || by_name(&name).find(|(kind, _)| is_furniture(*kind));
     Some(match object.kind {
-        T::Tree => PropKind::Tree,
-        T::Vegetation => PropKind::Hedge,
-        T::Building => PropKind::Building,
-        T::Barrier => loose(&object.name).unwrap_or(PropKind::GuardRail),
-        T::Railing => PropKind::GuardRail,
-        T::SoundBarrier => PropKind::Wall,
-        T::StreetLamp => PropKind::Lamp,
-        T::Pole | T::Obstacle => loose(&object.name).unwrap_or(PropKind::Furniture),
-        T::None | T::Unknown => by_name(&object.name.to_ascii_lowercase())?,
+        T::Tree => plain(PropKind::Tree),
+        T::Vegetation => plain(PropKind::Hedge),
+        T::Building => plain(PropKind::Building),
+        T::Barrier => furniture().unwrap_or(plain(PropKind::GuardRail)),
+        T::Railing => plain(PropKind::GuardRail),
+        T::SoundBarrier => plain(PropKind::Wall),
+        T::StreetLamp => plain(PropKind::Lamp),
+        T::Pole => furniture().unwrap_or((PropKind::Furniture, FurnitureKind::Post)),
+        T::Obstacle => furniture().unwrap_or((
+            PropKind::Furniture,
+            if name.contains("post") { FurnitureKind::Post } else { FurnitureKind::Other },
+        )),
+        T::None | T::Unknown => by_name(&name).next()?,
         _ => return None,
     })
 }
 
-/// What an object whose type says little is by its name, if that says more.
-fn loose(name: &str) -> Option<PropKind> {
-    by_name(&name.to_ascii_lowercase()).filter(|kind| matches!(kind, PropKind::Movable | PropKind::Sundry))
+fn is_furniture(kind: PropKind) -> bool {
+    matches!(kind, PropKind::Furniture | PropKind::Movable | PropKind::Sundry)
 }
 
-fn by_name(name: &str) -> Option<PropKind> {
+/// A name as it is looked up: in small letters, with nothing between words.
+fn squeezed(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+}
+
+/// What a name may stand for, the likeliest first.
+fn by_name(name: &str) -> impl Iterator<Item = (PropKind, FurnitureKind)> + '_ {
+    use FurnitureKind as F;
     use PropKind as K;
-    const NAMES: [(PropKind, &[&str]); 12] = [
-        (K::ParkedCar, &["parkedcar"]),
-        (K::Tree, &["tree"]),
-        (K::Hedge, &["hedge", "bush"]),
-        (K::Building, &["building", "house"]),
-        (K::Fence, &["fence"]),
-        (K::Wall, &["wall"]),
-        (K::GuardRail, &["rail"]),
-        (K::Lamp, &["lamp"]),
+    const NAMES: [(PropKind, FurnitureKind, &[&str]); 25] = [
+        (K::ParkedCar, F::Other, &["parkedcar"]),
+        (K::Tree, F::Other, &["tree"]),
+        (K::Hedge, F::Other, &["hedge", "bush"]),
+        (K::Building, F::Other, &["building", "house"]),
+        (K::Fence, F::Other, &["fence"]),
+        (K::Wall, F::Other, &["wall"]),
+        (K::GuardRail, F::Other, &["rail"]),
+        (K::Lamp, F::Other, &["lamp"]),
+        (K::Furniture, F::Bench, &["bench"]),
         // A cabinet is no bin.
-        (K::Furniture, &["bench", "cabinet", "bollard", "hydrant"]),
-        (
-            K::Movable,
-            &["bin", "trash", "garbage", "cone", "beacon", "barricade", "barrel", "pallet", "pram", "stroller"],
-        ),
-        (
-            K::Sundry,
-            &["stall", "kiosk", "shelter", "busstop", "postbox", "mailbox", "phonebox", "container", "billboard"],
-        ),
-        (K::Sundry, &["statue", "fountain", "swing", "slide", "climbing", "sandpit", "boat"]),
+        (K::Furniture, F::Cabinet, &["cabinet", "switchbox"]),
+        (K::Furniture, F::Post, &["bollard"]),
+        (K::Furniture, F::Hydrant, &["hydrant"]),
+        (K::Furniture, F::Planter, &["planter"]),
+        (K::Furniture, F::BicycleStand, &["bicyclestand", "bicyclerack", "bikestand", "bikerack"]),
+        (K::Movable, F::Dumpster, &["dumpster"]),
+        (K::Movable, F::Bin, &["bin", "trash", "garbage"]),
+        (K::Movable, F::Cone, &["cone"]),
+        (K::Movable, F::Beacon, &["beacon"]),
+        (K::Movable, F::Barricade, &["barricade"]),
+        (K::Movable, F::Other, &["barrel", "pallet", "pram", "stroller"]),
+        (K::Sundry, F::Stall, &["stall"]),
+        (K::Sundry, F::Shelter, &["shelter", "busstop"]),
+        (K::Sundry, F::Mailbox, &["postbox", "mailbox", "letterbox"]),
+        (K::Sundry, F::Other, &["kiosk", "phonebox", "container", "billboard"]),
+        (K::Sundry, F::Other, &["statue", "fountain", "swing", "slide", "climbing", "sandpit", "boat"]),
     ];
-    NAMES.iter().find(|(_, words)| words.iter().any(|word| name.contains(word))).map(|&(kind, _)| kind)
+    let fits = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    NAMES.iter().filter(move |(.., words)| fits(words)).map(|&(kind, furniture, _)| (kind, furniture))
+}
+
+/// Street furniture with what it is; where its name does not say, its size does.
+fn furnished(prop: Prop, named: FurnitureKind) -> Prop {
+    let furniture = match prop.kind {
+        PropKind::Furniture if named == FurnitureKind::Other => of_size(prop.size),
+        kind if is_furniture(kind) => named,
+        _ => return prop,
+    };
+    Prop { variant: furniture.variant(), ..prop }
+}
+
+/// What stands fast and has no name: slender ones are posts, long ones that one can sit on are benches, and those
+/// that reach to one's chest are cabinets.
+fn of_size(size: Vec3) -> FurnitureKind {
+    let (long, short) = (size.x.max(size.y), size.x.min(size.y));
+    let is = |m: f32, [low, high]: [f32; 2]| m > low && m < high;
+    if long < 0.35 * size.z {
+        FurnitureKind::Post
+    } else if is(long, [1.1, 3.0]) && is(short, [0.3, 0.9]) && is(size.z, [0.4, 1.0]) {
+        FurnitureKind::Bench
+    } else if is(long, [0.3, 2.0]) && is(short, [0.2, 1.0]) && is(size.z, [0.7, 2.2]) {
+        FurnitureKind::Cabinet
+    } else {
+        FurnitureKind::Other
+    }
 }
 
 /// Boxes that fill a shape; none for one without a footprint or height.

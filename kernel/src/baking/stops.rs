@@ -9,7 +9,9 @@ use super::signs::Governed;
 use crate::map_data::{Crosswalk, Lane, LaneId, StopKind, StopLine};
 
 /// From a stop line to the end of the lane or the edge of a crosswalk, metres.
-const SETBACK_M: f32 = 1.0;
+pub(super) const SETBACK_M: f32 = 1.0;
+/// Depth of a stop line along the road, metres.
+pub(super) const STOP_LINE_M: f32 = 0.4;
 /// A crosswalk this near to the junction moves the stop line before itself, metres.
 const CROSSWALK_M: f32 = 15.0;
 

@@ -23,5 +23,7 @@ pub(crate) use lane::URBAN_MPS;
 pub use lane::{Conflict, Lane, LaneKind, LanePoint, Projection, StopKind, StopLine, Turn};
 pub use place::Place;
 pub(crate) use scenery::rising;
-pub use scenery::{Prop, PropKind, SIGN_BUS_STOP, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD, Surface, SurfaceKind};
+pub use scenery::{
+    FurnitureKind, Prop, PropKind, SIGN_BUS_STOP, SIGN_LIMIT, SIGN_STOP, SIGN_YIELD, Surface, SurfaceKind,
+};
 pub use walkway::{Crosswalk, WalkEdge, WalkNode};

@@ -68,16 +68,53 @@ state_enum! {
         Wall = 8,
         /// A guard rail; `size.x` is its length.
         GuardRail = 9,
-        /// Street furniture that stands fast: benches, bollards, cabinets.
+        /// Street furniture that stands fast, as benches, bollards and cabinets; `variant` is a [`FurnitureKind`].
         Furniture = 10,
-        /// What somebody may take away: bins, cones, beacons, prams.
+        /// What somebody may take away: bins, cones, beacons, prams; `variant` is a [`FurnitureKind`].
         Movable = 11,
-        /// What has no class of its own: stalls, shelters, post boxes, swings.
+        /// What has no class of its own: stalls, shelters, post boxes, swings; `variant` is a [`FurnitureKind`].
         Sundry = 12,
         /// A piece of a bridge; it rises along its x axis by `variant` as [`Prop::rise_m`] reads it.
         Bridge = 13,
         /// A piece of the wall or roof of a tunnel; it rises as that of a bridge does.
         Tunnel = 14,
+    }
+}
+
+state_enum! {
+    /// What a piece of street furniture is; its code is [`Prop::variant`] of [`PropKind::Furniture`],
+    /// [`PropKind::Movable`] and [`PropKind::Sundry`].
+    pub enum FurnitureKind {
+        /// None of those below.
+        Other = 0,
+        /// A bench; its y axis points to its back.
+        Bench = 1,
+        /// A bin for litter or waste.
+        Bin = 2,
+        /// A cabinet for switches.
+        Cabinet = 3,
+        /// A bollard or any other post.
+        Post = 4,
+        /// A hydrant.
+        Hydrant = 5,
+        /// A mailbox.
+        Mailbox = 6,
+        /// A shelter at a bus stop; its y axis points to its back.
+        Shelter = 7,
+        /// A large container for waste.
+        Dumpster = 8,
+        /// A trough with plants.
+        Planter = 9,
+        /// Hoops that bicycles are locked to.
+        BicycleStand = 10,
+        /// A traffic cone.
+        Cone = 11,
+        /// A striped board of a road works.
+        Beacon = 12,
+        /// A barrier of boards across a way.
+        Barricade = 13,
+        /// A market stall.
+        Stall = 14,
     }
 }
 
@@ -118,7 +155,25 @@ impl SurfaceKind {
     }
 }
 
+impl FurnitureKind {
+    /// What [`Prop::variant`] of street furniture says; a number that says nothing is [`Self::Other`].
+    pub fn of(variant: u32) -> Self {
+        Self::ALL.get(variant as usize).copied().unwrap_or(Self::Other)
+    }
+
+    /// [`Prop::variant`] of such a piece.
+    pub const fn variant(self) -> u32 {
+        self as u32
+    }
+}
+
 impl Prop {
+    /// What it is, if it is street furniture.
+    pub fn furniture(&self) -> Option<FurnitureKind> {
+        let is_furniture = matches!(self.kind, PropKind::Furniture | PropKind::Movable | PropKind::Sundry);
+        is_furniture.then(|| FurnitureKind::of(self.variant))
+    }
+
     /// How much higher the far end of a piece of a bridge or tunnel is than the near one, metres; 0 for all else.
     pub fn rise_m(&self) -> f32 {
         match self.kind {

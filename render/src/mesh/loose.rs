@@ -12,79 +12,76 @@ const HIGHEST_CONE_M: f32 = 0.95;
 const WHITE: [u8; 3] = [232, 230, 224];
 const ORANGE: [u8; 3] = [226, 92, 30];
 
-/// A cone, beacon, barricade or bin of class Dynamic in a box of `size` metres.
+/// A cone, beacon, barricade or bin of class Dynamic, whichever fits a box of `size` metres.
 pub fn movable(variant: u32, size: Vec3, detail: Detail) -> Mesh {
-    let wide = size.x.max(size.y);
+    let (tag, wide) = (SemanticTag::Dynamic, size.x.max(size.y));
     if wide > 1.5 * size.z {
-        barricade(size)
+        barricade(tag, size)
     } else if wide < 0.6 * size.z && size.z < HIGHEST_CONE_M && size.x.min(size.y) > 0.6 * wide {
-        cone(size, detail)
+        cone(tag, size, detail)
     } else if size.x.min(size.y) < 0.6 * wide {
-        beacon(size)
+        beacon(tag, size)
     } else {
-        bin(variant, size)
+        bin(tag, variant, size)
     }
 }
 
-fn dynamic(colour: [u8; 3]) -> Paint {
-    Paint::plain(SemanticTag::Dynamic, colour)
-}
-
 /// Rubber with white rings on a square foot.
-fn cone(size: Vec3, detail: Detail) -> Mesh {
+pub fn cone(tag: SemanticTag, size: Vec3, detail: Detail) -> Mesh {
     let sides = if detail == Detail::Fine { 12 } else { 6 };
-    let (foot, radius) = (0.5 * size.x.max(size.y), 0.4 * size.x.max(size.y));
+    let (foot, radius) = (0.5 * size.x.min(size.y), 0.4 * size.x.min(size.y));
     let mut mesh = Mesh::default();
-    mesh.cuboid(dynamic([40, 40, 42]), Vec3::new(-foot, -foot, 0.0), Vec3::new(foot, foot, 0.05));
+    mesh.cuboid(Paint::plain(tag, [40, 40, 42]), Vec3::new(-foot, -foot, 0.0), Vec3::new(foot, foot, 0.05));
     let ring = |share: f32| (Vec3::Z * (0.05 + share * (size.z - 0.05)), radius * (1.0 - 0.8 * share));
     for (k, colour) in [ORANGE, WHITE, ORANGE, WHITE, ORANGE].into_iter().enumerate() {
         let ((a, wide), (b, narrow)) = (ring(0.2 * k as f32), ring(0.2 * (k + 1) as f32));
-        mesh.tube(dynamic(colour), a, b, wide, narrow, sides);
+        mesh.tube(Paint::plain(tag, colour), a, b, wide, narrow, sides);
     }
     mesh
 }
 
 /// A striped board on a foot, whose face looks along its x axis.
-fn beacon(size: Vec3) -> Mesh {
+pub fn beacon(tag: SemanticTag, size: Vec3) -> Mesh {
     let half = 0.5 * size;
     let mut mesh = Mesh::default();
-    mesh.cuboid(dynamic([40, 40, 42]), Vec3::new(-half.x, -half.y, 0.0), Vec3::new(half.x, half.y, 0.12));
-    let count = (size.z / 0.2).round().max(2.0) as u32;
+    mesh.cuboid(Paint::plain(tag, [40, 40, 42]), Vec3::new(-half.x, -half.y, 0.0), Vec3::new(half.x, half.y, 0.12));
+    let count = (size.z / 0.2).round().clamp(2.0, 12.0) as u32;
     let height = (size.z - 0.12) / count as f32;
     let thick = half.min(Vec3::splat(0.04)).x;
     let (x, y) = if size.x < size.y { (thick, half.y) } else { (half.x, thick) };
     for k in 0..count {
         let low = 0.12 + height * k as f32;
         let colour = if k % 2 == 0 { WHITE } else { [200, 30, 34] };
-        mesh.cuboid(dynamic(colour), Vec3::new(-x, -y, low), Vec3::new(x, y, low + height));
+        mesh.cuboid(Paint::plain(tag, colour), Vec3::new(-x, -y, low), Vec3::new(x, y, low + height));
     }
     mesh
 }
 
 /// Red and white boards on two feet.
-fn barricade(size: Vec3) -> Mesh {
+pub fn barricade(tag: SemanticTag, size: Vec3) -> Mesh {
     let half = 0.5 * size;
     let mut mesh = Mesh::default();
     for x in [-0.8 * half.x, 0.8 * half.x] {
         mesh.cuboid(
-            dynamic([90, 92, 94]),
+            Paint::plain(tag, [90, 92, 94]),
             Vec3::new(x - 0.05, -half.y, 0.0),
             Vec3::new(x + 0.05, half.y, 0.9 * size.z),
         );
     }
-    let count = (size.x / 0.4).round().max(2.0) as u32;
+    let count = (size.x / 0.4).round().clamp(2.0, 24.0) as u32;
     let length = size.x / count as f32;
     for k in 0..count {
         let x = -half.x + length * k as f32;
         let colour = if k % 2 == 0 { WHITE } else { [200, 30, 34] };
-        mesh.cuboid(dynamic(colour), Vec3::new(x, -0.03, 0.6 * size.z), Vec3::new(x + length, 0.03, size.z));
+        mesh.cuboid(Paint::plain(tag, colour), Vec3::new(x, -0.03, 0.6 * size.z), Vec3::new(x + length, 0.03, size.z));
     }
     mesh
 }
 
 /// A box under a lid.
-fn bin(variant: u32, size: Vec3) -> Mesh {
-    let body = dynamic(Variety::of(variant).colour(&[[62, 66, 70], [50, 86, 60], [54, 74, 120], [196, 160, 46]]));
+pub fn bin(tag: SemanticTag, variant: u32, size: Vec3) -> Mesh {
+    let body =
+        Paint::plain(tag, Variety::of(variant).colour(&[[62, 66, 70], [50, 86, 60], [54, 74, 120], [196, 160, 46]]));
     let half = Vec3::new(0.5 * size.x, 0.5 * size.y, 0.0);
     let mut mesh = Mesh::default();
     mesh.cuboid(body, -half * 0.86, half * 0.86 + Vec3::Z * (0.88 * size.z));
@@ -92,26 +89,36 @@ fn bin(variant: u32, size: Vec3) -> Mesh {
     mesh
 }
 
-/// A stall, shelter, box or heap of class Other in a box of `size` metres.
+/// A stall, box or heap of class Other, whichever fits a box of `size` metres.
 pub fn sundry(variant: u32, size: Vec3) -> Mesh {
+    if size.z > 1.9 && size.x.min(size.y) > 0.8 {
+        return stall(SemanticTag::Other, variant, size);
+    }
+    let mut mesh = Mesh::default();
+    let half = Vec3::new(0.5 * size.x, 0.5 * size.y, 0.0);
+    mesh.cuboid(cloth(SemanticTag::Other, &mut Variety::of(variant)), -half, half + Vec3::Z * size.z);
+    mesh
+}
+
+fn cloth(tag: SemanticTag, variety: &mut Variety) -> Paint {
+    Paint::plain(tag, variety.colour(&[[196, 168, 60], [150, 62, 54], [70, 96, 120], [176, 174, 166]]))
+}
+
+/// A roof on four posts, with a counter or a back wall.
+pub fn stall(tag: SemanticTag, variant: u32, size: Vec3) -> Mesh {
     let mut variety = Variety::of(variant);
-    let colour = variety.colour(&[[196, 168, 60], [150, 62, 54], [70, 96, 120], [176, 174, 166]]);
-    let paint = Paint::plain(SemanticTag::Other, colour);
+    let paint = cloth(tag, &mut variety);
     let half = Vec3::new(0.5 * size.x, 0.5 * size.y, 0.0);
     let mut mesh = Mesh::default();
-    if size.z < 1.9 || size.x.min(size.y) < 0.8 {
-        mesh.cuboid(paint, -half, half + Vec3::Z * size.z);
-        return mesh;
-    }
-    // A roof on four posts, with a counter or a back wall.
     let post = paint.colour([96, 98, 100]);
     for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let at = Vec3::new(x * (half.x - 0.06), y * (half.y - 0.06), 0.0);
         mesh.cuboid(post, at - Vec3::new(0.05, 0.05, 0.0), at + Vec3::new(0.05, 0.05, size.z - 0.2));
     }
-    let back = if variety.between(0.0, 1.0) < 0.5 { 0.9 } else { size.z - 0.2 };
+    let counter = 0.9f32.min(size.z - 0.2);
+    let back = if variety.between(0.0, 1.0) < 0.5 { counter } else { size.z - 0.2 };
     mesh.cuboid(paint.shaded(0.75), Vec3::new(-half.x, half.y - 0.12, 0.0), Vec3::new(half.x, half.y - 0.06, back));
-    mesh.cuboid(paint.shaded(0.85), Vec3::new(-half.x, -half.y + 0.1, 0.0), Vec3::new(half.x, 0.0, 0.9));
+    mesh.cuboid(paint.shaded(0.85), Vec3::new(-half.x, -half.y + 0.1, 0.0), Vec3::new(half.x, 0.0, counter));
     mesh.cuboid(paint, -half + Vec3::Z * (size.z - 0.2), half + Vec3::Z * size.z);
     mesh
 }

@@ -1,33 +1,35 @@
 //! The mesh of each kind of static object.
 
 use glam::{Quat, Vec3};
-use kernel::map::{Prop, PropKind};
+use kernel::map::{FurnitureKind, Prop, PropKind};
 use kernel::scene::ActorKind;
 
 use super::model::Detail;
 use super::variety::Variety;
-use super::{Mesh, barrier, building, car, furniture, heavy, loose, signal, structure, tree};
+use super::{Mesh, barrier, building, car, heavy, posts, signal, street_furniture, structure, tree};
+use crate::SemanticTag;
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
 /// footprint on the ground, z up.
 pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
     let Prop { size, .. } = *prop;
     let variant = if prop.kind == PropKind::Sign { prop.variant } else { look(prop) };
+    let what = FurnitureKind::of(prop.variant);
     match prop.kind {
         PropKind::Building => building::building(variant, size, detail),
         PropKind::Tree => tree::tree(variant, size.x, size.z, detail),
         PropKind::Hedge => tree::hedge(variant, size),
-        PropKind::Lamp => furniture::lamp(size.z, detail),
-        PropKind::Sign => furniture::sign(variant, size.z, detail),
+        PropKind::Lamp => posts::lamp(size.z, detail),
+        PropKind::Sign => posts::sign(variant, size.z, detail),
         PropKind::SignalPole => signal::pole(size.z, detail),
         PropKind::ParkedCar if prop.parked_kind() == ActorKind::Van => heavy::van(variant, detail).at_rest(),
         PropKind::ParkedCar => car::car(variant, detail).at_rest(),
         PropKind::Fence => barrier::fence(variant, size, detail),
         PropKind::Wall => barrier::wall(variant, size),
         PropKind::GuardRail => barrier::guard_rail(size, detail),
-        PropKind::Furniture => furniture::furniture(variant, size),
-        PropKind::Movable => loose::movable(variant, size, detail),
-        PropKind::Sundry => loose::sundry(variant, size),
+        PropKind::Furniture => street_furniture::mesh(what, SemanticTag::Static, variant, size, detail),
+        PropKind::Movable => street_furniture::mesh(what, SemanticTag::Dynamic, variant, size, detail),
+        PropKind::Sundry => street_furniture::mesh(what, SemanticTag::Other, variant, size, detail),
         PropKind::Bridge => structure::bridge(size, prop.rise_m()),
         PropKind::Tunnel => structure::tunnel(size, prop.rise_m()),
     }

@@ -5,6 +5,7 @@ mod bundled;
 mod far;
 mod features;
 mod notes;
+mod paint;
 mod places;
 mod signals;
 mod structures;

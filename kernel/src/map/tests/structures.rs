@@ -155,6 +155,65 @@ fn things_are_told_by_their_names() {
 }
 
 #[test]
+fn furniture_is_what_its_name_says_and_else_what_its_size_does() {
+    use FurnitureKind as F;
+    /// Type, name and size of an object, metres.
+    type Named = (&'static str, &'static str, [f64; 3]);
+    let told: [(Named, F); 23] = [
+        (("obstacle", "bench", [1.6, 0.6, 0.9]), F::Bench),
+        (("obstacle", "StreetBench_2", [1.0, 1.0, 1.0]), F::Bench),
+        (("none", "rubbishBin_3", [1.6, 0.6, 0.9]), F::Bin),
+        (("obstacle", "trash can", [0.3, 0.3, 1.0]), F::Bin),
+        (("none", "switch cabinet", [1.6, 0.6, 0.9]), F::Cabinet),
+        (("pole", "Bollard", [0.2, 0.2, 0.9]), F::Post),
+        (("pole", "", [0.4, 0.4, 0.5]), F::Post),
+        (("obstacle", "crossingPost", [1.0, 1.0, 1.0]), F::Post),
+        (("obstacle", "fire_hydrant", [0.3, 0.3, 0.9]), F::Hydrant),
+        (("-1", "PostBox", [0.5, 0.5, 1.3]), F::Mailbox),
+        (("obstacle", "mail box", [0.5, 0.5, 1.3]), F::Mailbox),
+        (("none", "busShelter", [3.6, 1.4, 2.5]), F::Shelter),
+        (("none", "bus_stop", [3.6, 1.4, 2.5]), F::Shelter),
+        (("none", "dumpster", [1.8, 1.2, 1.3]), F::Dumpster),
+        (("obstacle", "planter", [1.6, 0.6, 0.9]), F::Planter),
+        (("obstacle", "bike-rack", [1.6, 0.6, 0.9]), F::BicycleStand),
+        (("obstacle", "TrafficCone", [0.4, 0.4, 0.7]), F::Cone),
+        (("obstacle", "marketStall", [3.0, 2.0, 2.3]), F::Stall),
+        (("obstacle", "thing", [1.7, 0.5, 0.8]), F::Bench),
+        (("obstacle", "thing", [0.8, 0.4, 1.2]), F::Cabinet),
+        (("obstacle", "thing", [0.2, 0.2, 1.0]), F::Post),
+        (("obstacle", "thing", [3.0, 3.0, 1.0]), F::Other),
+        (("none", "statue", [1.0, 1.0, 2.0]), F::Other),
+    ];
+    let object = |(k, ((kind, name, [x, y, z]), _)): (usize, &(Named, F))| {
+        format!(
+            "<object id=\"{k}\" type=\"{kind}\" name=\"{name}\" s=\"{}\" t=\"-9\" zOffset=\"0\" hdg=\"0\" length=\"{x}\" \
+             width=\"{y}\" height=\"{z}\"/>",
+            8 * (k + 1)
+        )
+    };
+    let map = baked(&rising(0.0, &told.iter().enumerate().map(object).collect::<String>()));
+    for (k, (what, kind)) in told.into_iter().enumerate() {
+        let near = |p: &&Prop| (p.position.x - 8.0 * (k + 1) as f32).abs() < 0.1 && (p.position.y + 9.0).abs() < 0.1;
+        let found: Vec<_> = map.props.iter().filter(near).map(Prop::furniture).collect();
+        assert_eq!(found, [Some(kind)], "{what:?}");
+    }
+}
+
+#[test]
+fn the_benches_that_dress_a_street_look_at_it() {
+    let map = bundled("city").unwrap();
+    let furniture = of(&map, PropKind::Furniture);
+    assert!(furniture.len() > 10);
+    for bench in furniture {
+        assert_eq!(bench.furniture(), Some(FurnitureKind::Bench));
+        let street = map.places().roads().nearest(bench.position, LaneKind::Sidewalk, None, 10.0).expect("a sidewalk");
+        let there = map.lane_point(street.lane, street.s_m).position;
+        let back = direction(bench.heading_rad).perp();
+        assert!(back.dot((there - bench.position).truncate()) < 0.0, "{bench:?}");
+    }
+}
+
+#[test]
 fn bridges_without_number_or_end_are_refused_or_left_out() {
     let many: String =
         (0..30_000).map(|k| format!("<bridge id=\"{k}\" s=\"0\" length=\"1e6\" type=\"steel\"/>")).collect();

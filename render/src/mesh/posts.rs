@@ -1,4 +1,4 @@
-//! Street lamps, traffic signs and street furniture.
+//! Street lamps and traffic signs on their posts.
 
 use core::f32::consts::TAU;
 
@@ -7,7 +7,6 @@ use kernel::map::{SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
 use kernel::ops;
 
 use super::model::Detail;
-use super::variety::Variety;
 use super::{Mesh, Paint};
 use crate::SemanticTag;
 
@@ -127,37 +126,4 @@ fn glyph(mesh: &mut Mesh, colour: [u8; 3], centre: Vec3, segments: u8, size: Vec
             mesh.polygon(face(colour), &[at(x0, z0), at(x1, z0), at(x1, z1), at(x0, z1)]);
         }
     }
-}
-
-/// A bin, bench, cabinet or bollard of class Static in a box of `size` metres.
-pub fn furniture(variant: u32, size: Vec3) -> Mesh {
-    let tag = SemanticTag::Static;
-    let mut mesh = Mesh::default();
-    let half = Vec3::new(0.5 * size.x, 0.5 * size.y, 0.0);
-    if size.x > 2.0 * size.z {
-        bench(&mut mesh, half, size.z);
-    } else if size.x.max(size.y) < 0.35 * size.z {
-        mesh.tube(Paint::plain(tag, [58, 60, 64]), Vec3::ZERO, Vec3::Z * size.z, half.x, half.x, 8);
-        mesh.disc(Paint::plain(tag, [200, 200, 196]), Vec3::Z * size.z, Vec3::Z, half.x, 8);
-    } else {
-        let mut variety = Variety::of(variant);
-        let colour = variety.colour(&[[72, 92, 74], [104, 108, 110], [66, 70, 82], [168, 150, 60], [126, 52, 44]]);
-        let shell = Paint::plain(tag, colour).glossy(40);
-        mesh.cuboid(shell, -half, half + Vec3::Z * 0.9 * size.z);
-        let lid = half + Vec3::new(0.03, 0.03, 0.0);
-        mesh.cuboid(shell.shaded(0.65), -lid + Vec3::Z * 0.9 * size.z, lid + Vec3::Z * size.z);
-    }
-    mesh
-}
-
-fn bench(mesh: &mut Mesh, half: Vec3, height_m: f32) {
-    let wood = Paint::plain(SemanticTag::Static, [140, 100, 64]);
-    let iron = Paint::plain(SemanticTag::Static, [52, 54, 58]);
-    let seat = 0.52 * height_m;
-    for x in [-0.8 * half.x, 0.8 * half.x] {
-        mesh.cuboid(iron, Vec3::new(x - 0.04, -half.y, 0.0), Vec3::new(x + 0.04, half.y, seat));
-    }
-    mesh.cuboid(wood, Vec3::new(-half.x, -half.y, seat), Vec3::new(half.x, half.y, seat + 0.06));
-    let back = Vec3::new(-half.x, half.y - 0.06, seat + 0.15);
-    mesh.cuboid(wood, back, Vec3::new(half.x, half.y, height_m));
 }
