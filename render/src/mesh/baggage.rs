@@ -31,7 +31,6 @@ impl Look {
                     Ring::new(0.5, -0.16, [0.0; 2]),
                 ];
                 mesh.loft(bag, &pack.map(|r| Ring { centre: r.centre + Vec3::X * spine_m, ..r }), 8);
-                self.straps(mesh);
             }
             Carried::Backpack => {
                 let (low, high) = (Vec3::new(-0.27, -0.13, 0.08), Vec3::new(-0.1, 0.13, 0.48));
@@ -51,25 +50,13 @@ impl Look {
         }
     }
 
-    /// The straps of a backpack over chest and shoulders.
-    fn straps(&self, mesh: &mut Mesh) {
-        let bag = self.paint(self.outfit.carried_colour).shaded(0.85);
-        let spine_m = self.spine_m(0.45);
-        for side in [-1.0, 1.0] {
-            let y = side * 0.6 * self.outfit.build.shoulders_m;
-            let top = Vec3::new(spine_m, y, 0.5);
-            mesh.tube(bag, Vec3::new(0.115, y, 0.2), top + Vec3::new(0.085, 0.0, -0.04), 0.02, 0.02, 4);
-            mesh.tube(bag, top + Vec3::new(0.085, 0.0, -0.04), top + Vec3::new(-0.1, 0.0, -0.02), 0.02, 0.02, 4);
-        }
-    }
-
     /// What is held in a hanging hand.
     pub(super) fn held(&self, mesh: &mut Mesh, side: f32) {
         if side != self.hand() {
             return;
         }
         let bag = self.paint(self.outfit.carried_colour);
-        let hand = Vec3::new(0.0, 0.0, -HAND_M);
+        let hand = Vec3::new(0.0, side * 0.035, -HAND_M);
         match self.outfit.carried {
             Carried::ShoppingBag => {
                 let low = hand + Vec3::new(-0.15, -0.055, -0.46);
@@ -84,10 +71,12 @@ impl Look {
                 let low = hand + Vec3::new(-0.2, -0.045, -0.36);
                 mesh.cuboid(bag, low, low + Vec3::new(0.4, 0.09, 0.29));
             }
-            Carried::RolledUmbrella if self.detail < Rough => {
+            Carried::RolledUmbrella => {
                 let sides = self.by_detail([6, 4, 3]);
                 mesh.tube(bag, hand - Vec3::Z * 0.64, hand - Vec3::Z * 0.1, 0.01, 0.03, sides);
-                mesh.tube(bag, hand - Vec3::Z * 0.1, hand + Vec3::Z * 0.05, 0.012, 0.012, 3);
+                if self.detail < Rough {
+                    mesh.tube(bag, hand - Vec3::Z * 0.1, hand + Vec3::Z * 0.05, 0.012, 0.012, 3);
+                }
             }
             _ => {}
         }
@@ -105,11 +94,21 @@ impl Look {
         mesh
     }
 
+    /// A telephone in a hand that is held up.
+    pub(super) fn phone(&self) -> Mesh {
+        let mut mesh = Mesh::default();
+        let middle = Vec3::new(0.035, 0.0, -HAND_M - 0.02);
+        let half = Vec3::new(0.006, 0.036, 0.075);
+        mesh.cuboid(self.paint([24, 24, 28]).glossy(120), middle - half, middle + half);
+        mesh
+    }
+
     /// An open umbrella over somebody who holds it on the side 1 (left) or -1, around the hand.
     pub(super) fn umbrella(&self, side: f32) -> Mesh {
         let mut mesh = Mesh::default();
-        let cloth = self.paint(self.outfit.headgear_colour);
-        let top = Vec3::new(-0.24, -side * 0.13, 0.72);
+        let cloth = self.paint(self.outfit.umbrella_colour);
+        // Who stoops has it farther back.
+        let top = Vec3::new(-0.24 - 0.2 * self.outfit.build.stoop_rad, -side * 0.13, 0.72);
         mesh.tube(self.paint(STEEL), Vec3::Z * -0.06, top, 0.009, 0.009, self.by_detail([5, 3, 3]));
         let canopy = [
             (0.0, 0.0, [0.42; 2], Rough),

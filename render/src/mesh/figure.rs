@@ -5,7 +5,7 @@ use kernel::ops;
 
 use super::loft::Ring;
 use super::model::Detail;
-use super::outfit::{Bottom, Outfit, Top};
+use super::outfit::{Bottom, Carried, Outfit, Top};
 use super::variety::Variety;
 use super::{Mesh, Paint};
 use crate::SemanticTag;
@@ -104,8 +104,13 @@ impl Look {
             Top::Coat => -0.04,
             _ => -0.1,
         };
+        // Wide enough for legs that walk, but under the skirt of a coat.
+        let hem = match self.outfit.top {
+            Top::Coat => [0.112 * g + l, hips + l],
+            _ => [0.128 * g + l, (hips + l + 0.012).max(0.18 + 0.5 * l)],
+        };
         let stations = [
-            (hem_m, 0.0, [0.112 * g + l, hips + l + 0.004], Rough),
+            (hem_m, 0.0, hem, Rough),
             (0.06, belly_m, [0.11 * g + l, 0.5 * (hips + waist * g) + l], Fine),
             (0.15, belly_m, [0.106 * g + l, waist * g + l], Coarse),
             (0.28, 0.4 * belly_m + 0.2 * bust, [0.11 * chest + l, 0.82 * shoulders * chest + l], Fine),
@@ -134,17 +139,17 @@ impl Look {
         Ring { centre: pair[0].centre.lerp(pair[1].centre, share), radii }
     }
 
-    /// A strip down the front of the trunk, so far off it: heights and half widths.
-    fn front_strip(&self, mesh: &mut Mesh, (rings, out_m): (&[Ring], f32), colour: [u8; 3], strip: &[(f32, f32)]) {
+    /// A strip down the front of the trunk, so far off it: heights and its edges to the left and right.
+    fn front_strip(&self, mesh: &mut Mesh, (rings, out_m): (&[Ring], f32), paint: Paint, strip: &[(f32, [f32; 2])]) {
         let at = |z: f32, y: f32| {
             let ring = Self::girdle(rings, z, out_m);
             let share = (y / ring.radii.y).clamp(-0.95, 0.95);
             ring.centre + Vec3::new(ring.radii.x * ops::sqrt(1.0 - share * share), y, 0.0)
         };
         for pair in strip.windows(2) {
-            let [(top, wide), (low, narrow)] = [pair[0], pair[1]];
-            let corners = [at(top, wide), at(top, -wide), at(low, -narrow), at(low, narrow)];
-            mesh.polygon(self.paint(colour), &corners);
+            let [(top_m, [top_left, top_right]), (low_m, [low_left, low_right])] = [pair[0], pair[1]];
+            let corners = [at(top_m, top_left), at(top_m, top_right), at(low_m, low_right), at(low_m, low_left)];
+            mesh.polygon(paint, &corners);
         }
     }
 
@@ -167,25 +172,31 @@ impl Look {
         mesh
     }
 
-    /// What is seen of the front of jackets, and hoods.
+    /// What is seen of the front of jackets, straps, and hoods.
     fn fronts(&self, mesh: &mut Mesh, rings: &[Ring]) {
         let outfit = &self.outfit;
-        if outfit.vest.is_none() {
-            let shirt = if outfit.beard { [206, 206, 202] } else { [150, 160, 172] };
-            match outfit.top {
-                Top::Suit => {
-                    let v = [(0.53, 0.042), (0.45, 0.036), (0.37, 0.022), (0.24, 0.003)];
-                    self.front_strip(mesh, (rings, 0.004), [220, 220, 216], &v);
-                    if !outfit.build.waisted {
-                        let tie = [(0.525, 0.01), (0.37, 0.014), (0.27, 0.005)];
-                        self.front_strip(mesh, (rings, 0.008), [96, 26, 34], &tie);
-                    }
-                }
-                Top::Jacket | Top::Coat => {
-                    let open = [(0.53, 0.03), (0.45, 0.026), (0.37, 0.016), (0.3, 0.002)];
-                    self.front_strip(mesh, (rings, 0.004), shirt, &open);
-                }
-                _ => {}
+        let even = |strip: &[(f32, f32)]| strip.iter().map(|&(z, half)| (z, [half, -half])).collect::<Vec<_>>();
+        let opens_to_m = match outfit.top {
+            _ if outfit.vest.is_some() => None,
+            Top::Suit => Some(0.24),
+            Top::Jacket | Top::Coat => Some(0.3),
+            _ => None,
+        };
+        if let Some(low_m) = opens_to_m {
+            let shirt = if outfit.top == Top::Suit { [220, 220, 216] } else { outfit.shirt_colour };
+            let opening = even(&[(0.53, 0.036), (0.45, 0.031), (0.37, 0.019), (low_m, 0.002)]);
+            self.front_strip(mesh, (rings, 0.004), self.paint(shirt), &opening);
+            if outfit.top == Top::Suit && !outfit.build.waisted {
+                let tie = even(&[(0.525, 0.01), (0.37, 0.014), (0.27, 0.005)]);
+                self.front_strip(mesh, (rings, 0.008), self.paint([96, 26, 34]), &tie);
+            }
+        }
+        if outfit.carried == Carried::Backpack {
+            let strap = self.paint(outfit.carried_colour).shaded(0.85);
+            for side in [-1.0, 1.0] {
+                let y = side * 0.52 * outfit.build.shoulders_m;
+                let edges = [y + 0.022, y - 0.022];
+                self.front_strip(mesh, (rings, 0.01), strap, &[0.51, 0.45, 0.37, 0.2].map(|z| (z, edges)));
             }
         }
         if outfit.top == Top::Hoodie {
@@ -207,7 +218,7 @@ impl Look {
         let sides = self.by_detail([10, 6, 5]);
         let is_coat = outfit.top == Top::Coat;
         let hanging = match outfit.bottom {
-            _ if is_coat => Some((outfit.top_colour, -0.4, [0.15 + 0.02 * g, hips + 0.045])),
+            _ if is_coat => Some((outfit.top_colour, -0.4, [0.18 + 0.02 * g, hips + 0.05])),
             Bottom::Skirt => Some((outfit.bottom_colour, -0.5, [0.225, 0.2])),
             Bottom::Dress => Some((outfit.top_colour, -0.44, [0.21, 0.2])),
             _ => None,
@@ -216,8 +227,8 @@ impl Look {
             let pelvis = [
                 (-0.15, 0.0, [0.0, 0.0], Coarse),
                 (-0.11, 0.0, [0.085, 0.115], Fine),
-                (-0.04, -0.008, [0.112 * g, hips], Coarse),
-                (0.06, 0.0, [0.104 * g, 0.92 * hips], Coarse),
+                (-0.04, -0.006, [0.1 * g, 0.95 * hips], Coarse),
+                (0.06, 0.0, [0.09 * g, 0.84 * hips], Coarse),
             ];
             mesh.loft(self.paint(outfit.bottom_colour), &self.rings(&pelvis), sides);
         }
@@ -238,7 +249,7 @@ impl Look {
         for ring in &mut rings {
             ring.centre.y = -out * ring.centre.z;
         }
-        mesh.loft(self.paint(colour), &rings, self.by_detail([8, 5, 3]));
+        mesh.loft(self.paint(colour), &rings, self.by_detail([7, 5, 3]));
     }
 
     /// Upper arm around the shoulder, hanging; side 1 is left.
@@ -273,6 +284,7 @@ impl Look {
             (low_m, 0.0, [0.029 * g + l; 2], Rough),
             (-0.09, 0.0, [0.04 * g + l; 2], Fine),
             (0.02, 0.0, [0.04 * g + l; 2], Rough),
+            (0.042, 0.0, [0.0; 2], Fine),
         ];
         self.limb(&mut mesh, colour, &sleeve, 0.0);
         if self.detail < Rough {
@@ -307,7 +319,7 @@ impl Look {
         let leg = [
             (-0.45, 0.0, [0.053 * g + l; 2], Rough),
             (-0.24, 0.004, [0.07 * g + l; 2], Fine),
-            (-0.07, 0.0, [0.084 * g + l, 0.08 * g + l], Coarse),
+            (-0.07, 0.0, [0.084 * g + l, 0.074 * g + l], Coarse),
             (0.04, 0.0, [0.085 * g, 0.07 * g], Rough),
         ];
         self.limb(&mut mesh, colour, &leg, 0.0);
@@ -320,12 +332,13 @@ impl Look {
         let g = 0.5 + 0.5 * self.outfit.build.girth;
         let is_bare = self.outfit.bottom != Bottom::Trousers;
         let (calf, ankle) = if is_bare { (0.053 * g, 0.036) } else { (0.062 * g, 0.06) };
-        let low_m = if self.detail == Rough { -SHIN_M - 0.07 } else { -SHIN_M - 0.015 };
         let leg = [
-            (low_m, 0.0, [ankle; 2], Rough),
+            (-SHIN_M - 0.015, 0.0, [ankle; 2], Rough),
             (-0.15, -0.012, [calf; 2], Coarse),
-            (0.0, 0.0, [if is_bare { 0.05 * g } else { 0.062 * g }; 2], Fine),
-            (0.035, 0.0, [if is_bare { 0.048 * g } else { 0.058 * g }; 2], Rough),
+            (0.0, 0.0, [if is_bare { 0.053 * g } else { 0.064 * g }; 2], Fine),
+            (0.035, 0.0, [if is_bare { 0.046 * g } else { 0.056 * g }; 2], Rough),
+            // A bent knee is closed.
+            (0.062, 0.0, [0.0; 2], Coarse),
         ];
         self.limb(&mut mesh, self.leg_colour(false), &leg, 0.0);
         mesh
@@ -337,17 +350,22 @@ impl Look {
         let shoe = self.paint(self.outfit.shoe_colour);
         let sides = self.by_detail([8, 5, 3]);
         let stations = [
-            (-0.075, 0.042, [0.13, 0.045], Coarse),
+            (-0.075, 0.042, [0.13, 0.045], Rough),
             (-0.045, 0.04, [0.13, 0.048], Fine),
             (-0.012, 0.004, [0.075, 0.043], Fine),
             (0.03, -0.008, [0.046, 0.042], Coarse),
         ];
         let mut rings = self.rings(&stations);
+        if self.detail == Rough {
+            rings.push(Ring::new(0.03, -0.008, [0.0; 2]));
+        }
         for ring in &mut rings {
             ring.centre.y = y * (ring.centre.x / 0.042);
         }
         mesh.loft(shoe, &rings, sides);
-        mesh.sole(shoe.shaded(0.7), &rings[0], sides);
+        if self.detail < Rough {
+            mesh.sole(shoe.shaded(0.7), &rings[0], sides);
+        }
         mesh
     }
 }

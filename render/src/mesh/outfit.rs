@@ -114,6 +114,8 @@ pub(super) struct Outfit {
     pub headgear_colour: [u8; 3],
     pub top: Top,
     pub top_colour: [u8; 3],
+    /// Of what is seen under an open jacket.
+    pub shirt_colour: [u8; 3],
     pub bottom: Bottom,
     pub bottom_colour: [u8; 3],
     pub shoe_colour: [u8; 3],
@@ -126,17 +128,29 @@ pub(super) struct Outfit {
     pub bears: f32,
     /// Rain in percent from which on an umbrella is open, if there is one.
     pub umbrella_pct: Option<f32>,
+    pub umbrella_colour: [u8; 3],
 }
 
 const SKINS: [[u8; 3]; 6] =
     [[236, 198, 172], [224, 180, 150], [206, 158, 126], [172, 122, 92], [122, 82, 58], [84, 56, 42]];
-const HAIRS: [[u8; 3]; 6] = [[30, 24, 22], [48, 34, 26], [82, 58, 38], [142, 104, 62], [178, 146, 96], [112, 52, 30]];
+const HAIRS: [[u8; 3]; 10] = [
+    [30, 24, 22],
+    [26, 22, 22],
+    [48, 34, 26],
+    [44, 34, 28],
+    [60, 44, 32],
+    [82, 58, 38],
+    [74, 54, 38],
+    [120, 90, 56],
+    [164, 134, 88],
+    [98, 54, 34],
+];
 const GREYS: [[u8; 3]; 3] = [[160, 158, 154], [200, 198, 192], [116, 114, 112]];
 /// Black, anthracite, navy, dark brown, dark olive: most of what is worn outdoors.
 const DARKS: [[u8; 3]; 7] =
     [[26, 26, 29], [36, 37, 42], [30, 36, 58], [48, 40, 34], [44, 50, 40], [56, 26, 34], [44, 52, 62]];
 const MUTED: [[u8; 3]; 7] =
-    [[104, 100, 94], [126, 110, 88], [88, 104, 122], [106, 116, 92], [128, 92, 88], [150, 148, 144], [92, 84, 104]];
+    [[104, 100, 94], [126, 110, 88], [88, 104, 122], [106, 116, 92], [128, 92, 88], [150, 148, 144], [84, 86, 96]];
 const LIGHTS: [[u8; 3]; 4] = [[222, 218, 208], [204, 190, 166], [196, 206, 214], [232, 226, 216]];
 const BRIGHTS: [[u8; 3]; 8] = [
     [178, 42, 44],
@@ -242,15 +256,21 @@ impl Outfit {
             headgear_colour: cloth(v, [5, 2, 1]),
             top,
             top_colour,
+            shirt_colour: cloth(v, [2, 4, 3]),
             bottom,
             bottom_colour,
             shoe_colour: v.pick(&SHOES),
             vest: v.one_in(if age == Age::Child { 10 } else { 18 }).then(|| v.pick(&VESTS)),
             carried: carried(v, age, woman, top),
             carried_colour: if v.one_in(4) { cloth(v, [2, 2, 2]) } else { v.colour(&LEATHERS) },
-            stance: v.pick(&[Stance::Hanging, Stance::Hanging, Stance::Pockets, Stance::Phone]),
+            stance: match v.bits() % 4 {
+                0 => Stance::Pockets,
+                1 if age != Age::Old => Stance::Phone,
+                _ => Stance::Hanging,
+            },
             bears: v.pick(&[1.0, -1.0]),
             umbrella_pct: (age != Age::Child && !v.one_in(3)).then(|| v.between(5.0, 35.0)),
+            umbrella_colour: cloth(v, [7, 1, 0]),
         }
     }
 

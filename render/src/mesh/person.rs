@@ -23,6 +23,8 @@ const ARMS_MPS: f32 = 1.4;
 /// Where in a stride knees are bent most and ankles stretched, radians.
 const KNEE_UP_RAD: f32 = 3.0;
 const PUSHED_OFF_RAD: f32 = 2.3;
+/// Below this speed one has a telephone in the hand that is held up for it, m/s.
+const PHONES_MPS: f32 = 0.4;
 /// Top of a head above the hips less the head's share of it, and that share, metres.
 const HEAD_M: [f32; 2] = [0.59, 0.24];
 
@@ -81,6 +83,12 @@ fn afoot(look: &Look, under_umbrella: bool) -> Model {
     if under_umbrella {
         hold(-look.hand(), HOLDS_RAD, look.umbrella(-look.hand()));
     }
+    let phones = outfit.stance == Stance::Phone && !under_umbrella && look.detail < Detail::Rough;
+    if phones {
+        let parent = Some(forearms[usize::from(look.hand() > 0.0)]);
+        let shown_mps = Some([0.0, PHONES_MPS]);
+        model.add_part(Part { parent, pivot: Vec3::ZERO, joint: None, shown_mps, mesh: look.phone() });
+    }
     model.scaled(scale)
 }
 
@@ -113,7 +121,7 @@ fn leg(look: &Look, side: f32, reach: f32) -> [Gait; 3] {
     // The leg that bears no weight is bent a little.
     let stand = if side == look.outfit.bears { [-0.01, 0.03, -0.02] } else { [-0.2, 0.31, -0.11] };
     let walk = [
-        Cycle::new(-0.04, 0.38 * reach),
+        Cycle::new(-0.04, 0.33 * reach),
         Cycle::new(0.1, 0.0).lifted(0.95, KNEE_UP_RAD),
         Cycle::new(-0.06, -0.16 * reach).lifted(0.45, PUSHED_OFF_RAD),
     ];
@@ -133,9 +141,9 @@ fn bob(reach: f32) -> Gait {
     let more = reach - 1.0;
     Gait {
         stand: -0.004,
-        walk: Cycle::new(-0.007 - 0.056 * more, 0.019 + 0.06 * more),
+        walk: Cycle::new(-0.001 - 0.043 * more, 0.015 + 0.04 * more),
         run: Cycle::new(-0.057, 0.05),
-        lead_rad: 0.85,
+        lead_rad: 0.75,
         beats: 2.0,
         walks_mps: LEGS_MPS,
     }
@@ -151,7 +159,7 @@ fn arm(look: &Look, side: f32, arm: Arm) -> [Gait; 2] {
     };
     let stand = match look.outfit.stance {
         Stance::Pockets if swing == 1.0 => [0.28, -0.62],
-        Stance::Phone if swing == 1.0 && side == look.outfit.bears => [-0.4, -1.5],
+        Stance::Phone if swing == 1.0 && side == look.outfit.bears => [0.12, -2.1],
         _ => [0.03 - 0.5 * lean(look).stand, -0.14],
     };
     let walk = [Cycle::new(0.02, 0.36 * swing), Cycle::new(-0.12 - 0.16 * swing, 0.16 * swing)];
@@ -164,7 +172,7 @@ fn arm(look: &Look, side: f32, arm: Arm) -> [Gait; 2] {
 impl Look {
     /// A shoulder in the trunk's frame.
     fn shoulder(&self, side: f32) -> Vec3 {
-        let y_m = self.outfit.build.shoulders_m;
+        let y_m = self.outfit.build.shoulders_m - 0.012;
         Vec3::new(self.spine_m(SHOULDER_M), side * y_m, SHOULDER_M)
     }
 }
@@ -191,9 +199,7 @@ fn strolling(look: &Look, scale: f32, arms: impl Fn(f32) -> Arm) -> (Model, [usi
         let [hip, knee, ankle] = leg(look, side, reach);
         let thigh = model.add_stride(hips, Vec3::new(0.0, side * HIP_Y_M, -0.02), hip, look.thigh());
         let shin = model.add_stride(thigh, Vec3::Z * -THIGH_M, knee, look.shin());
-        if look.detail < Detail::Rough {
-            model.add_stride(shin, Vec3::Z * -SHIN_M, ankle, look.foot(side));
-        }
+        model.add_stride(shin, Vec3::Z * -SHIN_M, ankle, look.foot(side));
         let [shoulder, elbow] = arm(look, side, arms(side));
         let upper = model.add_stride(trunk, look.shoulder(side), shoulder, look.upper_arm(side));
         model.add_stride(upper, elbow_at(side), elbow, look.lower_arm(side))
@@ -229,12 +235,13 @@ pub(super) fn ride(model: &mut Model, look: &Look, seat: &Seat, helmet: Option<[
         let thigh = model.add(None, hip, pedal(seat.thigh_rad, lead), look.thigh());
         let knee = Vec3::Z * -THIGH_M;
         let shin = model.add(Some(thigh), knee, pedal(seat.shin_rad, lead + 1.1), look.shin());
-        if look.detail < Detail::Rough {
-            model.add(Some(shin), Vec3::Z * -SHIN_M, None, look.foot(side));
-        }
+        model.add(Some(shin), Vec3::Z * -SHIN_M, None, look.foot(side));
         let shoulder = Swing::rigid(Vec3::Y, seat.arm_rad);
         let upper = model.add(Some(trunk), look.shoulder(side), Some(shoulder), look.upper_arm(side));
         let elbow = Some(Swing::rigid(Vec3::Y, -0.35));
         model.add(Some(upper), elbow_at(side), elbow, look.lower_arm(side));
     }
 }
+
+#[cfg(test)]
+mod tests;
