@@ -12,7 +12,9 @@ const KINDS: [ActorKind; 2] = [ActorKind::Pedestrian, ActorKind::Child];
 
 /// Limbs, hats and bags may stand out of the box by this, metres; umbrellas by more.
 const OVER_M: f32 = 0.18;
-const UMBRELLA_M: f32 = 0.33;
+const UMBRELLA_M: f32 = 0.4;
+/// Nothing may be outside the sphere by which actors are culled: around the box and so much larger, metres.
+const AROUND_M: f32 = 0.4;
 
 fn variants() -> impl Iterator<Item = u32> {
     (0..200).map(|i| i * 331)
@@ -40,6 +42,8 @@ fn everybody_who_stands_fits_the_box() {
             let corners = corners(&sheltered_model(kind, variant, detail, umbrella), &Motion::default());
             let most = corners.iter().fold(Vec3::ZERO, |m, p| m.max(Vec3::new(p.x.abs(), p.y.abs(), p.z)));
             let over = (most - size * Vec3::new(0.5, 0.5, 1.0)).max_element();
+            let far_m = corners.iter().map(|p| p.distance(Vec3::Z * 0.5 * size.z)).fold(0.0, f32::max);
+            assert!(far_m < 0.5 * size.length() + AROUND_M, "{kind:?} {variant} {detail:?} {umbrella}: {far_m} m");
             let may = if umbrella { UMBRELLA_M } else { OVER_M };
             assert!(over < may && most.z > 0.85 * size.z, "{kind:?} {variant} {detail:?} {umbrella}: {most}");
         }
