@@ -4,7 +4,8 @@
 //! it in the list. A part is posed by
 //!
 //! ```text
-//! to_model(part) = to_model(parent) * translation(pivot + z * joint.rise_m(motion)) * rotation(joint.axis(), joint.angle(motion))
+//! to_model(part) = to_model(parent) * translation(pivot + z * joint.rise_m(motion))
+//!     * rotation(joint.axis(), joint.angle(motion))
 //! ```
 //!
 //! and left out at speeds where it is not shown. The parent of a part without one is the model
