@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use kernel::map::LightHead;
-use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, lamps};
+use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, Weather, lamps};
 use kernel::signals::LightPhase;
 use kernel::time::{TICK_HZ, Tick};
 
@@ -12,7 +12,7 @@ use crate::camera::EGO_MIDDLE_M;
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
 use crate::light::ShadowBox;
-use crate::mesh::actor::{actor_model, ego_model};
+use crate::mesh::actor::{ego_model, has_umbrella_up, sheltered_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::motion::Motion;
 use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
@@ -53,7 +53,8 @@ struct Role {
 pub(crate) struct Cast {
     /// The looks of parked cars by number, which they keep when they are pushed.
     parked_looks: Vec<u32>,
-    models: BTreeMap<(ActorKind, u32, Detail), Model>,
+    /// By kind, variant, level of detail, and whether it is under an umbrella.
+    models: BTreeMap<(ActorKind, u32, Detail, bool), Model>,
     heads: BTreeMap<(LightPhase, Detail), Mesh>,
 }
 
@@ -89,7 +90,7 @@ impl Cast {
         for (_, actor) in all {
             let (centre, radius) = around(actor);
             if view.sees(centre, radius) && !horizon.hides(centre, radius) {
-                self.pose_actor(actor, scene.tick, (view, shadow), moving);
+                self.pose_actor(actor, (scene.tick, &scene.weather), (view, shadow), moving);
             }
         }
         for head in heads {
@@ -114,7 +115,7 @@ impl Cast {
     fn pose_actor(
         &mut self,
         actor: &ActorScene,
-        tick: Tick,
+        (tick, weather): (Tick, &Weather),
         (view, shadow): (&View, Option<&ShadowBox>),
         moving: &mut Moving,
     ) {
@@ -131,10 +132,11 @@ impl Cast {
         let detail = if role.is_seen { detail } else { detail.max(Detail::Coarse) };
         let parked = parked_number(actor.id).and_then(|number| self.parked_looks.get(number));
         let variant = parked.copied().unwrap_or(actor.variant);
+        let sheltered = has_umbrella_up(actor.kind, variant, weather.precipitation_pct);
         let model = self
             .models
-            .entry((actor.kind, variant, detail))
-            .or_insert_with(|| actor_model(actor.kind, variant, detail));
+            .entry((actor.kind, variant, detail, sheltered))
+            .or_insert_with(|| sheltered_model(actor.kind, variant, detail, sheltered));
         let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
         let painted = (instance_of_actor(actor.id), flashing(actor.lamps, tick));
         moving.append(model, frame, &Motion::of_actor(actor), painted, role);
@@ -214,7 +216,6 @@ fn posed(v: &Vertex, frame: &Affine3A, instance: u16, lamps: u8) -> Vertex {
 #[cfg(test)]
 mod tests {
     use glam::Quat;
-    use kernel::weather::Weather;
 
     use super::*;
     use crate::Camera;

@@ -7,8 +7,18 @@ use kernel::scene::ActorKind;
 use super::model::{Detail, Model};
 use super::{car, heavy, loose, person, tram, two_wheeler, wheeled};
 
-/// The model of an actor.
+/// The model of an actor in dry weather.
 pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
+    sheltered_model(kind, variant, detail, false)
+}
+
+/// Whether an actor is under an umbrella in rain of so many percent of a cloudburst.
+pub fn has_umbrella_up(kind: ActorKind, variant: u32, rain_pct: f32) -> bool {
+    rain_pct > 0.0 && kind == ActorKind::Pedestrian && person::has_umbrella_up(variant, rain_pct)
+}
+
+/// The model of an actor, under its umbrella if it has one up.
+pub fn sheltered_model(kind: ActorKind, variant: u32, detail: Detail, under_umbrella: bool) -> Model {
     match kind {
         ActorKind::Car => car::car(variant, detail),
         ActorKind::Truck => heavy::truck(variant, detail),
@@ -20,7 +30,7 @@ pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
         ActorKind::Emergency => heavy::emergency(detail),
         ActorKind::Scooter => two_wheeler::scooter(variant, detail),
         ActorKind::CargoBike => two_wheeler::cargo_bike(variant, detail),
-        ActorKind::Pedestrian => person::walker(variant, detail),
+        ActorKind::Pedestrian => person::walker(variant, detail, under_umbrella),
         ActorKind::Child => person::child(variant, detail),
         ActorKind::Pram => wheeled::pram(variant, detail),
         ActorKind::Wheelchair => wheeled::wheelchair(variant, detail),

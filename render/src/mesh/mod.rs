@@ -4,14 +4,20 @@
 //! by [`model`], so that another renderer can pose them on its own.
 
 pub mod actor;
+mod baggage;
 pub mod barrier;
 mod body;
 pub mod building;
 pub mod car;
+mod figure;
+pub mod gait;
+mod head;
 pub mod heavy;
+mod loft;
 pub mod loose;
 pub mod model;
 pub mod motion;
+mod outfit;
 pub mod person;
 pub mod posts;
 pub mod prop;

@@ -4,7 +4,8 @@
 //! it in the list. A part is posed by
 //!
 //! ```text
-//! to_model(part) = to_model(parent) * translation(pivot) * rotation(joint.axis(), joint.angle(motion))
+//! to_model(part) = to_model(parent) * translation(pivot + z * joint.rise_m(motion))
+//!     * rotation(joint.axis(), joint.angle(motion))
 //! ```
 //!
 //! and left out at speeds where it is not shown. The parent of a part without one is the model
@@ -14,6 +15,7 @@
 use glam::{Affine3A, Quat, Vec3, Vec3A};
 use kernel::ops;
 
+use super::gait::Gait;
 use super::motion::Motion;
 use super::{Mesh, Vertex};
 
@@ -51,6 +53,10 @@ impl Swing {
 pub enum Joint {
     /// It swings as its actor walks or pedals.
     Swing(Swing),
+    /// It turns about y as its actor walks, radians.
+    Stride(Gait),
+    /// It rises and sinks as its actor walks, metres, and does not turn.
+    Bob(Gait),
     /// It steers: turns about z as the front wheels do.
     Steer,
     /// It rolls: turns about y by the way driven over this radius, metres.
@@ -66,7 +72,7 @@ impl Joint {
         match self {
             Self::Swing(swing) => swing.axis,
             Self::Steer => Vec3::Z,
-            Self::Roll { .. } => Vec3::Y,
+            Self::Stride(_) | Self::Bob(_) | Self::Roll { .. } => Vec3::Y,
         }
     }
 
@@ -74,8 +80,18 @@ impl Joint {
     pub fn angle(&self, motion: &Motion) -> f32 {
         match self {
             Self::Swing(swing) => swing.angle(motion.phase_rad, motion.speed_mps),
+            Self::Stride(gait) => gait.value(motion.phase_rad, motion.speed_mps),
+            Self::Bob(_) => 0.0,
             Self::Steer => motion.steer_rad,
             Self::Roll { radius_m } => motion.rolled_m / radius_m,
+        }
+    }
+
+    /// How far the part is above its pivot at a moment, metres.
+    pub fn rise_m(&self, motion: &Motion) -> f32 {
+        match self {
+            Self::Bob(gait) => gait.value(motion.phase_rad, motion.speed_mps),
+            _ => 0.0,
         }
     }
 }
@@ -140,6 +156,12 @@ impl Model {
         self.add_part(Part { parent, pivot, joint: swing.map(Joint::Swing), shown_mps: None, mesh })
     }
 
+    /// Appends a part that turns as somebody walks and gives its index.
+    pub fn add_stride(&mut self, parent: usize, pivot: Vec3, gait: Gait, mesh: Mesh) -> usize {
+        let joint = Some(Joint::Stride(gait));
+        self.add_part(Part { parent: Some(parent), pivot, joint, shown_mps: None, mesh })
+    }
+
     /// Appends a part and gives its index.
     pub fn add_part(&mut self, part: Part) -> usize {
         self.parts.push(part);
@@ -150,8 +172,10 @@ impl Model {
     pub fn scaled(mut self, factor: f32) -> Self {
         for part in &mut self.parts {
             part.pivot *= factor;
-            if let Some(Joint::Roll { radius_m }) = &mut part.joint {
-                *radius_m *= factor;
+            match &mut part.joint {
+                Some(Joint::Roll { radius_m }) => *radius_m *= factor,
+                Some(Joint::Bob(gait)) => *gait = gait.scaled(factor),
+                _ => {}
             }
             part.mesh.scale(Vec3::splat(factor));
         }
@@ -163,7 +187,8 @@ impl Model {
         let mut poses: Vec<Affine3A> = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
             let turn = part.joint.map_or(Quat::IDENTITY, |j| Quat::from_axis_angle(j.axis(), j.angle(motion)));
-            let local = Affine3A::from_rotation_translation(turn, part.pivot);
+            let rise_m = part.joint.map_or(0.0, |joint| joint.rise_m(motion));
+            let local = Affine3A::from_rotation_translation(turn, part.pivot + Vec3::Z * rise_m);
             poses.push(part.parent.map_or(local, |parent| poses[parent] * local));
         }
         poses

@@ -1,239 +1,210 @@
-//! People, on foot and riding, with joints at shoulders, elbows, hips and knees.
+//! People, on foot and riding, with joints at hips, knees, ankles, shoulders and elbows.
 
 use core::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::model::{Detail, Model, Swing};
+use super::Mesh;
+use super::figure::{ARM_OUT, HAND_M, Look, SHIN_M, SHOULDER_M, THIGH_M, UPPER_ARM_M};
+use super::gait::{Cycle, Gait};
+use super::model::{Detail, Joint, Model, Part, Swing};
+use super::outfit::{Carried, Outfit, Stance};
 use super::variety::Variety;
-use super::{Mesh, Paint};
 use crate::SemanticTag;
-
-const SKINS: [[u8; 3]; 5] = [[236, 196, 168], [214, 166, 132], [176, 124, 92], [122, 82, 58], [88, 58, 42]];
-const HAIRS: [[u8; 3]; 5] = [[36, 28, 24], [82, 58, 38], [142, 104, 62], [160, 158, 154], [22, 22, 26]];
-const TOPS: [[u8; 3]; 12] = [
-    [188, 42, 44],
-    [42, 78, 142],
-    [228, 224, 214],
-    [44, 46, 52],
-    [214, 168, 52],
-    [64, 116, 78],
-    [128, 70, 120],
-    [92, 140, 176],
-    [196, 110, 60],
-    [110, 100, 86],
-    [222, 140, 160],
-    [70, 88, 70],
-];
-const TROUSERS: [[u8; 3]; 6] = [[40, 52, 82], [34, 34, 38], [98, 86, 70], [126, 128, 132], [62, 66, 52], [76, 96, 130]];
-const SHOES: [[u8; 3]; 3] = [[28, 26, 26], [220, 220, 216], [90, 60, 40]];
-
-/// What a person wears.
-pub(super) struct Look {
-    tag: SemanticTag,
-    skin: [u8; 3],
-    hair: [u8; 3],
-    pub(super) top: [u8; 3],
-    legs: [u8; 3],
-    shoes: [u8; 3],
-    sleeves: bool,
-    skirt: bool,
-    bag: bool,
-    sides: u32,
-}
-
-impl Look {
-    pub(super) fn of(variety: &mut Variety, tag: SemanticTag, detail: Detail) -> Self {
-        Self {
-            tag,
-            skin: variety.colour(&SKINS),
-            hair: variety.colour(&HAIRS),
-            top: variety.colour(&TOPS),
-            legs: variety.colour(&TROUSERS),
-            shoes: variety.pick(&SHOES),
-            sleeves: !variety.one_in(3),
-            skirt: variety.one_in(4),
-            bag: variety.one_in(3),
-            sides: match detail {
-                Detail::Fine => 8,
-                Detail::Coarse => 5,
-                Detail::Rough => 3,
-            },
-        }
-    }
-
-    /// Dressed for a saddle.
-    pub(super) fn riding(self) -> Self {
-        Self { skirt: false, ..self }
-    }
-
-    /// Dressed for a chair with a back.
-    pub(super) fn sitting(self) -> Self {
-        Self { bag: false, ..self.riding() }
-    }
-
-    fn paint(&self, colour: [u8; 3]) -> Paint {
-        Paint::plain(self.tag, colour)
-    }
-
-    /// A limb from `a` to `b` with round ends.
-    fn limb(&self, mesh: &mut Mesh, colour: [u8; 3], a: Vec3, b: Vec3, radii: [f32; 2]) {
-        mesh.tube(self.paint(colour), a, b, radii[0], radii[1], self.sides);
-        if self.sides > 3 {
-            let axis = (b - a).normalize_or(Vec3::NEG_Z);
-            mesh.disc(self.paint(colour), b, axis, radii[1], self.sides);
-        }
-    }
-
-    /// Trunk and head around the hips' middle, upright.
-    pub(super) fn trunk(&self, helmet: Option<[u8; 3]>) -> Mesh {
-        let mut mesh = Mesh::default();
-        if self.sides == 3 {
-            return self.rough_trunk(helmet);
-        }
-        let rings = if self.sides > 6 { 6 } else { 4 };
-        let top = self.paint(self.top);
-        mesh.ellipsoid(self.paint(self.legs), Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.13, 0.17, 0.15), rings, self.sides);
-        mesh.ellipsoid(top, Vec3::new(0.0, 0.0, 0.17), Vec3::new(0.125, 0.17, 0.2), rings, self.sides);
-        mesh.ellipsoid(top, Vec3::new(0.0, 0.0, 0.36), Vec3::new(0.13, 0.215, 0.2), rings, self.sides);
-        mesh.tube(self.paint(self.skin), Vec3::new(0.0, 0.0, 0.5), Vec3::new(0.01, 0.0, 0.62), 0.055, 0.05, self.sides);
-        mesh.ellipsoid(
-            self.paint(self.skin),
-            Vec3::new(0.02, 0.0, 0.7),
-            Vec3::new(0.1, 0.08, 0.125),
-            rings,
-            self.sides,
-        );
-        let (cover, radii) = match helmet {
-            Some(colour) => (self.paint(colour).glossy(120), Vec3::new(0.13, 0.115, 0.12)),
-            None => (self.paint(self.hair), Vec3::new(0.105, 0.09, 0.105)),
-        };
-        mesh.ellipsoid(cover, Vec3::new(-0.02, 0.0, 0.745), radii, rings, self.sides);
-        if self.skirt && helmet.is_none() {
-            self.limb(&mut mesh, self.legs, Vec3::new(0.0, 0.0, 0.06), Vec3::new(0.0, 0.0, -0.4), [0.15, 0.23]);
-        }
-        if self.bag {
-            let bag = self.paint([60, 62, 70]);
-            mesh.cuboid(bag, Vec3::new(-0.27, -0.13, 0.14), Vec3::new(-0.12, 0.13, 0.5));
-        }
-        mesh
-    }
-
-    fn rough_trunk(&self, helmet: Option<[u8; 3]>) -> Mesh {
-        let mut mesh = Mesh::default();
-        mesh.ellipsoid(self.paint(self.top), Vec3::Z * 0.24, Vec3::new(0.14, 0.21, 0.36), 4, 5);
-        let head = self.paint(helmet.unwrap_or(self.hair));
-        mesh.ellipsoid(head, Vec3::new(0.0, 0.0, 0.72), Vec3::new(0.1, 0.09, 0.14), 3, 4);
-        if self.skirt && helmet.is_none() {
-            self.limb(&mut mesh, self.legs, Vec3::Z * 0.06, Vec3::Z * -0.4, [0.15, 0.23]);
-        }
-        mesh
-    }
-
-    /// Upper arm around the shoulder, hanging.
-    pub(super) fn upper_arm(&self) -> Mesh {
-        let mut mesh = Mesh::default();
-        self.limb(&mut mesh, self.top, Vec3::new(0.0, 0.0, 0.03), Vec3::new(0.0, 0.0, -0.28), [0.06, 0.045]);
-        mesh
-    }
-
-    /// Lower arm with its hand around the elbow, hanging.
-    pub(super) fn lower_arm(&self) -> Mesh {
-        let mut mesh = Mesh::default();
-        let colour = if self.sleeves { self.top } else { self.skin };
-        self.limb(&mut mesh, colour, Vec3::new(0.0, 0.0, 0.02), Vec3::new(0.0, 0.0, -0.24), [0.044, 0.034]);
-        if self.sides > 3 {
-            mesh.ellipsoid(
-                self.paint(self.skin),
-                Vec3::new(0.0, 0.0, -0.28),
-                Vec3::new(0.04, 0.03, 0.07),
-                4,
-                self.sides,
-            );
-        }
-        mesh
-    }
-
-    /// Upper leg around the hip, hanging.
-    pub(super) fn thigh(&self) -> Mesh {
-        let mut mesh = Mesh::default();
-        self.limb(&mut mesh, self.legs, Vec3::new(0.0, 0.0, 0.04), Vec3::new(0.0, 0.0, -0.44), [0.095, 0.066]);
-        mesh
-    }
-
-    /// Lower leg with its foot around the knee, hanging.
-    pub(super) fn shin(&self) -> Mesh {
-        let mut mesh = Mesh::default();
-        let colour = if self.skirt { self.skin } else { self.legs };
-        self.limb(&mut mesh, colour, Vec3::new(0.0, 0.0, 0.03), Vec3::new(0.0, 0.0, -0.38), [0.068, 0.046]);
-        if self.sides == 3 {
-            return mesh;
-        }
-        let shoe = self.paint(self.shoes);
-        mesh.cuboid(shoe, Vec3::new(-0.08, -0.045, -0.45), Vec3::new(0.18, 0.045, -0.36));
-        mesh.polygon(
-            shoe,
-            &[
-                Vec3::new(-0.08, 0.045, -0.45),
-                Vec3::new(0.18, 0.045, -0.45),
-                Vec3::new(0.18, -0.045, -0.45),
-                Vec3::new(-0.08, -0.045, -0.45),
-            ],
-        );
-        mesh
-    }
-}
 
 /// Height of the hips of a person 1.75 m tall, metres.
 const HIP_M: f32 = 0.92;
+/// Distance of a hip from the middle, metres.
+const HIP_Y_M: f32 = 0.088;
+/// Speeds from which on legs and arms move as those of one who walks, m/s. Phases advance with the way, so that feet stay
+/// where they tread, however slowly.
+const LEGS_MPS: f32 = 0.5;
+const ARMS_MPS: f32 = 1.4;
+/// Where in a stride knees are bent most and ankles stretched, radians.
+const KNEE_UP_RAD: f32 = 3.0;
+const PUSHED_OFF_RAD: f32 = 2.3;
+/// Below this speed one has a telephone in the hand that is held up for it, m/s.
+const PHONES_MPS: f32 = 0.4;
+/// Top of a head above the hips less the head's share of it, and that share, metres.
+const HEAD_M: [f32; 2] = [0.59, 0.24];
 
-/// Speed from which on a walker's stride is full, m/s.
-const STRIDE_MPS: f32 = 1.3;
-
-/// A swing about the axis to the left: positive angles move a hanging limb backwards.
-fn stride(rest_rad: f32, amplitude_rad: f32, lead_rad: f32) -> Option<Swing> {
-    Some(Swing { axis: Vec3::Y, rest_rad, amplitude_rad, lead_rad, full_speed_mps: STRIDE_MPS })
-}
-
-/// A child's height as a share of that of a grown person.
-const CHILD: f32 = 0.76;
 /// Upper arms and elbows of one who pushes something, radians.
 const PUSHES_RAD: [f32; 2] = [-0.55, -0.5];
+/// Of one who holds an umbrella.
+const HOLDS_RAD: [f32; 2] = [-0.3, -1.6];
+/// Of one who leans on a stick.
+const LEANS_RAD: [f32; 2] = [-0.16, -0.3];
 
-/// A person on foot of class Pedestrian, about 1.75 m tall.
-pub fn walker(variant: u32, detail: Detail) -> Model {
-    strolling(variant, detail, None)
+/// A person on foot of class Pedestrian. With an umbrella up if it rains on one who has one.
+pub fn walker(variant: u32, detail: Detail, under_umbrella: bool) -> Model {
+    let mut look = Look::of(&mut Variety::of(variant), SemanticTag::Pedestrian, detail);
+    if under_umbrella && look.outfit.carried == Carried::RolledUmbrella {
+        look.outfit.carried = Carried::Nothing;
+    }
+    afoot(&look, under_umbrella)
 }
 
-/// A child of about nine years.
+/// A child of 6 to 13 years.
 pub fn child(variant: u32, detail: Detail) -> Model {
-    walker(variant, detail).scaled(CHILD)
+    afoot(&Look::child(&mut Variety::of(variant), detail), false)
+}
+
+/// Whether a walker has an umbrella up in rain of so many percent of a cloudburst.
+pub fn has_umbrella_up(variant: u32, rain_pct: f32) -> bool {
+    let outfit = Outfit::of(&mut Variety::of(variant), false);
+    outfit.umbrella_pct.is_some_and(|from_pct| rain_pct >= from_pct)
 }
 
 /// A walker who holds something before the chest.
 pub(super) fn pusher(variant: u32, detail: Detail) -> Model {
-    strolling(variant, detail, Some(PUSHES_RAD.map(|rad| Swing::rigid(Vec3::Y, rad))))
+    let look = Look::of(&mut Variety::of(variant), SemanticTag::Pedestrian, detail);
+    let outfit = look.outfit.handed();
+    strolling(&Look { outfit, ..look }, 1.0, |_| Arm::Held(PUSHES_RAD)).0
 }
 
-/// A walker whose arms swing, or are held.
-fn strolling(variant: u32, detail: Detail, arms: Option<[Swing; 2]>) -> Model {
-    let mut variety = Variety::of(variant);
-    let look = Look::of(&mut variety, SemanticTag::Pedestrian, detail);
-    let mut model = Model::default();
-    let lean = Some(Swing::rigid(Vec3::Y, 0.04));
-    let trunk = model.add(None, Vec3::new(0.0, 0.0, HIP_M), lean, look.trunk(None));
-    for (side, lead) in [(1.0f32, 0.0), (-1.0, PI)] {
-        let hip = Vec3::new(0.0, side * 0.09, HIP_M - 0.02);
-        let thigh = model.add(None, hip, stride(-0.06, 0.48, lead), look.thigh());
-        model.add(Some(thigh), Vec3::new(0.0, 0.0, -0.44), stride(0.22, 0.32, lead + 0.9), look.shin());
-        // Arms swing against the leg of their side.
-        let shoulder = Vec3::new(0.0, side * 0.225, 0.47);
-        let swings = (stride(0.02, 0.42, lead + PI), stride(-0.25, 0.18, lead + PI));
-        let (at_shoulder, at_elbow) = arms.map_or(swings, |[shoulder, elbow]| (Some(shoulder), Some(elbow)));
-        let upper = model.add(Some(trunk), shoulder, at_shoulder, look.upper_arm());
-        model.add(Some(upper), Vec3::new(0.0, 0.0, -0.27), at_elbow, look.lower_arm());
+fn afoot(look: &Look, under_umbrella: bool) -> Model {
+    let outfit = &look.outfit;
+    let scale = outfit.build.height_m / (HIP_M + HEAD_M[0] + HEAD_M[1] * outfit.build.head);
+    let leans = outfit.carried == Carried::Stick;
+    let (mut model, forearms) = strolling(look, scale, |side| match side == look.hand() {
+        true if leans => Arm::Held(LEANS_RAD),
+        true if outfit.carried.is_in_hand() => Arm::Loaded,
+        false if under_umbrella => Arm::Held(HOLDS_RAD),
+        _ => Arm::Free,
+    });
+    let mut hold = |side: f32, rad: [f32; 2], mesh: Mesh| {
+        // What is held is upright, whatever the arm does.
+        let upright = Some(Swing::rigid(Vec3::Y, -rad[0] - rad[1] - lean(look).stand));
+        model.add(Some(forearms[usize::from(side < 0.0)]), Vec3::Z * -HAND_M, upright, mesh);
+    };
+    if leans {
+        hold(look.hand(), LEANS_RAD, look.stick(0.87));
     }
-    model
+    if under_umbrella {
+        hold(-look.hand(), HOLDS_RAD, look.umbrella(-look.hand()));
+    }
+    let phones = outfit.stance == Stance::Phone && !under_umbrella && look.detail < Detail::Rough;
+    if phones {
+        let parent = Some(forearms[usize::from(look.hand() > 0.0)]);
+        let shown_mps = Some([0.0, PHONES_MPS]);
+        model.add_part(Part { parent, pivot: Vec3::ZERO, joint: None, shown_mps, mesh: look.phone() });
+    }
+    model.scaled(scale)
+}
+
+/// What an arm does.
+#[derive(Clone, Copy)]
+enum Arm {
+    /// It swings against the leg of its side.
+    Free,
+    /// It swings little under what it carries.
+    Loaded,
+    /// Shoulder and elbow are kept, radians.
+    Held([f32; 2]),
+}
+
+/// The trunk's forward lean.
+fn lean(look: &Look) -> Gait {
+    let bent = 0.02 + 0.3 * look.outfit.build.stoop_rad;
+    let gait = |value: f32| Cycle::new(value, 0.0);
+    Gait {
+        stand: bent - 0.02,
+        walk: gait(bent + 0.02),
+        run: gait(bent + 0.16),
+        walks_mps: ARMS_MPS,
+        ..Gait::still(0.0)
+    }
+}
+
+/// Hip, knee and ankle of a leg. `reach` is by how much strides are longer than usual for such a leg.
+fn leg(look: &Look, side: f32, reach: f32) -> [Gait; 3] {
+    // The leg that bears no weight is bent a little.
+    let stand = if side == look.outfit.bears { [-0.01, 0.03, -0.02] } else { [-0.2, 0.31, -0.11] };
+    let walk = [
+        Cycle::new(-0.04, 0.33 * reach),
+        Cycle::new(0.1, 0.0).lifted(0.95, KNEE_UP_RAD),
+        Cycle::new(-0.06, -0.16 * reach).lifted(0.45, PUSHED_OFF_RAD),
+    ];
+    let run = [
+        Cycle::new(-0.14, 0.6),
+        Cycle::new(0.38, 0.0).lifted(1.2, KNEE_UP_RAD),
+        Cycle::new(-0.22, -0.2).lifted(0.5, PUSHED_OFF_RAD),
+    ];
+    let lead_rad = if side > 0.0 { 0.0 } else { PI };
+    let gait =
+        |i: usize| Gait { stand: stand[i], walk: walk[i], run: run[i], lead_rad, beats: 1.0, walks_mps: LEGS_MPS };
+    [gait(0), gait(1), gait(2)]
+}
+
+/// How the hips rise and sink so that one foot or the other is on the ground: fitted to the legs above, within 15 mm.
+fn bob(reach: f32) -> Gait {
+    let more = reach - 1.0;
+    Gait {
+        stand: -0.004,
+        walk: Cycle::new(-0.001 - 0.043 * more, 0.015 + 0.04 * more),
+        run: Cycle::new(-0.057, 0.05),
+        lead_rad: 0.75,
+        beats: 2.0,
+        walks_mps: LEGS_MPS,
+    }
+}
+
+/// Shoulder and elbow.
+fn arm(look: &Look, side: f32, arm: Arm) -> [Gait; 2] {
+    let lead_rad = if side > 0.0 { PI } else { 0.0 };
+    let swing = match arm {
+        Arm::Held(rad) => return rad.map(Gait::still),
+        Arm::Free => 1.0,
+        Arm::Loaded => 0.25,
+    };
+    let stand = match look.outfit.stance {
+        Stance::Pockets if swing == 1.0 => [0.28, -0.62],
+        Stance::Phone if swing == 1.0 && side == look.outfit.bears => [0.12, -2.1],
+        _ => [0.03 - 0.5 * lean(look).stand, -0.14],
+    };
+    let walk = [Cycle::new(0.02, 0.36 * swing), Cycle::new(-0.12 - 0.16 * swing, 0.16 * swing)];
+    let run = [Cycle::new(0.12, 0.62 * swing), Cycle::new(-0.4 - 0.95 * swing, 0.2 * swing)];
+    let gait =
+        |i: usize| Gait { stand: stand[i], walk: walk[i], run: run[i], lead_rad, beats: 1.0, walks_mps: ARMS_MPS };
+    [gait(0), gait(1)]
+}
+
+impl Look {
+    /// A shoulder in the trunk's frame.
+    fn shoulder(&self, side: f32) -> Vec3 {
+        let y_m = self.outfit.build.shoulders_m - 0.012;
+        Vec3::new(self.spine_m(SHOULDER_M), side * y_m, SHOULDER_M)
+    }
+}
+
+/// An elbow in the upper arm's frame.
+fn elbow_at(side: f32) -> Vec3 {
+    Vec3::new(0.0, side * ARM_OUT * UPPER_ARM_M, -UPPER_ARM_M)
+}
+
+/// Somebody who walks, before it is scaled, and the left and right forearm among its parts.
+fn strolling(look: &Look, scale: f32, arms: impl Fn(f32) -> Arm) -> (Model, [usize; 2]) {
+    // A stride is as long for everybody: short legs reach farther.
+    let reach = (1.0 / scale).clamp(0.94, 1.35);
+    let mut model = Model::default();
+    let hips = model.add_part(Part {
+        parent: None,
+        pivot: Vec3::Z * HIP_M,
+        joint: Some(Joint::Bob(bob(reach))),
+        shown_mps: None,
+        mesh: look.hips(),
+    });
+    let trunk = model.add_stride(hips, Vec3::ZERO, lean(look), look.trunk(None));
+    let forearms = [1.0f32, -1.0].map(|side| {
+        let [hip, knee, ankle] = leg(look, side, reach);
+        let thigh = model.add_stride(hips, Vec3::new(0.0, side * HIP_Y_M, -0.02), hip, look.thigh());
+        let shin = model.add_stride(thigh, Vec3::Z * -THIGH_M, knee, look.shin());
+        model.add_stride(shin, Vec3::Z * -SHIN_M, ankle, look.foot(side));
+        let [shoulder, elbow] = arm(look, side, arms(side));
+        let upper = model.add_stride(trunk, look.shoulder(side), shoulder, look.upper_arm(side));
+        model.add_stride(upper, elbow_at(side), elbow, look.lower_arm(side))
+    });
+    (model, forearms)
 }
 
 /// Where a rider sits and how far the rider bends.
@@ -256,14 +227,21 @@ pub(super) fn ride(model: &mut Model, look: &Look, seat: &Seat, helmet: Option<[
         Some(Swing { axis: Vec3::Y, rest_rad, amplitude_rad, lead_rad, full_speed_mps: 0.0 })
     };
     let lean = Some(Swing::rigid(Vec3::Y, seat.lean_rad));
-    let trunk = model.add(None, seat.hip, lean, look.trunk(helmet));
+    let mut trunk = look.hips();
+    trunk.append(&look.trunk(helmet), Vec3::ZERO);
+    let trunk = model.add(None, seat.hip, lean, trunk);
     for (side, lead) in [(1.0f32, 0.0), (-1.0, PI)] {
-        let hip = seat.hip + Vec3::new(0.0, side * 0.09, -0.02);
+        let hip = seat.hip + Vec3::new(0.0, side * HIP_Y_M, -0.02);
         let thigh = model.add(None, hip, pedal(seat.thigh_rad, lead), look.thigh());
-        model.add(Some(thigh), Vec3::new(0.0, 0.0, -0.44), pedal(seat.shin_rad, lead + 1.1), look.shin());
-        let shoulder = Vec3::new(0.0, side * 0.225, 0.47);
-        let upper = model.add(Some(trunk), shoulder, Some(Swing::rigid(Vec3::Y, seat.arm_rad)), look.upper_arm());
+        let knee = Vec3::Z * -THIGH_M;
+        let shin = model.add(Some(thigh), knee, pedal(seat.shin_rad, lead + 1.1), look.shin());
+        model.add(Some(shin), Vec3::Z * -SHIN_M, None, look.foot(side));
+        let shoulder = Swing::rigid(Vec3::Y, seat.arm_rad);
+        let upper = model.add(Some(trunk), look.shoulder(side), Some(shoulder), look.upper_arm(side));
         let elbow = Some(Swing::rigid(Vec3::Y, -0.35));
-        model.add(Some(upper), Vec3::new(0.0, 0.0, -0.27), elbow, look.lower_arm());
+        model.add(Some(upper), elbow_at(side), elbow, look.lower_arm(side));
     }
 }
+
+#[cfg(test)]
+mod tests;

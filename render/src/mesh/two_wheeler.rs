@@ -6,8 +6,9 @@ use glam::Vec3;
 use kernel::ops;
 
 use super::car::{BRAKE_LAMP, INDICATOR};
+use super::figure::Look;
 use super::model::{Detail, Model};
-use super::person::{Look, Seat, ride};
+use super::person::{Seat, ride};
 use super::variety::Variety;
 use super::wheel::RUBBER;
 use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};

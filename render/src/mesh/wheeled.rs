@@ -5,8 +5,9 @@ use core::f32::consts::TAU;
 use glam::Vec3;
 use kernel::ops;
 
+use super::figure::Look;
 use super::model::{Detail, Model};
-use super::person::{Look, Seat, pusher, ride};
+use super::person::{Seat, pusher, ride};
 use super::two_wheeler::{ring, sides};
 use super::variety::Variety;
 use super::wheel::RUBBER;

@@ -4,7 +4,8 @@
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 use kernel::map::{Prop, RoadNetwork};
 use kernel::scene::{SceneSnapshot, Weather};
-use render::mesh::actor::{actor_model, ego_model};
+use render::mesh::actor::{ego_model, has_umbrella_up, sheltered_model};
+use render::mesh::gait::{Cycle, Gait, RUNS_MPS};
 use render::mesh::model::{Detail, Joint, Model};
 use render::mesh::motion::Motion;
 use render::mesh::{Mesh, prop, signal, surface};
@@ -71,8 +72,15 @@ impl Collector {
         let speed_mps = motion.speed_mps.abs();
         for part in &model.parts {
             let (axis, angle) = part.joint.map_or((DVec3::X, 0.0), |joint| turned(&joint, motion));
+            let rise_m = match &part.joint {
+                Some(Joint::Bob(gait)) => value(gait, motion),
+                _ => 0.0,
+            };
             let parent = part.parent.map_or(to_world, |i| frames[i]);
-            let joint = DAffine3::from_rotation_translation(DQuat::from_axis_angle(axis, angle), wide(part.pivot));
+            let joint = DAffine3::from_rotation_translation(
+                DQuat::from_axis_angle(axis, angle),
+                wide(part.pivot) + DVec3::Z * rise_m,
+            );
             let frame = parent * joint;
             frames.push(frame);
             if part.shown_mps.is_none_or(|[from, to]| from <= speed_mps && speed_mps < to) {
@@ -80,6 +88,20 @@ impl Collector {
             }
         }
     }
+}
+
+/// What a gait is at a moment.
+fn value(gait: &Gait, motion: &Motion) -> f64 {
+    let phase = f64::from(motion.phase_rad) * f64::from(gait.beats) + f64::from(gait.lead_rad);
+    let at = |cycle: &Cycle| {
+        let near = 0.5 + 0.5 * (phase - f64::from(cycle.lift_at_rad)).cos();
+        f64::from(cycle.rest) + f64::from(cycle.swing) * phase.sin() + f64::from(cycle.lift) * near.powi(3)
+    };
+    let [from, to] = RUNS_MPS.map(f64::from);
+    let speed = f64::from(motion.speed_mps).abs();
+    let (walks, runs) = ((speed / f64::from(gait.walks_mps)).min(1.0), ((speed - from) / (to - from)).clamp(0.0, 1.0));
+    let walking = f64::from(gait.stand) * (1.0 - walks) + at(&gait.walk) * walks;
+    walking * (1.0 - runs) + at(&gait.run) * runs
 }
 
 /// Axis and angle of a joint at a moment.
@@ -91,6 +113,8 @@ fn turned(joint: &Joint, motion: &Motion) -> (DVec3, f64) {
             let phase = f64::from(motion.phase_rad) + f64::from(s.lead_rad);
             (wide(s.axis), f64::from(s.rest_rad) + f64::from(s.amplitude_rad) * phase.sin() * share)
         }
+        Joint::Stride(gait) => (DVec3::Y, value(gait, motion)),
+        Joint::Bob(_) => (DVec3::Y, 0.0),
         Joint::Steer => (DVec3::Z, f64::from(motion.steer_rad)),
         Joint::Roll { radius_m } => (DVec3::Y, f64::from(motion.rolled_m) / f64::from(*radius_m)),
     }
@@ -112,7 +136,8 @@ pub fn triangles(network: &RoadNetwork, scene: &SceneSnapshot) -> Vec<Triangle> 
         all.add(&signal::head(phase, Detail::Fine), upright(lamps, head.facing_rad));
     }
     for actor in &scene.actors {
-        let model = actor_model(actor.kind, actor.variant, Detail::Fine);
+        let sheltered = has_umbrella_up(actor.kind, actor.variant, scene.weather.precipitation_pct);
+        let model = sheltered_model(actor.kind, actor.variant, Detail::Fine, sheltered);
         let frame = DAffine3::from_rotation_translation(turn(actor.rotation), wide(actor.position));
         all.add_model(&model, frame, &Motion::of_actor(actor));
     }
