@@ -1,0 +1,198 @@
+//! The light of lamps on a square of ground around the eye, as a texture.
+
+use glam::{Vec2, Vec3};
+use kernel::scene::{ActorScene, SceneSnapshot, lamps};
+
+use crate::camera::EGO_MIDDLE_M;
+use crate::night::Lamps;
+use crate::street_lamps::StreetLamp;
+use crate::view::View;
+
+/// Texels along each side, and their size.
+pub(crate) const SIDE: usize = 160;
+const TEXEL_M: f32 = 1.0;
+
+/// Most light of street lamps and of headlights that a texel tells, in that of one street lamp right below it.
+const MOST: [f32; 2] = [2.0, 4.0];
+/// Heights are told from so far below the ego car's to so far above, as `scene.wgsl` has it.
+const HALF_RISE_M: f32 = 64.0;
+
+/// A street lamp lights the ground up to this distance from the point below it, and half as much as there at the other.
+const STREET_REACH_M: f32 = 24.0;
+const STREET_HALF_M: f32 = 14.0;
+
+/// How far low beams light the road, metres: those of the ego car, and of others, which are seen from the side.
+const EGO_BEAM_M: f32 = 70.0;
+const BEAM_M: f32 = 40.0;
+/// Light of two headlights close before them.
+const BEAM: f32 = 2.4;
+/// What a car ahead leaves of the ego car's light on the road beyond it.
+const BEHIND_A_CAR: f32 = 0.25;
+
+/// What lies on one square metre.
+#[derive(Clone, Copy, Default)]
+struct Lit {
+    street: f32,
+    head: f32,
+    /// Sum of the heights of the lamps' feet by their light.
+    height: f32,
+}
+
+/// The light map of a picture.
+pub(crate) struct LightMap {
+    /// Light of street lamps, of headlights (roots of shares of [`MOST`]), height of what they stand on.
+    pub(crate) texels: Vec<[u8; 4]>,
+    /// South-western corner.
+    pub(crate) corner: Vec2,
+    /// Height that texels' are above or below of.
+    base_m: f32,
+    lit: Vec<Lit>,
+}
+
+impl Default for LightMap {
+    fn default() -> Self {
+        let (texels, lit) = (vec![[0; 4]; SIDE * SIDE], vec![Lit::default(); SIDE * SIDE]);
+        Self { texels, corner: Vec2::ZERO, base_m: 0.0, lit }
+    }
+}
+
+/// Two headlights.
+struct Beam {
+    from: Vec3,
+    ahead: Vec2,
+    reach_m: f32,
+    strength: f32,
+    /// What stands in the way: how far ahead, and tangents of the angles between which it hides what lies beyond.
+    hidden: Vec<(f32, [f32; 2])>,
+}
+
+impl LightMap {
+    /// Share of its side that is a metre.
+    pub(crate) const PER_M: f32 = 1.0 / (SIDE as f32 * TEXEL_M);
+
+    /// Light of street lamps and of headlights where texels tell the most of it.
+    pub(crate) fn lights(&self, lamps: &Lamps) -> [Vec3; 2] {
+        [lamps.street * MOST[0], lamps.head * MOST[1]]
+    }
+
+    /// Lowest height that it tells.
+    pub(crate) fn lowest_m(&self) -> f32 {
+        self.base_m - HALF_RISE_M
+    }
+
+    /// Makes it for what a view sees of a scene.
+    pub(crate) fn light(&mut self, view: &View, scene: &SceneSnapshot, street: &[StreetLamp]) {
+        let half = 0.5 * SIDE as f32 * TEXEL_M;
+        let flat = view.ahead.truncate().normalize_or_zero();
+        let middle = view.eye.truncate() + flat * (0.75 * half);
+        self.corner = (middle / TEXEL_M).floor() * TEXEL_M - half;
+        self.base_m = scene.ego.position.z;
+        self.lit.fill(Lit::default());
+        for lamp in street {
+            self.add_street_lamp(lamp);
+        }
+        if scene.ego.lamps & lamps::HEADLIGHTS != 0 {
+            self.add_beam(&ego_beam(scene));
+        }
+        for actor in scene.actors.iter().filter(|actor| actor.lamps & lamps::HEADLIGHTS != 0) {
+            if let Some(beam) = beam_of(actor) {
+                self.add_beam(&beam);
+            }
+        }
+        self.encode();
+    }
+
+    /// Adds light to the texels in a square; `light` says how much by where they are from its middle.
+    fn add(&mut self, middle: Vec2, reach_m: f32, foot_m: f32, is_street: bool, light: impl Fn(Vec2) -> f32) {
+        let foot_m = foot_m - self.base_m;
+        let rel = (middle - self.corner) / TEXEL_M;
+        // The border stays dark, so that what lies beyond is dark too.
+        let range = |at: f32| {
+            let limit = |edge: f32| edge.clamp(1.0, SIDE as f32 - 1.0) as usize;
+            limit((at - reach_m / TEXEL_M).floor())..limit((at + reach_m / TEXEL_M).ceil())
+        };
+        for y in range(rel.y) {
+            for x in range(rel.x) {
+                let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                let brightness = light((at - rel) * TEXEL_M);
+                let lit = &mut self.lit[y * SIDE + x];
+                let sum = if is_street { &mut lit.street } else { &mut lit.head };
+                *sum += brightness;
+                lit.height += brightness * foot_m;
+            }
+        }
+    }
+
+    fn add_street_lamp(&mut self, lamp: &StreetLamp) {
+        self.add(lamp.position.truncate(), STREET_REACH_M, lamp.foot_m, true, |rel| {
+            let square = rel.length_squared();
+            let fade = (1.0 - square / (STREET_REACH_M * STREET_REACH_M)).max(0.0);
+            let near = 1.0 + square / (STREET_HALF_M * STREET_HALF_M);
+            fade * fade / (near * near)
+        });
+    }
+
+    fn add_beam(&mut self, beam: &Beam) {
+        let half = 0.5 * beam.reach_m;
+        let aside = beam.ahead.perp();
+        self.add(beam.from.truncate() + beam.ahead * half, half, beam.from.z, false, |rel| {
+            let (along, across) = (rel.dot(beam.ahead) + half, rel.dot(aside));
+            beam.strength * beam.light(along, across)
+        });
+    }
+
+    fn encode(&mut self) {
+        let byte = |share: f32| (255.0 * share.clamp(0.0, 1.0) + 0.5) as u8;
+        for (texel, lit) in self.texels.iter_mut().zip(&self.lit) {
+            let sum = lit.street + lit.head;
+            let height_m = if sum > 0.0 { lit.height / sum } else { 0.0 };
+            let [street, head] = [lit.street / MOST[0], lit.head / MOST[1]].map(|share| byte(share.sqrt()));
+            *texel = [street, head, byte(0.5 + 0.5 * height_m / HALF_RISE_M), 255];
+        }
+    }
+}
+
+impl Beam {
+    /// How much it lights what lies so far ahead and aside, metres: a wide low beam.
+    fn light(&self, along: f32, across: f32) -> f32 {
+        if along <= 0.5 {
+            return 0.0;
+        }
+        let aside = across / (along + 2.0);
+        let beam = 1.0 + aside * aside / (0.4 * 0.4);
+        let (near, far) = (((along - 0.5) / 3.0).min(1.0), (2.0 * (1.0 - along / self.reach_m)).clamp(0.0, 1.0));
+        let distance = 1.0 + along * along / (16.0 * 16.0);
+        let is_hidden =
+            |(from_m, [low, high]): &(f32, [f32; 2])| along > *from_m && (low * along..high * along).contains(&across);
+        let left = if self.hidden.iter().any(is_hidden) { BEHIND_A_CAR } else { 1.0 };
+        left * near * far / (distance * beam * beam)
+    }
+}
+
+fn ego_beam(scene: &SceneSnapshot) -> Beam {
+    let ego = &scene.ego;
+    let length_m = kernel::scene::ActorKind::Car.size_m().x;
+    let from = ego.position + ego.rotation * Vec3::X * (EGO_MIDDLE_M + 0.5 * length_m);
+    let ahead = (ego.rotation * Vec3::X).truncate().normalize_or_zero();
+    let hides = |actor: &ActorScene| {
+        let rel = (actor.position - from).truncate();
+        let (along, across) = (rel.dot(ahead), rel.dot(ahead.perp()));
+        let half = 0.5 * actor.kind.size_m();
+        let is_ahead = actor.kind.is_car_or_heavier() && along > half.x && along < EGO_BEAM_M;
+        is_ahead.then(|| (along, [across - half.y, across + half.y].map(|edge| edge / along)))
+    };
+    let hidden = scene.actors.iter().filter_map(hides).collect();
+    Beam { from, ahead, reach_m: EGO_BEAM_M, strength: BEAM, hidden }
+}
+
+fn beam_of(actor: &ActorScene) -> Option<Beam> {
+    let strength = match actor.kind {
+        kind if kind.is_car_or_heavier() => BEAM,
+        kind if kind.is_motorcycle() => 0.6 * BEAM,
+        _ => return None,
+    };
+    let ahead = actor.rotation * Vec3::X;
+    let from = actor.position + ahead * (0.5 * actor.kind.size_m().x);
+    let ahead = ahead.truncate().normalize_or_zero();
+    Some(Beam { from, ahead, reach_m: BEAM_M, strength, hidden: Vec::new() })
+}
