@@ -301,6 +301,25 @@ mod tests {
     }
 
     #[test]
+    fn tail_lamps_burn_in_the_dark_and_glow() {
+        let ego = EgoScene {
+            position: Vec3::ZERO,
+            rotation: Quat::IDENTITY,
+            speed_mps: 0.0,
+            wheel_angle_rad: 0.0,
+            lamps: lamps::HEADLIGHTS,
+        };
+        let weather = Weather::dry(0.0, 0.0, -20.0, 0.0);
+        let scene = SceneSnapshot { tick: 0, ego, actors: Vec::new(), lights: Vec::new(), weather };
+        let view = View::new(&Camera::chase(320, 200), &scene.ego);
+        let mut moving = Moving { shine: 1.0, ..Default::default() };
+        Cast::default().pose(&scene, &[], (&view, Horizon::new(view.eye, &[], 100.0)), None, &mut moving);
+        assert_eq!(lit(&moving.vertices), [TAIL_RED, [255, 250, 230]]);
+        let is_red = |glow: &Glow| glow.colour[0] > 5.0 * glow.colour[2] && glow.position[0] < 0.0;
+        assert!(moving.glows.len() == 2 && moving.glows.iter().all(is_red), "those behind: {:?}", moving.glows);
+    }
+
+    #[test]
     fn all_of_a_car_is_one_instance() {
         let vertices = drawn(0, 0, vec![actor(ActorKind::Car, 12.0, 0)]);
         let of = |instance: u16| vertices.iter().filter(|v| v.instance == instance).count();

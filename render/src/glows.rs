@@ -20,7 +20,7 @@ pub(crate) struct Glow {
 /// What lies this close together with one colour is one lamp, metres.
 const LAMP_M: f32 = 0.5;
 /// Radius of the glow of a vehicle's lamps and signals, and of a street lamp's, metres at the lamp itself.
-const RADIUS_M: f32 = 0.3;
+const RADIUS_M: f32 = 0.4;
 const STREET_RADIUS_M: f32 = 0.7;
 const STREET: Vec3 = Vec3::new(1.0, 0.82, 0.55);
 /// A street lamp seen from above its shade shows this share of its glow.

@@ -19,13 +19,13 @@ const HALF_RISE_M: f32 = 64.0;
 
 /// A street lamp lights the ground up to this distance from the point below it, and half as much as there at the other.
 const STREET_REACH_M: f32 = 24.0;
-const STREET_HALF_M: f32 = 14.0;
+const STREET_HALF_M: f32 = 11.0;
 
 /// How far low beams light the road, metres: those of the ego car, and of others, which are seen from the side.
 const EGO_BEAM_M: f32 = 70.0;
 const BEAM_M: f32 = 40.0;
 /// Light of two headlights close before them.
-const BEAM: f32 = 2.4;
+const BEAM: f32 = 2.0;
 /// What a car ahead leaves of the ego car's light on the road beyond it.
 const BEHIND_A_CAR: f32 = 0.25;
 
@@ -195,4 +195,41 @@ fn beam_of(actor: &ActorScene) -> Option<Beam> {
     let from = actor.position + ahead * (0.5 * actor.kind.size_m().x);
     let ahead = ahead.truncate().normalize_or_zero();
     Some(Beam { from, ahead, reach_m: BEAM_M, strength, hidden: Vec::new() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn beam(hidden: Vec<(f32, [f32; 2])>) -> Beam {
+        Beam { from: Vec3::ZERO, ahead: Vec2::X, reach_m: 60.0, strength: 1.0, hidden }
+    }
+
+    #[test]
+    fn a_beam_lights_what_is_ahead_and_fades() {
+        let free = beam(Vec::new());
+        assert_eq!(free.light(-1.0, 0.0), 0.0);
+        let along: Vec<f32> = [5.0, 10.0, 25.0, 50.0, 60.0].map(|m| free.light(m, 0.0)).to_vec();
+        assert!(along.is_sorted_by(|a, b| a > b) && along[4] == 0.0, "{along:?}");
+        assert!(free.light(10.0, 8.0) < 0.3 * free.light(10.0, 0.0));
+        let behind = beam(vec![(12.0, [-0.1, 0.1])]);
+        assert_eq!(behind.light(10.0, 0.0), free.light(10.0, 0.0));
+        assert_eq!(behind.light(20.0, 0.5), BEHIND_A_CAR * free.light(20.0, 0.5));
+        assert_eq!(behind.light(20.0, 3.0), free.light(20.0, 3.0));
+    }
+
+    #[test]
+    fn the_map_tells_light_and_height_and_ends_in_the_dark() {
+        let mut map = LightMap::default();
+        for x in [0.0, 80.5] {
+            map.add_street_lamp(&StreetLamp { position: Vec3::new(x, 80.5, 12.0), foot_m: 5.0 });
+        }
+        map.encode();
+        let texel = |x: usize, y: usize| map.texels[y * SIDE + x];
+        let below = texel(80, 80);
+        assert_eq!(below[0], (255.0 * (1.0 / MOST[0]).sqrt() + 0.5) as u8);
+        assert!((f32::from(below[2]) / 255.0 - (0.5 + 2.5 / HALF_RISE_M)).abs() < 0.003);
+        assert!(texel(95, 80)[0] < below[0] / 2 && below[1] == 0);
+        assert!(texel(1, 80)[0] > 150 && texel(0, 80)[0] == 0, "the border is dark");
+    }
 }

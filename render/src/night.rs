@@ -13,13 +13,13 @@ pub(crate) const DUSK_DEG: f32 = 5.0;
 /// Henderson 1963).
 const SKY_LX: [(f32, f32); 5] = [(-18.0, -3.2), (-12.0, -2.08), (-6.0, 0.53), (-0.8, 2.66), (DUSK_DEG, 3.68)];
 /// What moon and glow of the city add to it.
-const MOON_LX: f32 = 0.4;
-/// Under a street lamp (EN 13201, class C2: 20 lx).
-const STREET_LX: f32 = 16.0;
+const MOON_LX: f32 = 0.5;
+/// Right below a street lamp (EN 13201: a mean of 7.5 to 20 lx on streets of classes C4 to C2).
+const STREET_LX: f32 = 13.0;
 /// What a camera adapts to at least: a street at night.
 const DARKEST_LX: f32 = 3.4;
 /// Exposure follows light to this power: the dark stays darker than the day.
-const ADAPTATION: f32 = 0.85;
+const ADAPTATION: f32 = 0.8;
 
 /// Colours of light.
 const SODIUM: Vec3 = Vec3::new(1.12, 0.94, 0.7);
@@ -75,15 +75,15 @@ pub(crate) fn fallen(day: Light, weather: &Weather) -> Light {
         sun_light: day.sun_light * gain,
         sky_light: day.sky_light * left * blue + MOON * moon,
         ground_light: day.ground_light * left * blue + MOON * (0.6 * moon),
-        horizon: horizon + CITY * (0.7 * moon),
-        zenith: day.zenith * (0.8 * left) * blue + MOON * MOON * (0.22 * moon),
+        horizon: horizon + (CITY + MOON) * (0.22 * moon),
+        zenith: day.zenith * (0.8 * left) * blue + MOON * MOON * MOON * (0.2 * moon),
         fog,
         lamps: Some(Lamps {
             street: SODIUM * (base * STREET_LX),
             head: XENON * (base * STREET_LX),
-            window: 1.3 * base * STREET_LX,
+            window: 1.5 * base * STREET_LX,
             windows_lit: 0.45 - 0.2 * smooth(8.0, 25.0, -altitude_deg),
-            shine: smooth(-5.0, 3.0, -altitude_deg),
+            shine: smooth(-3.0, 6.0, -altitude_deg),
             afterglow: Vec3::new(1.0, 0.46, 0.16) * (1.1 * left * glow),
         }),
         ..day

@@ -13,8 +13,9 @@ struct GlowOut {
 }
 
 // A camera's glare grows with distance, as an angle.
-const SPREAD = 0.014;
-const LEAST_PX = 1.4;
+const SPREAD = 0.008;
+const LEAST_PX = 1.2;
+const HALF_M = 120.0;
 
 @vertex
 fn vertex(in: GlowIn, @builtin(vertex_index) index: u32) -> GlowOut {
@@ -30,6 +31,8 @@ fn vertex(in: GlowIn, @builtin(vertex_index) index: u32) -> GlowOut {
     if WEATHER {
         seen *= exp(-scene.fog_per_m * max(distance - scene.fog_from_m, 0.0));
     }
+    // What is far covers no less, but shines less.
+    seen /= 1.0 + distance / HALF_M;
     return GlowOut(project(near + aside * radius), corner, seen);
 }
 

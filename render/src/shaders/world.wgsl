@@ -179,6 +179,8 @@ const ROAD_LINE = 6u;
 const SIDEWALK = 8u;
 const GROUND = 14u;
 const TERRAIN = 22u;
+// Share of the light around a lamp that wet ground mirrors.
+const LAMPS_SHARE = 0.15;
 
 // A wet surface is darker, for light that is caught in the water; a puddle mirrors the sky.
 fn wetted(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
@@ -203,7 +205,9 @@ fn wetted(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
     let glint = mix(0.25 * film * pow(towards, 24.0), 3.0 * pow(towards, 400.0), puddle);
     if NIGHT {
         let lit = shade * (dark * (1.0 - mirror));
-        return finish_shining(in, lit, sunlit * dark * (1.0 - mirror), sky * mirror + scene.sun_light * glint);
+        // Lamps lie somewhere in what is mirrored around them.
+        let mirrored = sky + scene.sky_light * lamplight(in.from_eye) * LAMPS_SHARE;
+        return finish_shining(in, lit, sunlit * dark * (1.0 - mirror), mirrored * mirror + scene.sun_light * glint);
     }
     return finish(in, mix(shade * dark, sky, mirror), sunlit * dark * (1.0 - mirror) + scene.sun_light * glint);
 }
@@ -273,10 +277,11 @@ fn fragment_facade(in: Lit) -> Pixel {
     if NIGHT {
         let who = hash(cell.yx * 3.0 + vec2f(seed * 1.3, seed + 11.0));
         let is_lit = shop || (who < scene.windows_lit && !door);
-        let bulb = mix(vec3f(1.0, 0.6, 0.27), vec3f(0.95, 0.88, 0.7), select(fract(who * 29.0), 0.8, shop));
+        let bulb = mix(vec3f(1.1, 0.56, 0.2), vec3f(1.0, 0.85, 0.6), select(fract(who * 29.0), 0.75, shop));
         // Curtains, and the ceiling brighter than what stands below.
         let seen = (0.3 + 0.7 * fract(who * 53.0)) * (0.6 + 0.5 * at.y);
-        let brightness = scene.window * select(seen, 1.1, shop);
+        let goods = 0.6 + 0.4 * smoothstep(0.25, 0.6, at.y + 0.5 * grime);
+        let brightness = scene.window * select(seen, goods, shop);
         return finish_shining(in, shade, sunlit, select(vec3f(0.0), bulb * (brightness * open), is_lit));
     }
     return finish(in, shade, sunlit);
