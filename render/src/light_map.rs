@@ -1,7 +1,7 @@
 //! The light of lamps on a square of ground around the eye, as a texture.
 
 use glam::{Vec2, Vec3};
-use kernel::scene::{ActorScene, SceneSnapshot, lamps};
+use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, lamps};
 
 use crate::camera::EGO_MIDDLE_M;
 use crate::night::Lamps;
@@ -25,8 +25,8 @@ const STREET_HALF_M: f32 = 11.0;
 const EGO_BEAM_M: f32 = 70.0;
 const BEAM_M: f32 = 40.0;
 /// Light of two headlights close before them.
-const BEAM: f32 = 2.0;
-/// What a car ahead leaves of the ego car's light on the road beyond it.
+const BEAM: f32 = 1.8;
+/// What a car in a beam leaves of it on the road beyond.
 const BEHIND_A_CAR: f32 = 0.25;
 
 /// What lies on one square metre.
@@ -91,13 +91,16 @@ impl LightMap {
         for lamp in street {
             self.add_street_lamp(lamp);
         }
-        if scene.ego.lamps & lamps::HEADLIGHTS != 0 {
-            self.add_beam(&ego_beam(scene));
-        }
-        for actor in scene.actors.iter().filter(|actor| actor.lamps & lamps::HEADLIGHTS != 0) {
-            if let Some(beam) = beam_of(actor) {
-                self.add_beam(&beam);
-            }
+        let reach_m = 1.5 * half + BEAM_M;
+        let is_near = |actor: &&ActorScene| actor.position.truncate().distance(middle) < reach_m;
+        let near: Vec<&ActorScene> = scene.actors.iter().filter(is_near).collect();
+        let mut obstacles = vec![Obstacle::of_ego(&scene.ego)];
+        obstacles.extend(near.iter().filter_map(|actor| Obstacle::of(actor)));
+        let is_lit = |lamps: u8| lamps & lamps::HEADLIGHTS != 0;
+        let of_others = near.iter().filter(|actor| is_lit(actor.lamps)).filter_map(|actor| Beam::of(actor));
+        let own = is_lit(scene.ego.lamps).then(|| Beam::of_ego(&scene.ego));
+        for beam in own.into_iter().chain(of_others) {
+            self.add_beam(&beam.behind(&obstacles));
         }
         self.encode();
     }
@@ -169,32 +172,58 @@ impl Beam {
     }
 }
 
-fn ego_beam(scene: &SceneSnapshot) -> Beam {
-    let ego = &scene.ego;
-    let length_m = kernel::scene::ActorKind::Car.size_m().x;
-    let from = ego.position + ego.rotation * Vec3::X * (EGO_MIDDLE_M + 0.5 * length_m);
-    let ahead = (ego.rotation * Vec3::X).truncate().normalize_or_zero();
-    let hides = |actor: &ActorScene| {
-        let rel = (actor.position - from).truncate();
-        let (along, across) = (rel.dot(ahead), rel.dot(ahead.perp()));
-        let half = 0.5 * actor.kind.size_m();
-        let is_ahead = actor.kind.is_car_or_heavier() && along > half.x && along < EGO_BEAM_M;
-        is_ahead.then(|| (along, [across - half.y, across + half.y].map(|edge| edge / along)))
-    };
-    let hidden = scene.actors.iter().filter_map(hides).collect();
-    Beam { from, ahead, reach_m: EGO_BEAM_M, strength: BEAM, hidden }
+/// What keeps light from the road beyond it: a car or larger.
+struct Obstacle {
+    position: Vec2,
+    half: Vec2,
 }
 
-fn beam_of(actor: &ActorScene) -> Option<Beam> {
-    let strength = match actor.kind {
-        kind if kind.is_car_or_heavier() => BEAM,
-        kind if kind.is_motorcycle() => 0.6 * BEAM,
-        _ => return None,
-    };
-    let ahead = actor.rotation * Vec3::X;
-    let from = actor.position + ahead * (0.5 * actor.kind.size_m().x);
-    let ahead = ahead.truncate().normalize_or_zero();
-    Some(Beam { from, ahead, reach_m: BEAM_M, strength, hidden: Vec::new() })
+impl Obstacle {
+    fn of_ego(ego: &EgoScene) -> Self {
+        let middle = ego.position + ego.rotation * Vec3::X * EGO_MIDDLE_M;
+        Self { position: middle.truncate(), half: 0.5 * ActorKind::Car.size_m().truncate() }
+    }
+
+    fn of(actor: &ActorScene) -> Option<Self> {
+        let half = 0.5 * actor.kind.size_m().truncate();
+        actor.kind.is_car_or_heavier().then(|| Self { position: actor.position.truncate(), half })
+    }
+}
+
+impl Beam {
+    fn of_ego(ego: &EgoScene) -> Self {
+        let length_m = ActorKind::Car.size_m().x;
+        let ahead = ego.rotation * Vec3::X;
+        let from = ego.position + ahead * (EGO_MIDDLE_M + 0.5 * length_m);
+        Self::new(from, ahead, EGO_BEAM_M, BEAM)
+    }
+
+    fn of(actor: &ActorScene) -> Option<Self> {
+        let strength = match actor.kind {
+            kind if kind.is_car_or_heavier() => BEAM,
+            kind if kind.is_motorcycle() => 0.6 * BEAM,
+            _ => return None,
+        };
+        let ahead = actor.rotation * Vec3::X;
+        let from = actor.position + ahead * (0.5 * actor.kind.size_m().x);
+        Some(Self::new(from, ahead, BEAM_M, strength))
+    }
+
+    fn new(from: Vec3, ahead: Vec3, reach_m: f32, strength: f32) -> Self {
+        Self { from, ahead: ahead.truncate().normalize_or_zero(), reach_m, strength, hidden: Vec::new() }
+    }
+
+    /// The same behind what stands in its way.
+    fn behind(mut self, obstacles: &[Obstacle]) -> Self {
+        let hides = |obstacle: &Obstacle| {
+            let rel = obstacle.position - self.from.truncate();
+            let (along, across) = (rel.dot(self.ahead), rel.dot(self.ahead.perp()));
+            let edges = [across - obstacle.half.y, across + obstacle.half.y];
+            (along > obstacle.half.x && along < self.reach_m).then(|| (along, edges.map(|edge| edge / along)))
+        };
+        self.hidden = obstacles.iter().filter_map(hides).collect();
+        self
+    }
 }
 
 #[cfg(test)]

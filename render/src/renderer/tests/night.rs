@@ -116,7 +116,7 @@ fn headlights_light_the_road_ahead() {
     let (with, without) = (draw(&with_headlights(&scene)), draw(&scene));
     let ahead = |i: usize| (40..60).contains(&(i / 128)) && (48..80).contains(&(i % 128));
     assert!(mean(&with, ahead) > 2.5 * mean(&without, ahead), "{} {}", mean(&with, ahead), mean(&without, ahead));
-    // A car ahead is lit, and the road beyond it less than without it.
+    // So is a car ahead.
     let behind = with_headlights(&SceneSnapshot { actors: vec![car_at(&scene, 14.0, 0.0)], ..scene.clone() });
     let blocked = draw(&behind);
     let car = |i: usize| blocked.instance_ids[i] == instance_of_actor(1);
