@@ -9,6 +9,7 @@ use kernel::signals::LightPhase;
 use kernel::time::{TICK_HZ, Tick};
 
 use crate::camera::EGO_MIDDLE_M;
+use crate::glows::{self, Glow};
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
 use crate::light::ShadowBox;
@@ -28,6 +29,10 @@ const EYE_ROOM_M: f32 = 0.5;
 const FLASH_TICKS: Tick = TICK_HZ as Tick * 2 / 3;
 const AMBER: [u8; 3] = [255, 158, 32];
 
+/// Beside the bits of [`lamps`]: tail lamps, which are the brake lamps and burn with the headlights where it is dark.
+const TAIL: u8 = 0x80;
+const TAIL_RED: [u8; 3] = [128, 18, 15];
+
 /// Whoever is smaller than this many pixels casts no shadow.
 const SMALLEST_CASTER_PX: f32 = 4.0;
 
@@ -39,6 +44,11 @@ pub(crate) struct Moving {
     pub(crate) indices: Vec<u32>,
     /// Triangles that cast shadows into the picture, seen or not.
     pub(crate) casters: Vec<u32>,
+    /// How much lamps glow: not at all by day, 1 at night.
+    pub(crate) shine: f32,
+    /// Glows of lamps that are seen.
+    pub(crate) glows: Vec<Glow>,
+    eye: Vec3,
 }
 
 /// What something that moves is in a picture.
@@ -76,6 +86,8 @@ impl Cast {
         moving.vertices.clear();
         moving.indices.clear();
         moving.casters.clear();
+        moving.glows.clear();
+        moving.eye = view.eye;
         self.pose_ego(&scene.ego, scene.tick, (view, shadow), moving);
         let around = |actor: &ActorScene| {
             let (centre, radius) = sphere(actor);
@@ -184,7 +196,12 @@ impl Moving {
 
     fn append_mesh(&mut self, mesh: &Mesh, frame: Affine3A, (instance, lamps): (u16, u8), role: Role) {
         let first = self.vertices.len() as u32;
+        let is_lit_behind = self.shine > 0.0 && lamps & lamps::HEADLIGHTS != 0;
+        let lamps = if is_lit_behind { lamps | TAIL } else { lamps };
         self.vertices.extend(mesh.vertices.iter().map(|v| posed(v, &frame, instance, lamps)));
+        if self.shine > 0.0 && role.is_seen {
+            glows::of_lamps(&self.vertices[first as usize..], self.eye, self.shine, &mut self.glows);
+        }
         let plain = &mesh.triangles[Finish::Plain as usize];
         for (list, _) in
             [(&mut self.indices, role.is_seen), (&mut self.casters, role.casts)].into_iter().filter(|it| it.1)
@@ -206,6 +223,7 @@ fn posed(v: &Vertex, frame: &Affine3A, instance: u16, lamps: u8) -> Vertex {
     let (code, colour) = match v.code {
         CODE_HEAD if lamps & lamps::HEADLIGHTS != 0 => (CODE_LIT, [255, 250, 230]),
         CODE_BRAKE if lamps & lamps::BRAKE != 0 => (CODE_LIT, [255, 44, 36]),
+        CODE_BRAKE if lamps & TAIL != 0 => (CODE_LIT, TAIL_RED),
         CODE_LEFT if lamps & lamps::LEFT != 0 => (CODE_LIT, AMBER),
         CODE_RIGHT if lamps & lamps::RIGHT != 0 => (CODE_LIT, AMBER),
         code => (code, v.colour),
@@ -281,6 +299,25 @@ mod tests {
         }
         assert_eq!(shining(lamps::HEADLIGHTS | lamps::LEFT, off), [white], "head lamps do not flash");
         assert_eq!(shining(lamps::HEADLIGHTS | lamps::BRAKE | lamps::LEFT, 0), [red, AMBER, white]);
+    }
+
+    #[test]
+    fn tail_lamps_burn_in_the_dark_and_glow() {
+        let ego = EgoScene {
+            position: Vec3::ZERO,
+            rotation: Quat::IDENTITY,
+            speed_mps: 0.0,
+            wheel_angle_rad: 0.0,
+            lamps: lamps::HEADLIGHTS,
+        };
+        let weather = Weather::dry(0.0, 0.0, -20.0, 0.0);
+        let scene = SceneSnapshot { tick: 0, ego, actors: Vec::new(), lights: Vec::new(), weather };
+        let view = View::new(&Camera::chase(320, 200), &scene.ego);
+        let mut moving = Moving { shine: 1.0, ..Default::default() };
+        Cast::default().pose(&scene, &[], (&view, Horizon::new(view.eye, &[], 100.0)), None, &mut moving);
+        assert_eq!(lit(&moving.vertices), [TAIL_RED, [255, 250, 230]]);
+        let is_red = |glow: &Glow| glow.colour[0] > 5.0 * glow.colour[2] && glow.position[0] < 0.0;
+        assert!(moving.glows.len() == 2 && moving.glows.iter().all(is_red), "those behind: {:?}", moving.glows);
     }
 
     #[test]

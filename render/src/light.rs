@@ -4,7 +4,9 @@ use glam::{Mat4, Vec3};
 use kernel::ops;
 use kernel::scene::Weather;
 
-/// Light of a scene, linear.
+use crate::night::{self, Lamps};
+
+/// Light of a scene, linear, as a camera shows it that has adapted to how much of it there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Light {
     /// Towards the sun.
@@ -17,15 +19,24 @@ pub(crate) struct Light {
     /// Of fog that hides all behind it.
     pub(crate) fog: Vec3,
     pub(crate) exposure: f32,
+    /// Light that people make; none by day, when nobody sees it.
+    pub(crate) lamps: Option<Lamps>,
 }
 
 impl Light {
     pub(crate) fn new(weather: &Weather) -> Self {
+        let day = Self::by_day(weather);
+        if weather.sun_altitude_deg < night::DUSK_DEG { night::fallen(day, weather) } else { day }
+    }
+
+    /// As it is by day, and where the sun is low as if its sky were still that of [`night::DUSK_DEG`].
+    fn by_day(weather: &Weather) -> Self {
         let (altitude, azimuth) = (weather.sun_altitude_deg.to_radians(), weather.sun_azimuth_deg.to_radians());
         let flat = ops::cos(altitude);
         let sun = Vec3::new(flat * ops::cos(azimuth), flat * ops::sin(azimuth), ops::sin(altitude));
-        let day = smooth(-0.12, 0.25, sun.z);
-        let warm = 1.0 - smooth(0.05, 0.55, sun.z);
+        let lit_up = if weather.sun_altitude_deg < night::DUSK_DEG { night::dusk_height() } else { sun.z };
+        let day = smooth(-0.12, 0.25, lit_up);
+        let warm = 1.0 - smooth(0.05, 0.55, lit_up);
         let clouds = 0.01 * weather.cloudiness_pct;
         let white = Vec3::new(1.0, 0.95, 0.87).lerp(Vec3::new(1.0, 0.68, 0.4), warm);
         let grey = Vec3::new(0.62, 0.66, 0.72);
@@ -48,11 +59,13 @@ impl Light {
             zenith: zenith.lerp(grey * (0.6 * day), 0.8 * rain),
             fog: horizon.lerp(grey * day, 0.6) * (0.9 * dim) + Vec3::splat(0.01),
             exposure: 0.62,
+            lamps: None,
         }
     }
 }
 
-fn smooth(low: f32, high: f32, x: f32) -> f32 {
+/// 0 up to `low`, 1 from `high` on, smooth between.
+pub(crate) fn smooth(low: f32, high: f32, x: f32) -> f32 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
@@ -113,7 +126,7 @@ mod tests {
         let light = Light::new(&weather);
         assert!((light.sun - Vec3::new(0.0, 0.866, 0.5)).length() < 1e-3);
         let night = Light::new(&Weather { sun_altitude_deg: -30.0, ..weather });
-        assert!(night.sun_light.length() < 1e-6 && night.sky_light.length() < 0.1);
+        assert!(night.sun_light == Vec3::ZERO && night.sky_light.length() < 0.1);
     }
 
     #[test]

@@ -5,12 +5,15 @@ use kernel::map::LightHead;
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::actors::{Cast, Moving};
-use crate::gpu::{Draws, Gpu, Passes, SceneUniform, Targets};
+use crate::glows::{self, Glow};
+use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
+use crate::light_map::LightMap;
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadows::ShadowMaps;
 use crate::sieve::Sieve;
+use crate::street_lamps::{self, StreetLamp};
 use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, Quality, RenderError};
 
@@ -27,7 +30,13 @@ pub struct Renderer {
     moving: Moving,
     targets: Option<Targets>,
     shadows: ShadowMaps,
+    street_lamps: Vec<StreetLamp>,
+    light_map: LightMap,
+    glows: Vec<Glow>,
 }
+
+/// Street lamps are seen to shine up to this distance, metres.
+const STREET_LAMPS_M: f32 = 400.0;
 
 impl Renderer {
     /// Builds the map's static world on an adapter.
@@ -49,6 +58,9 @@ impl Renderer {
             moving: Moving::default(),
             targets: None,
             shadows: ShadowMaps::new(1),
+            street_lamps: street_lamps::all(network),
+            light_map: LightMap::default(),
+            glows: Vec::new(),
         })
     }
 
@@ -85,16 +97,26 @@ impl Renderer {
         let light = Light::new(&scene.weather);
         let horizon = self.scenery.horizon(view.eye);
         let shadow = ShadowBox::ahead_of(view.eye, view.ahead, light.sun, means.shadows.reach_m);
+        let lamps_shine = colours && light.lamps.is_some();
+        let lighting = match (lamps_shine, light.sun_light == Vec3::ZERO) {
+            (false, _) => Lighting::Day,
+            (true, false) => Lighting::Dusk,
+            (true, true) => Lighting::Night,
+        };
         let shines = colours && light.sun_light != Vec3::ZERO;
+        self.moving.shine = light.lamps.filter(|_| colours).map_or(0.0, |lamps| lamps.shine);
         self.cast.pose(scene, &self.heads, (&seen, horizon), shines.then_some(&shadow), &mut self.moving);
+        self.shine(scene, &seen, &light, colours);
         let samples = [width, height].map(|side| side * means.samples);
         let sieve = Sieve::new(&view, samples, takes_corners, scene);
         let mut sieve = if self.sifts { sieve } else { sieve.open() };
         let gone = gone(scene);
-        let (shadow_map, is_cast) = if colours { self.shadows.find(shadow, gone.clone()) } else { (0, true) };
+        let (shadow_map, is_cast) = if shines { self.shadows.find(shadow, gone.clone()) } else { (0, true) };
         let texel = 1.0 / means.shadows.side as f32;
         let draws = Draws {
-            uniforms: [view, corners].map(|view| SceneUniform::new(&view, scene, &light, shadow.matrix(), texel)),
+            uniforms: [view, corners].map(|view| {
+                SceneUniform::new(&view, scene, &light, shadow.matrix(), texel).lit(&light, &self.light_map)
+            }),
             moving_vertices: &self.moving.vertices,
             moving_indices: &sieve.sifted(&self.moving.vertices, &self.moving.indices),
             fixed_indices: self.scenery.visible(&seen, &gone, &mut sieve),
@@ -105,6 +127,9 @@ impl Renderer {
             colours,
             weather: rain::is_drawn(&scene.weather),
             drops: rain::drops(&scene.weather),
+            lighting,
+            light_map: lamps_shine.then_some(&self.light_map.texels),
+            glows: &self.glows,
         };
         let fits = |t: &Targets| t.is_for(width, height, means);
         let targets = match self.targets.take() {
@@ -113,6 +138,16 @@ impl Renderer {
         };
         self.passes.submit(&self.gpu, &draws, &targets);
         self.targets.insert(targets).read(&self.gpu, scene.tick)
+    }
+
+    /// Makes the map of lamps' light and their glows, where they shine.
+    fn shine(&mut self, scene: &SceneSnapshot, view: &View, light: &Light, colours: bool) {
+        self.glows.clear();
+        let Some(lamps) = light.lamps.filter(|_| colours) else { return };
+        let near = street_lamps::near(&self.street_lamps, view.eye, STREET_LAMPS_M);
+        self.light_map.light(view, scene, &near);
+        self.glows.extend_from_slice(&self.moving.glows);
+        glows::of_street_lamps(&near, view, lamps.shine, &mut self.glows);
     }
 
     fn check(&self, scene: &SceneSnapshot, camera: &Camera) -> Result<(), RenderError> {

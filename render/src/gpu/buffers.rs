@@ -8,6 +8,7 @@ use kernel::weather::Water;
 
 use super::Gpu;
 use crate::light::Light;
+use crate::light_map::LightMap;
 use crate::view::View;
 use crate::{rain, wind};
 
@@ -45,6 +46,15 @@ pub(crate) struct SceneUniform {
     puddles: f32,
     pixel_rad: f32,
     pad3: [f32; 2],
+    street: [f32; 3],
+    window: f32,
+    headlight: [f32; 3],
+    windows_lit: f32,
+    afterglow: [f32; 3],
+    shine: f32,
+    light_map_at: [f32; 2],
+    light_map_per_m: f32,
+    light_map_height: f32,
 }
 
 /// Clouds drift by this share of their pattern a second in a storm.
@@ -88,6 +98,27 @@ impl SceneUniform {
             puddles: water.level,
             pixel_rad: 1.0 / view.pixels_per_m,
             pad3: [0.0; 2],
+            ..Self::zeroed()
+        }
+    }
+
+    /// The same with lamps that shine, if they do.
+    pub(crate) fn lit(self, light: &Light, map: &LightMap) -> Self {
+        let Some(lamps) = light.lamps else { return self };
+        let [street, headlight] = map.lights(&lamps).map(|lit| (lit / light.sky_light).to_array());
+        let per_m = LightMap::PER_M;
+        let [x, y, z] = self.eye;
+        Self {
+            street,
+            headlight,
+            window: lamps.window,
+            windows_lit: lamps.windows_lit,
+            afterglow: lamps.afterglow.to_array(),
+            shine: lamps.shine,
+            light_map_at: [(x - map.corner.x) * per_m, (y - map.corner.y) * per_m],
+            light_map_per_m: per_m,
+            light_map_height: z - map.lowest_m(),
+            ..self
         }
     }
 }

@@ -13,4 +13,5 @@ mod textures;
 pub(crate) use buffers::{GrowingBuffer, SceneUniform};
 pub(crate) use device::Gpu;
 pub(crate) use passes::{Draws, Passes};
+pub(crate) use pipelines::Lighting;
 pub(crate) use targets::Targets;

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::pipelines::{self, Layouts, Pipelines};
 use super::targets::Samples;
-use super::{Gpu, GrowingBuffer, SceneUniform, Targets, readback, textures};
+use super::{Gpu, GrowingBuffer, Lighting, SceneUniform, Targets, readback, textures};
 use crate::SemanticTag;
+use crate::glows::Glow;
 use crate::mesh::{FINISHES, Finish, Vertex};
 use crate::quality::Shadows;
 
@@ -30,6 +31,10 @@ pub(crate) struct Draws<'a> {
     pub(crate) weather: bool,
     /// Drops of rain.
     pub(crate) drops: u32,
+    pub(crate) lighting: Lighting,
+    /// Texels of the map of lamps' light, where lamps shine.
+    pub(crate) light_map: Option<&'a [[u8; 4]]>,
+    pub(crate) glows: &'a [Glow],
 }
 
 /// Pipelines and the buffers they read.
@@ -45,6 +50,8 @@ pub(crate) struct Passes {
     fixed: wgpu::Buffer,
     moving: GrowingBuffer,
     indices: GrowingBuffer,
+    light_map: wgpu::Texture,
+    glows: GrowingBuffer,
 }
 
 /// The scene as one grid of samples sees it.
@@ -56,9 +63,8 @@ struct SceneBinding {
 /// Pipelines and maps for one kind of shadows.
 struct Style {
     shadows: Shadows,
-    dry: Pipelines,
-    /// Those for fog, water and rain, made when they are needed first.
-    weather: Option<Pipelines>,
+    /// With what they are for: whether there is fog, water or rain, and which light; made when they are needed first.
+    pipelines: Vec<((bool, Lighting), Pipelines)>,
     /// Shadow maps of what stands still.
     still: Vec<wgpu::Texture>,
     /// One of everything, for the picture at hand.
@@ -88,9 +94,12 @@ impl Passes {
         let vertices = buffer(size_of_val(fixed).max(size_of::<Vertex>()), U::VERTEX);
         gpu.queue.write_buffer(&vertices, 0, bytemuck::cast_slice(fixed));
         let (noise, noise_sampler) = (textures::noise_view(gpu), textures::noise_sampler(gpu));
+        let light_map = textures::light_map(gpu);
+        let light_map_view = light_map.create_view(&Default::default());
         let scenes = core::array::from_fn(|_| {
             let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
-            let scene = [uniform.as_entire_binding(), R::TextureView(&noise), R::Sampler(&noise_sampler)];
+            let [noise, light_map] = [&noise, &light_map_view].map(R::TextureView);
+            let scene = [uniform.as_entire_binding(), noise, R::Sampler(&noise_sampler), light_map];
             SceneBinding { group: bind(gpu, &layouts.scene, &scene), uniform }
         });
         Self {
@@ -101,6 +110,8 @@ impl Passes {
             fixed: vertices,
             moving: GrowingBuffer::new(gpu, U::VERTEX),
             indices: GrowingBuffer::new(gpu, U::INDEX),
+            light_map,
+            glows: GrowingBuffer::new(gpu, U::VERTEX),
             layouts,
         }
     }
@@ -111,6 +122,12 @@ impl Passes {
             gpu.queue.write_buffer(&scene.uniform, 0, bytemuck::bytes_of(uniform));
         }
         self.moving.write(gpu, draws.moving_vertices);
+        if let Some(texels) = draws.light_map {
+            textures::write_light_map(gpu, &self.light_map, texels);
+        }
+        if !draws.glows.is_empty() {
+            self.glows.write(gpu, draws.glows);
+        }
         let ranges = self.write_indices(gpu, draws);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if draws.colours {
@@ -134,7 +151,9 @@ impl Passes {
         let style = style.map(|index| self.styles.swap_remove(index));
         let mut style = style.unwrap_or_else(|| Style::new(gpu, &self.layouts, draws.shadows, &self.shadow_sampler));
         style.prepare(gpu, &self.layouts, draws);
-        self.shadow_passes(encoder, &style, ranges, draws);
+        if draws.lighting != Lighting::Night {
+            self.shadow_passes(encoder, &style, ranges, draws);
+        }
         for (samples, scene) in
             [Some(&targets.middles), targets.corners.as_ref()].into_iter().flatten().zip(&self.scenes)
         {
@@ -182,7 +201,7 @@ impl Passes {
             depth_stencil_attachment: Some(depth_attachment(&map.create_view(&Default::default()), load)),
             ..Default::default()
         });
-        pass.set_pipeline(&style.dry.shadow);
+        pass.set_pipeline(&style.pipelines().shadow);
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
         self.draw_mesh(&mut pass, vertices, casters);
     }
@@ -215,7 +234,7 @@ impl Passes {
         draws: &Draws<'_>,
         (samples, scene): (&Samples, &SceneBinding),
     ) {
-        let pipelines = style.pipelines(draws);
+        let pipelines = style.pipelines();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let (colour, ids, depth) = (view(&samples.colour), view(&samples.ids), view(&samples.depth));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -239,6 +258,11 @@ impl Passes {
             pass.set_pipeline(&pipelines.rain);
             pass.draw(0..6 * draws.drops, 0..1);
         }
+        if !draws.glows.is_empty() {
+            pass.set_pipeline(&pipelines.glow);
+            pass.set_vertex_buffer(0, self.glows.buffer.slice(..));
+            pass.draw(0..6, 0..draws.glows.len() as u32);
+        }
     }
 
     fn draw_mesh(&self, pass: &mut wgpu::RenderPass<'_>, vertices: &wgpu::Buffer, range: &Range<u32>) {
@@ -257,8 +281,7 @@ impl Style {
         let view = all.create_view(&Default::default());
         Self {
             shadows,
-            dry: Pipelines::new(gpu, layouts, shadows.taps, false),
-            weather: None,
+            pipelines: Vec::new(),
             still: Vec::new(),
             all_group: bind(gpu, &layouts.shadow, &[R::TextureView(&view), R::Sampler(sampler)]),
             all,
@@ -270,13 +293,19 @@ impl Style {
         while self.still.len() <= draws.shadow_map {
             self.still.push(textures::shadow_map(gpu, self.shadows.side));
         }
-        if draws.weather && self.weather.is_none() {
-            self.weather = Some(Pipelines::new(gpu, layouts, self.shadows.taps, true));
-        }
+        let wanted = (draws.weather, draws.lighting);
+        let known = self.pipelines.iter().position(|(made_for, _)| *made_for == wanted);
+        let last = known.unwrap_or_else(|| {
+            self.pipelines.push((wanted, Pipelines::new(gpu, layouts, self.shadows.taps, wanted)));
+            self.pipelines.len() - 1
+        });
+        // Those of the picture at hand come first.
+        self.pipelines.swap(0, last);
     }
 
-    fn pipelines(&self, draws: &Draws<'_>) -> &Pipelines {
-        self.weather.as_ref().filter(|_| draws.weather).unwrap_or(&self.dry)
+    /// Those of the picture at hand.
+    fn pipelines(&self) -> &Pipelines {
+        &self.pipelines[0].1
     }
 }
 

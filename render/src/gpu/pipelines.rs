@@ -3,14 +3,26 @@
 use super::targets::{COLOUR, DEPTH, IDS};
 use super::{Gpu, shaders};
 use crate::SemanticTag;
+use crate::glows::Glow;
 use crate::mesh::{FINISHES, Vertex};
 
 /// Bind group layouts that the pipelines share.
 pub(super) struct Layouts {
-    /// Scene uniform, noise and its sampler.
+    /// Scene uniform, noise and its sampler, map of lamps' light.
     pub(super) scene: wgpu::BindGroupLayout,
     /// Shadow map and its sampler.
     pub(super) shadow: wgpu::BindGroupLayout,
+}
+
+/// Which light there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lighting {
+    /// That of the sky.
+    Day,
+    /// That of the sky and of lamps.
+    Dusk,
+    /// The same without any of the sun's.
+    Night,
 }
 
 /// The pipelines of a frame.
@@ -19,6 +31,7 @@ pub(super) struct Pipelines {
     pub(super) world: [wgpu::RenderPipeline; FINISHES],
     pub(super) sky: wgpu::RenderPipeline,
     pub(super) rain: wgpu::RenderPipeline,
+    pub(super) glow: wgpu::RenderPipeline,
     pub(super) shadow: wgpu::RenderPipeline,
 }
 
@@ -34,7 +47,7 @@ impl Layouts {
         };
         let noise = texture(K::Float { filterable: true });
         Self {
-            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering)]),
+            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise]),
             shadow: layout(gpu, &[texture(K::Depth), T::Sampler(S::Comparison)]),
         }
     }
@@ -137,11 +150,14 @@ fn pipeline_layout(gpu: &Gpu, groups: &[Option<&wgpu::BindGroupLayout>]) -> wgpu
 
 impl Pipelines {
     /// `shadow_taps`: samples of the shadow map along each axis; `weather`: whether there is fog, water or rain.
-    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, shadow_taps: u32, weather: bool) -> Self {
-        let weather = ("WEATHER", f64::from(u8::from(weather)));
+    pub(super) fn new(gpu: &Gpu, layouts: &Layouts, shadow_taps: u32, (weather, lighting): (bool, Lighting)) -> Self {
+        let flag = |name: &'static str, is_so: bool| (name, f64::from(u8::from(is_so)));
+        let weather = flag("WEATHER", weather);
+        let night = flag("NIGHT", lighting != Lighting::Day);
+        let sun = flag("SUN", lighting != Lighting::Night);
         let scene_only = pipeline_layout(gpu, &[Some(&layouts.scene)]);
         let with_shadow = pipeline_layout(gpu, &[Some(&layouts.scene), Some(&layouts.shadow)]);
-        let [world, sky, shadow, rain] = ["world", "sky", "shadow", "rain"].map(|name| module(gpu, name));
+        let [world, sky, shadow, rain, glow] = ["world", "sky", "shadow", "rain", "glow"].map(|name| module(gpu, name));
         let opaque = [Some(COLOUR.into()), Some(IDS.into())];
         let base = Recipe {
             module: &world,
@@ -150,7 +166,7 @@ impl Pipelines {
             fragment: None,
             buffers: &[Some(world_vertices())],
             targets: &opaque,
-            constants: &[("SHADOW_TAPS", f64::from(shadow_taps)), weather],
+            constants: &[("SHADOW_TAPS", f64::from(shadow_taps)), weather, night, sun],
             cull: true,
             depth_write: true,
             depth_compare: wgpu::CompareFunction::Greater,
@@ -165,7 +181,7 @@ impl Pipelines {
                 layout: &scene_only,
                 fragment: Some("fragment"),
                 buffers: &[],
-                constants: &[("SKY_TAG", f64::from(SemanticTag::Sky as u8)), weather],
+                constants: &[("SKY_TAG", f64::from(SemanticTag::Sky as u8)), weather, night],
                 depth_write: false,
                 depth_compare: wgpu::CompareFunction::Equal,
                 ..base
@@ -177,7 +193,19 @@ impl Pipelines {
                 fragment: Some("fragment"),
                 buffers: &[],
                 targets: &[Some(covering()), Some(untouched())],
-                constants: &[],
+                constants: &[night],
+                cull: false,
+                depth_write: false,
+                ..base
+            }
+            .make(gpu),
+            glow: Recipe {
+                module: &glow,
+                layout: &scene_only,
+                fragment: Some("fragment"),
+                buffers: &[Some(glow_instances())],
+                targets: &[Some(brightening()), Some(untouched())],
+                constants: &[weather],
                 cull: false,
                 depth_write: false,
                 ..base
@@ -206,6 +234,27 @@ fn world_vertices() -> wgpu::VertexBufferLayout<'static> {
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &ATTRIBUTES,
     }
+}
+
+fn glow_instances() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 3] =
+        wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3];
+    wgpu::VertexBufferLayout {
+        array_stride: size_of::<Glow>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &ATTRIBUTES,
+    }
+}
+
+/// What comes is added to what is there, the less the brighter that is.
+fn brightening() -> wgpu::ColorTargetState {
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::OneMinusDst,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let blend = Some(wgpu::BlendState { color: add, alpha: add });
+    wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::COLOR }
 }
 
 /// What comes, as far as its alpha says, over what is there.

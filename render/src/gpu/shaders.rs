@@ -4,12 +4,13 @@
 const SCENE: &str = include_str!("../shaders/scene.wgsl");
 
 /// The shaders with their names, without the common start.
-const SOURCES: [(&str, &str); 5] = [
+const SOURCES: [(&str, &str); 6] = [
     ("world", include_str!("../shaders/world.wgsl")),
     ("classes", include_str!("../shaders/classes.wgsl")),
     ("sky", include_str!("../shaders/sky.wgsl")),
     ("shadow", include_str!("../shaders/shadow.wgsl")),
     ("rain", include_str!("../shaders/rain.wgsl")),
+    ("glow", include_str!("../shaders/glow.wgsl")),
 ];
 
 /// The shaders that do not need the scene.

@@ -1,7 +1,7 @@
 //! Textures that are filled once.
 
 use super::Gpu;
-use crate::noise;
+use crate::{light_map, noise};
 
 /// The noise texture with its mip levels.
 pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
@@ -31,6 +31,28 @@ pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
         gpu.queue.write_texture(target, texels, layout, size(level));
     }
     texture.create_view(&Default::default())
+}
+
+/// The texture for the map of lamps' light.
+pub(super) fn light_map(gpu: &Gpu) -> wgpu::Texture {
+    let side = light_map::SIDE as u32;
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("light map"),
+        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// Writes all of it.
+pub(super) fn write_light_map(gpu: &Gpu, texture: &wgpu::Texture, texels: &[[u8; 4]]) {
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * texture.width()), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, texture.size());
 }
 
 /// A depth texture that can be drawn to, copied and sampled.

@@ -64,6 +64,8 @@ pub const CODE_LEFT: u8 = 253;
 pub const CODE_RIGHT: u8 = 252;
 /// [`Vertex::code`] of a head lamp.
 pub const CODE_HEAD: u8 = 251;
+/// [`Vertex::code`] of the glass of a street lamp, which shines at night.
+pub const CODE_STREET: u8 = 250;
 /// [`Vertex::code`] of a surface with the joints of slabs.
 pub const CODE_SLABS: u8 = 1;
 /// [`Vertex::code`] of grass.

@@ -7,21 +7,33 @@ use kernel::map::{SIGN_LIMIT, SIGN_STOP, SIGN_YIELD};
 use kernel::ops;
 
 use super::model::Detail;
-use super::{Mesh, Paint};
+use super::{CODE_STREET, Mesh, Paint};
 use crate::SemanticTag;
 
 const STEEL: Paint = Paint::plain(SemanticTag::Pole, [132, 136, 138]).glossy(30);
+
+/// End of the arm of a street lamp, and the box that hangs on it.
+fn lamp_box(height_m: f32) -> [Vec3; 3] {
+    let tip = Vec3::new(1.5, 0.0, height_m - 0.05);
+    [tip, tip - Vec3::new(0.2, 0.15, 0.07), tip + Vec3::new(0.55, 0.15, 0.07)]
+}
+
+/// Middle of the glass of a street lamp.
+pub(crate) fn lamp_glass(height_m: f32) -> Vec3 {
+    let [_, low, high] = lamp_box(height_m);
+    Vec3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), low.z - 0.03)
+}
 
 /// A street lamp `height_m` high whose arm reaches along its x axis.
 pub fn lamp(height_m: f32, detail: Detail) -> Mesh {
     let sides = if detail == Detail::Fine { 8 } else { 4 };
     let mut mesh = Mesh::default();
-    let (elbow, tip) = (Vec3::Z * (height_m - 0.35), Vec3::new(1.5, 0.0, height_m - 0.05));
+    let elbow = Vec3::Z * (height_m - 0.35);
+    let [tip, low, high] = lamp_box(height_m);
     mesh.tube(STEEL.shaded(0.85), Vec3::ZERO, Vec3::Z * 0.9, 0.13, 0.13, sides);
     mesh.tube(STEEL, Vec3::Z * 0.9, elbow, 0.085, 0.06, sides);
     mesh.tube(STEEL, elbow, tip, 0.055, 0.045, sides);
-    let glass = Paint::plain(SemanticTag::Pole, [226, 224, 206]).glossy(120);
-    let (low, high) = (tip - Vec3::new(0.2, 0.15, 0.07), tip + Vec3::new(0.55, 0.15, 0.07));
+    let glass = Paint::plain(SemanticTag::Pole, [226, 224, 206]).glossy(120).coded(CODE_STREET);
     mesh.cuboid(STEEL.shaded(0.8), low, high);
     mesh.cuboid(glass, low + Vec3::new(0.1, 0.03, -0.03), Vec3::new(high.x - 0.1, high.y - 0.03, low.z));
     mesh

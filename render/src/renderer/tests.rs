@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 use kernel::map::MapData;
-use kernel::scene::{ActorKind, ActorScene, EgoScene, Weather};
+use kernel::scene::{ActorKind, ActorScene, EgoScene, Weather, lamps};
 use kernel::{Scenario, World, map};
 
 use super::*;
 use crate::{EGO_INSTANCE, SemanticTag, instance_of_actor};
+
+mod night;
 
 fn network(name: &str) -> Arc<RoadNetwork> {
     map::bundled(name).expect("it is bundled")
@@ -97,6 +99,11 @@ fn a_used_renderer_draws_what_a_new_one_does() {
         scenes.push(SceneSnapshot { weather, actors: vec![car_at(scene, 11.0, 1.0)], ..scene.clone() });
         let weather = Weather { precipitation_pct: 60.0, ..weather };
         scenes.push(SceneSnapshot { weather, actors: vec![car_at(scene, 30.0, -2.0)], ..scene.clone() });
+        let weather = Weather { sun_altitude_deg: 4.0 - 6.0 * i as f32, ..weather };
+        let weather = if i % 2 == 0 { Weather { precipitation_pct: 0.0, ..weather } } else { weather };
+        let ego = EgoScene { lamps: lamps::HEADLIGHTS * (i as u8 % 2), ..scene.ego };
+        let car = ActorScene { lamps: lamps::HEADLIGHTS | lamps::BRAKE, ..car_at(scene, 14.0, 2.0 - i as f32) };
+        scenes.push(SceneSnapshot { weather, ego, actors: vec![car], ..scene.clone() });
     }
     let camera = |i: usize| Camera::driver(128, 64).at(Quality::ALL[i % 3]);
     let mut new = renderer(&network);

@@ -3,6 +3,7 @@
 struct DropOut {
     @builtin(position) clip: vec4f,
     @location(0) alpha: f32,
+    @location(1) light: vec3f,
 }
 
 const BOX_M = vec3f(24.0, 24.0, 12.0);
@@ -30,11 +31,16 @@ fn vertex(@builtin(vertex_index) index: u32) -> DropOut {
     // What is thinner than a pixel covers it in part.
     let share = WIDTH_M / (2.0 * half_width);
     let seen = smoothstep(0.6, 1.5, distance) * (1.0 - smoothstep(8.0, 12.0, distance));
-    return DropOut(project(scene.eye + rel + scene.rain_streak * corner.x + aside * corner.y), seen * mix(share, 1.0, 0.4));
+    var light = scene.sky_light * 0.9 + scene.sun_light * 0.1;
+    if NIGHT {
+        light *= 1.0 + 0.5 * lamplight(rel);
+    }
+    let at = scene.eye + rel + scene.rain_streak * corner.x + aside * corner.y;
+    return DropOut(project(at), seen * mix(share, 1.0, 0.4), light);
 }
 
 @fragment
 fn fragment(in: DropOut) -> @location(0) vec4f {
-    let colour = to_screen(scene.sky_light * 0.9 + scene.sun_light * 0.1);
+    let colour = to_screen(in.light);
     return vec4f(colour.rgb, 0.45 * in.alpha);
 }

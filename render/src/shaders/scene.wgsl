@@ -36,14 +36,31 @@ struct Scene {
     pixel_rad: f32,
     pad3: f32,
     pad4: f32,
+    // Of lamps, in the light of the sky: 1 is as bright.
+    street: vec3f,
+    window: f32,
+    headlight: vec3f,
+    windows_lit: f32,
+    // Of the sky where the sun went down.
+    afterglow: vec3f,
+    shine: f32,
+    // From what lies so far from the eye to uv of the map of lamps' light, and heights above its base.
+    light_map_at: vec2f,
+    light_map_per_m: f32,
+    light_map_height: f32,
 }
 
 // Whether there is fog, rain or water to draw; without them a picture is what it would be if they did not exist.
 override WEATHER: bool = false;
 
+// Whether lamps shine, and whether the sun does, or is a cover of clouds' share of it left.
+override NIGHT: bool = false;
+override SUN: bool = true;
+
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var noise: texture_2d<f32>;
 @group(0) @binding(2) var noise_sampler: sampler;
+@group(0) @binding(3) var light_map: texture_2d<f32>;
 
 const NEAR_M = 0.1;
 
@@ -74,6 +91,17 @@ fn swayed(position: vec3f, sway: f32) -> vec3f {
 fn fogged(colour: vec3f, distance: f32) -> vec3f {
     let through = exp(-scene.fog_per_m * max(distance - scene.fog_from_m, 0.0));
     return mix(scene.fog, colour, through);
+}
+
+// What lamps add to what lies so far from the eye, in the light of the sky.
+fn lamplight(from_eye: vec3f) -> vec3f {
+    let uv = clamp(from_eye.xy * scene.light_map_per_m + scene.light_map_at, vec2f(0.003), vec2f(0.997));
+    let lit = textureSampleLevel(light_map, noise_sampler, uv, 0.0);
+    let height = from_eye.z + scene.light_map_height - 128.0 * lit.b;
+    // Shades of street lamps and the low beam keep light from what is high.
+    let below = clamp((10.5 - height) / 6.0, 0.08, 1.0);
+    let low = clamp((1.9 - height) / 1.1, 0.1, 1.0);
+    return scene.street * (lit.r * lit.r * below) + scene.headlight * (lit.g * lit.g * low);
 }
 
 // The clear sky's colour in a direction.

@@ -24,6 +24,9 @@ fn vertex(@builtin(vertex_index) index: u32) -> SkyOut {
     return SkyOut(vec4f(corner, 0.0, 1.0), scene.ahead + across + upward);
 }
 
+// Which way it is, level; zero where it is upright.
+fn flat(direction: vec3f) -> vec2f { return direction.xy / max(length(direction.xy), 1e-4); }
+
 fn cloud(at: vec2f) -> f32 {
     let big = textureSampleLevel(noise, noise_sampler, at * 0.05, 0.0).g;
     let small = textureSampleLevel(noise, noise_sampler, at * 0.21 + 0.37, 0.0).g;
@@ -37,6 +40,13 @@ fn fragment(in: SkyOut) -> Pixel {
     let towards = max(dot(direction, scene.sun), 0.0);
     let glow = towards * towards * towards * towards;
     colour += scene.sun_light * (0.05 * glow * glow + 0.16 * pow(towards, 90.0) + 6.0 * smoothstep(0.9993, 0.9997, towards));
+
+    if NIGHT {
+        // It is where the sun went down, and low.
+        let along = 0.5 + 0.5 * dot(flat(direction), flat(scene.sun));
+        let low = 1.0 - min(abs(direction.z) * 2.2, 1.0);
+        colour += scene.afterglow * (along * along * along * low * low * low);
+    }
 
     let height = max(direction.z, 0.0) + 0.06;
     let at = direction.xy / height + vec2f(scene.sky_drift_x, scene.sky_drift_y);

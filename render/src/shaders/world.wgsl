@@ -54,6 +54,16 @@ fn vertex(in: VertexIn) -> Lit {
     return lit(in);
 }
 
+// Code of the glass of a street lamp.
+const STREET_LAMP = 250u;
+
+// Lamps do not light what shines: it is as if the sun did, beyond the reach of all shadows.
+fn shine(out: ptr<function, Lit>, colour: vec3f) {
+    (*out).shade = vec3f(0.0);
+    (*out).sunlit = colour;
+    (*out).shadow = vec3f(2.0);
+}
+
 // Lacquer and glass mirror the sky; lamps shine.
 @vertex
 fn vertex_plain(in: VertexIn) -> Lit {
@@ -71,11 +81,20 @@ fn vertex_plain(in: VertexIn) -> Lit {
     if code_of(in.ids) == 255u {
         out.shade = to_linear(in.colour_param.rgb) * 2.2;
         out.sunlit = vec3f(0.0);
+        if NIGHT {
+            shine(&out, out.shade);
+        }
+    }
+    if NIGHT && code_of(in.ids) == STREET_LAMP {
+        shine(&out, mix(out.shade, vec3f(2.4, 2.0, 1.3), scene.shine));
     }
     return out;
 }
 
 fn sunshine(at: vec3f) -> f32 {
+    if !SUN {
+        return 1.0;
+    }
     let reach = (SHADOW_TAPS - 1) / 2;
     var sum = 0.0;
     for (var y = -reach; y <= reach; y++) {
@@ -89,7 +108,15 @@ fn sunshine(at: vec3f) -> f32 {
 }
 
 fn finish(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
+    return finish_shining(in, shade, sunlit, vec3f(0.0));
+}
+
+// `shining` is what no lamp lights: windows, and what water mirrors.
+fn finish_shining(in: Lit, shade: vec3f, sunlit: vec3f, shining: vec3f) -> Pixel {
     var colour = shade + sunlit * sunshine(in.shadow);
+    if NIGHT {
+        colour += shade * lamplight(in.from_eye) + shining;
+    }
     let distance = length(in.from_eye);
     let haze = min(distance / 1400.0, 0.9);
     colour = mix(colour, scene.horizon * 0.8, haze * haze);
@@ -152,6 +179,8 @@ const ROAD_LINE = 6u;
 const SIDEWALK = 8u;
 const GROUND = 14u;
 const TERRAIN = 22u;
+// Share of the light around a lamp that wet ground mirrors.
+const LAMPS_SHARE = 0.15;
 
 // A wet surface is darker, for light that is caught in the water; a puddle mirrors the sky.
 fn wetted(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
@@ -174,6 +203,12 @@ fn wetted(in: Lit, shade: vec3f, sunlit: vec3f) -> Pixel {
     let sky = mix(sky_colour(bounce), overcast, 0.85 * scene.cloudiness);
     let towards = max(dot(bounce, scene.sun), 0.0);
     let glint = mix(0.25 * film * pow(towards, 24.0), 3.0 * pow(towards, 400.0), puddle);
+    if NIGHT {
+        let lit = shade * (dark * (1.0 - mirror));
+        // Lamps lie somewhere in what is mirrored around them.
+        let mirrored = sky + scene.sky_light * lamplight(in.from_eye) * LAMPS_SHARE;
+        return finish_shining(in, lit, sunlit * dark * (1.0 - mirror), mirrored * mirror + scene.sun_light * glint);
+    }
     return finish(in, mix(shade * dark, sky, mirror), sunlit * dark * (1.0 - mirror) + scene.sun_light * glint);
 }
 
@@ -239,5 +274,15 @@ fn fragment_facade(in: Lit) -> Pixel {
     let open = pane * (1.0 - bar);
     shade = mix(shade, glass, open);
     sunlit = mix(sunlit, in.sunlit * 0.05, open);
+    if NIGHT {
+        let who = hash(cell.yx * 3.0 + vec2f(seed * 1.3, seed + 11.0));
+        let is_lit = shop || (who < scene.windows_lit && !door);
+        let bulb = mix(vec3f(1.1, 0.56, 0.2), vec3f(1.0, 0.85, 0.6), select(fract(who * 29.0), 0.75, shop));
+        // Curtains, and the ceiling brighter than what stands below.
+        let seen = (0.3 + 0.7 * fract(who * 53.0)) * (0.6 + 0.5 * at.y);
+        let goods = 0.6 + 0.4 * smoothstep(0.25, 0.6, at.y + 0.5 * grime);
+        let brightness = scene.window * select(seen, goods, shop);
+        return finish_shining(in, shade, sunlit, select(vec3f(0.0), bulb * (brightness * open), is_lit));
+    }
     return finish(in, shade, sunlit);
 }
