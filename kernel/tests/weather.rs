@@ -7,6 +7,7 @@ use std::sync::Arc;
 use common::{on_ring, ring, script};
 use glam::Vec3;
 use kernel::map::bundled;
+use kernel::scene::{FIRST_PARKED_ID, lamps};
 use kernel::time::{KEYFRAME_TICKS, Tick, seconds};
 use kernel::traffic::{Obstacle, Population, Surroundings, Traffic, TrafficCounts};
 use kernel::weather::{Conditions, Weather, WeatherChange, WeatherPreset};
@@ -173,5 +174,17 @@ fn the_road_under_the_ego_car_says_how_it_holds() {
             let world = World::new(&scenario, &road_of(material)).expect("it fits");
             assert!((world.friction() - expected).abs() < 1e-3, "{material}: {}", world.friction());
         }
+    }
+}
+
+#[test]
+fn headlights_come_on_in_the_dark_and_go_off_by_day() {
+    let network = bundled("city").expect("a bundled map");
+    for (weather, is_lit) in [(DRY, false), (preset("ClearNight"), true), (preset("HardRainNoon"), true)] {
+        let scenario = Scenario { weather, ..Scenario::default_for("city", 3) };
+        let scene = World::new(&scenario, &network).expect("it fits").scene();
+        assert_eq!(scene.ego.lamps & lamps::HEADLIGHTS != 0, is_lit);
+        let mut vehicles = scene.actors.iter().filter(|actor| actor.kind.is_vehicle() && actor.id < FIRST_PARKED_ID);
+        assert!(vehicles.all(|actor| (actor.lamps & lamps::HEADLIGHTS != 0) == is_lit));
     }
 }

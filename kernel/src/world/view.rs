@@ -71,6 +71,7 @@ impl World {
         let (tick, car) = (self.tick(), &self.parts.ego.car);
         let phase = |group| self.light(group);
         let weather = self.weather_at(tick);
+        let lit = weather.calls_for_headlights();
         let mut scene = SceneSnapshot {
             tick,
             ego: EgoScene {
@@ -78,9 +79,10 @@ impl World {
                 rotation: car.motion.rotation,
                 speed_mps: car.speed_mps(),
                 wheel_angle_rad: car.gear.wheel_angle_rad,
-                lamps: lamps_of(&self.parts.output.applied.controls),
+                // Headlights come on by themselves in the dark, as everybody's do.
+                lamps: lamps_of(&self.parts.output.applied.controls) | if lit { lamps::HEADLIGHTS } else { 0 },
             },
-            actors: self.actors(weather.calls_for_headlights()).chain(self.pushed_cars()).chain(self.doors()).collect(),
+            actors: self.actors(lit).chain(self.pushed_cars()).chain(self.doors()).collect(),
             lights: (0..self.network.light_groups.len() as u32).map(phase).collect(),
             weather,
         };
