@@ -12,7 +12,7 @@ use crate::camera::EGO_MIDDLE_M;
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
 use crate::light::ShadowBox;
-use crate::mesh::actor::{actor_model, ego_model};
+use crate::mesh::actor::{actor_model, ego_model, parked_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::motion::Motion;
 use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
@@ -48,12 +48,17 @@ struct Role {
     casts: bool,
 }
 
+/// Kind, variant and detail.
+type ModelKey = (ActorKind, u32, Detail);
+
 /// The models that have been needed so far.
 #[derive(Default)]
 pub(crate) struct Cast {
     /// The looks of parked cars by number, which they keep when they are pushed.
     parked_looks: Vec<u32>,
-    models: BTreeMap<(ActorKind, u32, Detail), Model>,
+    models: BTreeMap<ModelKey, Model>,
+    /// Those without anybody in them.
+    parked_models: BTreeMap<ModelKey, Model>,
     heads: BTreeMap<(LightPhase, Detail), Mesh>,
 }
 
@@ -131,10 +136,12 @@ impl Cast {
         let detail = if role.is_seen { detail } else { detail.max(Detail::Coarse) };
         let parked = parked_number(actor.id).and_then(|number| self.parked_looks.get(number));
         let variant = parked.copied().unwrap_or(actor.variant);
-        let model = self
-            .models
-            .entry((actor.kind, variant, detail))
-            .or_insert_with(|| actor_model(actor.kind, variant, detail));
+        let key = (actor.kind, variant, detail);
+        let model = if parked.is_some() {
+            self.parked_models.entry(key).or_insert_with(|| parked_model(actor.kind, variant, detail))
+        } else {
+            self.models.entry(key).or_insert_with(|| actor_model(actor.kind, variant, detail))
+        };
         let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
         let painted = (instance_of_actor(actor.id), flashing(actor.lamps, tick));
         moving.append(model, frame, &Motion::of_actor(actor), painted, role);
