@@ -67,7 +67,7 @@ pub fn bus(variant: u32, detail: Detail) -> Model {
     } else {
         body.boards(&mut mesh, pane, [FIRST_X, 5.1], WINDOW_Z, 0.01);
         for x in DOORS_X {
-            body.board(&mut mesh, pane.shaded(1.4), ([x, x + DOOR_M], DOOR_Z), -1.0, 0.02);
+            body.board(&mut mesh, pane.shaded(1.4), ([x, x + DOOR_M], DOOR_Z), -1.0, 0.05);
         }
     }
     let axles = Axles { x_m: vec![2.9, -3.0], y_m: 1.25 - OUTER_M, radius_m: 0.48, covered: true };
@@ -95,19 +95,15 @@ fn windows(mesh: &mut Mesh, body: &Loft<'_>) {
         body.boards(mesh, pane, [x, x + WINDOW_M], WINDOW_Z, 0.01);
     }
     for x in DOORS_X {
-        body.board(mesh, dark, ([x - 0.05, x + DOOR_M + 0.05], DOOR_Z), -1.0, 0.022);
+        body.board(mesh, dark, ([x - 0.05, x + DOOR_M + 0.05], DOOR_Z), -1.0, 0.05);
         let leaf = 0.5 * DOOR_M - 0.05;
         for at in [x + 0.02, x + 0.5 * DOOR_M + 0.03] {
             let z = [DOOR_Z[0] + 0.14, DOOR_Z[1] - 0.06];
-            body.board(mesh, pane.shaded(1.3), ([at, at + leaf], z), -1.0, 0.03);
+            body.board(mesh, pane.shaded(1.3), ([at, at + leaf], z), -1.0, 0.058);
         }
     }
-    for axle in [2.9f32, -3.0] {
-        let at = |share: f32, z: f32| (axle + share * 0.56, z);
-        let ring = [at(-1.0, 0.31), at(-0.9, 0.7), at(-0.55, 1.02), at(0.55, 1.02), at(0.9, 0.7), at(1.0, 0.31)];
-        for side in [-1.0, 1.0] {
-            body.pane(mesh, dark.glossy(0), &ring, side, 0.012);
-        }
+    for axle in [2.9, -3.0] {
+        body.arc(mesh, dark.glossy(0), (axle, 0.48), 6, 0.015);
     }
 }
 

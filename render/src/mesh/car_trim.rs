@@ -1,21 +1,17 @@
 //! What is mounted on passenger cars: lamps, plates, grilles, mirrors, and the lines of doors.
 
-use core::f32::consts::PI;
-
 use glam::Vec3;
-use kernel::ops;
 
 use super::car_shape::Shape;
 use super::fittings::{brake_lamp, facing, head_lamp, indicator, mirrors, plastic, plate};
-use super::loft::{CLEARANCE_M, Loft};
+use super::loft::Loft;
 use super::model::Detail;
 use super::{Mesh, Paint};
 use crate::SemanticTag;
 
 const TAG: SemanticTag = SemanticTag::Vehicles;
 
-/// Dark arcs around wheels are so much larger, and so far before the flank, metres.
-const ARC_M: f32 = 0.06;
+/// Dark arcs around wheels are so far before the flank, metres.
 const ARC_OUT_M: f32 = 0.02;
 
 /// Head lamps, brake lamps, indicators and number plates; at its finest lamps reach around the corners.
@@ -58,20 +54,8 @@ fn around(mesh: &mut Mesh, paint: Paint, mut ring: [Vec3; 4], side: f32) {
 /// Dark arcs over the wheels.
 pub(super) fn arcs(mesh: &mut Mesh, shape: &Shape, body: &Loft<'_>, detail: Detail) {
     let steps = if detail == Detail::Fine { 6 } else { 4 };
-    let radius = shape.wheel_radius + ARC_M;
     for x in shape.axles {
-        for side in [-1.0, 1.0] {
-            let on = |step: u32| {
-                let angle = PI * step as f32 / steps as f32;
-                let z = shape.wheel_radius + radius * ops::sin(angle);
-                body.flank(x - side * radius * ops::cos(angle), z, side, ARC_OUT_M)
-            };
-            let foot = |step: u32| on(step).with_z(CLEARANCE_M);
-            let mut ring: Vec<Vec3> = vec![foot(0), foot(steps)];
-            ring.extend((0..=steps).rev().map(on));
-            ring.reverse();
-            mesh.polygon(plastic(TAG).glossy(0).shaded(0.6), &ring);
-        }
+        body.arc(mesh, plastic(TAG).glossy(0).shaded(0.6), (x, shape.wheel_radius), steps, ARC_OUT_M);
     }
 }
 

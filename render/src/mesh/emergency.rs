@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::Paint;
+use super::fittings::facing;
 use super::model::{Detail, Model};
 use super::van::{Design, axles, loft};
 use super::variety::Variety;
@@ -43,13 +44,10 @@ pub fn emergency(variant: u32, detail: Detail) -> Model {
     }
     let steel = Paint::plain(tag, [206, 210, 214]).glossy(60);
     let blue = Paint::plain(tag, [24, 70, 210]).glossy(160);
+    mesh.cuboid(blue, Vec3::new(0.62, -0.64, 1.97), Vec3::new(0.92, 0.64, 2.18));
     if detail == Detail::Fine {
-        mesh.cuboid(blue, Vec3::new(0.62, -0.64, 1.97), Vec3::new(0.92, -0.22, 2.18));
-        mesh.cuboid(blue, Vec3::new(0.62, 0.22, 1.97), Vec3::new(0.92, 0.64, 2.18));
-        mesh.cuboid(steel, Vec3::new(0.65, -0.22, 1.97), Vec3::new(0.89, 0.22, 2.14));
+        facing(&mut mesh, steel, 0.925, [-0.2, 0.2], [1.99, 2.16]);
         mesh.cuboid(blue, Vec3::new(-2.2, -0.5, 1.95), Vec3::new(-2.05, 0.5, 2.1));
-    } else {
-        mesh.cuboid(blue, Vec3::new(0.62, -0.64, 1.97), Vec3::new(0.92, 0.64, 2.18));
     }
     axles(Vec3::ONE).under(mesh, tag, detail)
 }

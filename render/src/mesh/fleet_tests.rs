@@ -136,9 +136,9 @@ fn vehicles_are_cheap_to_draw() {
     for (kind, most) in [
         (ActorKind::Car, [580, 228, 58]),
         (ActorKind::Suv, [580, 228, 58]),
-        (ActorKind::Van, [456, 178, 178]),
-        (ActorKind::Emergency, [520, 210, 210]),
-        (ActorKind::Truck, [690, 264, 264]),
+        (ActorKind::Van, [460, 178, 178]),
+        (ActorKind::Emergency, [505, 210, 210]),
+        (ActorKind::Truck, [700, 264, 264]),
         (ActorKind::Bus, [490, 172, 172]),
         (ActorKind::Tram, [420, 234, 234]),
         (ActorKind::Motorcycle, [1930, 990, 625]),

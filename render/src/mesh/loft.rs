@@ -1,6 +1,9 @@
 //! Bodies of vehicles: cross-sections along a vehicle under one skin, with or without arches that wheels steer in.
 
+use core::f32::consts::PI;
+
 use glam::Vec3;
+use kernel::ops;
 
 use super::model::Detail;
 use super::skin::skin;
@@ -117,6 +120,21 @@ impl<'a> Loft<'a> {
             ring.reverse();
         }
         mesh.polygon(paint, &ring);
+    }
+
+    /// Dark arcs over the wheels of an axle with its x and their radius, where there are no arches.
+    pub(super) fn arc(&self, mesh: &mut Mesh, paint: Paint, (axle, wheel): (f32, f32), steps: u32, out: f32) {
+        let radius = wheel + ARCH_ROOM_M;
+        let at = |step: u32| {
+            let angle = PI * step as f32 / steps as f32;
+            (axle + radius * ops::cos(angle), wheel + radius * ops::sin(angle))
+        };
+        let foot = |share: f32| (axle + share * radius, self.section.sill);
+        let over: Vec<Point> = [foot(-0.95)].into_iter().chain([foot(0.95)]).chain((0..=steps).map(at)).collect();
+        for side in [-1.0, 1.0] {
+            let ring: Vec<Point> = over.iter().rev().copied().collect();
+            self.pane(mesh, paint, &ring, side, out);
+        }
     }
 
     /// The corners of a board on the upper side between two stations, `out` metres before it and so much of its width wide,

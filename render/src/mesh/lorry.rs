@@ -81,12 +81,9 @@ fn cab(mesh: &mut Mesh, variety: &mut Variety, paint: Paint, detail: Detail) {
         body.boards(mesh, line, [x, x + 0.02], [1.26, 2.3], 0.006);
     }
     facing(mesh, dark, 3.486, [-1.1, 1.1], [0.47, 0.56]);
-    // A visor over the windscreen, and the wheels' arches.
+    // A visor over the windscreen, and the arches of the front wheels.
     facing(mesh, paint.shaded(0.5), 3.44, [-1.0, 1.0], [2.34, 2.46]);
-    let arch = [(1.96, 0.47), (2.04, 0.8), (2.24, 1.02), (2.76, 1.02), (2.96, 0.8), (3.04, 0.47)];
-    for side in [-1.0, 1.0] {
-        body.pane(mesh, dark.glossy(0), &arch, side, 0.012);
-    }
+    body.arc(mesh, dark.glossy(0), (AXLES_M[0], WHEEL_RADIUS_M), 6, 0.015);
     let driver = Occupant::of(variety, DRIVER);
     driver.show(mesh, pane, &screen, From::Ahead);
     for side in [-1.0, 1.0] {
@@ -143,7 +140,7 @@ fn tank(mesh: &mut Mesh, detail: Detail) {
     mesh.rod(steel, rear, front, 0.98, sides);
     mesh.cuboid(steel.shaded(0.7), Vec3::new(-2.6, -0.25, 2.86), Vec3::new(0.6, 0.25, 3.0));
     if detail == Detail::Fine {
-        for share in [0.1, 0.37, 0.63, 0.9] {
+        for share in [0.12, 0.5, 0.88] {
             let at = rear.lerp(front, share);
             mesh.tube(steel.shaded(0.6), at, at + Vec3::X * 0.06, 0.992, 0.992, 16);
         }

@@ -40,6 +40,8 @@ pub fn motorcycle(variant: u32, detail: Detail) -> Model {
     shield(&mut mesh, [Vec3::new(0.72, 0.15, 0.98), Vec3::new(0.5, 0.12, 1.2)]);
     if detail == Detail::Fine {
         mudguard(&mut mesh, lacquer, Vec3::new(0.72, 0.0, 0.31), 0.345);
+    }
+    if detail != Detail::Rough {
         mirrors(&mut mesh, dark, Vec3::new(0.42, 0.3, 1.02));
     }
     lamps(&mut mesh, [Vec3::new(0.81, 0.0, 0.9), Vec3::new(-0.95, 0.0, 0.76)], [0.22, 0.14]);
@@ -78,8 +80,10 @@ pub fn scooter(variant: u32, detail: Detail) -> Model {
     }
     if detail == Detail::Fine {
         mudguard(&mut mesh, lacquer, Vec3::new(0.66, 0.0, 0.23), 0.27);
-        mirrors(&mut mesh, dark, Vec3::new(0.38, 0.28, 1.02));
         mesh.rod(dark.colour(STEEL), Vec3::new(-0.72, -0.16, 0.3), Vec3::new(-0.4, -0.15, 0.26), 0.05, 6);
+    }
+    if detail != Detail::Rough {
+        mirrors(&mut mesh, dark, Vec3::new(0.38, 0.28, 1.02));
     }
     lamps(&mut mesh, [Vec3::new(0.65, 0.0, 0.97), Vec3::new(-0.92, 0.0, 0.62)], [0.16, 0.12]);
     let seat = Seat {

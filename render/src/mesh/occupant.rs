@@ -10,7 +10,7 @@ const HAIRS: [[u8; 3]; 4] = [[36, 28, 24], [82, 58, 38], [142, 104, 62], [150, 1
 const TOPS: [[u8; 3]; 6] = [[188, 42, 44], [62, 98, 162], [228, 224, 214], [84, 86, 92], [74, 126, 88], [196, 110, 60]];
 
 /// How much of people's colours shows through glass.
-const SEEN_SHARE: f32 = 0.5;
+const SEEN_SHARE: f32 = 0.36;
 
 /// Silhouettes lie so far before the glass, metres: less than anything that is mounted on it.
 const BEFORE_GLASS_M: f32 = 0.006;
@@ -66,7 +66,10 @@ impl Occupant {
             }
             mesh.polygon(through(colour), &ring);
         };
-        paint_on(self.top, &[(-trunk, -0.45), (trunk, -0.45), (0.8 * trunk, -0.15), (-0.8 * trunk, -0.15)]);
+        // From behind, seats hide all but heads.
+        if from != From::Behind {
+            paint_on(self.top, &[(-trunk, -0.45), (trunk, -0.45), (0.8 * trunk, -0.15), (-0.8 * trunk, -0.15)]);
+        }
         let face = if from == From::Behind { self.hair } else { self.skin };
         let (half, low, high) = (0.6 * head, -0.13, 0.12);
         paint_on(face, &[(-half, low), (half, low), (head, 0.0), (half, high), (-half, high), (-head, 0.0)]);

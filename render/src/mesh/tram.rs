@@ -103,9 +103,9 @@ fn windows(mesh: &mut Mesh, body: &Loft<'_>, [from, to]: [f32; 2], detail: Detai
     }
     for door in DOORS_X.into_iter().filter(|x| (from..to).contains(x)) {
         let [rear, front] = [door - HALF_DOOR_M, door + HALF_DOOR_M];
-        body.boards(mesh, pane.shaded(1.5), [rear, front], [0.36, 2.66], 0.016);
+        body.boards(mesh, pane.shaded(1.5), [rear, front], [0.36, 2.66], 0.045);
         if detail == Detail::Fine {
-            side_boards(mesh, plastic(SemanticTag::Train), [door - 0.03, door + 0.03], 1.222, [0.36, 2.66]);
+            side_boards(mesh, plastic(SemanticTag::Train), [door - 0.03, door + 0.03], 1.25, [0.36, 2.66]);
         }
     }
 }

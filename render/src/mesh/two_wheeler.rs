@@ -97,7 +97,7 @@ fn fitted(mesh: &mut Mesh, mut variety: Variety, carries: bool, detail: Detail) 
     match variety.bits() % 3 {
         0 if !carries => mesh.cuboid(steel.shaded(0.6), Vec3::new(0.42, -0.17, 0.84), Vec3::new(0.72, 0.17, 1.02)),
         1 => mesh.cuboid(dark.colour([150, 92, 52]), Vec3::new(-0.84, -0.18, 0.5), Vec3::new(-0.52, 0.18, 0.84)),
-        _ if detail == Detail::Fine => {
+        _ if detail != Detail::Rough => {
             mesh.cuboid(dark, Vec3::new(-0.84, -0.08, 0.76), Vec3::new(-0.36, 0.08, 0.79));
         }
         _ => {}

@@ -132,11 +132,7 @@ impl Design {
         }
         body.boards(mesh, dark, [-0.95, 0.98], [0.25, 0.4], 0.008);
         for axle in AXLES {
-            let at = |share: f32, z: f32| (axle + share * (WHEEL_RADIUS_M + 0.06), z);
-            let ring = [at(-1.0, 0.25), at(-1.0, 0.5), at(-0.6, 0.72), at(0.6, 0.72), at(1.0, 0.5), at(1.0, 0.25)];
-            for side in [-1.0, 1.0] {
-                body.pane(mesh, dark.glossy(0), &ring, side, 0.009);
-            }
+            body.arc(mesh, dark.glossy(0), (axle, WHEEL_RADIUS_M), 6, 0.011);
         }
     }
 

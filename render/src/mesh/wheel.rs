@@ -29,6 +29,9 @@ const INNER_M: f32 = 0.1;
 /// See [`INNER_M`].
 pub(super) const OUTER_M: f32 = 0.11;
 
+/// Wheels of a larger radius are seen from inside below the body, metres.
+const SHOWS_INSIDE_M: f32 = 0.4;
+
 /// The axles of a vehicle, of which the first one steers.
 pub(super) struct Axles {
     /// Where they are.
@@ -71,6 +74,9 @@ impl Axles {
             mesh.tube(tyre, inner, outer, radius_m, radius_m, sides);
         }
         mesh.disc(tyre, outer, out, radius_m, sides);
+        if self.covered && radius_m > SHOWS_INSIDE_M && detail == Detail::Fine {
+            mesh.disc(tyre.shaded(0.7), inner, -out, radius_m * 0.97, 8);
+        }
         if detail == Detail::Fine {
             mesh.disc(tyre.colour(RIM).glossy(80), outer + out * 0.006, out, radius_m * 0.66, 10);
             mesh.disc(tyre.colour(CAP), outer + out * 0.014, out, radius_m * 0.22, 6);
