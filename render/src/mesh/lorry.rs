@@ -17,7 +17,7 @@ const SHEETS: [[u8; 3]; 5] = [[52, 92, 150], [158, 52, 44], [58, 104, 76], [196,
 const STEEL: [u8; 3] = [196, 200, 204];
 
 /// Cab: bumper and radiator, windscreen, roof.
-const CAB: [Station; 4] = [at(3.48, 1.32, 1.12), at(3.38, 2.42, 1.15), at(3.14, 2.6, 1.17), at(1.74, 2.64, 1.17)];
+const CAB: [Station; 4] = [at(3.48, 1.32, 1.12), at(3.38, 2.42, 1.15), at(3.15, 2.6, 1.17), at(1.74, 2.64, 1.17)];
 const SECTION: Section = Section { sill: 0.46, waist: 1.25, lean: 0.03, round: [0.09, 0.1] };
 const DOOR_PANE: [(f32, f32); 4] = [(3.22, 1.42), (2.3, 1.42), (2.3, 2.26), (3.12, 2.26)];
 const DRIVER: Vec3 = Vec3::new(2.62, 0.55, 1.98);
@@ -82,7 +82,7 @@ fn cab(mesh: &mut Mesh, variety: &mut Variety, paint: Paint, detail: Detail) {
     }
     facing(mesh, dark, 3.486, [-1.1, 1.1], [0.47, 0.56]);
     // A visor over the windscreen, and the arches of the front wheels.
-    facing(mesh, paint.shaded(0.5), 3.44, [-1.0, 1.0], [2.34, 2.46]);
+    facing(mesh, paint.shaded(0.5), 3.405, [-1.0, 1.0], [2.34, 2.44]);
     body.arc(mesh, dark.glossy(0), (AXLES_M[0], WHEEL_RADIUS_M), 6, 0.015);
     let driver = Occupant::of(variety, DRIVER);
     driver.show(mesh, pane, &screen, From::Ahead);
