@@ -13,10 +13,12 @@ use crate::glows::{self, Glow};
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
 use crate::light::ShadowBox;
-use crate::mesh::actor::{ego_model, has_umbrella_up, sheltered_model};
+use crate::mesh::actor::{ego_model, has_umbrella_up, parked_model, sheltered_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::motion::Motion;
-use crate::mesh::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal};
+use crate::mesh::{
+    CODE_BRAKE, CODE_CENTRE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal,
+};
 use crate::view::View;
 
 /// Actors smaller than this many pixels are left out.
@@ -58,6 +60,8 @@ struct Role {
     casts: bool,
 }
 
+/// Kind, variant and detail.
+
 /// The models that have been needed so far.
 #[derive(Default)]
 pub(crate) struct Cast {
@@ -65,6 +69,8 @@ pub(crate) struct Cast {
     parked_looks: Vec<u32>,
     /// By kind, variant, level of detail, and whether it is under an umbrella.
     models: BTreeMap<(ActorKind, u32, Detail, bool), Model>,
+    /// Those without anybody in them.
+    parked_models: BTreeMap<(ActorKind, u32, Detail), Model>,
     heads: BTreeMap<(LightPhase, Detail), Mesh>,
 }
 
@@ -145,10 +151,13 @@ impl Cast {
         let parked = parked_number(actor.id).and_then(|number| self.parked_looks.get(number));
         let variant = parked.copied().unwrap_or(actor.variant);
         let sheltered = has_umbrella_up(actor.kind, variant, weather.precipitation_pct);
-        let model = self
-            .models
-            .entry((actor.kind, variant, detail, sheltered))
-            .or_insert_with(|| sheltered_model(actor.kind, variant, detail, sheltered));
+        let model = if parked.is_some() {
+            let make = || parked_model(actor.kind, variant, detail);
+            self.parked_models.entry((actor.kind, variant, detail)).or_insert_with(make)
+        } else {
+            let make = || sheltered_model(actor.kind, variant, detail, sheltered);
+            self.models.entry((actor.kind, variant, detail, sheltered)).or_insert_with(make)
+        };
         let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
         let painted = (instance_of_actor(actor.id), flashing(actor.lamps, tick));
         moving.append(model, frame, &Motion::of_actor(actor), painted, role);
@@ -222,7 +231,7 @@ fn posed(v: &Vertex, frame: &Affine3A, instance: u16, lamps: u8) -> Vertex {
     let n = (turn * Vec3A::from_array(v.normal.map(f32::from))).round();
     let (code, colour) = match v.code {
         CODE_HEAD if lamps & lamps::HEADLIGHTS != 0 => (CODE_LIT, [255, 250, 230]),
-        CODE_BRAKE if lamps & lamps::BRAKE != 0 => (CODE_LIT, [255, 44, 36]),
+        CODE_BRAKE | CODE_CENTRE_BRAKE if lamps & lamps::BRAKE != 0 => (CODE_LIT, [255, 44, 36]),
         CODE_BRAKE if lamps & TAIL != 0 => (CODE_LIT, TAIL_RED),
         CODE_LEFT if lamps & lamps::LEFT != 0 => (CODE_LIT, AMBER),
         CODE_RIGHT if lamps & lamps::RIGHT != 0 => (CODE_LIT, AMBER),
@@ -316,8 +325,11 @@ mod tests {
         let mut moving = Moving { shine: 1.0, ..Default::default() };
         Cast::default().pose(&scene, &[], (&view, Horizon::new(view.eye, &[], 100.0)), None, &mut moving);
         assert_eq!(lit(&moving.vertices), [TAIL_RED, [255, 250, 230]]);
-        let is_red = |glow: &Glow| glow.colour[0] > 5.0 * glow.colour[2] && glow.position[0] < 0.0;
-        assert!(moving.glows.len() == 2 && moving.glows.iter().all(is_red), "those behind: {:?}", moving.glows);
+        let is_tail = |glow: &Glow| {
+            let [x, y, _] = glow.position;
+            glow.colour[0] > 5.0 * glow.colour[2] && x < 0.0 && y.abs() > 0.4
+        };
+        assert!(moving.glows.len() >= 2 && moving.glows.iter().all(is_tail), "{:?}", moving.glows);
     }
 
     #[test]

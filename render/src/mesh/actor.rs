@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 use kernel::scene::ActorKind;
 
 use super::model::{Detail, Model};
-use super::{car, heavy, loose, person, tram, two_wheeler, wheeled};
+use super::{bus, car, emergency, loose, lorry, motorcycle, person, tram, two_wheeler, van, wheeled};
 
-/// The model of an actor in dry weather.
+/// The model of an actor in dry weather; vehicles have people in them at their finest.
 pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
     sheltered_model(kind, variant, detail, false)
 }
@@ -21,14 +21,14 @@ pub fn has_umbrella_up(kind: ActorKind, variant: u32, rain_pct: f32) -> bool {
 pub fn sheltered_model(kind: ActorKind, variant: u32, detail: Detail, under_umbrella: bool) -> Model {
     match kind {
         ActorKind::Car => car::car(variant, detail),
-        ActorKind::Truck => heavy::truck(variant, detail),
-        ActorKind::Bus => heavy::bus(variant, detail),
-        ActorKind::Motorcycle => two_wheeler::motorcycle(variant, detail),
+        ActorKind::Truck => lorry::truck(variant, detail),
+        ActorKind::Bus => bus::bus(variant, detail),
+        ActorKind::Motorcycle => motorcycle::motorcycle(variant, detail),
         ActorKind::Bicycle => two_wheeler::bicycle(variant, detail),
-        ActorKind::Van => heavy::van(variant, detail),
+        ActorKind::Van => van::van(variant, detail),
         ActorKind::Suv => car::suv(variant, detail),
-        ActorKind::Emergency => heavy::emergency(detail),
-        ActorKind::Scooter => two_wheeler::scooter(variant, detail),
+        ActorKind::Emergency => emergency::emergency(variant, detail),
+        ActorKind::Scooter => motorcycle::scooter(variant, detail),
         ActorKind::CargoBike => two_wheeler::cargo_bike(variant, detail),
         ActorKind::Pedestrian => person::walker(variant, detail, under_umbrella),
         ActorKind::Child => person::child(variant, detail),
@@ -37,6 +37,15 @@ pub fn sheltered_model(kind: ActorKind, variant: u32, detail: Detail, under_umbr
         ActorKind::Tram => Model::rigid(tram::tram(variant, detail)),
         ActorKind::Door => Model::rigid(car::door(variant)),
         ActorKind::Obstacle => Model::rigid(loose::movable(variant, kind.size_m(), detail)),
+    }
+}
+
+/// The model of a parked car: the same without anybody in it.
+pub fn parked_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
+    match kind {
+        ActorKind::Car => car::parked(variant, detail),
+        ActorKind::Van => van::parked(variant, detail),
+        _ => actor_model(kind, variant, detail),
     }
 }
 

@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use super::Mesh;
 use super::figure::{HAND_M, Look};
-use super::loft::Ring;
 use super::model::Detail::{Coarse, Fine, Rough};
 use super::outfit::Carried;
+use super::rings::Ring;
 
 const STEEL: [u8; 3] = [120, 122, 126];
 

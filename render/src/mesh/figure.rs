@@ -3,9 +3,9 @@
 use glam::{Vec2, Vec3};
 use kernel::ops;
 
-use super::loft::Ring;
 use super::model::Detail;
 use super::outfit::{Bottom, Carried, Outfit, Top};
+use super::rings::Ring;
 use super::variety::Variety;
 use super::{Mesh, Paint};
 use crate::SemanticTag;

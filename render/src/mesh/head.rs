@@ -4,9 +4,9 @@ use glam::Vec3;
 
 use super::Mesh;
 use super::figure::{Look, Station};
-use super::loft::Ring;
 use super::model::Detail::{Coarse, Fine, Rough};
 use super::outfit::{Hair, Headgear};
+use super::rings::Ring;
 
 /// Where the neck begins, above the hips' middle, metres; heads are larger or smaller from here on.
 const NECK_M: f32 = 0.59;

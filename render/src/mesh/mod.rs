@@ -6,24 +6,37 @@
 pub mod actor;
 mod baggage;
 pub mod barrier;
-mod body;
 pub mod building;
+pub mod bus;
+mod cabin;
 pub mod car;
+mod car_shape;
+mod car_trim;
+pub mod emergency;
 mod figure;
+mod fittings;
+#[cfg(test)]
+mod fleet_tests;
 pub mod gait;
 mod head;
-pub mod heavy;
+mod heavy;
+mod lacquer;
 mod loft;
 pub mod loose;
+pub mod lorry;
 pub mod model;
 pub mod motion;
+pub mod motorcycle;
+mod occupant;
 mod outfit;
 pub mod person;
 pub mod posts;
 pub mod prop;
+mod rings;
 pub mod shape;
 pub mod signal;
 pub mod simplify;
+mod skin;
 pub mod skirt;
 pub mod street_furniture;
 pub mod structure;
@@ -31,6 +44,7 @@ pub mod surface;
 pub mod tram;
 pub mod tree;
 pub mod two_wheeler;
+pub mod van;
 pub mod variety;
 mod wheel;
 pub mod wheeled;
@@ -66,6 +80,8 @@ pub const CODE_RIGHT: u8 = 252;
 pub const CODE_HEAD: u8 = 251;
 /// [`Vertex::code`] of the glass of a street lamp, which shines at night.
 pub const CODE_STREET: u8 = 250;
+/// [`Vertex::code`] of a brake lamp that is no tail lamp (UN regulation 48: S3).
+pub const CODE_CENTRE_BRAKE: u8 = 249;
 /// [`Vertex::code`] of a surface with the joints of slabs.
 pub const CODE_SLABS: u8 = 1;
 /// [`Vertex::code`] of grass.

@@ -2,11 +2,11 @@
 
 use glam::{Quat, Vec3};
 use kernel::map::{FurnitureKind, Prop, PropKind};
-use kernel::scene::ActorKind;
 
+use super::actor::parked_model;
 use super::model::Detail;
 use super::variety::Variety;
-use super::{Mesh, barrier, building, car, heavy, posts, signal, street_furniture, structure, tree};
+use super::{Mesh, barrier, building, posts, signal, street_furniture, structure, tree};
 use crate::SemanticTag;
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
@@ -22,8 +22,7 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
         PropKind::Lamp => posts::lamp(size.z, detail),
         PropKind::Sign => posts::sign(variant, size.z, detail),
         PropKind::SignalPole => signal::pole(size.z, detail),
-        PropKind::ParkedCar if prop.parked_kind() == ActorKind::Van => heavy::van(variant, detail).at_rest(),
-        PropKind::ParkedCar => car::car(variant, detail).at_rest(),
+        PropKind::ParkedCar => parked_model(prop.parked_kind(), variant, detail).at_rest(),
         PropKind::Fence => barrier::fence(variant, size, detail),
         PropKind::Wall => barrier::wall(variant, size),
         PropKind::GuardRail => barrier::guard_rail(size, detail),

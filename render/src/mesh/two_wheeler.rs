@@ -1,22 +1,21 @@
-//! Motorcycles and bicycles with their riders.
+//! Bicycles with their riders.
 
 use core::f32::consts::TAU;
 
 use glam::Vec3;
 use kernel::ops;
 
-use super::car::{BRAKE_LAMP, INDICATOR};
 use super::figure::Look;
 use super::model::{Detail, Model};
 use super::person::{Seat, ride};
 use super::variety::Variety;
 use super::wheel::RUBBER;
-use super::{CODE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_RIGHT, Mesh, Paint};
+use super::{Mesh, Paint};
 use crate::SemanticTag;
 
-const FRAMES: [[u8; 3]; 7] =
+pub(super) const FRAMES: [[u8; 3]; 7] =
     [[180, 36, 36], [36, 66, 130], [30, 30, 34], [216, 216, 210], [46, 120, 84], [222, 150, 36], [120, 168, 190]];
-const HELMETS: [[u8; 3]; 4] = [[230, 230, 226], [30, 30, 34], [190, 36, 36], [36, 70, 140]];
+pub(super) const HELMETS: [[u8; 3]; 4] = [[230, 230, 226], [30, 30, 34], [190, 36, 36], [36, 70, 140]];
 
 /// A tyre as a ring in the x-z plane, seen from both sides.
 pub(super) fn ring(mesh: &mut Mesh, paint: Paint, hub: Vec3, radius: f32, thick: f32, sides: u32) {
@@ -43,62 +42,6 @@ pub(super) fn sides(detail: Detail) -> u32 {
     }
 }
 
-/// A motorcycle of class Motorcycle under a rider of class Rider.
-pub fn motorcycle(variant: u32, detail: Detail) -> Model {
-    let mut variety = Variety::of(variant);
-    let tag = SemanticTag::Motorcycle;
-    let lacquer = Paint::plain(tag, variety.colour(&FRAMES)).glossy(110);
-    let dark = Paint::plain(tag, [40, 40, 42]).glossy(40);
-    let mut mesh = Mesh::default();
-    for x in [0.72, -0.7] {
-        ring(&mut mesh, Paint::plain(tag, RUBBER), Vec3::new(x, 0.0, 0.31), 0.31, 0.12, sides(detail));
-        mesh.rod(dark.colour([110, 112, 116]), Vec3::new(x, -0.03, 0.31), Vec3::new(x, 0.03, 0.31), 0.2, 8);
-    }
-    mesh.cuboid(dark, Vec3::new(-0.3, -0.16, 0.25), Vec3::new(0.32, 0.16, 0.6));
-    mesh.ellipsoid(lacquer, Vec3::new(0.2, 0.0, 0.78), Vec3::new(0.34, 0.17, 0.17), 5, 8);
-    mesh.ellipsoid(lacquer, Vec3::new(0.62, 0.0, 0.86), Vec3::new(0.2, 0.19, 0.24), 5, 8);
-    mesh.cuboid(dark, Vec3::new(-0.75, -0.13, 0.72), Vec3::new(-0.05, 0.13, 0.82));
-    mesh.cuboid(lacquer, Vec3::new(-0.92, -0.1, 0.62), Vec3::new(-0.5, 0.1, 0.74));
-    for y in [-0.09f32, 0.09] {
-        mesh.tube(dark, Vec3::new(0.72, y, 0.31), Vec3::new(0.45, y, 0.98), 0.035, 0.035, 5);
-    }
-    mesh.rod(dark, Vec3::new(0.42, -0.34, 1.02), Vec3::new(0.42, 0.34, 1.02), 0.025, 5);
-    lamps(&mut mesh);
-    let mut model = Model::rigid(mesh);
-    let look = Look::of(&mut variety, SemanticTag::Rider, detail).riding();
-    let seat = Seat {
-        hip: Vec3::new(-0.28, 0.0, 0.88),
-        lean_rad: 0.32,
-        thigh_rad: [-1.15, 0.0],
-        shin_rad: [1.45, 0.0],
-        arm_rad: -1.05,
-    };
-    ride(&mut model, &look, &seat, Some(variety.pick(&HELMETS)));
-    model
-}
-
-/// Head lamp, brake lamp and indicators of a motorcycle.
-fn lamps(mesh: &mut Mesh) {
-    let tag = SemanticTag::Motorcycle;
-    let head = Paint::plain(tag, [238, 238, 228]).glossy(200).coded(CODE_HEAD);
-    mesh.disc(head, Vec3::new(0.83, 0.0, 0.9), Vec3::X, 0.09, 8);
-    let brake = Paint::plain(tag, BRAKE_LAMP).coded(CODE_BRAKE);
-    mesh.disc(brake, Vec3::new(-0.93, 0.0, 0.69), Vec3::NEG_X, 0.06, 6);
-    for (side, code) in [(1.0, CODE_LEFT), (-1.0, CODE_RIGHT)] {
-        let amber = Paint::plain(tag, INDICATOR).coded(code);
-        for at in [Vec3::new(0.6, 0.26, 0.94), Vec3::new(-0.86, 0.16, 0.74)] {
-            mesh.ellipsoid(amber, at * Vec3::new(1.0, side, 1.0), Vec3::new(0.05, 0.04, 0.04), 3, 5);
-        }
-    }
-}
-
-/// A scooter of class Motorcycle under a rider of class Rider: a smaller motorcycle.
-pub fn scooter(variant: u32, detail: Detail) -> Model {
-    let mut model = motorcycle(variant, detail);
-    model.parts[0].mesh.scale(Vec3::new(0.9, 0.9, 0.96));
-    model
-}
-
 /// A bicycle of class Bicycle under a pedalling rider of class Rider.
 pub fn bicycle(variant: u32, detail: Detail) -> Model {
     pedalled(variant, detail, false)
@@ -115,10 +58,77 @@ fn cargo(mesh: &mut Mesh, variety: &mut Variety, detail: Detail) {
     let dark = Paint::plain(tag, RUBBER);
     let hub = Vec3::new(0.99, 0.0, 0.25);
     ring(mesh, dark, hub, 0.25, 0.05, sides(detail));
-    let paint = Paint::plain(tag, variety.colour(&FRAMES));
-    mesh.cuboid(paint.shaded(0.8), Vec3::new(0.42, -0.32, 0.3), Vec3::new(1.1, 0.32, 0.75));
+    let paint = Paint::plain(tag, variety.colour(&FRAMES)).shaded(0.8);
+    // Wider at the rim than at the floor, with a bench and what is carried under the rim.
+    let level = |inset: f32, z: f32| {
+        let (rear, front, half) = (0.42 + inset, 1.12 - inset, 0.33 - 0.5 * inset);
+        [(rear, -half), (front, -half), (front, half), (rear, half)].map(|(x, y)| Vec3::new(x, y, z))
+    };
+    let [mut floor, rim] = [level(0.1, 0.28), level(0.0, 0.78)];
+    mesh.walls(paint, &floor, &rim);
+    floor.reverse();
+    mesh.polygon(dark, &floor);
+    mesh.polygon(dark, &level(0.02, 0.72));
+    if variety.one_in(2) {
+        mesh.frustum(paint.colour([214, 206, 186]), &level(0.05, 0.72), &level(0.12, 0.98));
+    }
     mesh.tube(dark, Vec3::new(-0.06, 0.0, 0.3), hub, 0.03, 0.03, 5);
     mesh.tube(dark, Vec3::new(0.38, 0.0, 0.88), Vec3::new(0.4, 0.0, 0.3), 0.022, 0.022, 5);
+}
+
+/// Mudguards, rack, basket, crank and chain, and lamps that do not shine.
+fn fitted(mesh: &mut Mesh, mut variety: Variety, carries: bool, detail: Detail) {
+    let tag = SemanticTag::Bicycle;
+    let (dark, steel) = (Paint::plain(tag, [34, 34, 36]), Paint::plain(tag, [150, 152, 156]).glossy(60));
+    if detail != Detail::Rough {
+        let crank = Vec3::new(-0.06, 0.0, 0.3);
+        mesh.disc(steel, crank - Vec3::Y * 0.05, Vec3::NEG_Y, 0.09, 6);
+        mesh.disc(dark, crank + Vec3::Y * 0.05, Vec3::Y, 0.05, 4);
+        mesh.disc(Paint::plain(tag, [150, 20, 22]), Vec3::new(-0.84, 0.0, 0.62), Vec3::NEG_X, 0.045, 5);
+    }
+    if detail == Detail::Fine {
+        for (x, z) in [(-0.54, 0.35), (0.54, 0.35)] {
+            if x < 0.0 || !carries {
+                spokes(mesh, steel, Vec3::new(x, 0.0, z), 0.3);
+                mudguard(mesh, dark, Vec3::new(x, 0.0, z), 0.385);
+            }
+        }
+    }
+    // A rack with or without a bag, or a basket before the handlebar.
+    match variety.bits() % 3 {
+        0 if !carries => mesh.cuboid(steel.shaded(0.6), Vec3::new(0.42, -0.17, 0.84), Vec3::new(0.72, 0.17, 1.02)),
+        1 => mesh.cuboid(dark.colour([150, 92, 52]), Vec3::new(-0.84, -0.18, 0.5), Vec3::new(-0.52, 0.18, 0.84)),
+        _ if detail != Detail::Rough => {
+            mesh.cuboid(dark, Vec3::new(-0.84, -0.08, 0.76), Vec3::new(-0.36, 0.08, 0.79));
+        }
+        _ => {}
+    }
+}
+
+/// Thin bars through a hub, seen from both sides.
+fn spokes(mesh: &mut Mesh, paint: Paint, hub: Vec3, radius: f32) {
+    for i in 0..4 {
+        let angle = TAU * i as f32 / 8.0;
+        let (out, aside) =
+            (Vec3::new(ops::cos(angle), 0.0, ops::sin(angle)), Vec3::new(-ops::sin(angle), 0.0, ops::cos(angle)));
+        let (out, aside) = (out * radius, aside * 0.006);
+        let mut bar = [hub - out - aside, hub + out - aside, hub + out + aside, hub - out + aside];
+        mesh.polygon(paint, &bar);
+        bar.reverse();
+        mesh.polygon(paint, &bar);
+    }
+}
+
+/// An arc over the rear upper quarter of a wheel.
+pub(super) fn mudguard(mesh: &mut Mesh, paint: Paint, hub: Vec3, radius: f32) {
+    let at = |step: u32, y: f32| {
+        let angle = TAU * (0.17 + 0.09 * step as f32);
+        hub + Vec3::new(radius * ops::cos(angle), y, radius * ops::sin(angle))
+    };
+    for step in 0..3 {
+        let ring = [at(step, -0.04), at(step, 0.04), at(step + 1, 0.04), at(step + 1, -0.04)];
+        mesh.polygon(paint, &ring);
+    }
 }
 
 fn pedalled(variant: u32, detail: Detail, carries: bool) -> Model {
@@ -148,6 +158,7 @@ fn pedalled(variant: u32, detail: Detail, carries: bool) -> Model {
     if carries {
         cargo(&mut mesh, &mut { variety }, detail);
     }
+    fitted(&mut mesh, variety, carries, detail);
     let mut model = Model::rigid(mesh);
     let look = Look::of(&mut variety, SemanticTag::Rider, detail).riding();
     let seat = Seat {

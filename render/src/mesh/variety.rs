@@ -34,6 +34,18 @@ impl Variety {
         choices[self.bits() as usize % choices.len()]
     }
 
+    /// One of some choices that come with shares of one another.
+    pub fn weighted<T: Copy>(&mut self, choices: &[(T, u32)]) -> T {
+        let mut at = self.bits() % choices.iter().map(|(_, share)| share).sum::<u32>();
+        for &(choice, share) in choices {
+            if at < share {
+                return choice;
+            }
+            at -= share;
+        }
+        choices[0].0
+    }
+
     /// A colour close to one of some colours.
     pub fn colour(&mut self, choices: &[[u8; 3]]) -> [u8; 3] {
         let factor = self.between(0.88, 1.1);

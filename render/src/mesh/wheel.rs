@@ -29,6 +29,9 @@ const INNER_M: f32 = 0.1;
 /// See [`INNER_M`].
 pub(super) const OUTER_M: f32 = 0.11;
 
+/// Wheels of a larger radius are seen from inside below the body, metres.
+const SHOWS_INSIDE_M: f32 = 0.4;
+
 /// The axles of a vehicle, of which the first one steers.
 pub(super) struct Axles {
     /// Where they are.
@@ -36,6 +39,8 @@ pub(super) struct Axles {
     /// From the middle to the hubs on both sides.
     pub(super) y_m: f32,
     pub(super) radius_m: f32,
+    /// Whether the body hides their upper halves but for the outer faces.
+    pub(super) covered: bool,
 }
 
 impl Axles {
@@ -44,7 +49,7 @@ impl Axles {
         let mut model = Model::rigid(body);
         for (axle, &x) in self.x_m.iter().enumerate() {
             for side in [-1.0, 1.0] {
-                let mesh = wheel(tag, side, self.radius_m, detail);
+                let mesh = self.wheel(tag, side, detail);
                 let (pivot, joint) =
                     (Vec3::new(x, side * self.y_m, self.radius_m), (axle == 0).then_some(Joint::Steer));
                 let wheel = model.add_part(Part { parent: None, pivot, joint, shown_mps: None, mesh });
@@ -54,6 +59,31 @@ impl Axles {
             }
         }
         model
+    }
+
+    /// A wheel around its hub whose face looks to `side` (the sign of y).
+    fn wheel(&self, tag: SemanticTag, side: f32, detail: Detail) -> Mesh {
+        let sides = if detail == Detail::Fine { 14 } else { 8 };
+        let (tyre, radius_m) = (Paint::plain(tag, RUBBER), self.radius_m);
+        let out = Vec3::Y * side;
+        let (inner, outer) = (out * -INNER_M, out * OUTER_M);
+        let mut mesh = Mesh::default();
+        if self.covered {
+            tread(&mut mesh, tyre, side, radius_m, sides);
+        } else {
+            mesh.tube(tyre, inner, outer, radius_m, radius_m, sides);
+        }
+        mesh.disc(tyre, outer, out, radius_m, sides);
+        if self.covered && radius_m > SHOWS_INSIDE_M && detail == Detail::Fine {
+            mesh.disc(tyre.shaded(0.7), inner, -out, radius_m * 0.97, 8);
+        }
+        if detail == Detail::Fine {
+            mesh.disc(tyre.colour(RIM).glossy(80), outer + out * 0.006, out, radius_m * 0.66, 10);
+            mesh.disc(tyre.colour(CAP), outer + out * 0.014, out, radius_m * 0.22, 6);
+        } else if detail == Detail::Coarse {
+            mesh.disc(tyre.colour(BLUR), outer + out * 0.006, out, radius_m * 0.6, 5);
+        }
+        mesh
     }
 
     /// What rolls of a wheel. The tyre does too, but nobody can tell.
@@ -80,20 +110,19 @@ fn rolling_radius_m(radius_m: f32) -> f32 {
     LAP_M * per_m / ops::round(LAP_M * per_m / radius_m)
 }
 
-/// A wheel around its hub whose face looks to `side` (the sign of y).
-fn wheel(tag: SemanticTag, side: f32, radius_m: f32, detail: Detail) -> Mesh {
-    let sides = if detail == Detail::Fine { 14 } else { 8 };
-    let tyre = Paint::plain(tag, RUBBER);
-    let out = Vec3::Y * side;
-    let (inner, outer) = (out * -INNER_M, out * OUTER_M);
-    let mut mesh = Mesh::default();
-    mesh.tube(tyre, inner, outer, radius_m, radius_m, sides);
-    mesh.disc(tyre, outer, out, radius_m, sides);
-    if detail == Detail::Fine {
-        mesh.disc(tyre.colour(RIM).glossy(80), outer + out * 0.006, out, radius_m * 0.66, 10);
-        mesh.disc(tyre.colour(CAP), outer + out * 0.014, out, radius_m * 0.22, 6);
+/// The lower half of a tyre's tread.
+fn tread(mesh: &mut Mesh, tyre: Paint, side: f32, radius_m: f32, sides: u32) {
+    let at = |i: u32, out: f32| {
+        let angle = -TAU * i as f32 / sides as f32;
+        Vec3::new(radius_m * ops::cos(angle), side * out, radius_m * ops::sin(angle))
+    };
+    for i in 0..sides / 2 {
+        let mut ring = [at(i, OUTER_M), at(i + 1, OUTER_M), at(i + 1, -INNER_M), at(i, -INNER_M)];
+        if side > 0.0 {
+            ring.reverse();
+        }
+        mesh.polygon(tyre, &ring);
     }
-    mesh
 }
 
 /// The gaps between the spokes of a rim, on its face.
