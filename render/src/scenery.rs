@@ -24,8 +24,8 @@ const HOUSES_M: f32 = 160.0;
 /// Surfaces are simplified by as much as nobody sees, metres.
 const FLAT_M: f32 = 0.003;
 
-/// Skirts are so many times as deep as surfaces are displaced.
-const SKIRT: f32 = 3.0;
+/// Skirts are so many times as deep as surfaces are displaced. Deeper ones are drawn over ground that is drawn over them.
+const SKIRT: f32 = 1.0;
 
 /// A piece of the static world at one level of detail.
 #[derive(Clone, Debug, Default)]
@@ -67,10 +67,12 @@ impl Scenery {
     pub(crate) fn new(network: &RoadNetwork) -> Self {
         let houses = network.props.iter().filter_map(Occluder::of).collect();
         let mut scenery = Self { houses, ..Default::default() };
-        for mut cell in surface::cells(network) {
+        for surface::Cell { mut mesh, kind } in surface::cells(network) {
+            // Below paint is what it lies on.
+            let skirt = if kind.lies_on_ground() { 0.0 } else { SKIRT };
             let levels = Detail::ALL.map(|detail| {
-                cell = simplify::simplified(&cell, detail.error_m().max(FLAT_M));
-                skirt::with_skirt(&cell, SKIRT * detail.error_m())
+                mesh = simplify::simplified(&mesh, detail.error_m().max(FLAT_M));
+                skirt::with_skirt(&mesh, skirt * detail.error_m())
             });
             scenery.add(levels, None);
         }

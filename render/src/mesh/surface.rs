@@ -26,9 +26,21 @@ fn paint(kind: SurfaceKind) -> Paint {
     }
 }
 
-/// The surfaces of a map in the world's frame, cut into cells.
-pub fn cells(network: &RoadNetwork) -> Vec<Mesh> {
-    network.surfaces.iter().flat_map(cut).collect()
+/// A piece of a surface.
+pub struct Cell {
+    /// In the world's frame.
+    pub mesh: Mesh,
+    /// What it is of.
+    pub kind: SurfaceKind,
+}
+
+/// The surfaces of a map, cut into cells.
+pub fn cells(network: &RoadNetwork) -> impl Iterator<Item = Cell> + '_ {
+    let of = |surface: &'_ Surface| {
+        let kind = surface.kind;
+        cut(surface).into_iter().map(move |mesh| Cell { mesh, kind })
+    };
+    network.surfaces.iter().flat_map(of)
 }
 
 /// Reach of the plain beyond the map, metres.

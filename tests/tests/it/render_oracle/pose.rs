@@ -123,8 +123,8 @@ fn turned(joint: &Joint, motion: &Motion) -> (DVec3, f64) {
 /// All triangles of a moment.
 pub fn triangles(network: &RoadNetwork, scene: &SceneSnapshot) -> Vec<Triangle> {
     let mut all = Collector::new(&scene.weather, scene.tick);
-    for cell in surface::cells(network).iter().chain([&surface::plain(network)]) {
-        all.add(cell, DAffine3::IDENTITY);
+    for cell in surface::cells(network).map(|cell| cell.mesh).chain([surface::plain(network)]) {
+        all.add(&cell, DAffine3::IDENTITY);
     }
     for object in &network.props {
         let Prop { position, heading_rad, .. } = *object;
