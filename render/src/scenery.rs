@@ -24,8 +24,9 @@ const HOUSES_M: f32 = 160.0;
 /// Surfaces are simplified by as much as nobody sees, metres.
 const FLAT_M: f32 = 0.003;
 
-/// Skirts are so many times as deep as surfaces are displaced. Deeper ones are drawn over ground that is drawn over them.
-const SKIRT: f32 = 1.0;
+/// Skirts are so many times as deep as surfaces are displaced: both sides of a gap are. Deeper ones are drawn over ground that
+/// is drawn over them.
+const SKIRT: f32 = 2.5;
 
 /// A piece of the static world at one level of detail.
 #[derive(Clone, Debug, Default)]
