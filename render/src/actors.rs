@@ -16,9 +16,8 @@ use crate::light::ShadowBox;
 use crate::mesh::actor::{ego_model, has_umbrella_up, parked_model, sheltered_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::motion::Motion;
-use crate::mesh::{
-    CODE_BRAKE, CODE_CENTRE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex, signal,
-};
+use crate::mesh::street::signal;
+use crate::mesh::{CODE_BRAKE, CODE_CENTRE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex};
 use crate::view::View;
 
 /// Actors smaller than this many pixels are left out.
@@ -59,8 +58,6 @@ struct Role {
     is_seen: bool,
     casts: bool,
 }
-
-/// Kind, variant and detail.
 
 /// The models that have been needed so far.
 #[derive(Default)]

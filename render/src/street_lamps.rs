@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 use kernel::map::{Prop, PropKind, RoadNetwork};
 
-use crate::mesh::posts;
+use crate::mesh::street::posts;
 
 /// A street lamp that shines.
 #[derive(Clone, Copy, Debug, PartialEq)]

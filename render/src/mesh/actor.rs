@@ -5,7 +5,9 @@ use std::sync::OnceLock;
 use kernel::scene::ActorKind;
 
 use super::model::{Detail, Model};
-use super::{bus, car, emergency, loose, lorry, motorcycle, person, tram, two_wheeler, van, wheeled};
+use super::people::person;
+use super::street::loose;
+use super::vehicles::{bus, car, emergency, lorry, motorcycle, tram, two_wheeler, van, wheeled};
 
 /// The model of an actor in dry weather; vehicles have people in them at their finest.
 pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {

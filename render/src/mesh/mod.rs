@@ -4,50 +4,17 @@
 //! by [`model`], so that another renderer can pose them on its own.
 
 pub mod actor;
-mod baggage;
-pub mod barrier;
-pub mod building;
-pub mod bus;
-mod cabin;
-pub mod car;
-mod car_shape;
-mod car_trim;
-pub mod emergency;
-mod figure;
-mod fittings;
-#[cfg(test)]
-mod fleet_tests;
-pub mod gait;
-mod head;
-mod heavy;
-mod lacquer;
-mod loft;
-pub mod loose;
-pub mod lorry;
 pub mod model;
 pub mod motion;
-pub mod motorcycle;
-mod occupant;
-mod outfit;
-pub mod person;
-pub mod posts;
-pub mod prop;
+pub mod people;
 mod rings;
 pub mod shape;
-pub mod signal;
 pub mod simplify;
 mod skin;
 pub mod skirt;
-pub mod street_furniture;
-pub mod structure;
-pub mod surface;
-pub mod tram;
-pub mod tree;
-pub mod two_wheeler;
-pub mod van;
+pub mod street;
 pub mod variety;
-mod wheel;
-pub mod wheeled;
+pub mod vehicles;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};

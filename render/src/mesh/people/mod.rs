@@ -1,0 +1,8 @@
+//! People: their builds and clothes, what they carry, and how they walk.
+
+mod baggage;
+pub(super) mod figure;
+pub mod gait;
+mod head;
+mod outfit;
+pub mod person;
