@@ -4,7 +4,25 @@ use glam::{Mat4, Vec3};
 use kernel::ops;
 use kernel::scene::Weather;
 
-use crate::night::{self, Lamps};
+/// Lamps are drawn while the sun is lower than this, degrees; above it pictures are as if there were none.
+pub(crate) const DUSK_DEG: f32 = 5.0;
+
+/// Light that people make, as [`Light`] has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lamps {
+    /// On the ground under a street lamp.
+    pub(crate) street: Vec3,
+    /// Of headlights where it is as bright as that.
+    pub(crate) head: Vec3,
+    /// Of a lit window.
+    pub(crate) window: f32,
+    /// Share of the windows that are lit.
+    pub(crate) windows_lit: f32,
+    /// How much of their brightness lamps show that is drawn as shining, 0 to 1.
+    pub(crate) shine: f32,
+    /// Of the sky where the sun went down.
+    pub(crate) afterglow: Vec3,
+}
 
 /// Light of a scene, linear, as a camera shows it that has adapted to how much of it there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,18 +41,18 @@ pub(crate) struct Light {
     pub(crate) lamps: Option<Lamps>,
 }
 
-impl Light {
-    pub(crate) fn new(weather: &Weather) -> Self {
-        let day = Self::by_day(weather);
-        if weather.sun_altitude_deg < night::DUSK_DEG { night::fallen(day, weather) } else { day }
-    }
+/// Sine of [`DUSK_DEG`].
+pub(crate) fn dusk_height() -> f32 {
+    ops::sin(DUSK_DEG.to_radians())
+}
 
-    /// As it is by day, and where the sun is low as if its sky were still that of [`night::DUSK_DEG`].
-    fn by_day(weather: &Weather) -> Self {
+impl Light {
+    /// As it is by day, and where the sun is low as if its sky were still that of [`DUSK_DEG`].
+    pub(crate) fn by_day(weather: &Weather) -> Self {
         let (altitude, azimuth) = (weather.sun_altitude_deg.to_radians(), weather.sun_azimuth_deg.to_radians());
         let flat = ops::cos(altitude);
         let sun = Vec3::new(flat * ops::cos(azimuth), flat * ops::sin(azimuth), ops::sin(altitude));
-        let lit_up = if weather.sun_altitude_deg < night::DUSK_DEG { night::dusk_height() } else { sun.z };
+        let lit_up = if weather.sun_altitude_deg < DUSK_DEG { dusk_height() } else { sun.z };
         let day = smooth(-0.12, 0.25, lit_up);
         let warm = 1.0 - smooth(0.05, 0.55, lit_up);
         let clouds = 0.01 * weather.cloudiness_pct;

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, lamps};
 
 use crate::camera::EGO_MIDDLE_M;
-use crate::night::Lamps;
+use crate::light::Lamps;
 use crate::street_lamps::StreetLamp;
 use crate::view::View;
 

@@ -4,10 +4,7 @@ use glam::Vec3;
 use kernel::ops;
 use kernel::scene::Weather;
 
-use crate::light::{Light, smooth};
-
-/// Lamps are drawn while the sun is lower than this, degrees; above it pictures are as if there were none.
-pub(crate) const DUSK_DEG: f32 = 5.0;
+use crate::light::{DUSK_DEG, Lamps, Light, smooth};
 
 /// Altitude of the sun, degrees, and illuminance of the ground under a clear sky, decimal logarithm of lux (Bond and
 /// Henderson 1963).
@@ -27,26 +24,12 @@ const XENON: Vec3 = Vec3::new(0.98, 1.0, 1.02);
 const MOON: Vec3 = Vec3::new(0.78, 0.9, 1.18);
 const CITY: Vec3 = Vec3::new(1.1, 0.9, 0.72);
 
-/// Light that people make, as [`Light`] has it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Lamps {
-    /// On the ground under a street lamp.
-    pub(crate) street: Vec3,
-    /// Of headlights where it is as bright as that.
-    pub(crate) head: Vec3,
-    /// Of a lit window.
-    pub(crate) window: f32,
-    /// Share of the windows that are lit.
-    pub(crate) windows_lit: f32,
-    /// How much of their brightness lamps show that is drawn as shining, 0 to 1.
-    pub(crate) shine: f32,
-    /// Of the sky where the sun went down.
-    pub(crate) afterglow: Vec3,
-}
-
-/// Sine of [`DUSK_DEG`].
-pub(crate) fn dusk_height() -> f32 {
-    ops::sin(DUSK_DEG.to_radians())
+impl Light {
+    /// That of a weather.
+    pub(crate) fn new(weather: &Weather) -> Self {
+        let day = Self::by_day(weather);
+        if weather.sun_altitude_deg < DUSK_DEG { fallen(day, weather) } else { day }
+    }
 }
 
 /// Illuminance of the ground under a clear sky without moon, lux.

@@ -11,8 +11,8 @@ use crate::horizon::{Horizon, Occluder};
 use crate::instance_ids::{instance_of_parked, parked_number};
 use crate::light::ShadowBox;
 use crate::mesh::model::Detail;
-use crate::mesh::street::{prop, surface};
-use crate::mesh::{FINISHES, Mesh, Vertex, simplify, skirt};
+use crate::mesh::street::surface;
+use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, skirt};
 use crate::sieve::Sieve;
 use crate::view::View;
 

@@ -4,9 +4,11 @@
 //! by [`model`], so that another renderer can pose them on its own.
 
 pub mod actor;
+pub mod gait;
 pub mod model;
 pub mod motion;
 pub mod people;
+pub mod prop;
 mod rings;
 pub mod shape;
 pub mod simplify;

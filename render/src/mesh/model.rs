@@ -15,8 +15,8 @@
 use glam::{Affine3A, Quat, Vec3, Vec3A};
 use kernel::ops;
 
+use super::gait::Gait;
 use super::motion::Motion;
-use super::people::gait::Gait;
 use super::{Mesh, Vertex};
 
 /// How a joint turns with the phase of the gait.

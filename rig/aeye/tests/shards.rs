@@ -16,8 +16,8 @@ use serde_json::Value;
 
 /// The second and the fourth are corner cases.
 const RUNS: u32 = 5;
-const DRIVES: &str = "campaign --checkpoint early --maps street.xodr --pedestrians 60 --hazards raised --max-time 14s \
-                      --seed 25";
+const DRIVES: &str = "campaign --checkpoint early --maps street.xodr --pedestrians 160 --hazards raised --max-time 14s \
+                      --seed 6";
 
 /// A folder in which campaigns are driven.
 struct Place(PathBuf);

@@ -3,6 +3,7 @@
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::weather::WeatherPreset;
+use render::mesh::actor::has_umbrella_up;
 use render::{AdapterChoice, Camera, Frame, Renderer, SemanticTag};
 use tests::street;
 
@@ -31,8 +32,12 @@ fn brightness(frame: &Frame, picks: impl Fn(usize) -> bool) -> f64 {
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn weather_changes_colours_and_no_class_instance_or_depth() {
     let (mut renderer, camera) = (renderer(), Camera::driver(256, 128));
-    // Branches move with the wind.
-    let calm = |weather: Weather| street_in(Weather { wind_pct: 0.0, ..weather });
+    // Branches move with the wind, and umbrellas are up in rain.
+    let calm = |weather: Weather| {
+        let mut scene = street_in(Weather { wind_pct: 0.0, ..weather });
+        scene.actors.retain(|actor| !has_umbrella_up(actor.kind, actor.variant, 100.0));
+        scene
+    };
     let dry = renderer.draw(&calm(Weather::dry(5.0, 0.0, 45.0, 200.0)), &camera).expect("a frame");
     for name in WeatherPreset::names() {
         let frame = renderer.draw(&calm(preset(name)), &camera).expect("a frame");

@@ -2,7 +2,6 @@
 
 mod baggage;
 pub(super) mod figure;
-pub mod gait;
 mod head;
 mod outfit;
 pub mod person;

@@ -5,10 +5,10 @@ use core::f32::consts::PI;
 use glam::Vec3;
 
 use super::figure::{ARM_OUT, HAND_M, Look, SHIN_M, SHOULDER_M, THIGH_M, UPPER_ARM_M};
-use super::gait::{Cycle, Gait};
 use super::outfit::{Carried, Outfit, Stance};
 use crate::SemanticTag;
 use crate::mesh::Mesh;
+use crate::mesh::gait::{Cycle, Gait};
 use crate::mesh::model::{Detail, Joint, Model, Part, Swing};
 use crate::mesh::variety::Variety;
 

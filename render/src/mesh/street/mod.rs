@@ -4,7 +4,6 @@ pub mod barrier;
 pub mod building;
 pub mod loose;
 pub mod posts;
-pub mod prop;
 pub mod signal;
 pub mod street_furniture;
 pub mod structure;

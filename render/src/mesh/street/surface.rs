@@ -16,7 +16,7 @@ fn paint(kind: SurfaceKind) -> Paint {
         SurfaceKind::Road => Paint::plain(SemanticTag::Road, [98, 98, 100]).grainy(90),
         SurfaceKind::RoadLine => Paint::plain(SemanticTag::RoadLine, [224, 224, 216]).grainy(60),
         SurfaceKind::Sidewalk => Paint::plain(SemanticTag::SideWalk, [164, 158, 150]).grainy(60).coded(CODE_SLABS),
-        SurfaceKind::Terrain => Paint::plain(SemanticTag::Terrain, [104, 124, 62]).grainy(200).coded(CODE_GRASS),
+        SurfaceKind::Terrain => Paint::plain(SemanticTag::Terrain, [98, 110, 68]).grainy(200).coded(CODE_GRASS),
         SurfaceKind::Ground => Paint::plain(SemanticTag::Ground, [140, 134, 124]).grainy(120),
         SurfaceKind::Gravel => Paint::plain(SemanticTag::Road, [152, 142, 122]).grainy(220),
         SurfaceKind::Track => Paint::plain(SemanticTag::RailTrack, [112, 102, 92]).grainy(220),

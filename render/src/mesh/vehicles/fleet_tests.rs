@@ -9,7 +9,7 @@ use kernel::scene::ActorKind;
 use crate::mesh::Mesh;
 use crate::mesh::actor::{actor_model, ego_model, parked_model};
 use crate::mesh::model::{Detail, Model};
-use crate::mesh::street::prop;
+use crate::mesh::prop;
 
 const VARIANTS: u32 = 60;
 

@@ -102,7 +102,13 @@ impl Index {
 
     /// Looks at it as it is at one moment, whatever another process writes meanwhile.
     pub fn read<T>(&self, work: impl FnOnce(&Connection) -> rusqlite::Result<T>) -> anyhow::Result<T> {
-        let step = || work(&*self.db.unchecked_transaction()?);
+        let step = || {
+            let moment = self.db.unchecked_transaction()?;
+            let value = work(&moment)?;
+            // What was laid down beside it, in memory, stays.
+            moment.commit()?;
+            Ok(value)
+        };
         step().map_err(|error| told(&self.path, error))
     }
 

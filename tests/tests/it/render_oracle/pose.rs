@@ -6,10 +6,11 @@ use kernel::map::{Prop, RoadNetwork};
 use kernel::scene::{SceneSnapshot, Weather};
 use render::mesh::Mesh;
 use render::mesh::actor::{ego_model, has_umbrella_up, sheltered_model};
+use render::mesh::gait::{Cycle, Gait, RUNS_MPS};
 use render::mesh::model::{Detail, Joint, Model};
 use render::mesh::motion::Motion;
-use render::mesh::people::gait::{Cycle, Gait, RUNS_MPS};
-use render::mesh::street::{prop, signal, surface};
+use render::mesh::prop;
+use render::mesh::street::{signal, surface};
 
 use super::bvh::Triangle;
 

@@ -3,12 +3,12 @@
 use glam::{Quat, Vec3};
 use kernel::map::{FurnitureKind, Prop, PropKind};
 
-use super::{barrier, building, posts, signal, street_furniture, structure, tree};
+use super::Mesh;
+use super::actor::parked_model;
+use super::model::Detail;
+use super::street::{barrier, building, posts, signal, street_furniture, structure, tree};
+use super::variety::Variety;
 use crate::SemanticTag;
-use crate::mesh::Mesh;
-use crate::mesh::actor::parked_model;
-use crate::mesh::model::Detail;
-use crate::mesh::variety::Variety;
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
 /// footprint on the ground, z up.
