@@ -59,6 +59,9 @@ struct Role {
     casts: bool,
 }
 
+/// Models that are kept at most: people have tens of thousands of looks.
+const MOST_MODELS: usize = 2000;
+
 /// The models that have been needed so far.
 #[derive(Default)]
 pub(crate) struct Cast {
@@ -91,6 +94,9 @@ impl Cast {
         moving.casters.clear();
         moving.glows.clear();
         moving.eye = view.eye;
+        if self.models.len() > MOST_MODELS {
+            self.models.clear();
+        }
         self.pose_ego(&scene.ego, scene.tick, (view, shadow), moving);
         let around = |actor: &ActorScene| {
             let (centre, radius) = sphere(actor);
@@ -203,7 +209,7 @@ impl Moving {
     fn append_mesh(&mut self, mesh: &Mesh, frame: Affine3A, (instance, lamps): (u16, u8), role: Role) {
         let first = self.vertices.len() as u32;
         let is_lit_behind = self.shine > 0.0 && lamps & lamps::HEADLIGHTS != 0;
-        let lamps = if is_lit_behind { lamps | TAIL } else { lamps };
+        let lamps = if is_lit_behind { lamps | TAIL } else { lamps & !TAIL };
         self.vertices.extend(mesh.vertices.iter().map(|v| posed(v, &frame, instance, lamps)));
         if self.shine > 0.0 && role.is_seen {
             glows::of_lamps(&self.vertices[first as usize..], self.eye, self.shine, &mut self.glows);

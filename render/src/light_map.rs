@@ -1,6 +1,6 @@
 //! The light of lamps on a square of ground around the eye, as a texture.
 
-use glam::{Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use kernel::scene::{ActorKind, ActorScene, EgoScene, SceneSnapshot, lamps};
 
 use crate::camera::EGO_MIDDLE_M;
@@ -26,6 +26,9 @@ const EGO_BEAM_M: f32 = 70.0;
 const BEAM_M: f32 = 40.0;
 /// Light of two headlights close before them.
 const BEAM: f32 = 1.8;
+/// A beam shows little aside of this tangent, and no more obstacles than so many, the nearest, keep it from the road.
+const WIDEST: f32 = 1.5;
+const MOST_HIDDEN: usize = 12;
 /// What a car in a beam leaves of it on the road beyond.
 const BEHIND_A_CAR: f32 = 0.25;
 
@@ -99,7 +102,12 @@ impl LightMap {
         let is_lit = |lamps: u8| lamps & lamps::HEADLIGHTS != 0;
         let of_others = near.iter().filter(|actor| is_lit(actor.lamps)).filter_map(|actor| Beam::of(actor));
         let own = is_lit(scene.ego.lamps).then(|| Beam::of_ego(&scene.ego));
-        for beam in own.into_iter().chain(of_others) {
+        let square = [self.corner, self.corner + 2.0 * half];
+        let reaches = |beam: &Beam| {
+            let middle = beam.from.truncate() + beam.ahead * (0.5 * beam.reach_m);
+            middle.clamp(square[0], square[1]).distance(middle) < beam.reach_m
+        };
+        for beam in own.into_iter().chain(of_others).filter(reaches) {
             self.add_beam(&beam.behind(&obstacles));
         }
         self.encode();
@@ -175,18 +183,30 @@ impl Beam {
 /// What keeps light from the road beyond it: a car or larger.
 struct Obstacle {
     position: Vec2,
+    /// Half of its length and width, along where it heads.
     half: Vec2,
+    heading: Vec2,
 }
 
 impl Obstacle {
     fn of_ego(ego: &EgoScene) -> Self {
         let middle = ego.position + ego.rotation * Vec3::X * EGO_MIDDLE_M;
-        Self { position: middle.truncate(), half: 0.5 * ActorKind::Car.size_m().truncate() }
+        Self::new(middle, ego.rotation, ActorKind::Car)
     }
 
     fn of(actor: &ActorScene) -> Option<Self> {
-        let half = 0.5 * actor.kind.size_m().truncate();
-        actor.kind.is_car_or_heavier().then(|| Self { position: actor.position.truncate(), half })
+        actor.kind.is_car_or_heavier().then(|| Self::new(actor.position, actor.rotation, actor.kind))
+    }
+
+    fn new(position: Vec3, rotation: Quat, kind: ActorKind) -> Self {
+        let heading = (rotation * Vec3::X).truncate().normalize_or_zero();
+        Self { position: position.truncate(), half: 0.5 * kind.size_m().truncate(), heading }
+    }
+
+    /// Half of how far it reaches along a direction.
+    fn half_along(&self, direction: Vec2) -> f32 {
+        let shares = Vec2::new(self.heading.dot(direction), self.heading.perp().dot(direction)).abs();
+        shares.dot(self.half)
     }
 }
 
@@ -217,11 +237,16 @@ impl Beam {
     fn behind(mut self, obstacles: &[Obstacle]) -> Self {
         let hides = |obstacle: &Obstacle| {
             let rel = obstacle.position - self.from.truncate();
-            let (along, across) = (rel.dot(self.ahead), rel.dot(self.ahead.perp()));
-            let edges = [across - obstacle.half.y, across + obstacle.half.y];
-            (along > obstacle.half.x && along < self.reach_m).then(|| (along, edges.map(|edge| edge / along)))
+            let aside = self.ahead.perp();
+            let (along, across) = (rel.dot(self.ahead), rel.dot(aside));
+            let half = obstacle.half_along(aside);
+            let edges = [across - half, across + half].map(|edge| edge / along);
+            let is_ahead = along > obstacle.half_along(self.ahead) && along < self.reach_m;
+            (is_ahead && edges[0] < WIDEST && edges[1] > -WIDEST).then_some((along, edges))
         };
         self.hidden = obstacles.iter().filter_map(hides).collect();
+        self.hidden.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.hidden.truncate(MOST_HIDDEN);
         self
     }
 }
@@ -245,6 +270,19 @@ mod tests {
         assert_eq!(behind.light(10.0, 0.0), free.light(10.0, 0.0));
         assert_eq!(behind.light(20.0, 0.5), BEHIND_A_CAR * free.light(20.0, 0.5));
         assert_eq!(behind.light(20.0, 3.0), free.light(20.0, 3.0));
+    }
+
+    #[test]
+    fn a_bus_across_the_road_shades_all_of_it_and_one_beside_none() {
+        let bus = |at: Vec2, turn_rad: f32| {
+            let rotation = Quat::from_rotation_z(turn_rad);
+            beam(Vec::new()).behind(&[Obstacle::new(at.extend(0.0), rotation, ActorKind::Bus)])
+        };
+        let ahead = Vec2::new(15.0, 0.0);
+        let free = beam(Vec::new()).light(30.0, 7.0);
+        assert_eq!(bus(ahead, 0.0).light(30.0, 7.0), free);
+        assert_eq!(bus(ahead, core::f32::consts::FRAC_PI_2).light(30.0, 7.0), BEHIND_A_CAR * free);
+        assert!(bus(Vec2::new(10.0, 40.0), 0.0).hidden.is_empty());
     }
 
     #[test]

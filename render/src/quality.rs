@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Quality {
-    /// One sample a pixel, shadows of what stands still, blobs under what moves.
+    /// One sample a pixel, shadows within 64 m.
     #[default]
     Plain,
     /// The same, and colours are smoothed: half of a pixel is the sample in its middle, half those at its corners, which it

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use kernel::SceneSnapshot;
 use kernel::map::{Prop, PropKind, RoadNetwork};
 use kernel::scene::ActorKind;
@@ -15,6 +15,7 @@ use crate::mesh::street::surface;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, skirt};
 use crate::sieve::Sieve;
 use crate::view::View;
+use crate::wind;
 
 /// Pieces smaller than this many pixels are left out.
 const SMALLEST_PX: f32 = 2.0;
@@ -42,6 +43,8 @@ struct Level {
 struct Piece {
     centre: Vec3,
     radius_m: f32,
+    /// Corners of the box around all of its levels.
+    extent: [Vec3; 2],
     /// Of a parked car its number.
     parked: Option<usize>,
     /// In the order of [`Detail::ALL`].
@@ -90,13 +93,16 @@ impl Scenery {
         if meshes[0].is_empty() {
             return;
         }
-        let (centre, radius_m) = bounding_sphere(&meshes[0]);
+        let [low, high] = extent(&meshes[0], 0.0);
+        let (centre, radius_m) = (0.5 * (low + high), 0.5 * (high - low).length());
+        let windblown = meshes.iter().map(|mesh| extent(mesh, wind::REACH_M));
+        let all = windblown.fold([low, high], |[low, high], [l, h]| [low.min(l), high.max(h)]);
         let mut levels: [Level; Detail::ALL.len()] = Default::default();
         for i in 0..meshes.len() {
             let same = i > 0 && meshes[i] == meshes[i - 1];
             levels[i] = if same { levels[i - 1].clone() } else { self.store(&meshes[i]) };
         }
-        self.pieces.push(Piece { centre, radius_m, parked, levels });
+        self.pieces.push(Piece { centre, radius_m, extent: all, parked, levels });
     }
 
     fn store(&mut self, mesh: &Mesh) -> Level {
@@ -127,6 +133,9 @@ impl Scenery {
         seen.retain(|(_, p)| !horizon.hides(p.centre, p.radius_m));
         let mut lists: [Vec<u32>; FINISHES] = Default::default();
         for piece in seen.into_iter().map(|(_, piece)| piece).chain(plain) {
+            if !sieve.may_show_of(piece.extent) {
+                continue;
+            }
             let level = &piece.levels[view.detail(piece.centre, piece.radius_m) as usize];
             let vertices = &self.vertices[level.vertices.start as usize..level.vertices.end as usize];
             let indices = level.ranges.iter().map(|range| self.indices_of(range));
@@ -185,14 +194,14 @@ fn placed(object: &Prop, parked: Option<usize>, detail: Detail) -> Mesh {
     mesh
 }
 
-/// A sphere around a mesh's bounding box.
-fn bounding_sphere(mesh: &Mesh) -> (Vec3, f32) {
-    let start = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
-    let (low, high) = mesh.vertices.iter().fold(start, |(low, high), v| {
-        let p = Vec3::from_array(v.position);
-        (low.min(p), high.max(p))
-    });
-    (0.5 * (low + high), 0.5 * (high - low).length())
+/// Corners of the box around a mesh that wind moves by up to so much.
+fn extent(mesh: &Mesh, sway_m: f32) -> [Vec3; 2] {
+    let start = [Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY)];
+    mesh.vertices.iter().fold(start, |[low, high], v| {
+        let sway = Vec2::splat(sway_m * f32::from(v.sway) / 127.0).extend(0.0);
+        let at = Vec3::from_array(v.position);
+        [low.min(at - sway), high.max(at + sway)]
+    })
 }
 
 #[cfg(test)]

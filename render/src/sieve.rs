@@ -52,6 +52,24 @@ impl Sieve {
         Self { keeps_all: true, ..self }
     }
 
+    /// Whether any sample may show something of what lies in a box, given by two corners: cells of the ground far away lie
+    /// between two rows.
+    pub(crate) fn may_show_of(&self, extent: [Vec3; 2]) -> bool {
+        let corner = |i: usize| Vec3::new(extent[i & 1].x, extent[i >> 1 & 1].y, extent[i >> 2].z);
+        let mut reach = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for place in (0..8).map(|i| self.place_of(corner(i))) {
+            if self.keeps_all || place.z < NEAR_M {
+                return true;
+            }
+            reach = (reach.0.min(place.truncate()), reach.1.max(place.truncate()));
+        }
+        let holds = |(low, high): (Vec2, Vec2), size: Vec2| {
+            let [columns, rows] = samples_between(low, high, size);
+            !(columns.is_empty() || rows.is_empty())
+        };
+        holds(reach, self.size) || self.corners && holds((reach.0 + 0.5, reach.1 + 0.5), self.size + 1.0)
+    }
+
     /// Appends those indices of a mesh whose triangles may be seen. `first` is the index of its first vertex.
     pub(crate) fn sift<'a>(
         &mut self,
@@ -90,22 +108,26 @@ impl Sieve {
     }
 
     fn place(&mut self, vertices: &[Vertex]) {
-        let View { eye, ahead, right, up, tan_x, tan_y, .. } = self.view;
-        let (right, up) = (right / tan_x, up / tan_y);
-        let half = 0.5 * self.size;
         let offset = |v: &Vertex, at: Vec3| {
             let share = f32::from(v.sway) / 127.0;
             (share * self.gusts.offset(at.truncate())).extend(0.0)
         };
-        let places = vertices.iter().map(|v| {
+        let mut kept = core::mem::take(&mut self.places);
+        kept.clear();
+        kept.extend(vertices.iter().map(|v| {
             let at = Vec3::from_array(v.position);
-            let rel = if v.sway == 0 { at } else { at + offset(v, at) } - eye;
-            let ahead_m = rel.dot(ahead);
-            let scale = half / ahead_m;
-            Vec3::new(half.x + scale.x * rel.dot(right), half.y - scale.y * rel.dot(up), ahead_m)
-        });
-        self.places.clear();
-        self.places.extend(places);
+            self.place_of(if v.sway == 0 { at } else { at + offset(v, at) })
+        }));
+        self.places = kept;
+    }
+
+    fn place_of(&self, at: Vec3) -> Place {
+        let View { eye, ahead, right, up, tan_x, tan_y, .. } = self.view;
+        let (right, up) = (right / tan_x, up / tan_y);
+        let (rel, half) = (at - eye, 0.5 * self.size);
+        let ahead_m = rel.dot(ahead);
+        let scale = half / ahead_m;
+        Vec3::new(half.x + scale.x * rel.dot(right), half.y - scale.y * rel.dot(up), ahead_m)
     }
 }
 
@@ -117,9 +139,8 @@ fn may_be_seen(corners: [Place; 3], size: Vec2) -> bool {
     }
     let [a, b, c] = corners.map(|p| p.truncate());
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let known = KNOWN_PX + KNOWN_SHARE * low.abs().max(high.abs()).max_element();
-    let columns = samples(low.x - known, high.x + known, size.x);
-    let rows = samples(low.y - known, high.y + known, size.y);
+    let known = known_px(low, high);
+    let [columns, rows] = samples_between(low, high, size);
     if columns.is_empty() || rows.is_empty() {
         return false;
     }
@@ -140,6 +161,17 @@ fn may_be_seen(corners: [Place; 3], size: Vec2) -> bool {
         })
     };
     rows.into_iter().any(|row| columns.clone().any(|column| covers(Vec2::new(column as f32, row as f32) + 0.5)))
+}
+
+/// How well places between two are known, samples.
+fn known_px(low: Vec2, high: Vec2) -> f32 {
+    KNOWN_PX + KNOWN_SHARE * low.abs().max(high.abs()).max_element()
+}
+
+/// Columns and rows whose samples may lie between two places.
+fn samples_between(low: Vec2, high: Vec2, size: Vec2) -> [Range<usize>; 2] {
+    let known = known_px(low, high);
+    [samples(low.x - known, high.x + known, size.x), samples(low.y - known, high.y + known, size.y)]
 }
 
 /// The samples between two places of an axis that has so many; samples lie half a step inside.

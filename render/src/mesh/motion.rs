@@ -6,7 +6,8 @@ use glam::Vec3;
 use kernel::ops;
 use kernel::scene::{ActorScene, EgoScene};
 
-/// Vehicles' phases advance by a turn in this distance, be there pedals or not, metres.
+/// Vehicles' phases advance by a turn in this distance, be there pedals or not, metres. Those that were hit or pushed keep theirs:
+/// they slide.
 pub const LAP_M: f32 = 5.0;
 
 /// Directions that the ego car's heading is rounded to.

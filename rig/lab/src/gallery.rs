@@ -14,9 +14,9 @@ use base::setting::{Changes, Setting};
 use base::words::count;
 use base::{asked, png};
 use drivers::film::Viewpoint;
-use kernel::Scenario;
 use kernel::time::Tick;
 use kernel::weather::{Weather, WeatherPreset};
+use kernel::{RoadNetwork, Scenario};
 use render::Quality;
 use serde::Serialize;
 
@@ -74,6 +74,8 @@ pub struct Picture {
     pub file: String,
     /// Of which map.
     pub map: String,
+    /// Its digest, hexadecimal.
+    pub map_digest: String,
     /// In which light: `noon`, `dusk`, `rain`, `fog` or `night`.
     pub light: &'static str,
 }
@@ -134,8 +136,11 @@ pub fn gallery(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Galle
 }
 
 fn of(options: &Options, settings: &[Setting], lights: [&'static str; 5]) -> Gallery {
-    let picture = |map: &str, light| Picture { file: format!("{map}-{light}.png"), map: map.to_owned(), light };
-    let maps = settings.iter().map(|setting| setting.map.network.name.as_str());
+    let picture = |network: &RoadNetwork, light| {
+        let (map, map_digest) = (network.name.clone(), format!("{:032x}", network.digest));
+        Picture { file: format!("{map}-{light}.png"), map, map_digest, light }
+    };
+    let maps = settings.iter().map(|setting| &setting.map.network);
     let (width, height) = options.size;
     Gallery {
         kernel: kernel::identity(),
@@ -162,6 +167,12 @@ fn begin(gallery: &Gallery, out: &Path) -> anyhow::Result<()> {
     }
 }
 
+/// A file's name as a link in double quotes.
+fn linked(file: &str) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte);
+    file.bytes().map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
+}
+
 /// A page that shows all of it, a row for each map.
 fn page(gallery: &Gallery) -> Result<String, fmt::Error> {
     let mut page = String::from(
@@ -170,8 +181,8 @@ fn page(gallery: &Gallery) -> Result<String, fmt::Error> {
     );
     for pictures in gallery.pictures.chunk_by(|a, b| a.map == b.map) {
         page.push_str("<div>\n");
-        for Picture { file, map, light } in pictures {
-            let (file, map) = (escape(file), escape(map));
+        for Picture { file, map, light, .. } in pictures {
+            let (file, map) = (linked(file), escape(map));
             writeln!(
                 page,
                 "<figure><a href=\"{file}\"><img src=\"{file}\"></a><figcaption>{map}, {light}</figcaption></figure>"
@@ -180,4 +191,16 @@ fn page(gallery: &Gallery) -> Result<String, fmt::Error> {
         page.push_str("</div>\n");
     }
     Ok(page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_hold_no_letter_that_means_something_else() {
+        assert_eq!(linked("town-noon.png"), "town-noon.png");
+        assert_eq!(linked("a\"b #1?.png"), "a%22b%20%231%3F.png");
+        assert_eq!(linked("ä.png"), "%C3%A4.png");
+    }
 }

@@ -4,7 +4,7 @@ use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::weather::WeatherPreset;
 use render::mesh::actor::has_umbrella_up;
-use render::{AdapterChoice, Camera, Frame, Renderer, SemanticTag};
+use render::{AdapterChoice, Camera, Frame, Renderer, SemanticTag, instance_of_actor};
 use tests::street;
 
 fn renderer() -> Renderer {
@@ -50,6 +50,34 @@ fn weather_changes_colours_and_no_class_instance_or_depth() {
     }
     let again = renderer.draw(&calm(Weather::dry(5.0, 0.0, 45.0, 200.0)), &camera).expect("a frame");
     assert!(again == dry, "what was drawn before stays in the picture");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn rain_changes_who_puts_up_an_umbrella_and_nobody_else() {
+    let (mut renderer, camera) = (renderer(), Camera::driver(256, 128));
+    let mut changed = 0;
+    for moment in 0..20 {
+        let mut scene = street::scene(moment);
+        // So that enough of them are near, and some have one.
+        scene.actors.iter_mut().for_each(|actor| actor.variant += 31 * moment);
+        let carriers: Vec<u16> = scene
+            .actors
+            .iter()
+            .filter(|a| has_umbrella_up(a.kind, a.variant, 100.0))
+            .map(|a| instance_of_actor(a.id))
+            .collect();
+        let [dry, wet] = [0.0, 100.0].map(|rain_pct| {
+            let weather = Weather { precipitation_pct: rain_pct, ..scene.weather };
+            renderer.draw_classes(&SceneSnapshot { weather, ..scene.clone() }, &camera).expect("a frame")
+        });
+        for at in (0..dry.class_ids.len()).filter(|at| dry.depth_m[*at].to_bits() != wet.depth_m[*at].to_bits()) {
+            let whose = [dry.instance_ids[at], wet.instance_ids[at]];
+            assert!(whose.iter().any(|instance| carriers.contains(instance)), "moment {moment}: {whose:?}");
+            changed += 1;
+        }
+    }
+    assert!(changed > 0, "somebody has one");
 }
 
 #[test]

@@ -150,7 +150,7 @@ pub struct Buttons {
     /// Sounds the horn while it is held.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horn: Option<u16>,
-    /// Switches the headlights on and off.
+    /// Switches the headlights on and off; in the dark they are on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lights: Option<u16>,
     /// Switches the wipers on and off.
