@@ -154,8 +154,8 @@ fn mixtures_are_told(place: &Place) {
     let (code, _, said) = run(&mut aeye(&place.0, &format!("{DRIVES} --runs {RUNS} --shard 1/3 --out whole")));
     assert!(code == Some(1) && said.contains("whole: holds a whole campaign"), "{said}");
 
-    place.copy("shards/1", "plan", ("\"pedestrians\": 60", "\"pedestrians\": 50"));
-    place.refuses("shards/2 shards/3 plan", 1, &["plan/shard.json: pedestrians is 50, in shards/2 it is 60"]);
+    place.copy("shards/1", "plan", ("\"pedestrians\": 160", "\"pedestrians\": 50"));
+    place.refuses("shards/2 shards/3 plan", 1, &["plan/shard.json: pedestrians is 50, in shards/2 it is 160"]);
     place.copy("shards/1", "build", ("\"sources\": \"", "\"sources\": \"0123456789ab"));
     place.refuses(
         "shards/2 shards/3 build",
