@@ -112,9 +112,10 @@ fn is_furniture(kind: PropKind) -> bool {
     matches!(kind, PropKind::Furniture | PropKind::Movable | PropKind::Sundry)
 }
 
-/// A name as it is looked up: in small letters, with nothing between words.
+/// A name as it is looked up: in small letters, with nothing between words; a street is no tree.
 fn squeezed(name: &str) -> String {
-    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+    let letters = name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase());
+    letters.collect::<String>().replace("street", " ")
 }
 
 /// What a name may stand for, the likeliest first.

@@ -3,17 +3,17 @@
 use glam::Vec3;
 
 use super::error::BakeError;
-use super::limits::{CROWD, EXTENT_M};
+use super::limits::{CROSSINGS, CROWD, EXTENT_M};
 use super::notes::{Notes, PassedOver};
 use super::programme::Programmes;
 use super::signs::Governed;
 use super::source::Source;
 use super::told::Told;
 use super::{
-    bus_stops, crosswalks, dressing, flat, junctions, lanes, lights, marks, priority, props, signs, speeds, stops,
-    structures, surfaces, terrain, walkways,
+    bus_stops, crosswalks, dressing, flat, gaps, junctions, lanes, lights, marks, priority, props, signs, speeds,
+    stops, structures, surfaces, terrain, walkways,
 };
-use crate::map_data::{Lane, LightGroupId, MapData};
+use crate::map_data::{Crosswalk, Lane, LightGroupId, MapData};
 use crate::places::LaneGrid;
 
 /// A map, and what else its file says.
@@ -82,6 +82,7 @@ fn map(name: &str, xodr: &str, notes: &mut Notes) -> Result<(MapData, Rest), Bak
     let (lanes, junctions) = junctions::bake(&source, lanes, &grid);
     let governed = signs::governed(&source, &lanes, notes);
     let crosswalks = crosswalks::bake(&source, &grid.over(&lanes), &junctions, &governed, notes);
+    apart(&crosswalks, &lanes)?;
     let groups = lights::Groups::new(&source, &lanes, &junctions, &governed);
     let crossed = stops::Crossed::new(&crosswalks);
     let programmes = Programmes { lanes: &lanes, crosswalks: &crosswalks, crossed: &crossed, groups: &groups };
@@ -154,5 +155,14 @@ fn sparse(lanes: &[Lane], grid: &LaneGrid) -> Result<(), BakeError> {
     let Some((lane, crowd)) = grid.most_crowded().filter(|(_, crowd)| *crowd > CROWD) else { return Ok(()) };
     let reason =
         format!("expected at most {CROWD} stretches of lanes around one place, but around this lane {crowd} meet");
+    Err(BakeError { place: format!("lane {}", lanes[lane as usize].name), reason })
+}
+
+/// Refuses crosswalks that lie on each other in great numbers, as [`sparse`] does lanes.
+fn apart(crosswalks: &[Crosswalk], lanes: &[Lane]) -> Result<(), BakeError> {
+    let most = gaps::most_crowded(crosswalks).filter(|(_, crowd)| *crowd > CROSSINGS);
+    let Some((crosswalk, crowd)) = most else { return Ok(()) };
+    let reason = format!("expected at most {CROSSINGS} crosswalks around one place, but on this lane {crowd} meet");
+    let (lane, _) = crosswalks[crosswalk].lanes[0];
     Err(BakeError { place: format!("lane {}", lanes[lane as usize].name), reason })
 }

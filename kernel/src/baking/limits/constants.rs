@@ -27,6 +27,8 @@ pub const LANE_POINTS: f64 = 3_000_000.0;
 pub const SQUARES: f64 = 2e7;
 /// Stretches of lanes that meet in one square.
 pub const CROWD: usize = 4_000;
+/// Crosswalks that meet in one square: where a junction has the most of them, a dozen do.
+pub const CROSSINGS: usize = 500;
 /// Pairs of stretches in the same squares, of all squares.
 pub const PAIRS: f64 = 2e8;
 

@@ -20,7 +20,7 @@ mod speeds;
 mod stretch;
 mod sums;
 
-pub use constants::{CROWD, EXTENT_M, LANE_POINTS, PIECE_M};
+pub use constants::{CROSSINGS, CROWD, EXTENT_M, LANE_POINTS, PIECE_M};
 pub use document::malformed;
 
 use std::borrow::Cow;

@@ -125,6 +125,36 @@ fn crossed(mark: &str, s_m: f32, heading_rad: f32, width_m: f32) -> String {
     straight("100", "3.5", &crosswalk).replace("</lane></right>", &mark)
 }
 
+/// A road with a line and so many crosswalks, each so far from the one before.
+fn crowded(length: &str, count: usize, apart_m: f32) -> String {
+    let crosswalk = |k: usize| {
+        let s_m = 20.5 + k as f32 * apart_m;
+        format!(
+            "<object id=\"{k}\" type=\"crosswalk\" s=\"{s_m}\" t=\"-1.75\" zOffset=\"0\" hdg=\"0\" length=\"0.2\" \
+             width=\"6\" height=\"0\"/>"
+        )
+    };
+    let crosswalks: String = (0..count).map(crosswalk).collect();
+    let mark = "<roadMark sOffset=\"0\" type=\"solid\" color=\"white\" width=\"0.12\"/></lane></right>";
+    straight(length, "3.5", &format!("<objects>{crosswalks}</objects>")).replace("</lane></right>", mark)
+}
+
+#[test]
+fn crosswalks_on_a_heap_are_refused() {
+    let refused = bake("heap", &crowded("100", 20_000, 0.0)).expect_err("a heap").to_string();
+    let expected = "lane 1/-1: expected at most 500 crosswalks around one place, but on this lane 20000 meet";
+    assert_eq!(refused, expected);
+}
+
+#[test]
+fn crosswalks_all_along_a_road_bake() {
+    let map = bake("long", &crowded("20100", 20_000, 1.0)).expect("a map");
+    assert_eq!(map.crosswalks.len(), 20_000);
+    let paint = map.surfaces.iter().find(|s| s.kind == SurfaceKind::RoadLine).expect("paint");
+    // Six stripes of each, and at most one piece of the line beside it, bent at most once.
+    assert!(paint.triangles.len() < 20_000 * (2 * 6 + 4) + 100, "{}", paint.triangles.len());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 

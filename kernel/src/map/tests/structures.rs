@@ -133,7 +133,7 @@ fn things_are_told_by_their_names() {
             10 * (k + 1)
         )
     };
-    use PropKind::{Furniture, GuardRail, Movable, Sundry, Wall};
+    use PropKind::{Furniture, GuardRail, Lamp, Movable, Sundry, Tree, Wall};
     let told = [
         (("none", "rubbishBin_3"), Movable),
         (("obstacle", "TrafficCone"), Movable),
@@ -144,6 +144,9 @@ fn things_are_told_by_their_names() {
         (("-1", "PostBox"), Sundry),
         (("pole", "post"), Furniture),
         (("none", "cityWall"), Wall),
+        (("none", "streetLamp"), Lamp),
+        (("none", "street bench"), Furniture),
+        (("none", "street tree 7"), Tree),
     ];
     let objects: String = told.iter().enumerate().map(|(k, (what, _))| object(k, *what)).collect();
     let map = baked(&rising(0.0, &objects));
@@ -152,6 +155,10 @@ fn things_are_told_by_their_names() {
         let found: Vec<_> = map.props.iter().filter(|p| (p.position.x - x).abs() < 0.1).map(|p| p.kind).collect();
         assert!(found.contains(&kind), "{what:?}: {found:?}");
     }
+    let bench = map.props.iter().find(|p| (p.position.x - 110.0).abs() < 0.1 && p.kind == Furniture).unwrap();
+    assert_eq!(bench.furniture(), Some(FurnitureKind::Bench));
+    let sign = baked(&rising(0.0, &object(0, ("none", "street sign"))));
+    assert!(sign.props.iter().all(|p| p.position.truncate().distance(glam::Vec2::new(10.0, -9.0)) > 0.1));
 }
 
 #[test]
