@@ -21,7 +21,7 @@ jaywalks_per_min = 60.0
 [hazards]
 level = "raised"
 """
-CAMPAIGN = "campaign --checkpoint early --seed 1 --cases 1 --max-time 60s"
+CAMPAIGN = "campaign --checkpoint early --seed 4 --cases 1 --max-time 60s"
 
 
 @pytest.fixture(scope="session")
@@ -51,7 +51,7 @@ def drive(program: Program, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def case(program: Program, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A corner case."""
+    """A corner case with a takeover."""
     folder = tmp_path_factory.mktemp("campaign")
     scenario, drives = folder / "hasty.toml", folder / "drives"
     scenario.write_text(HASTY)
