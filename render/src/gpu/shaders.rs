@@ -3,9 +3,16 @@
 /// Declarations that all shaders of a frame start with.
 const SCENE: &str = include_str!("../shaders/scene.wgsl");
 
+/// The world's surfaces, a fragment shader for each finish.
+const WORLD: &str = concat!(
+    include_str!("../shaders/surface.wgsl"),
+    include_str!("../shaders/ground.wgsl"),
+    include_str!("../shaders/facade.wgsl")
+);
+
 /// The shaders with their names, without the common start.
 const SOURCES: [(&str, &str); 6] = [
-    ("world", include_str!("../shaders/world.wgsl")),
+    ("world", WORLD),
     ("classes", include_str!("../shaders/classes.wgsl")),
     ("sky", include_str!("../shaders/sky.wgsl")),
     ("shadow", include_str!("../shaders/shadow.wgsl")),

@@ -27,7 +27,7 @@ const TILES: [[u8; 3]; 5] = [[152, 82, 60], [126, 70, 56], [92, 84, 80], [110, 6
 /// Height of a storey, metres.
 const STOREY_M: f32 = 3.0;
 
-/// Bits of the style of a front, as `world.wgsl` reads them.
+/// Bits of the style of a front, as `facade.wgsl` reads them.
 pub mod style {
     /// Width of the windows: 0 narrow to 3 wide.
     pub const WIDTH: u8 = 0b0000_0011;
