@@ -2,13 +2,22 @@
 
 use glam::DVec3;
 
-/// A triangle with its class.
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// Id of its class in CARLA's view.
+    pub class: u8,
+    /// Who it is; 0 for who has no number.
+    pub instance: u16,
+}
+
+/// A triangle with its label.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
     /// Corners.
     pub corners: [DVec3; 3],
-    /// Id of its class in CARLA's view.
-    pub class: u8,
+    /// What it shows.
+    pub label: Label,
 }
 
 enum Node {
@@ -60,11 +69,11 @@ impl Bvh {
         index
     }
 
-    /// Distance (in lengths of `direction`) and class of the first triangle that a ray meets, from
+    /// Distance (in lengths of `direction`) and label of the first triangle that a ray meets, from
     /// either side.
-    pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<(f64, u8)> {
+    pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<(f64, Label)> {
         let inverse = direction.recip();
-        let mut nearest: Option<(f64, u8)> = None;
+        let mut nearest: Option<(f64, Label)> = None;
         let mut stack = vec![0];
         while let Some(index) = stack.pop() {
             let limit = nearest.map_or(f64::INFINITY, |(t, _)| t);
@@ -76,7 +85,7 @@ impl Bvh {
                     for triangle in &self.triangles[*from..*to] {
                         let hit =
                             intersect(triangle, origin, direction).filter(|&t| nearest.is_none_or(|(n, _)| t < n));
-                        nearest = hit.map(|t| (t, triangle.class)).or(nearest);
+                        nearest = hit.map(|t| (t, triangle.label)).or(nearest);
                     }
                 }
                 _ => {}

@@ -2,7 +2,7 @@
 //! computed here from their documentation.
 
 use glam::{DAffine3, DQuat, DVec3, Vec3};
-use kernel::map::{Prop, RoadNetwork};
+use kernel::map::{Prop, PropKind, RoadNetwork};
 use kernel::scene::{SceneSnapshot, Weather};
 use render::mesh::Mesh;
 use render::mesh::actor::{ego_model, has_umbrella_up, sheltered_model};
@@ -11,8 +11,9 @@ use render::mesh::model::{Detail, Joint, Model};
 use render::mesh::motion::Motion;
 use render::mesh::prop;
 use render::mesh::street::{signal, surface};
+use render::{Camera, EGO_INSTANCE, instance_of_actor, instance_of_parked};
 
-use super::bvh::Triangle;
+use super::bvh::{Label, Triangle};
 
 fn wide(v: Vec3) -> DVec3 {
     DVec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
@@ -57,19 +58,19 @@ impl Collector {
         DVec3::new(f64::from(DIRECTION.x), f64::from(DIRECTION.y), 0.0) * reach
     }
 
-    fn add(&mut self, mesh: &Mesh, to_world: DAffine3) {
+    fn add(&mut self, mesh: &Mesh, instance: u16, to_world: DAffine3) {
         let corner = |i: u32| {
             let v = &mesh.vertices[i as usize];
             let at = to_world.transform_point3(wide(Vec3::from_array(v.position)));
             at + self.sway(at, v.sway)
         };
-        let class = |i: u32| class_of(mesh.vertices[i as usize].tag);
+        let label = |i: u32| Label { class: class_of(mesh.vertices[i as usize].tag), instance };
         let triangles: Vec<Triangle> =
-            mesh.all_triangles().map(|t| Triangle { corners: t.map(corner), class: class(t[0]) }).collect();
+            mesh.all_triangles().map(|t| Triangle { corners: t.map(corner), label: label(t[0]) }).collect();
         self.triangles.extend(triangles);
     }
 
-    fn add_model(&mut self, model: &Model, to_world: DAffine3, motion: &Motion) {
+    fn add_model(&mut self, model: &Model, instance: u16, to_world: DAffine3, motion: &Motion) {
         let mut frames: Vec<DAffine3> = Vec::new();
         let speed_mps = motion.speed_mps.abs();
         for part in &model.parts {
@@ -86,7 +87,7 @@ impl Collector {
             let frame = parent * joint;
             frames.push(frame);
             if part.shown_mps.is_none_or(|[from, to]| from <= speed_mps && speed_mps < to) {
-                self.add(&part.mesh, frame);
+                self.add(&part.mesh, instance, frame);
             }
         }
     }
@@ -126,44 +127,61 @@ fn turned(joint: &Joint, motion: &Motion) -> (DVec3, f64) {
 pub fn triangles(network: &RoadNetwork, scene: &SceneSnapshot) -> Vec<Triangle> {
     let mut all = Collector::new(&scene.weather, scene.tick);
     for cell in surface::cells(network).map(|cell| cell.mesh).chain([surface::plain(network)]) {
-        all.add(&cell, DAffine3::IDENTITY);
+        all.add(&cell, 0, DAffine3::IDENTITY);
     }
+    let mut parked = 0..;
     for object in &network.props {
-        let Prop { position, heading_rad, .. } = *object;
-        all.add(&prop::mesh(object, Detail::Fine), upright(position, heading_rad));
+        let Prop { position, heading_rad, kind, .. } = *object;
+        let instance = if kind == PropKind::ParkedCar { parked.next().map_or(0, instance_of_parked) } else { 0 };
+        all.add(&prop::mesh(object, Detail::Fine), instance, upright(position, heading_rad));
     }
     for head in &network.light_heads {
         let lamps = head.position + Vec3::Z * head.height_m;
         let phase = scene.lights[head.group as usize];
-        all.add(&signal::head(phase, Detail::Fine), upright(lamps, head.facing_rad));
+        all.add(&signal::head(phase, Detail::Fine), 0, upright(lamps, head.facing_rad));
     }
     for actor in &scene.actors {
         let sheltered = has_umbrella_up(actor.kind, actor.variant, scene.weather.precipitation_pct);
         let model = sheltered_model(actor.kind, actor.variant, Detail::Fine, sheltered);
         let frame = DAffine3::from_rotation_translation(turn(actor.rotation), wide(actor.position));
-        all.add_model(&model, frame, &Motion::of_actor(actor));
+        all.add_model(&model, instance_of_actor(actor.id), frame, &Motion::of_actor(actor));
     }
     let ego = DAffine3::from_rotation_translation(turn(scene.ego.rotation), wide(scene.ego.position));
     let middle = DAffine3::from_translation(DVec3::X * f64::from(kernel::ego::CENTRE_M.x));
-    all.add_model(ego_model(), ego * middle, &Motion::of_ego(&scene.ego));
+    all.add_model(ego_model(), EGO_INSTANCE, ego * middle, &Motion::of_ego(&scene.ego));
     all.triangles
 }
 
-/// The eye and the viewing directions of the pixels of the driver's camera, rows from above.
-///
-/// It is level, 1.2 m forward of the car's middle and 1.5 m high, and sees 90 degrees from side to
-/// side. Directions have length 1 along the view.
-pub fn rays(scene: &SceneSnapshot, width: u32, height: u32) -> (DVec3, Vec<DVec3>) {
-    let car = turn(scene.ego.rotation);
-    let mount = DVec3::new(f64::from(kernel::ego::CENTRE_M.x) + 1.2, 0.0, 1.5);
-    let eye = wide(scene.ego.position) + car * mount;
-    let half = 0.5 * f64::from(width);
-    let directions = (0..height).flat_map(|row| {
-        (0..width).map(move |column| {
-            let left = (half - f64::from(column) - 0.5) / half;
-            let up = (0.5 * f64::from(height) - f64::from(row) - 0.5) / half;
-            car * DVec3::new(1.0, left, up)
-        })
-    });
-    (eye, directions.collect())
+/// Where rays start and where they go, one for each pixel, rows from above. Directions have length 1 along the view.
+pub struct Rays {
+    pub eye: DVec3,
+    pub directions: Vec<DVec3>,
+}
+
+impl Rays {
+    /// Those of the driver's camera: level, 1.2 m forward of the car's middle and 1.5 m high, 90 degrees from side to side.
+    pub fn of_driver(scene: &SceneSnapshot, width: u32, height: u32) -> Self {
+        let car = turn(scene.ego.rotation);
+        let mount = DVec3::new(f64::from(kernel::ego::CENTRE_M.x) + 1.2, 0.0, 1.5);
+        Self::new(wide(scene.ego.position) + car * mount, car, 1.0, [width, height])
+    }
+
+    /// Those of a camera that stands in the world.
+    pub fn of_still(camera: &Camera) -> Self {
+        let half = (0.5 * f64::from(camera.fov_x_rad)).tan();
+        Self::new(wide(camera.position), turn(camera.rotation), half, [camera.width, camera.height])
+    }
+
+    /// `half` is the tangent of half the field of view from side to side.
+    fn new(eye: DVec3, view: DQuat, half: f64, [width, height]: [u32; 2]) -> Self {
+        let pixel = 2.0 * half / f64::from(width);
+        let directions = (0..height).flat_map(|row| {
+            (0..width).map(move |column| {
+                let left = (0.5 * f64::from(width) - f64::from(column) - 0.5) * pixel;
+                let up = (0.5 * f64::from(height) - f64::from(row) - 0.5) * pixel;
+                view * DVec3::new(1.0, left, up)
+            })
+        });
+        Self { eye, directions: directions.collect() }
+    }
 }
