@@ -42,9 +42,9 @@ const fn preset(name: &'static str, values: [f32; 8]) -> WeatherPreset {
     WeatherPreset { name, weather }
 }
 
-/// CARLA 0.9.14 and 0.9.15, `WeatherParameters.cpp`. Fall-off of the fog and scattering have no counterpart here; the
+/// First those of CARLA 0.9.14 and 0.9.15, `WeatherParameters.cpp`, whose nights are foggy, then ours. Fall-off of the fog and scattering have no counterpart here; the
 /// dust storm says nothing but that it is one.
-pub static PRESETS: [WeatherPreset; 21] = [
+pub static PRESETS: [WeatherPreset; 24] = [
     preset("ClearNoon", [5.0, 0.0, 0.0, 10.0, 45.0, 2.0, 0.75, 0.0]),
     preset("CloudyNoon", [60.0, 0.0, 0.0, 10.0, 45.0, 3.0, 0.75, 0.0]),
     preset("WetNoon", [5.0, 0.0, 50.0, 10.0, 45.0, 3.0, 0.75, 0.0]),
@@ -66,4 +66,7 @@ pub static PRESETS: [WeatherPreset; 21] = [
     preset("SoftRainNight", [60.0, 30.0, 50.0, 30.0, -90.0, 60.0, 0.75, 60.0]),
     preset("MidRainyNight", [80.0, 60.0, 60.0, 60.0, -90.0, 60.0, 0.75, 80.0]),
     preset("HardRainNight", [100.0, 100.0, 90.0, 100.0, -90.0, 100.0, 0.75, 100.0]),
+    preset("Dusk", [30.0, 0.0, 0.0, 10.0, -2.0, 0.0, 0.0, 0.0]),
+    preset("Fog", [80.0, 0.0, 0.0, 10.0, 45.0, 50.0, 0.75, 0.0]),
+    preset("Night", [30.0, 0.0, 0.0, 10.0, -30.0, 0.0, 0.0, 0.0]),
 ];

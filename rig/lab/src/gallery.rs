@@ -94,13 +94,12 @@ impl fmt::Display for Gallery {
 /// The lights by name.
 fn lights() -> anyhow::Result<[(&'static str, Weather); 5]> {
     let preset = |name| WeatherPreset::find(name).context(name).map(|preset| preset.weather(SUN_AZIMUTH_DEG));
-    let noon = preset("ClearNoon")?;
     Ok([
-        ("noon", noon),
-        ("dusk", Weather::dry(30.0, 10.0, -2.0, SUN_AZIMUTH_DEG)),
+        ("noon", preset("ClearNoon")?),
+        ("dusk", preset("Dusk")?),
         ("rain", preset("MidRainyNoon")?),
-        ("fog", Weather { fog_density_pct: 50.0, cloudiness_pct: 80.0, ..noon }),
-        ("night", Weather::dry(30.0, 10.0, -30.0, SUN_AZIMUTH_DEG)),
+        ("fog", preset("Fog")?),
+        ("night", preset("Night")?),
     ])
 }
 

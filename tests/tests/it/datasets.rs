@@ -10,6 +10,7 @@ use aeye::exit::Verdict;
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::{Eye, Vision};
+use kernel::weather::WeatherPreset;
 use lab::dataset::{FrameLine, Manifest, Part, cases, mix, natural, rebuild};
 use lab::redrive::{Counterfactual, Need};
 use perception::training::Split;
@@ -30,6 +31,7 @@ fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
         quality: Quality::default(),
         maps: vec!["rural".into(), "city".into()],
         pedestrians: Some(20),
+        weather: Vec::new(),
         seed: 5,
         jobs: Some(jobs),
         out,
@@ -102,6 +104,25 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
     let eval_args =
         EvalArgs { checkpoint: CheckpointChoice::Truth, dataset: a, split: "val".into(), jobs: None, out: None };
     assert_eq!(eval::run(&eval_args, true).unwrap(), Verdict::Ok);
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn each_map_meets_each_weather_that_is_asked_for() {
+    let dir = tempfile::tempdir().unwrap();
+    let weather = ["Night", "Fog"].map(|name| *WeatherPreset::find(name).unwrap()).to_vec();
+    let asked = natural::Options {
+        scenes: 4,
+        val_scenes: 0,
+        test_scenes: 0,
+        frames: 1,
+        weather,
+        ..natural_args(dir.path().to_owned(), 2)
+    };
+    natural::make(&asked, &Interrupt::default()).unwrap();
+    let met: Vec<(f32, f32)> =
+        lines(dir.path()).iter().map(|line| (line.weather.sun_altitude_deg, line.weather.fog_density_pct)).collect();
+    assert_eq!(met, [(-30.0, 0.0), (-30.0, 0.0), (45.0, 50.0), (45.0, 50.0)]);
 }
 
 #[test]

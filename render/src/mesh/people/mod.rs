@@ -1,5 +1,6 @@
 //! People: their builds and clothes, what they carry, and how they walk.
 
+pub mod appearance;
 mod baggage;
 pub(super) mod figure;
 mod head;

@@ -4,7 +4,7 @@ use crate::mesh::variety::Variety;
 
 /// Years as far as they are seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Age {
+pub enum Age {
     /// 6 to 13.
     Child,
     /// Up to about 65.
@@ -77,13 +77,20 @@ pub(super) enum Bottom {
 
 /// What is carried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Carried {
+pub enum Carried {
+    /// Both hands free.
     Nothing,
+    /// On the back.
     Backpack,
+    /// At the shoulder.
     Handbag,
+    /// In a hand.
     ShoppingBag,
+    /// In a hand.
     Briefcase,
+    /// In a hand, and above the head in rain.
     RolledUmbrella,
+    /// To lean on.
     Stick,
 }
 
@@ -105,6 +112,7 @@ pub(super) enum Stance {
 /// Somebody's body and clothes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Outfit {
+    pub age: Age,
     pub build: Build,
     pub skin: [u8; 3],
     pub hair: Hair,
@@ -247,6 +255,7 @@ impl Outfit {
             _ => cloth(v, [6, 3, 1]),
         };
         Self {
+            age,
             build,
             skin: v.colour(&SKINS),
             hair,
@@ -290,7 +299,6 @@ impl Outfit {
     }
 
     /// Whether it is dressed in dark: top and legs, without a vest.
-    #[cfg(test)]
     pub(super) fn is_dark(&self) -> bool {
         let dark = |c: [u8; 3]| c.iter().map(|&c| u32::from(c)).sum::<u32>() < 3 * 64;
         self.vest.is_none() && dark(self.top_colour) && dark(self.bottom_colour)

@@ -82,7 +82,7 @@ pub struct CampaignArgs {
     /// How often people at the wheel endanger others, instead of what the scenario says.
     #[arg(long, value_parser = hazards(), value_name = "LEVEL")]
     pub hazards: Option<HazardLevel>,
-    /// Weather by CARLA's name, as `weather.preset` of scenarios, instead of the scenario's or of
+    /// Weather by its name, as `weather.preset` of scenarios, instead of the scenario's or of
     /// one that is drawn for each run.
     #[arg(long, value_parser = weather(), value_name = "NAME")]
     pub weather: Option<WeatherPreset>,

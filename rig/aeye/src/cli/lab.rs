@@ -73,7 +73,7 @@ pub struct RenderArgs {
     /// Seed of everything random; replaces the scenario's.
     #[arg(long)]
     pub seed: Option<u64>,
-    /// Weather by CARLA's name, as `weather.preset` of scenarios; replaces the scenario's.
+    /// Weather by its name, as `weather.preset` of scenarios; replaces the scenario's.
     #[arg(long, value_parser = weather(), value_name = "NAME")]
     pub weather: Option<WeatherPreset>,
     /// People on foot, instead of as many as the scenario or the map's default has.

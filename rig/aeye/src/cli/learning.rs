@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use drivers::checkpoint::CheckpointChoice;
+use kernel::weather::WeatherPreset;
 use lab::redrive::Need;
 use lab::share::Share;
 use render::Quality;
 use replay::Label;
 
 use super::library::verdict;
-use super::values::{CHECKPOINT, MAPS, QUALITY, file, jobs, one_checkpoint, people, quality, rate, size};
+use super::values::{CHECKPOINT, MAPS, QUALITY, file, jobs, one_checkpoint, people, quality, rate, size, weather};
 
 /// The datasets that can be made.
 #[derive(Debug, Subcommand)]
@@ -127,6 +128,10 @@ pub struct NaturalArgs {
     /// People on foot in each scene, instead of as many as the map's default scenario has.
     #[arg(long, value_parser = people, value_name = "N")]
     pub pedestrians: Option<u16>,
+    /// The scenes' weathers, in turn after each round of maps (as `weather.preset` of scenarios), instead of those that their seeds
+    /// draw.
+    #[arg(long, value_delimiter = ',', value_parser = weather(), value_name = "NAME,...")]
+    pub weather: Vec<WeatherPreset>,
     /// Seed of the dataset.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,

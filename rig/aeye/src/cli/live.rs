@@ -64,7 +64,7 @@ pub struct DriveArgs {
     /// How often people at the wheel endanger others; replaces what the scenario says.
     #[arg(long, value_parser = hazards(), value_name = "LEVEL")]
     pub hazards: Option<HazardLevel>,
-    /// Weather by CARLA's name, as `weather.preset` of scenarios; replaces the scenario's.
+    /// Weather by its name, as `weather.preset` of scenarios; replaces the scenario's.
     #[arg(long, value_parser = weather(), value_name = "NAME")]
     pub weather: Option<WeatherPreset>,
     /// Longest simulated time of a run, 4s to 24h, as `rules.max_seconds` of scenarios.

@@ -59,7 +59,7 @@ pub struct ShardPlan {
     pub pedestrians: Option<u16>,
     /// How often people at the wheel endanger others, if not as the scenario says.
     pub hazards: Option<String>,
-    /// Weather by CARLA's name, if not as the scenario says.
+    /// Weather by its name, if not as the scenario says.
     pub weather: Option<String>,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,

@@ -11,7 +11,7 @@
 //! pictures are a function of the recipe, on one adapter ([`rebuild`]).
 
 pub mod cases;
-mod drive;
+pub mod drive;
 mod manifest;
 pub mod mix;
 pub mod natural;

@@ -19,6 +19,7 @@ use base::say::say;
 use base::spread::{jobs, on_threads};
 use drivers::vision;
 use kernel::World;
+use kernel::weather::WeatherPreset;
 use perception::cityscapes::Place;
 use render::{AdapterChoice, Camera, Quality, Renderer};
 
@@ -52,6 +53,8 @@ pub struct Options {
     pub maps: Vec<String>,
     /// People on foot in each scene, instead of as many as the map's default scenario has.
     pub pedestrians: Option<u16>,
+    /// The scenes' weathers, in turn after each round of maps, instead of those that their seeds draw.
+    pub weather: Vec<WeatherPreset>,
     /// Seed of the dataset.
     pub seed: u64,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
@@ -155,6 +158,7 @@ struct Scene {
     frames: u32,
     /// Index in the list of maps.
     map: usize,
+    weather: Option<&'static WeatherPreset>,
 }
 
 impl Scene {
@@ -179,6 +183,7 @@ impl NaturalRecipe {
             size: args.size,
             quality: args.quality,
             pedestrians: args.pedestrians,
+            weather: args.weather.iter().map(|preset| preset.name.to_owned()).collect(),
             maps: maps.iter().map(MapUsed::new).collect(),
         };
         recipe.check().map_err(Usage)?;
@@ -193,9 +198,20 @@ impl NaturalRecipe {
         ];
         let maps = self.maps.len().max(1);
         let of = |(split, count, frames)| {
-            (0..count).map(move |number| Scene { split, number, frames, map: number as usize % maps })
+            (0..count).map(move |number| Scene {
+                split,
+                number,
+                frames,
+                map: number as usize % maps,
+                weather: self.weather_of(number as usize / maps),
+            })
         };
         splits.into_iter().flat_map(of).collect()
+    }
+
+    /// The weather of a round of maps, where it is not drawn.
+    fn weather_of(&self, round: usize) -> Option<&'static WeatherPreset> {
+        self.weather.get(round % self.weather.len().max(1)).and_then(|name| WeatherPreset::find(name))
     }
 }
 
@@ -219,6 +235,9 @@ impl Studio<'_> {
             let before = lines.len();
             let mut scenario = map.scenario(scene.seed(self.recipe, leg));
             scenario.traffic.pedestrians = self.recipe.pedestrians.unwrap_or(scenario.traffic.pedestrians);
+            if let Some(preset) = scene.weather {
+                scenario.take_weather(preset);
+            }
             let mut drive = ExpertDrive::new(&scenario, map)?;
             self.say_who_is_missing(drive.world());
             while lines.len() < scene.frames as usize && drive.next_frame()? {

@@ -3,6 +3,7 @@
 use base::files::{check_name, most};
 use base::maps::Map;
 use kernel::time::Tick;
+use kernel::weather::WeatherPreset;
 use render::Quality;
 use serde::{Deserialize, Serialize};
 
@@ -90,6 +91,9 @@ pub struct NaturalRecipe {
     pub quality: Quality,
     /// People on foot, where not as many as in the map's default scenario.
     pub pedestrians: Option<u16>,
+    /// The scenes' weathers by name, in turn after each round of maps; drawn by each scene's seed where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub weather: Vec<String>,
     /// The scenes' maps, in turn.
     pub maps: Vec<MapUsed>,
 }
@@ -107,6 +111,12 @@ impl NaturalRecipe {
         if largest > MOST_IN_A_SPLIT || self.maps.len() > MOST_MAPS {
             return Err(format!(
                 "a dataset takes at most {MOST_IN_A_SPLIT} scenes a split and frames a scene, and {MOST_MAPS} maps"
+            ));
+        }
+        if let Some(none) = self.weather.iter().find(|name| WeatherPreset::find(name).is_none()) {
+            return Err(format!(
+                "a dataset of weather {none}; expected one of {}",
+                WeatherPreset::names().collect::<Vec<_>>().join(", ")
             ));
         }
         self.maps.iter().try_for_each(|map| check_name(&map.name))

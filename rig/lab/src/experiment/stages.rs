@@ -155,6 +155,7 @@ impl Stages<'_> {
             quality: self.recipe.quality,
             maps: self.recipe.maps.clone(),
             pedestrians: None,
+            weather: Vec::new(),
             seed: self.recipe.seed,
             jobs: self.jobs,
             out: self.dataset("natural"),
