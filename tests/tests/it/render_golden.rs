@@ -4,12 +4,24 @@
 
 use std::fmt::Write;
 
+use kernel::weather::WeatherPreset;
 use render::{AdapterChoice, Camera, Frame, Quality, Renderer};
 use tests::street;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../render/golden_pictures.txt");
-/// Moments of the street, with other weather and other light.
+/// Moments of the street, whose weather is dry and whose sun is at various heights; all qualities draw them.
 const MOMENTS: [u32; 4] = [0, 4, 9, 14];
+/// Weathers of others, which the quality with smooth edges draws.
+const WEATHERS: [(u32, &str); 8] = [
+    (2, "CloudyNoon"),
+    (3, "HardRainNoon"),
+    (5, "Fog"),
+    (6, "WetSunset"),
+    (7, "Dusk"),
+    (8, "Night"),
+    (10, "CloudyNight"),
+    (11, "HardRainNight"),
+];
 const WIDTH: usize = 96;
 const HEIGHT: usize = 48;
 /// Colours are means over squares of so many pixels.
@@ -73,20 +85,45 @@ fn difference(golden: &str, drawn: &str) -> Option<String> {
     (far > MARGIN).then(|| format!("a colour is off by {far} of 255"))
 }
 
+/// A picture of the street that is golden.
+struct Golden {
+    quality: Quality,
+    moment: u32,
+    weather: Option<&'static str>,
+}
+
+impl Golden {
+    fn all() -> Vec<Self> {
+        let dry = |quality| MOMENTS.map(|moment| Self { quality, moment, weather: None });
+        let wild = WEATHERS.map(|(moment, name)| Self { quality: Quality::Standard, moment, weather: Some(name) });
+        Quality::ALL.into_iter().flat_map(dry).chain(wild).collect()
+    }
+
+    fn draw(&self, renderer: &mut Renderer) -> Frame {
+        let mut scene = street::scene(self.moment);
+        if let Some(name) = self.weather {
+            scene.weather = WeatherPreset::find(name).expect("a preset").weather(scene.weather.sun_azimuth_deg);
+        }
+        let camera = Camera::driver(WIDTH as u32, HEIGHT as u32).at(self.quality);
+        renderer.draw(&scene, &camera).expect("a frame")
+    }
+
+    fn name(&self) -> String {
+        format!("{} at moment {} in {}", self.quality.name(), self.moment, self.weather.unwrap_or("its weather"))
+    }
+}
+
 #[test]
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn a_street_looks_as_the_golden_pictures_say() {
     let mut renderer = Renderer::new(&street::network(), &AdapterChoice::default()).expect("an adapter");
-    let camera = Camera::driver(WIDTH as u32, HEIGHT as u32);
-    let which: Vec<(Quality, u32)> = Quality::ALL.into_iter().flat_map(|q| MOMENTS.map(|moment| (q, moment))).collect();
-    let draw = |&(quality, moment): &(Quality, u32)| renderer.draw(&street::scene(moment), &camera.at(quality));
-    let drawn: Vec<String> = which.iter().map(draw).map(|frame| picture(&frame.expect("a frame"))).collect();
+    let which = Golden::all();
+    let drawn: Vec<String> = which.iter().map(|golden| picture(&golden.draw(&mut renderer))).collect();
     let differing = |golden: &str| -> Vec<String> {
         let golden: Vec<_> = golden.split("\n\n").collect();
-        let differences = drawn.iter().zip(&which).enumerate().map(|(i, (drawn, (quality, moment)))| {
+        let differences = drawn.iter().zip(&which).enumerate().map(|(i, (drawn, which))| {
             let golden = golden.get(i).copied().unwrap_or_default();
-            difference(golden.trim_end(), drawn.trim_end())
-                .map(|what| format!("{} at moment {moment}: {what}", quality.name()))
+            difference(golden.trim_end(), drawn.trim_end()).map(|what| format!("{}: {what}", which.name()))
         });
         differences.flatten().collect()
     };
