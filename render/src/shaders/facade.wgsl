@@ -113,11 +113,10 @@ fn writing(at: vec2f, pixel: vec2f, seed: f32) -> f32 {
     return mix(drawn, 0.3 * span(at.y, 0.0, 0.8, pixel.y), clamp(1.6 * pixel.x - 0.6, 0.0, 1.0));
 }
 
-// A strong colour of shutters, awnings and signs.
-fn accent(chance: f32) -> vec3f {
-    let dark = select(vec3f(0.02, 0.075, 0.04), vec3f(0.16, 0.014, 0.016), chance > 0.25);
-    let bright = select(vec3f(0.018, 0.05, 0.15), vec3f(0.05, 0.045, 0.045), chance > 0.75);
-    return select(dark, bright, chance > 0.5);
+// A strong colour of signs and doors; each hue is one.
+fn accent(hue: f32) -> vec3f {
+    let wheel = clamp(abs(fract(hue + vec3f(0.0, 0.667, 0.333)) * 6.0 - 3.0) - 1.0, vec3f(0.0), vec3f(1.0));
+    return 0.016 + vec3f(0.2, 0.12, 0.17) * wheel * wheel;
 }
 
 // What a pane mirrors at a place of the wall, metres: the sky above the houses opposite, or those.
@@ -150,7 +149,7 @@ fn fragment_facade(facade: Facade) -> Pixel {
     let door = ground && (code & DOOR) != 0u && u32(cell.x) == (look >> 4u) % 3u;
     let shop = ground && (code & SHOP) != 0u && !door;
     let garage = material == GARAGE;
-    let curtain_wall = material == GLASS && !ground;
+    let curtain_wall = material == GLASS && !(door || shop);
     let plain = !(door || shop || curtain_wall || garage);
 
     // The opening.
@@ -158,11 +157,11 @@ fn fragment_facade(facade: Facade) -> Pixel {
     var low = select(0.3, 0.06, (code & FRENCH) != 0u && !ground);
     var high = 0.74 + 0.035 * f32((look >> 2u) & 3u);
     half_width = select(half_width, 0.46, shop || garage);
-    half_width = select(half_width, 0.2, door && !garage);
+    half_width = select(half_width, 0.17, door && !garage);
     half_width = select(half_width, 0.485, curtain_wall);
     low = select(low, 0.16, shop);
-    low = select(low, 0.0, door);
-    low = select(low, 0.2, curtain_wall);
+    low = select(low, select(0.1, 0.0, garage), door);
+    low = select(low, select(0.2, 0.11, ground), curtain_wall);
     high = select(high, 0.7, shop || door);
     high = select(high, 0.985, curtain_wall);
     let lower = vec2f(0.5 - half_width, low);
@@ -207,11 +206,14 @@ fn fragment_facade(facade: Facade) -> Pixel {
 
     // Shutters beside windows, and the fascia above shops.
     let tint = accent(fract(seed * 0.37));
+    let muted = mix(tint, vec3f(0.045, 0.05, 0.045), 0.6);
     let beside = span(abs(at.x - 0.5), half_width + 0.012, half_width + 0.16, pixel.x) * span(at.y, low, high, pixel.y);
     let folded = select(0.0, beside, plain && has_windows && (code & SHUTTERS) != 0u);
     let fascia = select(0.0, span(at.y, 0.75, 0.93, pixel.y), ground && (code & SHOP) != 0u);
     let letters = fascia * writing(vec2f(uv.x * 8.0, (at.y - 0.79) * 10.0), pixel * vec2f(8.0, 10.0), seed);
-    let painted = mix(tint * select(1.6, 1.1, (code & SHOP) != 0u), vec3f(0.72, 0.68, 0.56), letters);
+    let is_pale = (look & 8u) != 0u;
+    let board = select(tint, vec3f(0.5, 0.48, 0.43), is_pale);
+    let painted = mix(select(muted, board, fascia > folded), select(vec3f(0.72, 0.68, 0.56), tint, is_pale), letters);
     shade = mix(shade, painted * sky_on, max(folded, fascia));
     sunlit = mix(sunlit, painted * sun_on, max(folded, fascia));
 
@@ -228,9 +230,12 @@ fn fragment_facade(facade: Facade) -> Pixel {
     let struck = behind + clamp(sun_slope * reveal, vec2f(-0.3), vec2f(0.3));
     let sun_in = sun_on * box(struck, lower, upper, pixel);
     let pale = select(vec3f(0.6, 0.59, 0.56), vec3f(0.06, 0.062, 0.065), (look & 0x60u) == 0x60u || shop || curtain_wall);
-    let leaf = mix(tint, vec3f(0.09, 0.045, 0.022), step(0.4, luck));
+    let leaf = mix(muted, vec3f(0.09, 0.045, 0.022), step(0.4, luck));
+    let door_size = upper - lower;
+    let in_door = (behind - lower) / door_size;
+    let panels = 1.0 - 0.3 * box(in_door, vec2f(0.16, 0.07), vec2f(0.84, 0.4), pixel / door_size);
     let ribs = 0.85 + 0.15 * span(abs(fract(at.y * 7.0) - 0.5), 0.06, 1.0, pixel.y * 7.0);
-    let framed = select(select(pale, leaf, door), vec3f(0.5) * ribs, garage);
+    let framed = select(select(pale, leaf * panels, door), vec3f(0.5) * ribs, garage);
     let solid = opening * inside;
     shade = mix(shade, framed * sky_on, solid);
     sunlit = mix(sunlit, framed * sun_in, solid);
@@ -243,29 +248,32 @@ fn fragment_facade(facade: Facade) -> Pixel {
     // Rooms are dark, curtains hang in some; goods stand behind shop windows.
     let aside = abs(behind.x - 0.5) / half_width;
     let drape = select(0.0, select(step(0.62, aside), 0.7, luck > 0.7), chance > 0.45 && plain);
-    let shelf = floor(behind * vec2f(6.0, 7.0));
+    let shelf = floor(vec2f(behind.x * 9.0, 0.0));
     let good = hash(shelf + cell * 7.0 + seed);
-    let ware = vec3f(good, fract(good * 7.0), fract(good * 13.0)) * (0.25 * good) + 0.03;
-    let stocked = select(0.0, span(behind.y, 0.0, 0.3 + 0.22 * good, pixel.y), shop);
+    let ware = (0.3 + 0.7 * vec3f(good, fract(good * 7.0), fract(good * 13.0))) * (0.02 + 0.2 * fract(good * 17.0));
+    let stocked = select(0.0, span(behind.y, 0.0, 0.24 + 0.24 * good, pixel.y), shop) * span(fract(behind.x * 9.0), 0.1, 0.9, pixel.x * 9.0);
     let room = mix(mix(vec3f(0.014, 0.017, 0.021), vec3f(0.26, 0.24, 0.21), drape), ware, stocked);
     let view = in.from_eye / max(length(in.from_eye), 0.01);
     let grazing = 1.0 - clamp(-dot(view.xy, out), 0.0, 1.0);
     let g2 = grazing * grazing;
     let fresnel = select(0.13, 0.34, curtain_wall) + 0.8 * g2 * g2 * grazing;
     let mirror = mirrored(uv * CELL_M, slope, view, out, seed) * fresnel;
-    let glass = select(room * sky_on * (1.0 - fresnel) + mirror, (leaf * 0.8) * sky_on, door);
-    let glazed = select(opening * pane, opening * pane * span(behind.y, 0.36, 0.64, pixel.y) * 0.999, door);
-    let see_through = glazed * (1.0 - rolled) * select(1.0, 0.0, garage);
-    shade = mix(shade, mix(glass, slats * sky_on, rolled), select(glazed, 0.0, garage));
-    sunlit = mix(sunlit, mix(sun_in * (0.02 + 0.1 * drape), slats * sun_in, rolled), select(glazed, 0.0, garage));
+    let glass = room * sky_on * (1.0 - fresnel) + mirror;
+    let shop_door = (code & SHOP) != 0u;
+    let light = box(in_door, vec2f(0.16, select(0.5, 0.1, shop_door)), vec2f(0.84, 0.93), pixel / door_size);
+    let glazed = opening * select(select(pane, light * inside, door), 0.0, garage);
+    let see_through = glazed * (1.0 - rolled);
+    shade = mix(shade, mix(glass, slats * sky_on, rolled), glazed);
+    sunlit = mix(sunlit, mix(sun_in * (0.02 + 0.1 * drape), slats * sun_in, rolled), glazed);
     if NIGHT {
         let who = hash(cell.yx * 3.0 + vec2f(seed * 1.3, seed + 11.0));
-        let is_lit = shop || (who < scene.windows_lit && !door);
+        let is_lit = shop || (who < scene.windows_lit && !door) || (door && shop_door);
         let bulb = mix(vec3f(1.1, 0.56, 0.2), vec3f(1.0, 0.85, 0.6), select(fract(who * 29.0), 0.75, shop || curtain_wall));
         // Curtains, and the ceiling brighter than what stands below.
-        let seen = (0.3 + 0.7 * fract(who * 53.0)) * (0.6 + 0.5 * at.y) * (1.0 - 0.35 * drape);
-        let goods = select(0.75, 0.25 + 0.9 * good, stocked > 0.5);
-        let brightness = scene.window * select(seen, goods, shop);
+        let lamp = (behind - vec2f(0.35 + 0.3 * luck, 0.8)) * vec2f(2.2, 3.0);
+        let seen = (0.3 + 0.7 * fract(who * 53.0)) * (0.5 + 0.75 / (1.0 + dot(lamp, lamp))) * (1.0 - 0.45 * drape);
+        let goods = mix(vec3f(0.55 + 0.4 * at.y), ware * 6.0, stocked);
+        let brightness = scene.window * select(vec3f(seen), goods, shop);
         let sign = (painted * 2.0 + letters * 0.6) * (scene.window * 0.8 * fascia);
         return finish_shining(in, shade, sunlit, select(vec3f(0.0), bulb * (brightness * see_through), is_lit) + sign);
     }

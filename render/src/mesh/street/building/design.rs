@@ -41,18 +41,18 @@ pub mod style {
 }
 
 const PLASTERS: [[u8; 3]; 10] = [
-    [222, 212, 190],
-    [228, 224, 214],
-    [214, 196, 158],
-    [204, 180, 138],
-    [196, 192, 184],
-    [206, 204, 200],
-    [212, 186, 168],
-    [184, 190, 176],
-    [218, 206, 172],
-    [190, 160, 130],
+    [200, 190, 168],
+    [208, 204, 194],
+    [198, 178, 138],
+    [192, 162, 116],
+    [172, 168, 160],
+    [184, 182, 178],
+    [194, 162, 142],
+    [158, 168, 152],
+    [202, 188, 148],
+    [172, 138, 108],
 ];
-const INFILLS: [[u8; 3]; 4] = [[232, 226, 212], [226, 212, 182], [228, 218, 198], [216, 196, 160]];
+const INFILLS: [[u8; 3]; 4] = [[212, 206, 192], [206, 192, 162], [208, 198, 178], [198, 176, 138]];
 const BRICKS: [[u8; 3]; 4] = [[150, 82, 62], [134, 72, 58], [160, 100, 74], [120, 84, 72]];
 const CONCRETES: [[u8; 3]; 4] = [[172, 170, 164], [186, 182, 172], [160, 164, 168], [190, 176, 156]];
 const STONES: [[u8; 3]; 3] = [[188, 176, 152], [172, 164, 150], [184, 160, 132]];
@@ -121,31 +121,29 @@ impl Design {
         let mut variety = Variety::of(variant);
         let kind = Kind::of(size, &mut variety);
         let material = material(kind, size, &mut variety);
-        let storeys = (size.z / STOREY_M).round().max(1.0);
         let roof = roof(kind, material, size, &mut variety);
-        let slender = size.x.min(size.y);
-        let rise_m = match (kind, roof) {
-            (Kind::Garage, _) => 0.2,
-            (_, Roof::Flat) => 0.9,
-            (Kind::Tower, _) => 0.3 * size.z,
-            (Kind::Narrow, _) => (0.55 * slender).min(0.4 * size.z),
-            _ => (0.36 * slender).min(0.4 * size.z).min(4.5),
-        };
+        let (eaves_m, floors) = eaves(kind, roof, size);
+        let storeys = (size.z / STOREY_M).round().max(1.0);
         let is_shop = match kind {
             Kind::Terrace | Kind::Block => storeys >= 3.0 && !variety.one_in(3),
             Kind::Narrow => storeys >= 3.0 && variety.one_in(2),
             _ => false,
         };
-        let adornment = adornment(kind, material, storeys, &mut variety);
+        let adornment = adornment(kind, material, floors, &mut variety);
         let mut code = material;
         let mut add = |is_so: bool, bit: u8| code |= if is_so { bit } else { 0 };
         add(is_shop, style::SHOP);
-        add(adornment == Adornment::Balconies, style::FRENCH);
-        add(matches!(material, style::PLASTER | style::BRICK) && kind != Kind::Block && variety.one_in(2), style::BANDS);
+        // Tall windows, those of churches too.
+        add(adornment == Adornment::Balconies || is_hall(size), style::FRENCH);
+        add(
+            matches!(material, style::PLASTER | style::BRICK)
+                && matches!(kind, Kind::Narrow | Kind::Terrace)
+                && variety.one_in(2),
+            style::BANDS,
+        );
         let shutters = matches!(kind, Kind::Villa | Kind::Narrow | Kind::Terrace) && variety.one_in(3);
         add(shutters && adornment != Adornment::Balconies && material != style::TIMBER, style::SHUTTERS);
         let wall = Paint { tag: TAG, colour: colour(material, &mut variety), finish: Finish::Facade, param: 0, code };
-        let eaves_m = size.z - rise_m;
         Self {
             kind,
             size,
@@ -153,16 +151,16 @@ impl Design {
             tiles: Paint { colour: variety.colour(&ROOF_TILES), code: style::TILES, ..wall },
             roof,
             eaves_m,
-            storeys: (eaves_m / STOREY_M).round().max(1.0),
+            storeys: floors,
             adornment,
             has_awning: is_shop && variety.one_in(3),
-            has_dormers: roof == Roof::Gabled && size.y > size.x && rise_m > 2.2 && variety.one_in(2),
+            has_dormers: roof == Roof::Gabled && size.y > size.x && size.z - eaves_m > 1.8 && variety.one_in(2),
             is_walled_in: !matches!(kind, Kind::Villa | Kind::Tower) && !variety.one_in(3),
             rest: variety,
         }
     }
 
-    /// Which column of windows the door stands in, from the left as the street sees it... counted along the y axis.
+    /// Which column of windows the door stands in, counted along the y axis.
     pub(super) fn door_column(&self) -> f32 {
         f32::from((self.wall.param >> 4) % 3)
     }
@@ -184,7 +182,10 @@ impl Kind {
             Self::Garage
         } else if long < 7.0 && size.z > 1.8 * long {
             Self::Tower
-        } else if size.y < 9.0 && size.z > 0.95 * size.y || size.y < 11.0 && size.z > size.y && variety.one_in(2) {
+        } else if is_hall(size)
+            || size.y < 9.0 && size.z > 0.95 * size.y
+            || size.y < 11.0 && size.z > size.y && variety.one_in(2)
+        {
             Self::Narrow
         } else if size.z < 9.0 {
             Self::Villa
@@ -196,15 +197,19 @@ impl Kind {
     }
 }
 
+/// Whether it is a church or a hall: long, high, its gable to the street.
+fn is_hall(size: Vec3) -> bool {
+    size.x > 1.5 * size.y && size.z > 12.0
+}
+
 fn material(kind: Kind, size: Vec3, variety: &mut Variety) -> u8 {
     use style::*;
     match kind {
         Kind::Garage => GARAGE,
         Kind::Tower => STONE,
+        _ if is_hall(size) => STONE,
         Kind::Narrow => variety.weighted(&[(PLASTER, 6), (TIMBER, 4), (BRICK, 2)]),
         Kind::Villa => variety.weighted(&[(PLASTER, 7), (BRICK, 3)]),
-        // A hall or a church.
-        _ if size.x > 1.5 * size.y => STONE,
         Kind::Terrace => variety.weighted(&[(PLASTER, 6), (BRICK, 3), (STONE, 1)]),
         Kind::Block => variety.weighted(&[(PLASTER, 3), (PANELS, 3), (GLASS, 2), (BRICK, 1)]),
     }
@@ -222,16 +227,30 @@ fn colour(material: u8, variety: &mut Variety) -> [u8; 3] {
 }
 
 fn roof(kind: Kind, material: u8, size: Vec3, variety: &mut Variety) -> Roof {
-    let slender = size.x.min(size.y);
     match kind {
         Kind::Garage | Kind::Block => Roof::Flat,
         Kind::Tower => Roof::Hipped,
         Kind::Narrow => Roof::Gabled,
-        _ if slender > 16.0 => Roof::Flat,
+        _ if size.x.min(size.y) > 16.0 => Roof::Flat,
         Kind::Villa => variety.weighted(&[(Roof::Gabled, 6), (Roof::Hipped, 3), (Roof::Flat, 1)]),
         Kind::Terrace if material == style::STONE => Roof::Hipped,
         Kind::Terrace => variety.weighted(&[(Roof::Gabled, 5), (Roof::Hipped, 2), (Roof::Flat, 3)]),
     }
+}
+
+/// Height of the eaves, metres, and the storeys below them: roofs are as steep as storeys of a good height let them be.
+fn eaves(kind: Kind, roof: Roof, size: Vec3) -> (f32, f32) {
+    let slender = size.x.min(size.y);
+    let wanted_m = match (kind, roof) {
+        (Kind::Garage, _) => return (size.z - 0.2, 1.0),
+        (_, Roof::Flat) => return (size.z - 0.9, ((size.z - 0.9) / STOREY_M).round().max(1.0)),
+        (Kind::Tower, _) => 0.3 * size.z,
+        (Kind::Narrow, _) => 0.55 * slender,
+        _ => (0.36 * slender).min(4.5),
+    };
+    let least_m = 0.6 * size.z;
+    let storeys = ((size.z - wanted_m).max(least_m) / 2.75 + 0.48).floor().max(1.0);
+    ((2.9 * storeys).min(size.z - 0.15 * slender).max(least_m), storeys)
 }
 
 fn adornment(kind: Kind, material: u8, storeys: f32, variety: &mut Variety) -> Adornment {

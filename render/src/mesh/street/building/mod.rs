@@ -6,8 +6,8 @@ mod street;
 
 use glam::{Vec2, Vec3};
 
-use self::design::{Design, Kind};
 pub use self::design::style;
+use self::design::{Design, Kind};
 use self::street::Front;
 use crate::SemanticTag;
 use crate::mesh::model::Detail;
@@ -91,3 +91,6 @@ fn rim(mesh: &mut Mesh, paint: Paint, size: Vec3, grow: [f32; 2], z: f32) {
         mesh.polygon(paint, &[outer[i], outer[j], inner[j], inner[i]]);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::design::{Design, Roof};
-use super::{CELL_M, NO_WINDOWS, TAG, corners, rim};
+use super::{CELL_M, NO_WINDOWS, TAG, corners, rim, style};
 use crate::mesh::model::Detail;
 use crate::mesh::variety::Variety;
 use crate::mesh::{Mesh, Paint};
@@ -197,20 +197,17 @@ fn dormers(mesh: &mut Mesh, design: &Design) {
         let y = size.y * ((i as f32 + 0.5) / count - 0.5);
         let at = |x: f32, side: f32, z: f32| Vec3::new(front_x - x, y + side * half, foot + z);
         let uv = [(0.0, 1.25), (1.0, 1.25), (1.0, 1.9), (0.0, 1.9)].map(|(u, v)| Vec2::new(u, v));
-        let face = design.wall.coded(design.wall.code & !(super::style::SHUTTERS | super::style::BANDS));
+        let face = design.wall.coded(design.wall.code & !(style::SHUTTERS | style::BANDS | style::FRENCH));
         mesh.quad_uv(face, [at(0.0, -1.0, -0.1), at(0.0, 1.0, -0.1), at(0.0, 1.0, high), at(0.0, -1.0, high)], uv);
-        let cheek = design.tiles;
-        mesh.polygon(Paint { finish: crate::mesh::Finish::Plain, param: 0, code: 0, ..cheek }, &[
-            at(deep, -1.0, high),
-            at(0.0, -1.0, -0.1),
-            at(0.0, -1.0, high),
-        ]);
-        mesh.polygon(Paint { finish: crate::mesh::Finish::Plain, param: 0, code: 0, ..cheek }, &[
-            at(0.0, 1.0, -0.1),
-            at(deep, 1.0, high),
-            at(0.0, 1.0, high),
-        ]);
-        let lid = [at(-0.2, -1.15, high), at(-0.2, 1.15, high), at(deep + 0.1, 1.15, high + 0.1), at(deep + 0.1, -1.15, high + 0.1)];
+        let cheek = Paint::plain(TAG, design.tiles.colour);
+        mesh.polygon(cheek, &[at(deep, -1.0, high), at(0.0, -1.0, -0.1), at(0.0, -1.0, high)]);
+        mesh.polygon(cheek, &[at(0.0, 1.0, -0.1), at(deep, 1.0, high), at(0.0, 1.0, high)]);
+        let lid = [
+            at(-0.2, -1.15, high),
+            at(-0.2, 1.15, high),
+            at(deep + 0.1, 1.15, high + 0.1),
+            at(deep + 0.1, -1.15, high + 0.1),
+        ];
         mesh.polygon(ZINC.shaded(0.8), &lid);
         let edge = Vec3::Z * 0.12;
         mesh.polygon(ZINC, &[lid[0] - edge, lid[1] - edge, lid[1], lid[0]]);

@@ -73,12 +73,10 @@ pub(super) fn adorn(mesh: &mut Mesh, design: &Design, front: Front, detail: Deta
     if design.has_awning {
         awning(mesh, design, front);
     }
-    if detail != Detail::Rough {
-        steps(mesh, design, front, detail);
-        if design.wall.code & style::BANDS != 0 {
-            let (low, high) = (front.at(0.0, 0.985, 0.0), front.at(front.columns, 1.03, 0.09));
-            front.ledge(mesh, design.plain().shaded(1.1), low, high);
-        }
+    entrance(mesh, design, front, detail);
+    if detail != Detail::Rough && design.wall.code & style::BANDS != 0 {
+        let (low, high) = (front.at(0.0, 0.985, 0.0), front.at(front.columns, 1.03, 0.09));
+        front.ledge(mesh, design.plain().shaded(1.1), low, high);
     }
 }
 
@@ -106,12 +104,8 @@ fn balconies(mesh: &mut Mesh, design: &Design, front: Front, detail: Detail) {
 /// A parapet on three sides of a slab, seen from inside too.
 fn railing(mesh: &mut Mesh, paint: Paint, low: Vec3, high: Vec3) {
     let top = high.z + 1.0;
-    let corners = [
-        Vec2::new(low.x, low.y),
-        Vec2::new(high.x, low.y),
-        Vec2::new(high.x, high.y),
-        Vec2::new(low.x, high.y),
-    ];
+    let corners =
+        [Vec2::new(low.x, low.y), Vec2::new(high.x, low.y), Vec2::new(high.x, high.y), Vec2::new(low.x, high.y)];
     for i in 0..3 {
         let (a, b) = (corners[i], corners[i + 1]);
         let (foot, head) = (high.z + 0.06, top);
@@ -128,9 +122,7 @@ fn bay(mesh: &mut Mesh, design: &Design, front: Front) {
     let wall = design.wall.coded(design.wall.code & !(style::SHOP | style::DOOR | style::SHUTTERS));
     let (low, high) = (front.at(column + 0.03, 1.0, 0.0), front.at(column + 0.97, top, BAY_M));
     let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
-    let uv = |u0: f32, u1: f32, v: f32| {
-        [(u0, 1.0), (u1, 1.0), (u1, top), (u0, top)].map(|(a, b)| Vec2::new(a, b + v))
-    };
+    let uv = |u0: f32, u1: f32, v: f32| [(u0, 1.0), (u1, 1.0), (u1, top), (u0, top)].map(|(a, b)| Vec2::new(a, b + v));
     let (a, b) = (low, high);
     let face = [p(b.x, a.y, a.z), p(b.x, b.y, a.z), p(b.x, b.y, b.z), p(b.x, a.y, b.z)];
     mesh.quad_uv(wall, face, uv(column, column + 1.0, 0.0));
@@ -167,26 +159,32 @@ fn flower_boxes(mesh: &mut Mesh, design: &Design, front: Front) {
 fn awning(mesh: &mut Mesh, design: &Design, front: Front) {
     let door = design.door_column();
     let (from, to) = if front.columns - door - 1.0 >= door { (door + 1.0, front.columns) } else { (0.0, door) };
-    let cloth = Paint::plain(TAG, design.rest.clone().pick(&[[148, 44, 40], [48, 96, 70], [206, 190, 150], [58, 74, 110]]));
-    let (low, high) = (front.at(from + 0.05, 0.73, 0.0), front.at(to - 0.05, 0.73, AWNING_M));
-    let sag = Vec3::Z * 0.4;
+    let cloth =
+        Paint::plain(TAG, design.rest.clone().pick(&[[148, 44, 40], [48, 96, 70], [206, 190, 150], [58, 74, 110]]));
+    let (low, high) = (front.at(from + 0.05, 0.74, 0.0), front.at(to - 0.05, 0.74, AWNING_M));
+    let sag = Vec3::Z * 0.24;
     let p = |x: f32, y: f32| Vec3::new(x, y, low.z);
     let (a, b, c, d) = (p(low.x, low.y), p(high.x, low.y) - sag, p(high.x, high.y) - sag, p(low.x, high.y));
     mesh.polygon(cloth, &[a, b, c, d]);
     mesh.polygon(cloth.shaded(0.7), &[d, c, b, a]);
-    let hem = Vec3::Z * 0.16;
+    let hem = Vec3::Z * 0.12;
     mesh.polygon(cloth, &[b - hem, c - hem, c, b]);
     mesh.polygon(cloth.shaded(0.7), &[c - hem, b - hem, b, c]);
 }
 
-/// Before the door.
-fn steps(mesh: &mut Mesh, design: &Design, front: Front, detail: Detail) {
+/// Before the door, and the canopy over it.
+fn entrance(mesh: &mut Mesh, design: &Design, front: Front, detail: Detail) {
     let door = design.door_column() + 0.5;
     let stone = Paint::plain(TAG, [168, 164, 156]);
-    let count = if detail == Detail::Fine { 2 } else { 1 };
-    for i in 0..count {
-        let high = if design.is_shop() { 0.07 } else { 0.16 } * (count - i) as f32;
-        let (low, top) = (front.at(door - 0.27, 0.0, 0.0), front.at(door + 0.27, 0.0, 0.24 + 0.22 * i as f32));
-        front.ledge(mesh, stone.shaded(1.0 - 0.06 * i as f32), low, top + Vec3::Z * high);
+    if !design.is_shop() && design.wall.code & style::BANDS == 0 {
+        let (low, high) = (front.at(door - 0.32, 0.76, 0.0), front.at(door + 0.32, 0.79, AWNING_M));
+        front.ledge(mesh, Paint::plain(TAG, [150, 152, 150]), low, high);
+    }
+    let rise_m = if design.is_shop() { 0.07 } else { 0.16 };
+    let low = front.at(door - 0.27, 0.0, 0.0);
+    let step = |out_m: f32, rises: f32| front.at(door + 0.27, 0.0, out_m) + Vec3::Z * (rises * rise_m);
+    front.ledge(mesh, stone, low, step(0.46, 1.0));
+    if detail == Detail::Fine {
+        front.ledge(mesh, stone.shaded(0.94), low, step(0.24, 2.0));
     }
 }
