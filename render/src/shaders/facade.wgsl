@@ -40,79 +40,6 @@ const FRENCH = 32u;
 const SHUTTERS = 64u;
 const DOOR = 128u;
 
-fn hash(p: vec2f) -> f32 {
-    let q = fract(p * vec2f(0.1031, 0.1137));
-    let r = q + dot(q, q.yx + 33.33);
-    return fract((r.x + r.y) * r.x);
-}
-
-// Share of a pixel `width` wide at x that lies in [low, high].
-fn span(x: f32, low: f32, high: f32, width: f32) -> f32 {
-    return clamp((x - low) / width + 0.5, 0.0, 1.0) * clamp((high - x) / width + 0.5, 0.0, 1.0);
-}
-
-fn box(at: vec2f, low: vec2f, high: vec2f, width: vec2f) -> f32 {
-    let inside = clamp((at - low) / width + 0.5, vec2f(0.0), vec2f(1.0)) * clamp((high - at) / width + 0.5, vec2f(0.0), vec2f(1.0));
-    return inside.x * inside.y;
-}
-
-// Bricks, blocks, panels and tiles: what courses and joints make of a colour. They fade where a pixel holds a course.
-fn courses(material: u32, uv: vec2f, pixel: vec2f) -> vec3f {
-    var scale = vec2f(4.0, 12.0) * CELL_M;
-    var joint = vec3f(1.35, 1.42, 1.45);
-    var low = vec2f(0.05, 0.14);
-    var vary = 0.42;
-    if material == STONE {
-        scale = vec2f(3.0, 7.0);
-        joint = vec3f(0.72);
-        low = vec2f(0.025, 0.05);
-        vary = 0.16;
-    } else if material == PANELS || material == GLASS {
-        scale = vec2f(1.0);
-        joint = vec3f(0.55);
-        low = vec2f(0.012, 0.012);
-        vary = 0.07;
-    } else if material == TILES {
-        scale = vec2f(4.2, 3.2) * CELL_M;
-        joint = vec3f(0.55);
-        low = vec2f(0.1, 0.2);
-        vary = 0.34;
-    }
-    let at = uv * scale;
-    let row = floor(at.y);
-    let shifted = vec2f(at.x + select(0.5 * fract(0.5 * row) * 2.0, 0.0, material == PANELS || material == GLASS), at.y);
-    let stone = floor(shifted);
-    let width = pixel * scale;
-    let solid = box(shifted - stone, low, vec2f(2.0), width);
-    let tone = vec3f(1.0 + vary * (hash(stone) - 0.5));
-    let mean = mix(joint, vec3f(1.0), (1.0 - low.x) * (1.0 - low.y));
-    let fade = clamp(1.5 - 1.3 * max(width.x, width.y), 0.0, 1.0);
-    return mix(mean, mix(joint, tone, solid), fade);
-}
-
-// Cover of the beams of a half-timbered wall whose windows begin at a height of their storey.
-fn beams(at: vec2f, pixel: vec2f, sill: f32, braced: bool) -> f32 {
-    let post = span(abs(at.x - 0.5), 0.465, 0.6, pixel.x);
-    let rail = max(span(abs(at.y - 0.5), 0.46, 0.6, pixel.y), span(at.y, sill - 0.05, sill, pixel.y));
-    let rise = at.y / sill;
-    let lean = abs(abs(at.x - 0.5) * 2.0 - select(rise, 1.0 - rise, braced));
-    let brace = span(lean, -1.0, 0.09, 2.0 * pixel.x + pixel.y / sill) * span(at.y, 0.0, sill, pixel.y);
-    return max(max(post, rail), brace);
-}
-
-// Cover of signs that look like writing from afar: stems with bars, no letters of any script. `at` counts them.
-fn writing(at: vec2f, pixel: vec2f, seed: f32) -> f32 {
-    let sign = floor(at.x);
-    let x = at.x - sign;
-    let chance = hash(vec2f(sign, seed));
-    let top = 0.66 + 0.34 * step(0.6, fract(chance * 7.0));
-    let stem = box(vec2f(x, at.y), vec2f(0.12, 0.0), vec2f(0.34, top), pixel);
-    let high = select(0.44, 0.5 * fract(chance * 3.0), fract(chance * 5.0) > 0.5);
-    let bar = box(vec2f(x, at.y), vec2f(0.12, high), vec2f(0.8, high + 0.2), pixel);
-    let drawn = max(stem, bar) * step(0.14, chance);
-    return mix(drawn, 0.3 * span(at.y, 0.0, 0.8, pixel.y), clamp(1.6 * pixel.x - 0.6, 0.0, 1.0));
-}
-
 // A strong colour of signs and doors; each hue is one.
 fn accent(hue: f32) -> vec3f {
     let wheel = clamp(abs(fract(hue + vec3f(0.0, 0.667, 0.333)) * 6.0 - 3.0) - 1.0, vec3f(0.0), vec3f(1.0));
@@ -130,74 +57,134 @@ fn mirrored(place: vec2f, slope: vec2f, view: vec3f, out: vec2f, seed: f32) -> v
     return mix(walls, mix(sky_colour(bounce), overcast, 0.8 * scene.cloudiness), above);
 }
 
+// A place of a wall, and what is there.
+struct Spot {
+    uv: vec2f,
+    pixel: vec2f,
+    // The window's part of the wall, and the place in it from 0 to 1.
+    cell: vec2f,
+    at: vec2f,
+    seed: f32,
+    look: u32,
+    code: u32,
+    material: u32,
+    // Drawn for the cell.
+    chance: f32,
+    luck: f32,
+    ground: bool,
+    has_windows: bool,
+    door: bool,
+    shop: bool,
+    garage: bool,
+    curtain_wall: bool,
+    // None of these.
+    window: bool,
+}
+
+fn spot_of(in: Lit) -> Spot {
+    var it: Spot;
+    it.uv = in.uv_param.xy;
+    it.pixel = max(fwidth(it.uv), vec2f(0.001));
+    it.cell = floor(it.uv);
+    it.at = it.uv - it.cell;
+    // Whole, as the vertices have it: what interpolation leaves over would tip the hash from pixel to pixel.
+    it.seed = round(in.uv_param.z * 255.0);
+    it.look = u32(it.seed);
+    it.code = code_of(in.ids);
+    it.material = it.code & MATERIAL;
+    it.chance = hash(it.cell + vec2f(it.seed, it.seed * 1.7));
+    it.luck = fract(it.chance * 37.0);
+    it.ground = it.cell.y == 0.0;
+    it.has_windows = it.cell.y >= 0.0 && it.material != TILES;
+    it.door = it.ground && (it.code & DOOR) != 0u && u32(it.cell.x) == (it.look >> 4u) % 3u;
+    it.shop = it.ground && (it.code & SHOP) != 0u && !it.door;
+    it.garage = it.material == GARAGE;
+    it.curtain_wall = it.material == GLASS && !(it.door || it.shop);
+    it.window = it.has_windows && !(it.door || it.shop || it.garage || it.curtain_wall);
+    return it;
+}
+
+struct Opening {
+    lower: vec2f,
+    upper: vec2f,
+    half_width: f32,
+    cover: f32,
+}
+
+fn opening_of(it: Spot) -> Opening {
+    var half_width = 0.16 + 0.035 * f32(it.look & 3u);
+    var low = select(0.3, 0.06, (it.code & FRENCH) != 0u && !it.ground);
+    var high = 0.74 + 0.035 * f32((it.look >> 2u) & 3u);
+    half_width = select(half_width, 0.46, it.shop || it.garage);
+    half_width = select(half_width, 0.17, it.door && !it.garage);
+    half_width = select(half_width, 0.485, it.curtain_wall);
+    low = select(low, 0.16, it.shop);
+    low = select(low, select(0.1, 0.0, it.garage), it.door);
+    low = select(low, select(0.2, 0.11, it.ground), it.curtain_wall);
+    high = select(high, 0.7, it.shop || it.door);
+    high = select(high, 0.985, it.curtain_wall);
+    let lower = vec2f(0.5 - half_width, low);
+    let upper = vec2f(0.5 + half_width, high);
+    let cover = select(0.0, box(it.at, lower, upper, it.pixel), it.has_windows);
+    return Opening(lower, upper, half_width, cover);
+}
+
+// What the wall makes of its colour.
+fn wall_of(it: Spot, hole: Opening) -> vec3f {
+    let grime = textureSample(noise, noise_sampler, it.uv * vec2f(0.21, 0.27)).r - 0.5;
+    let banded = (it.code & BANDS) != 0u;
+    let rusticated = banded && it.ground && it.material == 0u;
+    let plastered = it.material == 0u || it.material == TIMBER || it.garage;
+    let masonry = courses(select(it.material, STONE, rusticated), it.uv, it.pixel);
+    var wall = select(masonry, vec3f(1.0), plastered && !rusticated) * (1.0 + 0.26 * grime);
+    let low = hole.lower.y;
+    let band = select(0.0, span(it.at.y, 0.95, 1.01, it.pixel.y), banded && !it.ground);
+    let below = vec2f(hole.upper.x + 0.035, low);
+    let sill = select(0.0, box(it.at, hole.lower - vec2f(0.035, 0.045), below, it.pixel), it.window);
+    // Surrounds, and lintels over windows between bricks.
+    let is_brick = it.material == BRICK;
+    let first = select(hole.lower - 0.035, vec2f(hole.lower.x - 0.04, hole.upper.y), is_brick);
+    let last = hole.upper + select(vec2f(0.035), vec2f(0.04, 0.07), is_brick);
+    let trim = select(0.0, box(it.at, first, last, it.pixel), it.window && (is_brick || banded && !it.ground));
+    // Water leaves streaks below sills, and dirt gathers at the foot.
+    let wet = span(abs(it.at.x - 0.5), -1.0, hole.half_width, it.pixel.x) * clamp(1.0 - (low - it.at.y) * 3.6, 0.0, 1.0);
+    let streak = select(0.0, wet, it.window && it.at.y < low);
+    wall *= (1.0 - streak * (0.13 + 0.3 * grime)) * (1.0 + max(0.2 * max(band, sill), 0.16 * trim));
+    wall *= select(1.0, 0.78 + 0.22 * smoothstep(0.0, 0.35, it.at.y + 0.3 * grime), it.ground);
+    let beam = select(0.0, beams(it.at, it.pixel, low, it.luck > 0.5), it.material == TIMBER && !it.ground);
+    return mix(wall, vec3f(0.16, 0.105, 0.075), beam);
+}
+
+// Where frames and leaves leave glass, at a place behind the wall.
+fn glass_of(it: Spot, hole: Opening, behind: vec2f, in_door: vec2f, door_pixel: vec2f) -> f32 {
+    let border = select(vec2f(0.026, 0.024), vec2f(0.012), it.shop || it.curtain_wall);
+    let upright = select(0.0, span(behind.x, 0.487, 0.513, it.pixel.x), it.window && (it.look & 3u) != 0u);
+    let split = mix(hole.lower.y, hole.upper.y, 0.66);
+    let is_crossed = it.window && (it.code & FRENCH) == 0u && (it.look & 16u) != 0u;
+    let bar = select(0.0, span(behind.y, split, split + 0.02, it.pixel.y), is_crossed);
+    let pane = box(behind, hole.lower + border, hole.upper - border, it.pixel) * (1.0 - max(upright, bar));
+    let above = select(0.5, 0.1, (it.code & SHOP) != 0u);
+    let light = box(in_door, vec2f(0.16, above), vec2f(0.84, 0.93), door_pixel);
+    return select(select(pane, light, it.door), 0.0, it.garage);
+}
+
+// Goods behind a shop window: colour, and how much of the pixel they cover.
+fn goods(it: Spot, behind: vec2f) -> vec4f {
+    let x = behind.x * 9.0;
+    let good = hash(vec2f(floor(x), 0.0) + it.cell * 7.0 + it.seed);
+    let hue = 0.3 + 0.7 * vec3f(good, fract(good * 7.0), fract(good * 13.0));
+    let high = span(behind.y, 0.0, 0.24 + 0.24 * good, it.pixel.y);
+    let cover = select(0.0, high * span(fract(x), 0.1, 0.9, it.pixel.x * 9.0), it.shop);
+    return vec4f(hue * (0.02 + 0.2 * fract(good * 17.0)), cover);
+}
+
 @fragment
 fn fragment_facade(facade: Facade) -> Pixel {
     let in = Lit(facade.clip, facade.shade, facade.sunlit, facade.shadow, facade.uv_param, facade.ids, facade.from_eye);
-    let uv = in.uv_param.xy;
-    // Whole, as the vertices have it: what interpolation leaves over would tip the hash from pixel to pixel.
-    let seed = round(in.uv_param.z * 255.0);
-    let look = u32(seed);
-    let code = code_of(in.ids);
-    let material = code & MATERIAL;
-    let pixel = max(fwidth(uv), vec2f(0.001));
-    let cell = floor(uv);
-    let at = uv - cell;
-    let chance = hash(cell + vec2f(seed, seed * 1.7));
-    let luck = fract(chance * 37.0);
-    let has_windows = cell.y >= 0.0 && material != TILES;
-    let ground = cell.y == 0.0;
-    let door = ground && (code & DOOR) != 0u && u32(cell.x) == (look >> 4u) % 3u;
-    let shop = ground && (code & SHOP) != 0u && !door;
-    let garage = material == GARAGE;
-    let curtain_wall = material == GLASS && !(door || shop);
-    let plain = !(door || shop || curtain_wall || garage);
-
-    // The opening.
-    var half_width = 0.16 + 0.035 * f32(look & 3u);
-    var low = select(0.3, 0.06, (code & FRENCH) != 0u && !ground);
-    var high = 0.74 + 0.035 * f32((look >> 2u) & 3u);
-    half_width = select(half_width, 0.46, shop || garage);
-    half_width = select(half_width, 0.17, door && !garage);
-    half_width = select(half_width, 0.485, curtain_wall);
-    low = select(low, 0.16, shop);
-    low = select(low, select(0.1, 0.0, garage), door);
-    low = select(low, select(0.2, 0.11, ground), curtain_wall);
-    high = select(high, 0.7, shop || door);
-    high = select(high, 0.985, curtain_wall);
-    let lower = vec2f(0.5 - half_width, low);
-    let upper = vec2f(0.5 + half_width, high);
-
-    // What is behind it moves against its edges as the eye does.
+    let it = spot_of(in);
+    let hole = opening_of(it);
+    let wall = wall_of(it, hole);
     let out = facade.out;
-    let tangent = vec2f(-out.y, out.x);
-    let away = max(-dot(in.from_eye.xy, out), 0.05);
-    let slope = vec2f(dot(in.from_eye.xy, tangent), in.from_eye.z) / away;
-    let reveal = select(REVEAL_M, 0.05, curtain_wall) / CELL_M;
-    let behind = at + clamp(slope * reveal, vec2f(-0.3), vec2f(0.3));
-    let opening = select(0.0, box(at, lower, upper, pixel), has_windows);
-    let inside = box(behind, lower, upper, pixel);
-    let border = select(vec2f(0.026, 0.024), vec2f(0.012), shop || curtain_wall);
-    let bars = select(0.0, span(behind.x, 0.487, 0.513, pixel.x), plain && (look & 3u) != 0u);
-    let cross = select(0.0, span(behind.y, mix(low, high, 0.66), mix(low, high, 0.66) + 0.02, pixel.y), plain && (code & FRENCH) == 0u && (look & 16u) != 0u);
-    let pane = box(behind, lower + border, upper - border, pixel) * (1.0 - max(bars, cross));
-
-    // The wall around it.
-    let grime = textureSample(noise, noise_sampler, uv * vec2f(0.21, 0.27)).r - 0.5;
-    let rusticated = (code & BANDS) != 0u && ground && material == 0u;
-    let plastered = material == 0u || material == TIMBER || garage;
-    let masonry = courses(select(material, STONE, rusticated), uv, pixel);
-    var wall = select(masonry, vec3f(1.0), plastered && !rusticated) * (1.0 + 0.26 * grime);
-    let timber = select(0.0, beams(at, pixel, low, luck > 0.5), material == TIMBER && !ground);
-    let banded = (code & BANDS) != 0u && !ground;
-    let band = select(0.0, span(at.y, 0.95, 1.01, pixel.y), banded);
-    let sill = box(at, lower - vec2f(0.035, 0.045), vec2f(upper.x + 0.035, low), pixel) * select(0.0, 1.0, plain && has_windows);
-    let trim = box(at, lower - 0.035, upper + 0.035, pixel) * select(0.0, 0.16, banded && plain && has_windows);
-    // Water leaves streaks below sills, and dirt gathers at the foot.
-    let streak = select(0.0, span(abs(at.x - 0.5), -1.0, half_width, pixel.x) * clamp(1.0 - (low - at.y) * 3.6, 0.0, 1.0) * step(at.y, low), plain && has_windows);
-    wall *= (1.0 - streak * (0.13 + 0.3 * grime)) * (1.0 + max(0.2 * max(band, sill), trim));
-    wall *= select(1.0, 0.78 + 0.22 * smoothstep(0.0, 0.35, at.y + 0.3 * grime), ground);
-    wall = mix(wall, vec3f(0.16, 0.105, 0.075), timber);
-
     let facing = max(dot(out, scene.sun.xy), 0.0);
     let sun_on = scene.sun_light * facing;
     let sky_on = mix(scene.ground_light, scene.sky_light, 0.5);
@@ -205,77 +192,90 @@ fn fragment_facade(facade: Facade) -> Pixel {
     var sunlit = in.sunlit * wall;
 
     // Shutters beside windows, and the fascia above shops.
-    let tint = accent(fract(seed * 0.37));
+    let tint = accent(fract(it.seed * 0.37));
     let muted = mix(tint, vec3f(0.045, 0.05, 0.045), 0.6);
-    let beside = span(abs(at.x - 0.5), half_width + 0.012, half_width + 0.16, pixel.x) * span(at.y, low, high, pixel.y);
-    let folded = select(0.0, beside, plain && has_windows && (code & SHUTTERS) != 0u);
-    let fascia = select(0.0, span(at.y, 0.75, 0.93, pixel.y), ground && (code & SHOP) != 0u);
-    let letters = fascia * writing(vec2f(uv.x * 8.0, (at.y - 0.79) * 10.0), pixel * vec2f(8.0, 10.0), seed);
-    let is_pale = (look & 8u) != 0u;
-    let board = select(tint, vec3f(0.5, 0.48, 0.43), is_pale);
-    let painted = mix(select(muted, board, fascia > folded), select(vec3f(0.72, 0.68, 0.56), tint, is_pale), letters);
-    shade = mix(shade, painted * sky_on, max(folded, fascia));
-    sunlit = mix(sunlit, painted * sun_on, max(folded, fascia));
+    let beside = span(abs(it.at.x - 0.5), hole.half_width + 0.012, hole.half_width + 0.16, it.pixel.x);
+    let folded = beside * span(it.at.y, hole.lower.y, hole.upper.y, it.pixel.y);
+    let shutters = select(0.0, folded, it.window && (it.code & SHUTTERS) != 0u);
+    let is_front = (it.code & SHOP) != 0u && it.ground;
+    let fascia = select(0.0, span(it.at.y, 0.75, 0.93, it.pixel.y), is_front);
+    let glyphs = vec2f(8.0, 10.0);
+    let letters = fascia * writing(vec2f(it.uv.x, it.at.y - 0.79) * glyphs, it.pixel * glyphs, it.seed);
+    let is_pale = (it.look & 8u) != 0u;
+    let board = select(muted, select(tint, vec3f(0.5, 0.48, 0.43), is_pale), is_front);
+    let painted = mix(board, select(vec3f(0.72, 0.68, 0.56), tint, is_pale), letters);
+    shade = mix(shade, painted * sky_on, max(shutters, fascia));
+    sunlit = mix(sunlit, painted * sun_on, max(shutters, fascia));
 
-    // Reveals: the sun reaches one side and the sill, less the deeper it shines past.
+    // What is behind the wall moves against the edges of its opening as the eye does.
+    let tangent = vec2f(-out.y, out.x);
+    let away = max(-dot(in.from_eye.xy, out), 0.05);
+    let slope = vec2f(dot(in.from_eye.xy, tangent), in.from_eye.z) / away;
     let sun_slope = vec2f(dot(scene.sun.xy, tangent), scene.sun.z) / max(facing, 0.05);
-    let left = behind.x < lower.x;
-    let soffit = behind.y > high;
-    let reached = select(0.0, clamp(select(-sun_slope.x, sun_slope.x, left), 0.0, 1.4), !soffit);
-    let cheek = select(0.55, 0.36, soffit);
-    shade = mix(shade, in.shade * cheek, opening);
-    sunlit = mix(sunlit, in.sunlit * (0.55 * reached), opening);
+    let reveal = select(REVEAL_M, 0.05, it.curtain_wall) / CELL_M;
+    let behind = it.at + clamp(slope * reveal, vec2f(-0.3), vec2f(0.3));
+    let inside = box(behind, hole.lower, hole.upper, it.pixel);
 
-    // Frames, leaves of doors, in the shadow of the opening's edges.
+    // Reveals: the sun reaches one side, and none of what is above.
+    let soffit = behind.y > hole.upper.y;
+    let side = select(-sun_slope.x, sun_slope.x, behind.x < hole.lower.x);
+    let reached = select(clamp(side, 0.0, 1.4), 0.0, soffit);
+    shade = mix(shade, in.shade * select(0.55, 0.36, soffit), hole.cover);
+    sunlit = mix(sunlit, in.sunlit * (0.55 * reached), hole.cover);
+
+    // Frames and leaves of doors, in the shadow of the opening's edges.
     let struck = behind + clamp(sun_slope * reveal, vec2f(-0.3), vec2f(0.3));
-    let sun_in = sun_on * box(struck, lower, upper, pixel);
-    let pale = select(vec3f(0.6, 0.59, 0.56), vec3f(0.06, 0.062, 0.065), (look & 0x60u) == 0x60u || shop || curtain_wall);
-    let leaf = mix(muted, vec3f(0.09, 0.045, 0.022), step(0.4, luck));
-    let door_size = upper - lower;
-    let in_door = (behind - lower) / door_size;
-    let panels = 1.0 - 0.3 * box(in_door, vec2f(0.16, 0.07), vec2f(0.84, 0.4), pixel / door_size);
-    let ribs = 0.85 + 0.15 * span(abs(fract(at.y * 7.0) - 0.5), 0.06, 1.0, pixel.y * 7.0);
-    let framed = select(select(pale, leaf * panels, door), vec3f(0.5) * ribs, garage);
-    let solid = opening * inside;
-    shade = mix(shade, framed * sky_on, solid);
-    sunlit = mix(sunlit, framed * sun_in, solid);
+    let sun_in = sun_on * box(struck, hole.lower, hole.upper, it.pixel);
+    let is_dark = (it.look & 0x60u) == 0x60u || it.shop || it.curtain_wall;
+    let frame = select(vec3f(0.6, 0.59, 0.56), vec3f(0.06, 0.062, 0.065), is_dark);
+    let leaf = select(muted, vec3f(0.09, 0.045, 0.022), it.luck > 0.4);
+    let door_size = hole.upper - hole.lower;
+    let in_door = (behind - hole.lower) / door_size;
+    let door_pixel = it.pixel / door_size;
+    let panels = 1.0 - 0.3 * box(in_door, vec2f(0.16, 0.07), vec2f(0.84, 0.4), door_pixel);
+    let ribs = 0.85 + 0.15 * span(abs(fract(it.at.y * 7.0) - 0.5), 0.06, 1.0, it.pixel.y * 7.0);
+    let framed = select(select(frame, leaf * panels, it.door), vec3f(0.5) * ribs, it.garage);
+    shade = mix(shade, framed * sky_on, hole.cover * inside);
+    sunlit = mix(sunlit, framed * sun_in, hole.cover * inside);
 
     // Roller shutters, some half down.
-    let drop = select(1.0, select(0.08 + 0.9 * luck, 0.0, luck > 0.6), chance < 0.22 && (look & 0x40u) == 0u);
-    let rolled = select(0.0, span(behind.y, mix(low, high, drop), 2.0, pixel.y), plain);
-    let slats = 0.42 * (0.86 + 0.14 * span(abs(fract(at.y * 34.0) - 0.5), 0.12, 1.0, pixel.y * 34.0));
+    let has_rolled = it.window && it.chance < 0.22 && (it.look & 0x40u) == 0u;
+    let end = mix(hole.lower.y, hole.upper.y, select(0.0, 0.08 + 0.9 * it.luck, it.luck < 0.6));
+    let rolled = select(0.0, span(behind.y, end, 2.0, it.pixel.y), has_rolled);
+    let slats = 0.42 * (0.86 + 0.14 * span(abs(fract(it.at.y * 34.0) - 0.5), 0.12, 1.0, it.pixel.y * 34.0));
 
     // Rooms are dark, curtains hang in some; goods stand behind shop windows.
-    let aside = abs(behind.x - 0.5) / half_width;
-    let drape = select(0.0, select(step(0.62, aside), 0.7, luck > 0.7), chance > 0.45 && plain);
-    let shelf = floor(vec2f(behind.x * 9.0, 0.0));
-    let good = hash(shelf + cell * 7.0 + seed);
-    let ware = (0.3 + 0.7 * vec3f(good, fract(good * 7.0), fract(good * 13.0))) * (0.02 + 0.2 * fract(good * 17.0));
-    let stocked = select(0.0, span(behind.y, 0.0, 0.24 + 0.24 * good, pixel.y), shop) * span(fract(behind.x * 9.0), 0.1, 0.9, pixel.x * 9.0);
-    let room = mix(mix(vec3f(0.014, 0.017, 0.021), vec3f(0.26, 0.24, 0.21), drape), ware, stocked);
+    let aside = abs(behind.x - 0.5) / hole.half_width;
+    let drape = select(0.0, select(step(0.62, aside), 0.7, it.luck > 0.7), it.chance > 0.45 && it.window);
+    let ware = goods(it, behind);
+    let room = mix(mix(vec3f(0.014, 0.017, 0.021), vec3f(0.26, 0.24, 0.21), drape), ware.rgb, ware.a);
     let view = in.from_eye / max(length(in.from_eye), 0.01);
     let grazing = 1.0 - clamp(-dot(view.xy, out), 0.0, 1.0);
     let g2 = grazing * grazing;
-    let fresnel = select(0.13, 0.34, curtain_wall) + 0.8 * g2 * g2 * grazing;
-    let mirror = mirrored(uv * CELL_M, slope, view, out, seed) * fresnel;
+    let fresnel = select(0.13, 0.34, it.curtain_wall) + 0.8 * g2 * g2 * grazing;
+    let mirror = mirrored(it.uv * CELL_M, slope, view, out, it.seed) * fresnel;
     let glass = room * sky_on * (1.0 - fresnel) + mirror;
-    let shop_door = (code & SHOP) != 0u;
-    let light = box(in_door, vec2f(0.16, select(0.5, 0.1, shop_door)), vec2f(0.84, 0.93), pixel / door_size);
-    let glazed = opening * select(select(pane, light * inside, door), 0.0, garage);
-    let see_through = glazed * (1.0 - rolled);
+    let glazed = hole.cover * inside * glass_of(it, hole, behind, in_door, door_pixel);
     shade = mix(shade, mix(glass, slats * sky_on, rolled), glazed);
-    sunlit = mix(sunlit, mix(sun_in * (0.02 + 0.1 * drape), slats * sun_in, rolled), glazed);
+    sunlit = mix(sunlit, sun_in * mix(0.02 + 0.1 * drape, slats, rolled), glazed);
     if NIGHT {
-        let who = hash(cell.yx * 3.0 + vec2f(seed * 1.3, seed + 11.0));
-        let is_lit = shop || (who < scene.windows_lit && !door) || (door && shop_door);
-        let bulb = mix(vec3f(1.1, 0.56, 0.2), vec3f(1.0, 0.85, 0.6), select(fract(who * 29.0), 0.75, shop || curtain_wall));
-        // Curtains, and the ceiling brighter than what stands below.
-        let lamp = (behind - vec2f(0.35 + 0.3 * luck, 0.8)) * vec2f(2.2, 3.0);
-        let seen = (0.3 + 0.7 * fract(who * 53.0)) * (0.5 + 0.75 / (1.0 + dot(lamp, lamp))) * (1.0 - 0.45 * drape);
-        let goods = mix(vec3f(0.55 + 0.4 * at.y), ware * 6.0, stocked);
-        let brightness = scene.window * select(vec3f(seen), goods, shop);
         let sign = (painted * 2.0 + letters * 0.6) * (scene.window * 0.8 * fascia);
-        return finish_shining(in, shade, sunlit, select(vec3f(0.0), bulb * (brightness * see_through), is_lit) + sign);
+        let light = lit_room(it, behind, drape, ware) * (scene.window * glazed * (1.0 - rolled));
+        return finish_shining(in, shade, sunlit, light + sign);
     }
     return finish(in, shade, sunlit);
+}
+
+// What comes out of a window at night.
+fn lit_room(it: Spot, behind: vec2f, drape: f32, ware: vec4f) -> vec3f {
+    let who = hash(it.cell.yx * 3.0 + vec2f(it.seed * 1.3, it.seed + 11.0));
+    let of_shop = it.shop || it.door && (it.code & SHOP) != 0u;
+    let is_lit = of_shop || who < scene.windows_lit && !it.door;
+    let cool = select(fract(who * 29.0), 0.75, of_shop || it.curtain_wall);
+    let bulb = mix(vec3f(1.1, 0.56, 0.2), vec3f(1.0, 0.85, 0.6), cool);
+    // Curtains, and a lamp below the ceiling.
+    let lamp = (behind - vec2f(0.35 + 0.3 * it.luck, 0.8)) * vec2f(2.2, 3.0);
+    let seen = (0.3 + 0.7 * fract(who * 53.0)) * (0.5 + 0.75 / (1.0 + dot(lamp, lamp))) * (1.0 - 0.45 * drape);
+    let shown = mix(vec3f(0.55 + 0.4 * it.at.y), ware.rgb * 6.0, ware.a);
+    return select(vec3f(0.0), bulb * select(vec3f(seen), shown, of_shop), is_lit);
 }

@@ -40,7 +40,7 @@ fn panes_lie_inside_the_wall() {
 /// What is finer than a pixel does not come and go as the eye moves by less than one.
 #[test]
 fn fine_detail_does_not_flicker_from_afar() {
-    for variant in 0..12 {
+    let of_house = |variant: u32| {
         let frame = |aside_m: f32| {
             let (mut renderer, scene, camera) = house(Vec3::new(10.0, 40.0, 10.2), variant, [40.0, aside_m], 0.0);
             renderer.draw(&scene, &camera).expect("drawn")
@@ -49,8 +49,8 @@ fn fine_detail_does_not_flicker_from_afar() {
         let both = |i: &usize| [&one, &other].iter().all(|f| f.class_ids[*i] == SemanticTag::Building as u8);
         let pixels: Vec<usize> = (0..one.class_ids.len()).filter(both).collect();
         let off: u32 = pixels.iter().map(|i| u32::from(one.rgb[3 * i].abs_diff(other.rgb[3 * i]))).sum();
-        let mean = off as f32 / pixels.len() as f32;
-        println!("{variant}: {mean}");
-        assert!(mean < 5.0, "{variant}: {mean}");
-    }
+        off as f32 / pixels.len() as f32
+    };
+    let all: Vec<f32> = (0..12).map(of_house).collect();
+    assert!(all.iter().sum::<f32>() < 12.0 * 2.6, "{all:?}");
 }

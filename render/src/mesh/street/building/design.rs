@@ -154,7 +154,10 @@ impl Design {
             storeys: floors,
             adornment,
             has_awning: is_shop && variety.one_in(3),
-            has_dormers: roof == Roof::Gabled && size.y > size.x && size.z - eaves_m > 1.8 && variety.one_in(2),
+            has_dormers: roof == Roof::Gabled
+                && size.y > size.x
+                && size.z - eaves_m > 0.3 * size.x
+                && variety.one_in(2),
             is_walled_in: !matches!(kind, Kind::Villa | Kind::Tower) && !variety.one_in(3),
             rest: variety,
         }
@@ -211,6 +214,8 @@ fn material(kind: Kind, size: Vec3, variety: &mut Variety) -> u8 {
         Kind::Narrow => variety.weighted(&[(PLASTER, 6), (TIMBER, 4), (BRICK, 2)]),
         Kind::Villa => variety.weighted(&[(PLASTER, 7), (BRICK, 3)]),
         Kind::Terrace => variety.weighted(&[(PLASTER, 6), (BRICK, 3), (STONE, 1)]),
+        // Old towns have narrow plots.
+        Kind::Block if size.y < 11.0 => variety.weighted(&[(PLASTER, 3), (BRICK, 1)]),
         Kind::Block => variety.weighted(&[(PLASTER, 3), (PANELS, 3), (GLASS, 2), (BRICK, 1)]),
     }
 }

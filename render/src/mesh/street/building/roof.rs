@@ -30,6 +30,8 @@ pub(super) fn roof(mesh: &mut Mesh, design: &Design, detail: Detail) {
     chimney(mesh, design.size, &mut variety);
     if design.has_dormers {
         dormers(mesh, design);
+    } else if design.roof == Roof::Gabled {
+        panes(mesh, design, &mut variety, detail);
     }
     if detail != Detail::Rough && design.size.y > design.size.x {
         gutter(mesh, design, detail);
@@ -185,10 +187,33 @@ fn chimney(mesh: &mut Mesh, size: Vec3, variety: &mut Variety) {
     mesh.cuboid(brick, foot - half + Vec3::Z * (size.z - 0.4 * b), foot + half + Vec3::Z * (size.z + 0.5));
 }
 
+/// Skylights on both slopes of a gabled roof, or solar panels on one.
+fn panes(mesh: &mut Mesh, design: &Design, variety: &mut Variety, detail: Detail) {
+    let at = along(design.size);
+    let (a, b) = halves(design.size);
+    let slope = (design.size.z - design.eaves_m) / b;
+    let mut pane = |paint: Paint, side: f32, (x, half): (f32, f32), down: [f32; 2]| {
+        let place = |x: f32, y: f32| at(side * x, -side * y, design.size.z - y * slope + 0.06);
+        mesh.polygon(
+            paint,
+            &[place(x - half, down[1]), place(x + half, down[1]), place(x + half, down[0]), place(x - half, down[0])],
+        );
+    };
+    let side = variety.pick(&[-1.0, 1.0]);
+    if variety.one_in(5) {
+        pane(Paint::plain(TAG, [26, 34, 58]).glossy(200), side, (0.0, 0.62 * a), [0.2 * b, 0.8 * b]);
+    } else if detail != Detail::Rough && variety.one_in(2) {
+        for (side, x) in [(side, -0.4 * a), (side, 0.35 * a), (-side, 0.1 * a)] {
+            pane(Paint::plain(TAG, [52, 58, 66]).glossy(230), side, (x, 0.4), [0.45 * b, 0.45 * b + 0.9]);
+        }
+    }
+}
+
 /// On the slope that looks at the street, one above each second column.
 fn dormers(mesh: &mut Mesh, design: &Design) {
     let Design { size, eaves_m: eaves, .. } = *design;
-    let (half, high, slope) = (0.75, 1.5, (size.z - eaves) / (0.5 * size.x));
+    let slope = (size.z - eaves) / (0.5 * size.x);
+    let (half, high) = (0.75, (0.5 * (size.z - eaves)).min(1.5));
     let count = (size.y / 4.5).floor().clamp(1.0, 3.0);
     let front_x = 0.5 * size.x - 0.5;
     let foot = eaves + THICK_M + 0.5 * slope;
@@ -202,12 +227,7 @@ fn dormers(mesh: &mut Mesh, design: &Design) {
         let cheek = Paint::plain(TAG, design.tiles.colour);
         mesh.polygon(cheek, &[at(deep, -1.0, high), at(0.0, -1.0, -0.1), at(0.0, -1.0, high)]);
         mesh.polygon(cheek, &[at(0.0, 1.0, -0.1), at(deep, 1.0, high), at(0.0, 1.0, high)]);
-        let lid = [
-            at(-0.2, -1.15, high),
-            at(-0.2, 1.15, high),
-            at(deep + 0.1, 1.15, high + 0.1),
-            at(deep + 0.1, -1.15, high + 0.1),
-        ];
+        let lid = [at(-0.2, -1.15, high), at(-0.2, 1.15, high), at(deep, 1.15, high), at(deep, -1.15, high)];
         mesh.polygon(ZINC.shaded(0.8), &lid);
         let edge = Vec3::Z * 0.12;
         mesh.polygon(ZINC, &[lid[0] - edge, lid[1] - edge, lid[1], lid[0]]);

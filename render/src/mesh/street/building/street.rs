@@ -73,6 +73,10 @@ pub(super) fn adorn(mesh: &mut Mesh, design: &Design, front: Front, detail: Deta
     if design.has_awning {
         awning(mesh, design, front);
     }
+    let is_free = !design.has_awning && matches!(design.adornment, Adornment::Nothing | Adornment::FlowerBoxes);
+    if design.is_shop() && is_free && detail != Detail::Rough {
+        blade_sign(mesh, design, front);
+    }
     entrance(mesh, design, front, detail);
     if detail != Detail::Rough && design.wall.code & style::BANDS != 0 {
         let (low, high) = (front.at(0.0, 0.985, 0.0), front.at(front.columns, 1.03, 0.09));
@@ -170,6 +174,15 @@ fn awning(mesh: &mut Mesh, design: &Design, front: Front) {
     let hem = Vec3::Z * 0.12;
     mesh.polygon(cloth, &[b - hem, c - hem, c, b]);
     mesh.polygon(cloth.shaded(0.7), &[c - hem, b - hem, b, c]);
+}
+
+/// A sign that stands out from the wall, for those who come along it.
+fn blade_sign(mesh: &mut Mesh, design: &Design, front: Front) {
+    let mut variety = design.rest;
+    let u = variety.pick(&[0.04, front.columns - 0.04]);
+    let colour = variety.pick(&[[176, 40, 36], [30, 70, 130], [36, 110, 66], [214, 170, 40], [232, 230, 222]]);
+    let low = front.at(u, 1.0, 0.0) + Vec3::new(0.12, -0.05, 0.25);
+    front.ledge(mesh, Paint::plain(TAG, colour), low, low + Vec3::new(0.55, 0.1, 0.75));
 }
 
 /// Before the door, and the canopy over it.
