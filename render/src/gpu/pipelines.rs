@@ -173,7 +173,7 @@ impl Pipelines {
             bias: Default::default(),
         };
         let finishes =
-            [("vertex_plain", "fragment_plain"), ("vertex", "fragment_grainy"), ("vertex", "fragment_facade")];
+            [("vertex_plain", "fragment_plain"), ("vertex", "fragment_grainy"), ("vertex_facade", "fragment_facade")];
         Self {
             world: finishes.map(|(vertex, fragment)| Recipe { vertex, fragment: Some(fragment), ..base }.make(gpu)),
             sky: Recipe {

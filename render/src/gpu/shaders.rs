@@ -7,6 +7,7 @@ const SCENE: &str = include_str!("../shaders/scene.wgsl");
 const WORLD: &str = concat!(
     include_str!("../shaders/surface.wgsl"),
     include_str!("../shaders/ground.wgsl"),
+    include_str!("../shaders/masonry.wgsl"),
     include_str!("../shaders/facade.wgsl")
 );
 

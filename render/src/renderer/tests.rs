@@ -10,6 +10,7 @@ use kernel::{Scenario, World, map};
 use super::*;
 use crate::{EGO_INSTANCE, SemanticTag, instance_of_actor};
 
+mod houses;
 mod night;
 
 fn network(name: &str) -> Arc<RoadNetwork> {
