@@ -1,5 +1,6 @@
 //! What stands and lies along a street: surfaces, houses, trees, posts, barriers, furniture.
 
+mod along;
 pub mod barrier;
 pub mod building;
 pub mod loose;
