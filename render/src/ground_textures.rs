@@ -30,3 +30,37 @@ fn wandering([from, to]: [Vec2; 2], (pieces, stray_m): (u32, f32), variety: &mut
     };
     (0..=pieces).map(place).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tile::CHANNELS;
+
+    fn channel(layer: usize, channel: usize) -> Vec<f32> {
+        let finest = &layers()[layer][0];
+        finest.iter().skip(channel).step_by(CHANNELS).map(|v| f32::from(*v) / 255.0).collect()
+    }
+
+    fn mean(values: &[f32]) -> f32 {
+        values.iter().sum::<f32>() / values.len() as f32
+    }
+
+    #[test]
+    fn stones_are_as_bright_as_their_paint_and_joints_are_dark() {
+        for bond in 0..CHANNELS {
+            let texels = channel(1, bond);
+            let joints = texels.iter().filter(|v| **v < 0.35).count() as f32 / texels.len() as f32;
+            assert!((0.42..0.55).contains(&mean(&texels)), "{bond}: {}", mean(&texels));
+            assert!((0.01..0.3).contains(&joints), "{bond}: {joints}");
+        }
+    }
+
+    #[test]
+    fn little_of_the_asphalt_is_marked() {
+        for (at, most) in [(0, 0.06), (2, 0.01), (3, 0.15)] {
+            let share = mean(&channel(0, at));
+            assert!(share > 0.0005 && share < most, "{at}: {share}");
+        }
+        assert!((0.45..0.55).contains(&mean(&channel(0, 1))));
+    }
+}

@@ -27,6 +27,7 @@ mod renderer;
 mod scenery;
 mod shadows;
 mod sieve;
+mod spray;
 mod street_lamps;
 pub mod tags;
 mod tile;

@@ -38,7 +38,7 @@ const FAR: f32 = 0.8;
 const WIDTH: f32 = 0.42;
 const SPREAD: f32 = 0.004;
 /// Share of a lamp's shine that a wet road mirrors at most.
-const SHARE: f32 = 0.62;
+const SHARE: f32 = 0.75;
 /// A vehicle or signal whose lamp it is stands no farther from it than this, metres.
 const FOOT_M: f32 = 8.0;
 

@@ -15,6 +15,7 @@ use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadows::ShadowMaps;
 use crate::sieve::Sieve;
+use crate::spray::{self, Puff};
 use crate::street_lamps::{self, StreetLamp};
 use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, Quality, RenderError};
@@ -36,6 +37,7 @@ pub struct Renderer {
     light_map: LightMap,
     glows: Vec<Glow>,
     streaks: Vec<Streak>,
+    spray: Vec<Puff>,
 }
 
 /// Street lamps are seen to shine up to this distance, metres.
@@ -65,6 +67,7 @@ impl Renderer {
             light_map: LightMap::default(),
             glows: Vec::new(),
             streaks: Vec::new(),
+            spray: Vec::new(),
         })
     }
 
@@ -111,6 +114,7 @@ impl Renderer {
         self.moving.shine = light.lamps.filter(|_| colours).map_or(0.0, |lamps| lamps.shine);
         self.cast.pose(scene, &self.heads, (&seen, horizon), shines.then_some(&shadow), &mut self.moving);
         self.shine(scene, &seen, &light, colours);
+        spray::of(scene, &seen, &mut self.spray);
         let samples = [width, height].map(|side| side * means.samples);
         let sieve = Sieve::new(&view, samples, takes_corners, scene);
         let mut sieve = if self.sifts { sieve } else { sieve.open() };
@@ -135,6 +139,7 @@ impl Renderer {
             light_map: lamps_shine.then_some(&self.light_map.texels),
             glows: &self.glows,
             streaks: &self.streaks,
+            spray: &self.spray,
         };
         let fits = |t: &Targets| t.is_for(width, height, means);
         let targets = match self.targets.take() {

@@ -10,6 +10,7 @@ use crate::glows::Glow;
 use crate::mesh::{FINISHES, Finish, Vertex};
 use crate::mirrors::Streak;
 use crate::quality::Shadows;
+use crate::spray::Puff;
 
 /// The order in which what stands still is drawn: nearest and most covering first, as hidden fragments are cheap.
 const FIXED: [Finish; FINISHES] = [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy];
@@ -41,6 +42,8 @@ pub(crate) struct Draws<'a> {
     pub(crate) glows: &'a [Glow],
     /// What wet roads mirror of them.
     pub(crate) streaks: &'a [Streak],
+    /// Behind vehicles in rain, the farthest first.
+    pub(crate) spray: &'a [Puff],
 }
 
 /// Pipelines and the buffers they read.
@@ -59,6 +62,7 @@ pub(crate) struct Passes {
     light_map: wgpu::Texture,
     glows: GrowingBuffer,
     streaks: GrowingBuffer,
+    spray: GrowingBuffer,
 }
 
 /// The scene as one grid of samples sees it.
@@ -121,6 +125,7 @@ impl Passes {
             light_map,
             glows: GrowingBuffer::new(gpu, U::VERTEX),
             streaks: GrowingBuffer::new(gpu, U::VERTEX),
+            spray: GrowingBuffer::new(gpu, U::VERTEX),
             layouts,
         }
     }
@@ -134,12 +139,9 @@ impl Passes {
         if let Some(texels) = draws.light_map {
             textures::write_light_map(gpu, &self.light_map, texels);
         }
-        if !draws.glows.is_empty() {
-            self.glows.write(gpu, draws.glows);
-        }
-        if !draws.streaks.is_empty() {
-            self.streaks.write(gpu, draws.streaks);
-        }
+        self.glows.write(gpu, draws.glows);
+        self.streaks.write(gpu, draws.streaks);
+        self.spray.write(gpu, draws.spray);
         let ranges = self.write_indices(gpu, draws);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if draws.colours {
@@ -261,25 +263,20 @@ impl Passes {
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
         for finish in FIXED {
             // What is drawn after them mirrors nothing: it is not paved.
-            if finish == Finish::Grainy && !draws.streaks.is_empty() {
-                pass.set_pipeline(&pipelines.mirror);
-                pass.set_vertex_buffer(0, self.streaks.buffer.slice(..));
-                pass.draw(0..6, 0..draws.streaks.len() as u32);
+            if finish == Finish::Grainy {
+                draw_quads(&mut pass, &pipelines.mirror, &self.streaks, draws.streaks.len());
             }
             pass.set_pipeline(&pipelines.world[finish as usize]);
             self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
         }
         pass.set_pipeline(&pipelines.sky);
         pass.draw(0..3, 0..1);
+        draw_quads(&mut pass, &pipelines.spray, &self.spray, draws.spray.len());
         if draws.drops > 0 {
             pass.set_pipeline(&pipelines.rain);
             pass.draw(0..6 * draws.drops, 0..1);
         }
-        if !draws.glows.is_empty() {
-            pass.set_pipeline(&pipelines.glow);
-            pass.set_vertex_buffer(0, self.glows.buffer.slice(..));
-            pass.draw(0..6, 0..draws.glows.len() as u32);
-        }
+        draw_quads(&mut pass, &pipelines.glow, &self.glows, draws.glows.len());
     }
 
     fn draw_mesh(&self, pass: &mut wgpu::RenderPass<'_>, vertices: &wgpu::Buffer, range: &Range<u32>) {
@@ -288,6 +285,20 @@ impl Passes {
             pass.set_index_buffer(self.indices.buffer.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(range.clone(), 0, 0..1);
         }
+    }
+}
+
+/// Draws two triangles for each of so many instances.
+fn draw_quads(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    instances: &GrowingBuffer,
+    count: usize,
+) {
+    if count > 0 {
+        pass.set_pipeline(pipeline);
+        pass.set_vertex_buffer(0, instances.buffer.slice(..));
+        pass.draw(0..6, 0..count as u32);
     }
 }
 

@@ -6,6 +6,7 @@ use crate::SemanticTag;
 use crate::glows::Glow;
 use crate::mesh::{FINISHES, Vertex};
 use crate::mirrors::Streak;
+use crate::spray::Puff;
 
 /// Bind group layouts that the pipelines share.
 pub(super) struct Layouts {
@@ -34,6 +35,7 @@ pub(super) struct Pipelines {
     pub(super) rain: wgpu::RenderPipeline,
     pub(super) glow: wgpu::RenderPipeline,
     pub(super) mirror: wgpu::RenderPipeline,
+    pub(super) spray: wgpu::RenderPipeline,
     pub(super) shadow: wgpu::RenderPipeline,
 }
 
@@ -158,7 +160,7 @@ impl Pipelines {
         let scene_only = pipeline_layout(gpu, &[Some(&layouts.scene)]);
         let with_shadow = pipeline_layout(gpu, &[Some(&layouts.scene), Some(&layouts.shadow)]);
         let [world, sky, shadow, rain] = ["world", "sky", "shadow", "rain"].map(|name| module(gpu, name));
-        let [glow, mirror] = ["glow", "mirror"].map(|name| module(gpu, name));
+        let [glow, mirror, spray] = ["glow", "mirror", "spray"].map(|name| module(gpu, name));
         let opaque = [Some(COLOUR.into()), Some(IDS.into())];
         let base = Recipe {
             module: &world,
@@ -182,6 +184,7 @@ impl Pipelines {
             depth_write: false,
             ..base
         };
+        let veil = Recipe { targets: &[Some(covering()), Some(untouched())], constants: &[night], ..shining };
         let finishes = [
             ("vertex_plain", "fragment_plain"),
             ("vertex", "fragment_grainy"),
@@ -202,18 +205,8 @@ impl Pipelines {
                 ..base
             }
             .make(gpu),
-            rain: Recipe {
-                module: &rain,
-                layout: &scene_only,
-                fragment: Some("fragment"),
-                buffers: &[],
-                targets: &[Some(covering()), Some(untouched())],
-                constants: &[night],
-                cull: false,
-                depth_write: false,
-                ..base
-            }
-            .make(gpu),
+            rain: Recipe { module: &rain, buffers: &[], ..veil }.make(gpu),
+            spray: Recipe { module: &spray, buffers: &[Some(puff_instances())], ..veil }.make(gpu),
             glow: Recipe { module: &glow, buffers: &[Some(glow_instances())], constants: &[weather], ..shining }
                 .make(gpu),
             mirror: Recipe { module: &mirror, buffers: &[Some(streak_instances())], ..shining }.make(gpu),
@@ -246,6 +239,11 @@ fn glow_instances() -> wgpu::VertexBufferLayout<'static> {
     const ATTRIBUTES: [wgpu::VertexAttribute; 3] =
         wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3];
     instances::<Glow>(&ATTRIBUTES)
+}
+
+fn puff_instances() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32];
+    instances::<Puff>(&ATTRIBUTES)
 }
 
 fn streak_instances() -> wgpu::VertexBufferLayout<'static> {

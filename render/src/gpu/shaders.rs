@@ -14,13 +14,14 @@ const WORLD: &str = concat!(
 );
 
 /// The shaders with their names, without the common start.
-const SOURCES: [(&str, &str); 7] = [
+const SOURCES: [(&str, &str); 8] = [
     ("world", WORLD),
     ("classes", include_str!("../shaders/classes.wgsl")),
     ("sky", include_str!("../shaders/sky.wgsl")),
     ("shadow", include_str!("../shaders/shadow.wgsl")),
     ("rain", include_str!("../shaders/rain.wgsl")),
     ("glow", include_str!("../shaders/glow.wgsl")),
+    ("spray", include_str!("../shaders/spray.wgsl")),
     ("mirror", include_str!("../shaders/mirror.wgsl")),
 ];
 

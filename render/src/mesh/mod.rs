@@ -68,7 +68,7 @@ pub const CODE_SETTS: u8 = 0;
 pub const CODE_KERBED: u8 = 4;
 /// [`Vertex::code`] of a kerb.
 pub const CODE_KERB: u8 = 8;
-/// [`Vertex::code`] of grass.
+/// [`Vertex::code`] of grass; [`Vertex::param`] is how bare the soil is.
 pub const CODE_GRASS: u8 = 2;
 
 /// A vertex as the GPU reads it, 32 bytes.

@@ -112,3 +112,63 @@ impl Pavement<'_> {
         Vec2::new(s_m, self.lane.at(s_m).half_width_m - self.road.unwrap_or(1.0) * lateral_m)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use kernel::map::SurfaceKind;
+
+    use super::*;
+
+    /// Corners of the roadway of a map with the stretches they are on.
+    fn corners<'a>(network: &'a RoadNetwork, roads: &Roads<'a>) -> Vec<([Vec3; 3], Stretch<'a>)> {
+        let surface = network.surfaces.iter().find(|surface| surface.kind == SurfaceKind::Road).expect("roads");
+        let of = |triangle: &[u32; 3]| {
+            let corners = triangle.map(|i| surface.positions[i as usize]);
+            Some((corners, roads.stretch(corners.iter().sum::<Vec3>() / 3.0)?))
+        };
+        surface.triangles.iter().filter_map(of).collect()
+    }
+
+    #[test]
+    fn a_lane_goes_from_one_phase_to_the_other_and_shares_them_with_its_neighbours() {
+        for name in ["city", "motorway"] {
+            let network = kernel::map::bundled(name).expect("a bundled map");
+            let roads = Roads::new(&network);
+            let mut known: BTreeMap<([u32; 3], *const Lane), ([u32; 2], u8)> = BTreeMap::new();
+            let (mut driven, mut torn) = (0, 0);
+            for (corners, stretch) in corners(&network, &roads) {
+                let phases = corners.map(|at| stretch.phase(at));
+                let is_driven = stretch.lane.kind == LaneKind::Driving;
+                driven += usize::from(is_driven);
+                torn += usize::from(is_driven != (phases[0] != phases[1] || phases[1] != phases[2]));
+                for (at, phase) in corners.into_iter().zip(phases) {
+                    let here = (stretch.uv(at).to_array().map(f32::to_bits), phase);
+                    let there = *known.entry((at.to_array().map(f32::to_bits), stretch.along)).or_insert(here);
+                    assert_eq!(here.0, there.0, "{name}: {at}");
+                    torn += usize::from(here != there);
+                }
+            }
+            assert!(driven > 300 && 50 * torn < driven, "{name}: {torn} of {driven}");
+        }
+    }
+
+    #[test]
+    fn pavements_count_from_the_edge_beside_their_road() {
+        let network = kernel::map::bundled("city").expect("a bundled map");
+        let roads = Roads::new(&network);
+        let (mut right, mut wrong) = (0, 0);
+        for lane in network.lanes.iter().filter(|lane| lane.kind == LaneKind::Sidewalk && lane.junction.is_none()) {
+            let middle = lane.at(0.5 * lane.length_m);
+            let Some(pavement) = roads.pavement(middle.position).filter(|on| on.road.is_some()) else { continue };
+            let aside = Vec2::from_angle(middle.heading_rad).perp().extend(0.0) * (0.8 * middle.half_width_m);
+            let from_road = |at: Vec3| {
+                let road = network.nearest_lane(at, LaneKind::Driving, None, 2.0 * BESIDE_M);
+                road.map_or(f32::INFINITY, |road| road.distance_m)
+            };
+            let [a, b] = [middle.position + aside, middle.position - aside];
+            let agrees = (pavement.uv(a).y < pavement.uv(b).y) == (from_road(a) < from_road(b));
+            *if agrees { &mut right } else { &mut wrong } += 1;
+        }
+        assert!(right > 10 && wrong == 0, "{right} right, {wrong} wrong");
+    }
+}

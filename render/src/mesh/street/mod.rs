@@ -10,3 +10,4 @@ pub mod street_furniture;
 pub mod structure;
 pub mod surface;
 pub mod tree;
+mod verge;

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use kernel::map::{Lane, RoadNetwork, Surface, SurfaceKind};
 
 use super::along::{Pavement, Roads, Stretch, road_of};
+use super::verge;
 use crate::SemanticTag;
 use crate::mesh::variety::Variety;
 use crate::mesh::{
@@ -20,7 +21,7 @@ fn paint(kind: SurfaceKind) -> Paint {
         SurfaceKind::Road => asphalt(JUNCTION_AGE),
         SurfaceKind::RoadLine => laid(SemanticTag::RoadLine, [208, 208, 200], Finish::Asphalt, CODE_PAINT),
         SurfaceKind::Sidewalk => laid(SemanticTag::SideWalk, [150, 145, 138], Finish::Paving, FLAGS),
-        SurfaceKind::Terrain => Paint::plain(SemanticTag::Terrain, [98, 110, 68]).grainy(200).coded(CODE_GRASS),
+        SurfaceKind::Terrain => Paint::plain(SemanticTag::Terrain, [94, 100, 66]).grainy(0).coded(CODE_GRASS),
         SurfaceKind::Ground => laid(SemanticTag::Ground, [140, 134, 124], Finish::Paving, SMALL_STONES),
         SurfaceKind::Gravel => Paint::plain(SemanticTag::Road, [152, 142, 122]).grainy(220),
         SurfaceKind::Track => Paint::plain(SemanticTag::RailTrack, [112, 102, 92]).grainy(220),
@@ -46,7 +47,7 @@ const fn laid(tag: SemanticTag, colour: [u8; 3], finish: Finish, code: u8) -> Pa
 
 /// Bitumen fades.
 fn asphalt(age: u8) -> Paint {
-    let grey = 68 + 5 * age;
+    let grey = 64 + 5 * age;
     laid(SemanticTag::Road, [grey, grey, grey + 2], Finish::Asphalt, age)
 }
 
@@ -104,18 +105,29 @@ fn pavement_of(on: &Pavement) -> Paint {
 pub struct Cell {
     /// In the world's frame.
     pub mesh: Mesh,
-    /// What it is of.
-    pub kind: SurfaceKind,
+    /// Whether it lies on other ground, so thin that nothing shows below its edges.
+    pub is_thin: bool,
 }
 
 /// The surfaces of a map, cut into cells.
 pub fn cells(network: &RoadNetwork) -> impl Iterator<Item = Cell> + '_ {
     let roads = Roads::new(network);
     let of = move |surface: &'_ Surface| {
-        let kind = surface.kind;
-        cut(surface, &roads).into_iter().map(move |mesh| Cell { mesh, kind })
+        let is_thin = surface.kind.lies_on_ground();
+        cut(surface, &roads).into_iter().map(move |mesh| Cell { mesh, is_thin })
     };
-    network.surfaces.iter().flat_map(of)
+    let worn = verges(network).into_iter().map(|mesh| Cell { mesh, is_thin: true });
+    network.surfaces.iter().flat_map(of).chain(worn)
+}
+
+fn verges(network: &RoadNetwork) -> Vec<Mesh> {
+    let mut cells: BTreeMap<[i32; 2], Mesh> = BTreeMap::new();
+    for surface in &network.surfaces {
+        for piece in verge::pieces(network, surface, paint(SurfaceKind::Terrain)) {
+            verge::mesh(&piece, cells.entry(cell_of(piece[0].0)).or_default());
+        }
+    }
+    cells.into_values().collect()
 }
 
 /// Reach of the plain beyond the map, metres.
@@ -137,11 +149,13 @@ pub fn plain(network: &RoadNetwork) -> Mesh {
 fn cut(surface: &Surface, roads: &Roads) -> Vec<Mesh> {
     let mut cells: BTreeMap<[i32; 2], Vec<[u32; 3]>> = BTreeMap::new();
     for &triangle in &surface.triangles {
-        let centre = centre(surface, triangle);
-        let cell = [(centre.x / CELL_M).floor() as i32, (centre.y / CELL_M).floor() as i32];
-        cells.entry(cell).or_default().push(triangle);
+        cells.entry(cell_of(centre(surface, triangle))).or_default().push(triangle);
     }
     cells.values().map(|triangles| cell(surface, triangles, roads)).collect()
+}
+
+fn cell_of(place: Vec3) -> [i32; 2] {
+    [(place.x / CELL_M).floor() as i32, (place.y / CELL_M).floor() as i32]
 }
 
 fn centre(surface: &Surface, triangle: [u32; 3]) -> Vec3 {
@@ -173,4 +187,33 @@ fn cell(surface: &Surface, triangles: &[[u32; 3]], roads: &Roads) -> Mesh {
         mesh.triangle(paint(surface.kind).finish, corners);
     }
     mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streets_differ_in_age_and_their_pavements_have_kerbs() {
+        let network = kernel::map::bundled("city").expect("a bundled map");
+        let mut codes: BTreeMap<u8, usize> = BTreeMap::new();
+        for Cell { mesh, .. } in cells(&network) {
+            for (finish, bits) in [(Finish::Asphalt, 0x80), (Finish::Paving, 0)] {
+                for v in mesh.triangles[finish as usize].iter().map(|t| mesh.vertices[t[0] as usize]) {
+                    *codes.entry(v.code | bits).or_default() += 1;
+                }
+            }
+        }
+        let ages = codes.keys().filter(|code| **code & (0x80 | CODE_COVERS) == 0x80 | CODE_COVERS).count();
+        let bonds = codes.keys().filter(|code| **code & !3 == CODE_KERBED).count();
+        assert!(ages >= 3 && bonds >= 2 && codes.contains_key(&CODE_KERB), "{codes:?}");
+    }
+
+    #[test]
+    fn worn_ground_is_bare_at_the_edge_of_what_is_paved_alone() {
+        let network = kernel::map::bundled("rural").expect("a bundled map");
+        let grass = cells(&network).flat_map(|cell| cell.mesh.vertices).filter(|v| v.code == CODE_GRASS);
+        let (bare, green): (Vec<_>, Vec<_>) = grass.partition(|v| v.param > 0 && v.tag == SemanticTag::Terrain as u8);
+        assert!(bare.len() > 1000 && green.len() > bare.len());
+    }
 }
