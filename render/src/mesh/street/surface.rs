@@ -27,7 +27,7 @@ fn paint(kind: SurfaceKind) -> Paint {
         SurfaceKind::Track => Paint::plain(SemanticTag::RailTrack, [112, 102, 92]).grainy(220),
         SurfaceKind::Rail => Paint::plain(SemanticTag::RailTrack, [150, 148, 146]).glossy(120),
         SurfaceKind::Water => Paint::plain(SemanticTag::Water, [66, 96, 112]).glossy(200),
-        SurfaceKind::Setts => laid(SemanticTag::Road, [118, 112, 106], Finish::Paving, CODE_SETTS),
+        SurfaceKind::Setts => laid(SemanticTag::Road, [106, 101, 95], Finish::Paving, CODE_SETTS),
     }
 }
 

@@ -156,6 +156,8 @@ fn wet_roads_mirror_lamps_and_dry_ones_do_not() {
         let ground = (64 * 256..128 * 256).filter(|i| with.class_ids[*i] == tag as u8);
         ground.map(|i| red(&with, i) - red(&without, i)).filter(|more| *more > 12).count()
     };
-    assert!(gain(100.0, SemanticTag::Road) > 30, "{}", gain(100.0, SemanticTag::Road));
-    assert_eq!([gain(0.0, SemanticTag::Road), gain(100.0, SemanticTag::Terrain)], [0, 0]);
+    // Glows reach over the ground around them.
+    let [road, grass] = [SemanticTag::Road, SemanticTag::Terrain].map(|tag| [100.0, 0.0].map(|wet| gain(wet, tag)));
+    assert!(road[0] > 3 * road[1] && road[0] > 60, "{road:?}");
+    assert!(grass[0] <= grass[1], "{grass:?}");
 }
