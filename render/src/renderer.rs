@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use kernel::map::LightHead;
+use kernel::weather::Water;
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::actors::{Cast, Moving};
@@ -9,10 +10,12 @@ use crate::glows::{self, Glow};
 use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
 use crate::light_map::LightMap;
+use crate::mirrors::{self, Feet, Streak};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadows::ShadowMaps;
 use crate::sieve::Sieve;
+use crate::spray::{self, Puff};
 use crate::street_lamps::{self, StreetLamp};
 use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, Quality, RenderError};
@@ -33,6 +36,8 @@ pub struct Renderer {
     street_lamps: Vec<StreetLamp>,
     light_map: LightMap,
     glows: Vec<Glow>,
+    streaks: Vec<Streak>,
+    spray: Vec<Puff>,
 }
 
 /// Street lamps are seen to shine up to this distance, metres.
@@ -61,6 +66,8 @@ impl Renderer {
             street_lamps: street_lamps::all(network),
             light_map: LightMap::default(),
             glows: Vec::new(),
+            streaks: Vec::new(),
+            spray: Vec::new(),
         })
     }
 
@@ -107,6 +114,7 @@ impl Renderer {
         self.moving.shine = light.lamps.filter(|_| colours).map_or(0.0, |lamps| lamps.shine);
         self.cast.pose(scene, &self.heads, (&seen, horizon), shines.then_some(&shadow), &mut self.moving);
         self.shine(scene, &seen, &light, colours);
+        spray::of(scene, &seen, &mut self.spray);
         let samples = [width, height].map(|side| side * means.samples);
         let sieve = Sieve::new(&view, samples, takes_corners, scene);
         let mut sieve = if self.sifts { sieve } else { sieve.open() };
@@ -130,6 +138,8 @@ impl Renderer {
             lighting,
             light_map: lamps_shine.then_some(&self.light_map.texels),
             glows: &self.glows,
+            streaks: &self.streaks,
+            spray: &self.spray,
         };
         let fits = |t: &Targets| t.is_for(width, height, means);
         let targets = match self.targets.take() {
@@ -143,11 +153,18 @@ impl Renderer {
     /// Makes the map of lamps' light and their glows, where they shine.
     fn shine(&mut self, scene: &SceneSnapshot, view: &View, light: &Light, colours: bool) {
         self.glows.clear();
+        self.streaks.clear();
         let Some(lamps) = light.lamps.filter(|_| colours) else { return };
         let near = street_lamps::near(&self.street_lamps, view.eye, STREET_LAMPS_M);
         self.light_map.light(view, scene, &near);
         self.glows.extend_from_slice(&self.moving.glows);
         glows::of_street_lamps(&near, view, lamps.shine, &mut self.glows);
+        let wet = Water::of(&scene.weather).wet;
+        if wet > 0.0 {
+            let feet = Feet::of(scene, &self.heads, &near);
+            let seen = (view, self.scenery.horizon(view.eye));
+            mirrors::of_glows(&self.glows, &feet, seen, wet, &mut self.streaks);
+        }
     }
 
     fn check(&self, scene: &SceneSnapshot, camera: &Camera) -> Result<(), RenderError> {

@@ -72,9 +72,9 @@ impl Scenery {
     pub(crate) fn new(network: &RoadNetwork) -> Self {
         let houses = network.props.iter().filter_map(Occluder::of).collect();
         let mut scenery = Self { houses, ..Default::default() };
-        for surface::Cell { mut mesh, kind } in surface::cells(network) {
+        for surface::Cell { mut mesh, is_thin } in surface::cells(network) {
             // Below paint is what it lies on.
-            let skirt = if kind.lies_on_ground() { 0.0 } else { SKIRT };
+            let skirt = if is_thin { 0.0 } else { SKIRT };
             let levels = Detail::ALL.map(|detail| {
                 mesh = simplify::simplified(&mesh, detail.error_m().max(FLAT_M));
                 skirt::with_skirt(&mesh, skirt * detail.error_m())

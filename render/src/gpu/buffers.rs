@@ -136,6 +136,9 @@ impl GrowingBuffer {
 
     pub(crate) fn write<T: Pod>(&mut self, gpu: &Gpu, content: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(content);
+        if bytes.is_empty() {
+            return;
+        }
         if bytes.len() as u64 > self.buffer.size() {
             self.buffer = make(gpu, self.usage, (bytes.len() as u64).next_power_of_two());
         }

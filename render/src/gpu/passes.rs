@@ -8,7 +8,12 @@ use super::{Gpu, GrowingBuffer, Lighting, SceneUniform, Targets, readback, textu
 use crate::SemanticTag;
 use crate::glows::Glow;
 use crate::mesh::{FINISHES, Finish, Vertex};
+use crate::mirrors::Streak;
 use crate::quality::Shadows;
+use crate::spray::Puff;
+
+/// The order in which what stands still is drawn: nearest and most covering first, as hidden fragments are cheap.
+const FIXED: [Finish; FINISHES] = [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy];
 
 /// What a frame draws.
 pub(crate) struct Draws<'a> {
@@ -35,6 +40,10 @@ pub(crate) struct Draws<'a> {
     /// Texels of the map of lamps' light, where lamps shine.
     pub(crate) light_map: Option<&'a [[u8; 4]]>,
     pub(crate) glows: &'a [Glow],
+    /// What wet roads mirror of them.
+    pub(crate) streaks: &'a [Streak],
+    /// Behind vehicles in rain, the farthest first.
+    pub(crate) spray: &'a [Puff],
 }
 
 /// Pipelines and the buffers they read.
@@ -52,6 +61,8 @@ pub(crate) struct Passes {
     indices: GrowingBuffer,
     light_map: wgpu::Texture,
     glows: GrowingBuffer,
+    streaks: GrowingBuffer,
+    spray: GrowingBuffer,
 }
 
 /// The scene as one grid of samples sees it.
@@ -94,12 +105,13 @@ impl Passes {
         let vertices = buffer(size_of_val(fixed).max(size_of::<Vertex>()), U::VERTEX);
         gpu.queue.write_buffer(&vertices, 0, bytemuck::cast_slice(fixed));
         let (noise, noise_sampler) = (textures::noise_view(gpu), textures::noise_sampler(gpu));
+        let ground = textures::ground_view(gpu);
         let light_map = textures::light_map(gpu);
         let light_map_view = light_map.create_view(&Default::default());
         let scenes = core::array::from_fn(|_| {
             let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
-            let [noise, light_map] = [&noise, &light_map_view].map(R::TextureView);
-            let scene = [uniform.as_entire_binding(), noise, R::Sampler(&noise_sampler), light_map];
+            let [noise, light_map, ground] = [&noise, &light_map_view, &ground].map(R::TextureView);
+            let scene = [uniform.as_entire_binding(), noise, R::Sampler(&noise_sampler), light_map, ground];
             SceneBinding { group: bind(gpu, &layouts.scene, &scene), uniform }
         });
         Self {
@@ -112,6 +124,8 @@ impl Passes {
             indices: GrowingBuffer::new(gpu, U::INDEX),
             light_map,
             glows: GrowingBuffer::new(gpu, U::VERTEX),
+            streaks: GrowingBuffer::new(gpu, U::VERTEX),
+            spray: GrowingBuffer::new(gpu, U::VERTEX),
             layouts,
         }
     }
@@ -125,9 +139,9 @@ impl Passes {
         if let Some(texels) = draws.light_map {
             textures::write_light_map(gpu, &self.light_map, texels);
         }
-        if !draws.glows.is_empty() {
-            self.glows.write(gpu, draws.glows);
-        }
+        self.glows.write(gpu, draws.glows);
+        self.streaks.write(gpu, draws.streaks);
+        self.spray.write(gpu, draws.spray);
         let ranges = self.write_indices(gpu, draws);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if draws.colours {
@@ -221,7 +235,7 @@ impl Passes {
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
         pass.set_pipeline(&pipeline);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
-        for finish in [Finish::Facade, Finish::Plain, Finish::Grainy] {
+        for finish in FIXED {
             self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
         }
     }
@@ -245,24 +259,24 @@ impl Passes {
         });
         pass.set_bind_group(0, &scene.group, &[]);
         pass.set_bind_group(1, &style.all_group, &[]);
-        // Nearest and most covering first: hidden fragments are cheap.
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
-        for finish in [Finish::Facade, Finish::Plain, Finish::Grainy] {
+        for finish in FIXED {
+            // What is drawn after them mirrors nothing: it is not paved.
+            if finish == Finish::Grainy {
+                draw_quads(&mut pass, &pipelines.mirror, &self.streaks, draws.streaks.len());
+            }
             pass.set_pipeline(&pipelines.world[finish as usize]);
             self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
         }
         pass.set_pipeline(&pipelines.sky);
         pass.draw(0..3, 0..1);
+        draw_quads(&mut pass, &pipelines.spray, &self.spray, draws.spray.len());
         if draws.drops > 0 {
             pass.set_pipeline(&pipelines.rain);
             pass.draw(0..6 * draws.drops, 0..1);
         }
-        if !draws.glows.is_empty() {
-            pass.set_pipeline(&pipelines.glow);
-            pass.set_vertex_buffer(0, self.glows.buffer.slice(..));
-            pass.draw(0..6, 0..draws.glows.len() as u32);
-        }
+        draw_quads(&mut pass, &pipelines.glow, &self.glows, draws.glows.len());
     }
 
     fn draw_mesh(&self, pass: &mut wgpu::RenderPass<'_>, vertices: &wgpu::Buffer, range: &Range<u32>) {
@@ -271,6 +285,20 @@ impl Passes {
             pass.set_index_buffer(self.indices.buffer.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(range.clone(), 0, 0..1);
         }
+    }
+}
+
+/// Draws two triangles for each of so many instances.
+fn draw_quads(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    instances: &GrowingBuffer,
+    count: usize,
+) {
+    if count > 0 {
+        pass.set_pipeline(pipeline);
+        pass.set_vertex_buffer(0, instances.buffer.slice(..));
+        pass.draw(0..6, 0..count as u32);
     }
 }
 

@@ -5,10 +5,12 @@ use super::{Gpu, shaders};
 use crate::SemanticTag;
 use crate::glows::Glow;
 use crate::mesh::{FINISHES, Vertex};
+use crate::mirrors::Streak;
+use crate::spray::Puff;
 
 /// Bind group layouts that the pipelines share.
 pub(super) struct Layouts {
-    /// Scene uniform, noise and its sampler, map of lamps' light.
+    /// Scene uniform, noise and its sampler, map of lamps' light, textures of ground.
     pub(super) scene: wgpu::BindGroupLayout,
     /// Shadow map and its sampler.
     pub(super) shadow: wgpu::BindGroupLayout,
@@ -32,6 +34,8 @@ pub(super) struct Pipelines {
     pub(super) sky: wgpu::RenderPipeline,
     pub(super) rain: wgpu::RenderPipeline,
     pub(super) glow: wgpu::RenderPipeline,
+    pub(super) mirror: wgpu::RenderPipeline,
+    pub(super) spray: wgpu::RenderPipeline,
     pub(super) shadow: wgpu::RenderPipeline,
 }
 
@@ -40,15 +44,13 @@ impl Layouts {
         use wgpu::{BindingType as T, SamplerBindingType as S, TextureSampleType as K};
         let uniform =
             T::Buffer { ty: wgpu::BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
-        let texture = |sample_type| T::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let noise = texture(K::Float { filterable: true });
+        use wgpu::TextureViewDimension::{D2, D2Array};
+        let texture = |sample_type, view_dimension| T::Texture { sample_type, view_dimension, multisampled: false };
+        let colours = K::Float { filterable: true };
+        let [noise, ground] = [D2, D2Array].map(|dimension| texture(colours, dimension));
         Self {
-            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise]),
-            shadow: layout(gpu, &[texture(K::Depth), T::Sampler(S::Comparison)]),
+            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise, ground]),
+            shadow: layout(gpu, &[texture(K::Depth, D2), T::Sampler(S::Comparison)]),
         }
     }
 }
@@ -157,7 +159,8 @@ impl Pipelines {
         let sun = flag("SUN", lighting != Lighting::Night);
         let scene_only = pipeline_layout(gpu, &[Some(&layouts.scene)]);
         let with_shadow = pipeline_layout(gpu, &[Some(&layouts.scene), Some(&layouts.shadow)]);
-        let [world, sky, shadow, rain, glow] = ["world", "sky", "shadow", "rain", "glow"].map(|name| module(gpu, name));
+        let [world, sky, shadow, rain] = ["world", "sky", "shadow", "rain"].map(|name| module(gpu, name));
+        let [glow, mirror, spray] = ["glow", "mirror", "spray"].map(|name| module(gpu, name));
         let opaque = [Some(COLOUR.into()), Some(IDS.into())];
         let base = Recipe {
             module: &world,
@@ -172,8 +175,23 @@ impl Pipelines {
             depth_compare: wgpu::CompareFunction::Greater,
             bias: Default::default(),
         };
-        let finishes =
-            [("vertex_plain", "fragment_plain"), ("vertex", "fragment_grainy"), ("vertex_facade", "fragment_facade")];
+        let shining = Recipe {
+            layout: &scene_only,
+            fragment: Some("fragment"),
+            targets: &[Some(brightening()), Some(untouched())],
+            constants: &[],
+            cull: false,
+            depth_write: false,
+            ..base
+        };
+        let veil = Recipe { targets: &[Some(covering()), Some(untouched())], constants: &[night], ..shining };
+        let finishes = [
+            ("vertex_plain", "fragment_plain"),
+            ("vertex", "fragment_grainy"),
+            ("vertex_facade", "fragment_facade"),
+            ("vertex", "fragment_asphalt"),
+            ("vertex", "fragment_paving"),
+        ];
         Self {
             world: finishes.map(|(vertex, fragment)| Recipe { vertex, fragment: Some(fragment), ..base }.make(gpu)),
             sky: Recipe {
@@ -187,30 +205,11 @@ impl Pipelines {
                 ..base
             }
             .make(gpu),
-            rain: Recipe {
-                module: &rain,
-                layout: &scene_only,
-                fragment: Some("fragment"),
-                buffers: &[],
-                targets: &[Some(covering()), Some(untouched())],
-                constants: &[night],
-                cull: false,
-                depth_write: false,
-                ..base
-            }
-            .make(gpu),
-            glow: Recipe {
-                module: &glow,
-                layout: &scene_only,
-                fragment: Some("fragment"),
-                buffers: &[Some(glow_instances())],
-                targets: &[Some(brightening()), Some(untouched())],
-                constants: &[weather],
-                cull: false,
-                depth_write: false,
-                ..base
-            }
-            .make(gpu),
+            rain: Recipe { module: &rain, buffers: &[], ..veil }.make(gpu),
+            spray: Recipe { module: &spray, buffers: &[Some(puff_instances())], ..veil }.make(gpu),
+            glow: Recipe { module: &glow, buffers: &[Some(glow_instances())], constants: &[weather], ..shining }
+                .make(gpu),
+            mirror: Recipe { module: &mirror, buffers: &[Some(streak_instances())], ..shining }.make(gpu),
             shadow: Recipe {
                 module: &shadow,
                 layout: &scene_only,
@@ -239,11 +238,24 @@ fn world_vertices() -> wgpu::VertexBufferLayout<'static> {
 fn glow_instances() -> wgpu::VertexBufferLayout<'static> {
     const ATTRIBUTES: [wgpu::VertexAttribute; 3] =
         wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3];
-    wgpu::VertexBufferLayout {
-        array_stride: size_of::<Glow>() as u64,
-        step_mode: wgpu::VertexStepMode::Instance,
-        attributes: &ATTRIBUTES,
-    }
+    instances::<Glow>(&ATTRIBUTES)
+}
+
+fn puff_instances() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 3] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32];
+    instances::<Puff>(&ATTRIBUTES)
+}
+
+fn streak_instances() -> wgpu::VertexBufferLayout<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 5] =
+        wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32, 4 => Float32x3];
+    instances::<Streak>(&ATTRIBUTES)
+}
+
+/// One of a type for each time that something is drawn.
+fn instances<T>(attributes: &'static [wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'static> {
+    let step_mode = wgpu::VertexStepMode::Instance;
+    wgpu::VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode, attributes }
 }
 
 /// What comes is added to what is there, the less the brighter that is.

@@ -7,18 +7,23 @@ const SCENE: &str = include_str!("../shaders/scene.wgsl");
 const WORLD: &str = concat!(
     include_str!("../shaders/surface.wgsl"),
     include_str!("../shaders/ground.wgsl"),
+    include_str!("../shaders/asphalt.wgsl"),
+    include_str!("../shaders/paving.wgsl"),
+    include_str!("../shaders/wet.wgsl"),
     include_str!("../shaders/masonry.wgsl"),
     include_str!("../shaders/facade.wgsl")
 );
 
 /// The shaders with their names, without the common start.
-const SOURCES: [(&str, &str); 6] = [
+const SOURCES: [(&str, &str); 8] = [
     ("world", WORLD),
     ("classes", include_str!("../shaders/classes.wgsl")),
     ("sky", include_str!("../shaders/sky.wgsl")),
     ("shadow", include_str!("../shaders/shadow.wgsl")),
     ("rain", include_str!("../shaders/rain.wgsl")),
     ("glow", include_str!("../shaders/glow.wgsl")),
+    ("spray", include_str!("../shaders/spray.wgsl")),
+    ("mirror", include_str!("../shaders/mirror.wgsl")),
 ];
 
 /// The shaders that do not need the scene.

@@ -1,36 +1,51 @@
 //! Textures that are filled once.
 
 use super::Gpu;
-use crate::{light_map, noise};
+use crate::{ground_textures, light_map, noise, tile};
 
 /// The noise texture with its mip levels.
 pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
-    let levels = noise::levels();
-    let size = |level: u32| wgpu::Extent3d {
-        width: noise::SIDE >> level,
-        height: noise::SIDE >> level,
-        depth_or_array_layers: 1,
+    let texture = tiles(gpu, "noise", wgpu::TextureFormat::Rg8Unorm, noise::SIDE, &[noise::levels()]);
+    texture.create_view(&Default::default())
+}
+
+/// The textures of ground, a layer each.
+pub(super) fn ground_view(gpu: &Gpu) -> wgpu::TextureView {
+    let side = tile::SIDE as u32;
+    let texture = tiles(gpu, "ground", wgpu::TextureFormat::Rgba8Unorm, side, &ground_textures::layers());
+    let dimension = Some(wgpu::TextureViewDimension::D2Array);
+    texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
+}
+
+/// A square texture with its mip levels, as many in each of its layers.
+fn tiles(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, side: u32, layers: &[Vec<Vec<u8>>]) -> wgpu::Texture {
+    let size = |level: usize, depth_or_array_layers: u32| wgpu::Extent3d {
+        width: side >> level,
+        height: side >> level,
+        depth_or_array_layers,
     };
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("noise"),
-        size: size(0),
-        mip_level_count: levels.len() as u32,
+        label: Some(label),
+        size: size(0, layers.len() as u32),
+        mip_level_count: side.ilog2() + 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rg8Unorm,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (level, texels) in (0..).zip(&levels) {
-        let target = wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() };
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(2 * (noise::SIDE >> level)),
-            rows_per_image: None,
-        };
-        gpu.queue.write_texture(target, texels, layout, size(level));
-    }
-    texture.create_view(&Default::default())
+    let of_layer = |(z, levels): (u32, &'_ Vec<Vec<u8>>)| {
+        for (level, texels) in levels.iter().enumerate() {
+            let origin = wgpu::Origin3d { z, ..wgpu::Origin3d::ZERO };
+            let mip_level = level as u32;
+            let target = wgpu::TexelCopyTextureInfo { mip_level, origin, ..texture.as_image_copy() };
+            let bytes_per_row = Some(texels.len() as u32 / (side >> level));
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+            gpu.queue.write_texture(target, texels, layout, size(level, 1));
+        }
+    };
+    (0..).zip(layers).for_each(of_layer);
+    texture
 }
 
 /// The texture for the map of lamps' light.

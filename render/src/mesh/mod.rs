@@ -32,10 +32,15 @@ pub enum Finish {
     Grainy = 1,
     /// House front; uv are window columns and storeys, [`Vertex::code`] is its style.
     Facade = 2,
+    /// Asphalt and the paint on it; [`Vertex::param`] is 0 at one edge of a lane and 255 at the other, uv are metres along a
+    /// road and across it, [`Vertex::code`] is its age or [`CODE_PAINT`].
+    Asphalt = 3,
+    /// Laid stones; uv are metres along a road and from its kerb, [`Vertex::code`] is how they are laid.
+    Paving = 4,
 }
 
 /// Number of variants of [`Finish`].
-pub const FINISHES: usize = 3;
+pub const FINISHES: usize = 5;
 
 /// [`Vertex::code`] of a lamp that shines.
 pub const CODE_LIT: u8 = 255;
@@ -51,9 +56,19 @@ pub const CODE_HEAD: u8 = 251;
 pub const CODE_STREET: u8 = 250;
 /// [`Vertex::code`] of a brake lamp that is no tail lamp (UN regulation 48: S3).
 pub const CODE_CENTRE_BRAKE: u8 = 249;
-/// [`Vertex::code`] of a surface with the joints of slabs.
-pub const CODE_SLABS: u8 = 1;
-/// [`Vertex::code`] of grass.
+/// [`Vertex::code`] of paint on asphalt.
+pub const CODE_PAINT: u8 = 64;
+/// [`Vertex::code`] of asphalt of an age from 0 to 7; with [`CODE_COVERS`] it has manholes.
+pub const CODE_OLDEST: u8 = 7;
+/// See [`CODE_OLDEST`].
+pub const CODE_COVERS: u8 = 8;
+/// [`Vertex::code`] of setts; of small stones, flags and slabs it is this and up to 3 more.
+pub const CODE_SETTS: u8 = 0;
+/// [`Vertex::code`] of laid stones with a kerb at their edge is this and that of the stones.
+pub const CODE_KERBED: u8 = 4;
+/// [`Vertex::code`] of a kerb.
+pub const CODE_KERB: u8 = 8;
+/// [`Vertex::code`] of grass; [`Vertex::param`] is how bare the soil is.
 pub const CODE_GRASS: u8 = 2;
 
 /// A vertex as the GPU reads it, 32 bytes.

@@ -5,15 +5,16 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use super::{Mesh, Vertex};
+use super::{Finish, Mesh, Vertex};
 
 /// A mesh whose surface lies within `error_m` of the given one, usually of far fewer triangles.
 /// Triangles of different finishes stay apart; vertices that agree in all but their place on the
-/// surface are joined.
+/// surface are joined, and on asphalt and laid stones those that agree in that too.
 pub fn simplified(mesh: &Mesh, error_m: f32) -> Mesh {
     let mut simpler = Mesh::default();
     for (finish, triangles) in mesh.triangles.iter().enumerate() {
-        let mut surface = Welded::new(mesh, triangles);
+        let is_laid = [Finish::Asphalt, Finish::Paving].iter().any(|laid| *laid as usize == finish);
+        let mut surface = Welded::new(mesh, triangles, is_laid);
         surface.collapse_all(error_m);
         surface.append_to(&mut simpler, finish);
     }
@@ -33,8 +34,9 @@ struct Welded {
 }
 
 impl Welded {
-    fn new(mesh: &Mesh, triangles: &[[u32; 3]]) -> Self {
-        let mut index: BTreeMap<([u32; 3], [i8; 3], u8), u32> = BTreeMap::new();
+    /// With `is_laid`, what differs in where it lies on its road stays apart.
+    fn new(mesh: &Mesh, triangles: &[[u32; 3]], is_laid: bool) -> Self {
+        let mut index = BTreeMap::new();
         let mut welded = Self {
             vertices: Vec::new(),
             triangles: Vec::new(),
@@ -45,7 +47,8 @@ impl Welded {
         for triangle in triangles {
             let corners = triangle.map(|i| {
                 let v = mesh.vertices[i as usize];
-                let key = (v.position.map(f32::to_bits), v.normal, v.code);
+                let laid = is_laid.then(|| (v.uv.map(f32::to_bits), v.colour, v.param));
+                let key = (v.position.map(f32::to_bits), v.normal, v.code, laid);
                 *index.entry(key).or_insert_with(|| {
                     welded.vertices.push(v);
                     welded.vertices.len() as u32 - 1

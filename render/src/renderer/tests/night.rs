@@ -139,3 +139,25 @@ fn windows_shine_at_night_and_not_by_day() {
     assert!(mean(&night, shines) > 3.0 * mean(&night, walls));
     assert!(mean(&day, shines) < mean(&day, walls), "by day they are dark");
 }
+
+#[test]
+fn wet_roads_mirror_lamps_and_dry_ones_do_not() {
+    let (mut renderer, scene) = bare();
+    let camera = Camera::driver(256, 128);
+    let mut draw = |wetness_pct: f32, lamps: u8| {
+        let weather = Weather { sun_altitude_deg: -20.0, wetness_pct, ..scene.weather };
+        let actors = vec![ActorScene { lamps, ..car_at(&scene, 16.0, 0.0) }];
+        renderer.draw(&SceneSnapshot { weather, actors, ..scene.clone() }, &camera).expect("drawn")
+    };
+    let mut gain = |wetness_pct: f32, tag: SemanticTag| {
+        let [without, with] = [0, lamps::BRAKE].map(|lamps| draw(wetness_pct, lamps));
+        assert!(Frame { rgb: Vec::new(), ..with.clone() } == Frame { rgb: Vec::new(), ..without.clone() });
+        let red = |frame: &Frame, i: usize| i32::from(frame.rgb[3 * i]) - i32::from(frame.rgb[3 * i + 2]);
+        let ground = (64 * 256..128 * 256).filter(|i| with.class_ids[*i] == tag as u8);
+        ground.map(|i| red(&with, i) - red(&without, i)).filter(|more| *more > 12).count()
+    };
+    // Glows reach over the ground around them.
+    let [road, grass] = [SemanticTag::Road, SemanticTag::Terrain].map(|tag| [100.0, 0.0].map(|wet| gain(wet, tag)));
+    assert!(road[0] > 3 * road[1] && road[0] > 60, "{road:?}");
+    assert!(grass[0] <= grass[1], "{grass:?}");
+}

@@ -1,0 +1,175 @@
+//! Where surfaces lie along their roads: what is laid, driven or worn follows them.
+
+use std::collections::BTreeMap;
+
+use glam::{Vec2, Vec3};
+use kernel::map::{Lane, LaneId, LaneKind, RoadNetwork};
+use kernel::ops;
+
+/// Pavements look for the road that they are beside so far away, metres.
+const BESIDE_M: f32 = 12.0;
+
+/// The roads of a map.
+pub(super) struct Roads<'a> {
+    network: &'a RoadNetwork,
+    /// Lanes that are driven on, by the names of their roads, without those in junctions, which lie over each other.
+    driven: BTreeMap<&'a str, Vec<LaneId>>,
+}
+
+/// A stretch of a road on which the same lanes lie side by side.
+pub(super) struct Stretch<'a> {
+    /// Whose surface it is.
+    pub(super) lane: &'a Lane,
+    /// The lane that distances count along.
+    along: &'a Lane,
+    /// Whether the surface's lane leads the other way.
+    turned: bool,
+    /// Driven lanes to the left of it, as that one leads.
+    to_the_left: usize,
+}
+
+/// A stretch of a pavement.
+pub(super) struct Pavement<'a> {
+    pub(super) lane: &'a Lane,
+    /// Whether its road is to the left of it, and to the right.
+    pub(super) road: Option<f32>,
+}
+
+/// What tells a lane's road: part of its name.
+pub(super) fn road_of(lane: &Lane) -> &str {
+    lane.name.split('/').next().unwrap_or_default()
+}
+
+impl<'a> Roads<'a> {
+    pub(super) fn new(network: &'a RoadNetwork) -> Self {
+        let mut driven: BTreeMap<&str, Vec<LaneId>> = BTreeMap::new();
+        for (id, lane) in (0..).zip(&network.lanes) {
+            if lane.kind == LaneKind::Driving && lane.junction.is_none() {
+                driven.entry(road_of(lane)).or_default().push(id);
+            }
+        }
+        Self { network, driven }
+    }
+
+    /// The stretch that a place of a roadway is on; nothing in junctions and beside all lanes.
+    pub(super) fn stretch(&self, place: Vec3) -> Option<Stretch<'a>> {
+        let kinds = [LaneKind::Driving, LaneKind::Shoulder, LaneKind::Parking, LaneKind::Biking, LaneKind::Other];
+        let on = kinds.into_iter().map(|kind| self.network.lanes_at(place, kind)).find(|found| !found.is_empty())?;
+        let lane = &self.network.lanes[on.first()?.lane as usize];
+        if lane.junction.is_some() {
+            return None;
+        }
+        let is_beside = |lane: &&Lane| {
+            let (s_m, ..) = lane.project(place);
+            s_m > 0.0 && s_m < lane.length_m
+        };
+        let lanes = self.driven.get(road_of(lane))?.iter().map(|&id| &self.network.lanes[id as usize]);
+        let beside: Vec<&Lane> = lanes.filter(is_beside).collect();
+        let along = *beside.first()?;
+        let heading = |lane: &Lane| lane.at(lane.project(place).0).heading_rad;
+        let is_turned = |lane: &Lane| ops::cos(heading(lane) - heading(along)) < 0.0;
+        let is_left = |other: &&&Lane| {
+            let (_, lateral_m, _) = other.project(place);
+            // A place on the right of a lane has it on the left.
+            (lateral_m < 0.0) != is_turned(other) && !core::ptr::eq(**other, lane)
+        };
+        let to_the_left = beside.iter().filter(is_left).count();
+        Some(Stretch { lane, along, turned: is_turned(lane), to_the_left })
+    }
+
+    /// The pavement that a place is on.
+    pub(super) fn pavement(&self, place: Vec3) -> Option<Pavement<'a>> {
+        let on = self.network.lanes_at(place, LaneKind::Sidewalk);
+        let lane = &self.network.lanes[on.first()?.lane as usize];
+        let road = self.network.nearest_lane(place, LaneKind::Driving, None, BESIDE_M).map(|road| {
+            let middle = self.network.lanes[road.lane as usize].at(road.s_m).position;
+            let (s_m, lateral_m, _) = lane.project(place);
+            let ahead = Vec2::from_angle(lane.at(s_m).heading_rad);
+            (ahead.perp_dot((middle - place).truncate()) + lateral_m).signum()
+        });
+        Some(Pavement { lane, road })
+    }
+}
+
+impl Stretch<'_> {
+    /// Metres along the road and to the left of the middle of one of its lanes.
+    pub(super) fn uv(&self, place: Vec3) -> Vec2 {
+        let (s_m, lateral_m, _) = self.along.project(place);
+        Vec2::new(s_m, lateral_m)
+    }
+
+    /// 0 or 1, each at one edge of a lane: neighbours share the one between them. Beside driven lanes it is that of their edge.
+    pub(super) fn phase(&self, place: Vec3) -> u8 {
+        let is_right = self.lane.kind == LaneKind::Driving && (self.lane.project(place).1 < 0.0) != self.turned;
+        ((self.to_the_left + usize::from(is_right)) % 2) as u8
+    }
+}
+
+impl Pavement<'_> {
+    /// Metres along it and from the edge beside the road.
+    pub(super) fn uv(&self, place: Vec3) -> Vec2 {
+        let (s_m, lateral_m, _) = self.lane.project(place);
+        Vec2::new(s_m, self.lane.at(s_m).half_width_m - self.road.unwrap_or(1.0) * lateral_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kernel::map::SurfaceKind;
+
+    use super::*;
+
+    /// Corners of the roadway of a map with the stretches they are on.
+    fn corners<'a>(network: &'a RoadNetwork, roads: &Roads<'a>) -> Vec<([Vec3; 3], Stretch<'a>)> {
+        let surface = network.surfaces.iter().find(|surface| surface.kind == SurfaceKind::Road).expect("roads");
+        let of = |triangle: &[u32; 3]| {
+            let corners = triangle.map(|i| surface.positions[i as usize]);
+            Some((corners, roads.stretch(corners.iter().sum::<Vec3>() / 3.0)?))
+        };
+        surface.triangles.iter().filter_map(of).collect()
+    }
+
+    #[test]
+    fn a_lane_goes_from_one_phase_to_the_other_and_shares_them_with_its_neighbours() {
+        for name in ["city", "motorway"] {
+            let network = kernel::map::bundled(name).expect("a bundled map");
+            let roads = Roads::new(&network);
+            let mut known: BTreeMap<([u32; 3], *const Lane), ([u32; 2], u8)> = BTreeMap::new();
+            let (mut driven, mut torn) = (0, 0);
+            for (corners, stretch) in corners(&network, &roads) {
+                let phases = corners.map(|at| stretch.phase(at));
+                let is_driven = stretch.lane.kind == LaneKind::Driving;
+                driven += usize::from(is_driven);
+                torn += usize::from(is_driven != (phases[0] != phases[1] || phases[1] != phases[2]));
+                for (at, phase) in corners.into_iter().zip(phases) {
+                    let here = (stretch.uv(at).to_array().map(f32::to_bits), phase);
+                    let there = *known.entry((at.to_array().map(f32::to_bits), stretch.along)).or_insert(here);
+                    assert_eq!(here.0, there.0, "{name}: {at}");
+                    torn += usize::from(here != there);
+                }
+            }
+            // Where lanes begin and end they have no width.
+            assert!(driven > 300 && 20 * torn < driven, "{name}: {torn} of {driven}");
+        }
+    }
+
+    #[test]
+    fn pavements_count_from_the_edge_beside_their_road() {
+        let network = kernel::map::bundled("city").expect("a bundled map");
+        let roads = Roads::new(&network);
+        let (mut right, mut wrong) = (0, 0);
+        for lane in network.lanes.iter().filter(|lane| lane.kind == LaneKind::Sidewalk && lane.junction.is_none()) {
+            let middle = lane.at(0.5 * lane.length_m);
+            let Some(pavement) = roads.pavement(middle.position).filter(|on| on.road.is_some()) else { continue };
+            let aside = Vec2::from_angle(middle.heading_rad).perp().extend(0.0) * (0.8 * middle.half_width_m);
+            let from_road = |at: Vec3| {
+                let road = network.nearest_lane(at, LaneKind::Driving, None, 2.0 * BESIDE_M);
+                road.map_or(f32::INFINITY, |road| road.distance_m)
+            };
+            let [a, b] = [middle.position + aside, middle.position - aside];
+            let agrees = (pavement.uv(a).y < pavement.uv(b).y) == (from_road(a) < from_road(b));
+            *if agrees { &mut right } else { &mut wrong } += 1;
+        }
+        assert!(right > 10 && wrong == 0, "{right} right, {wrong} wrong");
+    }
+}
