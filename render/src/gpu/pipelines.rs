@@ -4,11 +4,11 @@ use super::targets::{COLOUR, DEPTH, IDS};
 use super::{Gpu, shaders};
 use crate::SemanticTag;
 use crate::glows::Glow;
-use crate::mesh::{FINISHES, Vertex};
+use crate::mesh::{FINISHES, Finish, Vertex};
 
 /// Bind group layouts that the pipelines share.
 pub(super) struct Layouts {
-    /// Scene uniform, noise and its sampler, map of lamps' light.
+    /// Scene uniform, noise and its sampler, map of lamps' light, leaves.
     pub(super) scene: wgpu::BindGroupLayout,
     /// Shadow map and its sampler.
     pub(super) shadow: wgpu::BindGroupLayout,
@@ -40,15 +40,13 @@ impl Layouts {
         use wgpu::{BindingType as T, SamplerBindingType as S, TextureSampleType as K};
         let uniform =
             T::Buffer { ty: wgpu::BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
-        let texture = |sample_type| T::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let noise = texture(K::Float { filterable: true });
+        use wgpu::TextureViewDimension as V;
+        let texture = |sample_type, view_dimension| T::Texture { sample_type, view_dimension, multisampled: false };
+        let noise = texture(K::Float { filterable: true }, V::D2);
+        let leaves = texture(K::Float { filterable: true }, V::D2Array);
         Self {
-            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise]),
-            shadow: layout(gpu, &[texture(K::Depth), T::Sampler(S::Comparison)]),
+            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise, leaves]),
+            shadow: layout(gpu, &[texture(K::Depth, V::D2), T::Sampler(S::Comparison)]),
         }
     }
 }
@@ -114,9 +112,9 @@ impl Recipe<'_> {
     }
 }
 
-/// The pipeline that draws classes and instances, and no colours.
-pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> wgpu::RenderPipeline {
-    Recipe {
+/// The pipelines that draw classes and instances, and no colours, one for each [`crate::mesh::Finish`].
+pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> [wgpu::RenderPipeline; FINISHES] {
+    let base = Recipe {
         module: &module(gpu, "classes"),
         layout: &pipeline_layout(gpu, &[Some(&layouts.scene)]),
         vertex: "vertex",
@@ -128,8 +126,10 @@ pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> wgpu::RenderPipeline {
         depth_write: true,
         depth_compare: wgpu::CompareFunction::Greater,
         bias: Default::default(),
-    }
-    .make(gpu)
+    };
+    let opaque = base.make(gpu);
+    let leafy = Recipe { vertex: "vertex_leafy", fragment: Some("fragment_leafy"), ..base }.make(gpu);
+    core::array::from_fn(|finish| if finish == Finish::Leafy as usize { &leafy } else { &opaque }.clone())
 }
 
 fn module(gpu: &Gpu, name: &str) -> wgpu::ShaderModule {
@@ -172,8 +172,12 @@ impl Pipelines {
             depth_compare: wgpu::CompareFunction::Greater,
             bias: Default::default(),
         };
-        let finishes =
-            [("vertex_plain", "fragment_plain"), ("vertex", "fragment_grainy"), ("vertex", "fragment_facade")];
+        let finishes = [
+            ("vertex_plain", "fragment_plain"),
+            ("vertex", "fragment_grainy"),
+            ("vertex", "fragment_facade"),
+            ("vertex_leafy", "fragment_leafy"),
+        ];
         Self {
             world: finishes.map(|(vertex, fragment)| Recipe { vertex, fragment: Some(fragment), ..base }.make(gpu)),
             sky: Recipe {

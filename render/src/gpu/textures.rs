@@ -1,36 +1,47 @@
 //! Textures that are filled once.
 
 use super::Gpu;
-use crate::{light_map, noise};
+use crate::{leaves, light_map, noise};
 
 /// The noise texture with its mip levels.
 pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
-    let levels = noise::levels();
-    let size = |level: u32| wgpu::Extent3d {
-        width: noise::SIDE >> level,
-        height: noise::SIDE >> level,
-        depth_or_array_layers: 1,
+    two_bytes(gpu, "noise", noise::SIDE, &[noise::levels()]).create_view(&Default::default())
+}
+
+/// The textures of leaves, a layer each, with their mip levels.
+pub(super) fn leaves_view(gpu: &Gpu) -> wgpu::TextureView {
+    let dimension = Some(wgpu::TextureViewDimension::D2Array);
+    let view = wgpu::TextureViewDescriptor { dimension, ..Default::default() };
+    two_bytes(gpu, "leaves", leaves::SIDE, &leaves::layers()).create_view(&view)
+}
+
+/// A square texture of two bytes a texel, of layers with their mip levels.
+fn two_bytes(gpu: &Gpu, label: &str, side: u32, layers: &[Vec<Vec<u8>>]) -> wgpu::Texture {
+    let size = |level: u32, depth_or_array_layers: u32| wgpu::Extent3d {
+        width: side >> level,
+        height: side >> level,
+        depth_or_array_layers,
     };
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("noise"),
-        size: size(0),
-        mip_level_count: levels.len() as u32,
+        label: Some(label),
+        size: size(0, layers.len() as u32),
+        mip_level_count: layers.iter().map(Vec::len).max().unwrap_or(1) as u32,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: wgpu::TextureFormat::Rg8Unorm,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (level, texels) in (0..).zip(&levels) {
-        let target = wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() };
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(2 * (noise::SIDE >> level)),
-            rows_per_image: None,
-        };
-        gpu.queue.write_texture(target, texels, layout, size(level));
+    for (layer, levels) in (0..).zip(layers) {
+        for (level, texels) in (0..).zip(levels) {
+            let origin = wgpu::Origin3d { x: 0, y: 0, z: layer };
+            let target = wgpu::TexelCopyTextureInfo { mip_level: level, origin, ..texture.as_image_copy() };
+            let bytes_per_row = Some(2 * (side >> level));
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+            gpu.queue.write_texture(target, texels, layout, size(level, 1));
+        }
     }
-    texture.create_view(&Default::default())
+    texture
 }
 
 /// The texture for the map of lamps' light.

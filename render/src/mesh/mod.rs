@@ -4,6 +4,7 @@
 //! by [`model`], so that another renderer can pose them on its own.
 
 pub mod actor;
+pub mod foliage;
 pub mod gait;
 pub mod model;
 pub mod motion;
@@ -32,10 +33,13 @@ pub enum Finish {
     Grainy = 1,
     /// House front; uv are window columns and storeys, [`Vertex::code`] is its style.
     Facade = 2,
+    /// Leaves with air between them; [`Vertex::code`] is their [`foliage::Leaf`], [`Vertex::param`] how much light they
+    /// let through, uv are sides of its picture.
+    Leafy = 3,
 }
 
 /// Number of variants of [`Finish`].
-pub const FINISHES: usize = 3;
+pub const FINISHES: usize = 4;
 
 /// [`Vertex::code`] of a lamp that shines.
 pub const CODE_LIT: u8 = 255;

@@ -6,7 +6,7 @@ use kernel::map::{FurnitureKind, Prop, PropKind};
 use super::Mesh;
 use super::actor::parked_model;
 use super::model::Detail;
-use super::street::{barrier, building, posts, signal, street_furniture, structure, tree};
+use super::street::{barrier, building, hedge, posts, signal, street_furniture, structure, tree};
 use super::variety::Variety;
 use crate::SemanticTag;
 
@@ -19,7 +19,7 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
     match prop.kind {
         PropKind::Building => building::building(variant, size, detail),
         PropKind::Tree => tree::tree(variant, size.x, size.z, detail),
-        PropKind::Hedge => tree::hedge(variant, size),
+        PropKind::Hedge => hedge::hedge(variant, size, detail),
         PropKind::Lamp => posts::lamp(size.z, detail),
         PropKind::Sign => posts::sign(variant, size.z, detail),
         PropKind::SignalPole => signal::pole(size.z, detail),

@@ -2,6 +2,7 @@
 
 pub mod barrier;
 pub mod building;
+pub mod hedge;
 pub mod loose;
 pub mod posts;
 pub mod signal;
