@@ -57,7 +57,7 @@ impl Mesh {
         let count = (1.7 * area / (side_m * side_m)).round().clamp(6.0, 70.0) as u32;
         for k in 0..count {
             let out = on_sphere(k, count, variety);
-            let centre = lump.centre + out * r;
+            let centre = lump.centre + 0.9 * out * r;
             let (u, v) = standing(out, variety);
             let light = variety.between(0.86, 1.12) * (0.86 + 0.2 * out.z);
             if !others.iter().any(|other| other.holds(centre, 0.72)) {

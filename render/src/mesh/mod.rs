@@ -55,6 +55,8 @@ pub const CODE_HEAD: u8 = 251;
 pub const CODE_STREET: u8 = 250;
 /// [`Vertex::code`] of a brake lamp that is no tail lamp (UN regulation 48: S3).
 pub const CODE_CENTRE_BRAKE: u8 = 249;
+/// [`Vertex::code`] of the face of a sign, which sends the light of headlights back.
+pub const CODE_RETRO: u8 = 248;
 /// [`Vertex::code`] of a surface with the joints of slabs.
 pub const CODE_SLABS: u8 = 1;
 /// [`Vertex::code`] of grass.

@@ -6,7 +6,7 @@ use kernel::map::{FurnitureKind, Prop, PropKind};
 use super::Mesh;
 use super::actor::parked_model;
 use super::model::Detail;
-use super::street::{barrier, building, hedge, posts, signal, street_furniture, structure, tree};
+use super::street::{barrier, building, hedge, lamp, sign, signal, street_furniture, structure, tree};
 use super::variety::Variety;
 use crate::SemanticTag;
 
@@ -20,8 +20,8 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
         PropKind::Building => building::building(variant, size, detail),
         PropKind::Tree => tree::tree(variant, size.x, size.z, detail),
         PropKind::Hedge => hedge::hedge(variant, size, detail),
-        PropKind::Lamp => posts::lamp(size.z, detail),
-        PropKind::Sign => posts::sign(variant, size.z, detail),
+        PropKind::Lamp => lamp::lamp(size.z, detail),
+        PropKind::Sign => sign::sign(variant, size.z, detail),
         PropKind::SignalPole => signal::pole(size.z, detail),
         PropKind::ParkedCar => parked_model(prop.parked_kind(), variant, detail).at_rest(),
         PropKind::Fence => barrier::fence(variant, size, detail),

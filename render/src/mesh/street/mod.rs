@@ -2,9 +2,11 @@
 
 pub mod barrier;
 pub mod building;
+mod glyphs;
 pub mod hedge;
+pub mod lamp;
 pub mod loose;
-pub mod posts;
+pub mod sign;
 pub mod signal;
 pub mod street_furniture;
 pub mod structure;

@@ -101,7 +101,7 @@ impl Plant {
                 mesh.lump(leaves.shaded(light), &lump, &mut dents);
                 continue;
             }
-            let (share, dark) = if species == Species::Birch { (0.4, 0.8) } else { (0.74, 0.64) };
+            let (share, dark) = if species == Species::Birch { (0.55, 0.8) } else { (0.74, 0.64) };
             let within = Lump { radii: share * lump.radii, rough: 0.1, ..lump };
             mesh.lump(leaves.shaded(dark * light), &within, &mut dents);
             let others = [&lumps[..i], &lumps[i + 1..]].concat();
@@ -139,7 +139,7 @@ impl Plant {
             (Detail::Coarse, false) | (Detail::Rough, true) => [4, 6],
             (Detail::Rough, false) => [3, 5],
         };
-        Lump { centre, radii, rings, sides, rough: if is_core { 0.1 } else { 0.14 } }
+        Lump { centre, radii, rings, sides, rough: if is_core { 0.14 } else { 0.18 } }
     }
 
     /// One large and five smaller lumps of leaves, each with its brightness.
@@ -177,21 +177,22 @@ impl Plant {
         lumps.collect()
     }
 
-    /// Lumps around the upper trunk with air between them.
+    /// A slender lump with small ones up and around it.
     fn loose(&self, variety: &mut Variety) -> Vec<(Lump, f32)> {
-        let (radius, foot) = (0.5 * self.crown_m, 0.3 * self.height_m);
+        let (radius, foot) = (0.5 * self.crown_m, 0.26 * self.height_m);
         let step = (self.height_m - foot) / 6.0;
+        let core = Vec3::new(0.56 * radius, 0.56 * radius, 0.5 * (self.height_m - foot));
+        let mut lumps = vec![(self.lump(Vec3::Z * 0.5 * (foot + self.height_m), core, true), 1.0)];
         let turn = variety.between(0.0, TAU);
-        let lumps = (0..6).map(|i| {
-            let angle = turn + 2.4 * i as f32;
-            let taper = [0.8, 1.0, 0.95, 0.8, 0.6, 0.3][i as usize];
-            let reach = radius * taper * 0.42;
-            let size = radius * taper * variety.between(0.46, 0.56) + 0.15;
-            let centre = Vec3::new(reach * ops::cos(angle), reach * ops::sin(angle), foot + step * (i as f32 + 0.45));
-            let high = (0.95 * step).min(self.height_m - centre.z);
-            (self.lump(centre, Vec3::new(size, size, high), false), variety.between(0.92, 1.1))
-        });
-        lumps.collect()
+        for (i, taper) in (0u8..).zip([0.8, 1.0, 0.95, 0.8, 0.55]) {
+            let angle = turn + 2.4 * f32::from(i);
+            let (reach, size) = (0.5 * radius * taper, radius * taper * variety.between(0.4, 0.5));
+            let height = foot + step * (f32::from(i) + 0.6);
+            let centre = Vec3::new(reach * ops::cos(angle), reach * ops::sin(angle), height);
+            let lump = self.lump(centre, Vec3::new(size, size, 0.85 * step), false);
+            lumps.push((lump, variety.between(0.92, 1.1)));
+        }
+        lumps
     }
 
     /// A trunk under a stack of cones, which near ones have twigs around.
@@ -281,7 +282,7 @@ mod tests {
             assert!(coarse[0] < 2.9 && coarse[1] < 10.2, "{variant}: {coarse:?}");
             for (near, far) in [(fine, coarse), (coarse, rough)] {
                 assert!(
-                    (near[0] - far[0]).abs() < 0.9 && (near[1] - far[1]).abs() < 0.9,
+                    (near[0] - far[0]).abs() < 1.0 && (near[1] - far[1]).abs() < 0.9,
                     "{variant}: {near:?}, {far:?}"
                 );
             }
