@@ -9,13 +9,13 @@ use crate::mesh::foliage::Leaf;
 use crate::mesh::variety::Variety;
 
 /// Side of a layer in texels.
-pub(crate) const SIDE: u32 = 128;
+pub const SIDE: u32 = 128;
 
 /// What is more than this is leaf, in `leaf.wgsl` too.
-const THRESHOLD: u8 = 128;
+pub const THRESHOLD: u8 = 128;
 
 /// One layer for each [`Leaf`]; of each its mip levels, two bytes a texel, from the finest to a single one.
-pub(crate) fn layers() -> Vec<Vec<Vec<u8>>> {
+pub fn layers() -> Vec<Vec<Vec<u8>>> {
     Leaf::ALL.into_iter().map(levels).collect()
 }
 

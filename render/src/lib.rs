@@ -14,7 +14,7 @@ mod gpu;
 mod horizon;
 mod identity;
 mod instance_ids;
-mod leaves;
+pub mod leaves;
 mod light;
 mod light_map;
 pub mod mesh;

@@ -2,13 +2,12 @@
 
 pub mod barrier;
 pub mod building;
+pub mod furniture;
 mod glyphs;
 pub mod hedge;
 pub mod lamp;
-pub mod loose;
 pub mod sign;
 pub mod signal;
-pub mod street_furniture;
 pub mod structure;
 pub mod surface;
 pub mod tree;

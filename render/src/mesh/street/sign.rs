@@ -152,10 +152,10 @@ mod tests {
         let signs = variants.map(|variant| sign(variant, 2.6, Detail::Fine));
         for (k, mesh) in signs.iter().enumerate() {
             assert!(signs[..k].iter().all(|other| other != mesh), "{}", variants[k]);
-            let is_board = |v: &&crate::mesh::Vertex| v.tag == SemanticTag::TrafficSign as u8;
-            for v in mesh.vertices.iter().filter(is_board) {
-                assert_eq!(v.code == CODE_RETRO, v.normal[0] == 127, "{}", variants[k]);
-            }
+            let sheets: Vec<i8> = mesh.vertices.iter().filter(|v| v.code == CODE_RETRO).map(|v| v.normal[0]).collect();
+            assert!(!sheets.is_empty() && sheets.iter().all(|x| *x == 127), "{}", variants[k]);
+            let is_back = |v: &&crate::mesh::Vertex| v.tag == SemanticTag::TrafficSign as u8 && v.normal[0] == -127;
+            assert!(mesh.vertices.iter().filter(is_back).any(|v| v.colour == BACK), "{}", variants[k]);
         }
     }
 

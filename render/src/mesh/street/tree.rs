@@ -161,20 +161,21 @@ impl Plant {
         lumps
     }
 
-    /// Lumps one above the other, slimmer towards the top.
+    /// A column from near the ground, with small lumps up and around it.
     fn column(&self, variety: &mut Variety) -> Vec<(Lump, f32)> {
-        let foot = 0.14 * self.height_m;
-        let step = (self.height_m - foot) / 4.0;
+        let (radius, foot) = (0.36 * self.crown_m, 0.12 * self.height_m);
+        let high = self.height_m - foot;
+        let core = Vec3::new(0.86 * radius, 0.86 * radius, 0.5 * high);
+        let mut lumps = vec![(self.lump(Vec3::Z * (foot + 0.5 * high), core, true), 1.0)];
         let turn = variety.between(0.0, TAU);
-        let lumps = (0..4).map(|i| {
-            let (rise, angle) = (foot + step * (i as f32 + 0.55), turn + 2.2 * i as f32);
-            let wide = 0.5 * self.crown_m * [0.62, 0.74, 0.64, 0.42][i as usize];
-            let aside = 0.08 * self.crown_m;
-            let centre = Vec3::new(aside * ops::cos(angle), aside * ops::sin(angle), rise);
-            let high = if i == 3 { 0.45 * step } else { 0.8 * step };
-            (self.lump(centre, Vec3::new(wide, wide, high), i == 1), variety.between(0.9, 1.08))
-        });
-        lumps.collect()
+        for (i, (up, taper)) in (0u8..).zip([(0.2, 0.8), (0.36, 0.95), (0.52, 0.9), (0.66, 0.75), (0.8, 0.5)]) {
+            let angle = turn + 2.4 * f32::from(i);
+            let (reach, size) = (0.5 * radius * taper, 0.62 * radius * taper);
+            let centre = Vec3::new(reach * ops::cos(angle), reach * ops::sin(angle), foot + up * high);
+            let lump = self.lump(centre, Vec3::new(size, size, 0.15 * high), false);
+            lumps.push((lump, variety.between(0.92, 1.06)));
+        }
+        lumps
     }
 
     /// A slender lump with small ones up and around it.

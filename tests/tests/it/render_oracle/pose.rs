@@ -1,16 +1,16 @@
 //! From a snapshot to triangles in the world: only the meshes are the renderer's, every transform is
 //! computed here from their documentation.
 
-use glam::{DAffine3, DQuat, DVec3, Vec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3, Vec3};
 use kernel::map::{Prop, RoadNetwork};
 use kernel::scene::{SceneSnapshot, Weather};
-use render::mesh::Mesh;
 use render::mesh::actor::{ego_model, has_umbrella_up, sheltered_model};
 use render::mesh::gait::{Cycle, Gait, RUNS_MPS};
 use render::mesh::model::{Detail, Joint, Model};
 use render::mesh::motion::Motion;
 use render::mesh::prop;
 use render::mesh::street::{signal, surface};
+use render::mesh::{Finish, Mesh};
 
 use super::bvh::Triangle;
 
@@ -64,9 +64,16 @@ impl Collector {
             at + self.sway(at, v.sway)
         };
         let class = |i: u32| class_of(mesh.vertices[i as usize].tag);
-        let triangles: Vec<Triangle> =
-            mesh.all_triangles().map(|t| Triangle { corners: t.map(corner), class: class(t[0]) }).collect();
-        self.triangles.extend(triangles);
+        for (finish, triangles) in mesh.triangles.iter().enumerate() {
+            let leaf = |t: &[u32; 3]| {
+                let v = t.map(|i| mesh.vertices[i as usize]);
+                let uv = v.map(|v| DVec2::new(f64::from(v.uv[0]), f64::from(v.uv[1])));
+                (finish == Finish::Leafy as usize).then_some((v[0].code, uv))
+            };
+            let made = triangles.iter().map(|t| Triangle { corners: t.map(corner), class: class(t[0]), leaf: leaf(t) });
+            let made: Vec<Triangle> = made.collect();
+            self.triangles.extend(made);
+        }
     }
 
     fn add_model(&mut self, model: &Model, to_world: DAffine3, motion: &Motion) {
