@@ -117,7 +117,7 @@ fn draw(texels: &mut [u8], blade: &Blade, repeats: bool) {
     for y in texel(low.y, -margin)..=texel(high.y, margin) {
         for x in texel(low.x, -margin)..=texel(high.x, margin) {
             let inside = |at: i32| (1..side - 1).contains(&at);
-            if !repeats && !(inside(x) && inside(y)) {
+            if !(repeats || inside(x) && inside(y)) {
                 continue;
             }
             let rel = (Vec2::new(x as f32, y as f32) + 0.5) / SIDE as f32 - blade.foot;

@@ -1,5 +1,7 @@
 //! Leaves seen near: pictures of clusters on squares that stand all ways on the surface of a crown.
 
+use core::f32::consts::TAU;
+
 use glam::{Vec2, Vec3};
 use kernel::ops;
 
@@ -87,7 +89,7 @@ fn standing(out: Vec3, variety: &mut Variety) -> (Vec3, Vec3) {
     let any = Vec3::new(variety.between(-1.0, 1.0), variety.between(-1.0, 1.0), variety.between(-1.0, 1.0));
     let facing = (out + 0.9 * any).normalize_or(Vec3::X);
     let u = facing.cross(if facing.z.abs() > 0.9 { Vec3::X } else { Vec3::Z }).normalize_or(Vec3::Y);
-    let (turn, v) = (variety.between(0.0, 6.28), facing.cross(u));
+    let (turn, v) = (variety.between(0.0, TAU), facing.cross(u));
     let (sin, cos) = (ops::sin(turn), ops::cos(turn));
     (cos * u + sin * v, cos * v - sin * u)
 }

@@ -25,6 +25,8 @@ const COVERS: f64 = 0.005;
 const DEPTHS: f64 = 0.98;
 /// Depths agree when they differ by less than this share.
 const DEPTH_SHARE: f64 = 0.01;
+/// Or, of plants, than this, metres: which leaves cover a sample depends on how coarse their picture is.
+const LEAVES_M: f64 = 1.2;
 
 /// Class and distance of every pixel.
 fn cast(network: &RoadNetwork, scene: &SceneSnapshot) -> Vec<(u8, f64)> {
@@ -42,6 +44,12 @@ fn is_inside(truth: &[(u8, f64)], at: usize) -> bool {
     range(y, HEIGHT).all(|v| range(x, WIDTH).all(|u| class(u, v) == truth[at].0))
 }
 
+/// By how much depths may differ that agree, metres.
+fn depth_room(class: u8, distance: f64) -> f64 {
+    let leaves = if class == SemanticTag::Vegetation as u8 { LEAVES_M } else { 0.0 };
+    leaves.max(DEPTH_SHARE * distance)
+}
+
 /// Pixels away from borders, by class of the ray-caster: (all, of the same class, of the same depth).
 struct Tally {
     classes: [[u32; 3]; 23],
@@ -57,7 +65,7 @@ impl Tally {
             let (class, distance) = truth[at];
             let same = frame.class_ids[at] == class;
             let depth = f64::from(frame.depth_m[at]);
-            let close = depth == distance || (depth - distance).abs() < DEPTH_SHARE * distance;
+            let close = depth == distance || (depth - distance).abs() < depth_room(class, distance);
             let counts = &mut self.classes[class as usize];
             counts[0] += 1;
             counts[1] += u32::from(same);

@@ -64,16 +64,16 @@ impl Collector {
             at + self.sway(at, v.sway)
         };
         let class = |i: u32| class_of(mesh.vertices[i as usize].tag);
-        for (finish, triangles) in mesh.triangles.iter().enumerate() {
-            let leaf = |t: &[u32; 3]| {
-                let v = t.map(|i| mesh.vertices[i as usize]);
-                let uv = v.map(|v| DVec2::new(f64::from(v.uv[0]), f64::from(v.uv[1])));
-                (finish == Finish::Leafy as usize).then_some((v[0].code, uv))
-            };
-            let made = triangles.iter().map(|t| Triangle { corners: t.map(corner), class: class(t[0]), leaf: leaf(t) });
-            let made: Vec<Triangle> = made.collect();
-            self.triangles.extend(made);
-        }
+        let leaf = |finish: usize, t: &[u32; 3]| {
+            let v = t.map(|i| mesh.vertices[i as usize]);
+            let uv = v.map(|v| DVec2::new(f64::from(v.uv[0]), f64::from(v.uv[1])));
+            (finish == Finish::Leafy as usize).then_some((v[0].code, uv))
+        };
+        let all = mesh.triangles.iter().enumerate().flat_map(|(finish, list)| list.iter().map(move |t| (finish, t)));
+        let triangles: Vec<Triangle> = all
+            .map(|(finish, t)| Triangle { corners: t.map(corner), class: class(t[0]), leaf: leaf(finish, t) })
+            .collect();
+        self.triangles.extend(triangles);
     }
 
     fn add_model(&mut self, model: &Model, to_world: DAffine3, motion: &Motion) {

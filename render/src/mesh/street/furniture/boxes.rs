@@ -1,6 +1,9 @@
 //! Cabinets, post boxes, containers and troughs.
 
+use core::f32::consts::TAU;
+
 use glam::{Vec2, Vec3};
+use kernel::ops;
 
 use super::{IRON, Piece, RECTANGLE, STEEL, WHITE};
 use crate::mesh::foliage::Leaf;
@@ -175,8 +178,8 @@ pub(super) fn planter(piece: &Piece, variant: u32) -> Mesh {
 fn sprigs(mesh: &mut Mesh, [green, bloom]: [Paint; 2], lump: &Lump, variety: &mut Variety) {
     let side_m = 0.7 * lump.radii.min_element();
     for k in 0..7 {
-        let (turn, lift) = (variety.between(0.0, 6.28), variety.between(0.1, 0.75));
-        let out = Vec2::new(kernel::ops::cos(turn), kernel::ops::sin(turn)) * kernel::ops::sqrt(1.0 - lift * lift);
+        let (turn, lift) = (variety.between(0.0, TAU), variety.between(0.1, 0.75));
+        let out = Vec2::new(ops::cos(turn), ops::sin(turn)) * ops::sqrt(1.0 - lift * lift);
         let on = lump.centre + 0.8 * lump.radii * out.extend(lift);
         let [u, v] = [Vec3::new(-out.y, out.x, 0.0).normalize_or(Vec3::X), Vec3::Z];
         let paint = Leaf::Small.paint(if k % 3 == 2 { bloom } else { green.shaded(1.1) }, 150);
