@@ -14,7 +14,7 @@ pub(super) const LEAVES: [[u8; 3]; 6] =
     [[92, 122, 52], [80, 112, 50], [108, 132, 56], [72, 102, 56], [122, 134, 58], [96, 116, 64]];
 
 /// Side of the picture of a hedge's face, metres.
-const FACE_M: f32 = 0.9;
+const FACE_M: f32 = 0.62;
 /// Leaves stand so far out of the wood, metres.
 const OUT_M: f32 = 0.07;
 /// From one sprig on an edge to the next, metres.

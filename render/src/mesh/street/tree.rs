@@ -101,7 +101,7 @@ impl Plant {
                 mesh.lump(leaves.shaded(light), &lump, &mut dents);
                 continue;
             }
-            let (share, dark) = if species == Species::Birch { (0.55, 0.8) } else { (0.74, 0.64) };
+            let (share, dark) = if species == Species::Birch { (0.55, 0.8) } else { (0.74, 0.72) };
             let within = Lump { radii: share * lump.radii, rough: 0.1, ..lump };
             mesh.lump(leaves.shaded(dark * light), &within, &mut dents);
             let others = [&lumps[..i], &lumps[i + 1..]].concat();
