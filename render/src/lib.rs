@@ -15,6 +15,7 @@ mod ground_textures;
 mod horizon;
 mod identity;
 mod instance_ids;
+pub mod leaves;
 mod light;
 mod light_map;
 pub mod mesh;

@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 use kernel::map::{Prop, PropKind, RoadNetwork};
 
-use crate::mesh::street::posts;
+use crate::mesh::street::lamp;
 
 /// A street lamp that shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub(crate) struct StreetLamp {
 impl StreetLamp {
     fn of(object: &Prop) -> Option<Self> {
         let turn = Quat::from_rotation_z(object.heading_rad);
-        let position = object.position + turn * posts::lamp_glass(object.size.z);
+        let position = object.position + turn * lamp::lamp_glass(object.size.z);
         (object.kind == PropKind::Lamp).then_some(Self { position, foot_m: object.position.z })
     }
 }

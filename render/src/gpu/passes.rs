@@ -12,8 +12,9 @@ use crate::mirrors::Streak;
 use crate::quality::Shadows;
 use crate::spray::Puff;
 
-/// The order in which what stands still is drawn: nearest and most covering first, as hidden fragments are cheap.
-const FIXED: [Finish; FINISHES] = [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy];
+/// Nearest and most covering first: hidden fragments are cheap. Last what writes its depth late, as it discards.
+const DRAW_ORDER: [Finish; FINISHES] =
+    [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy, Finish::Leafy];
 
 /// What a frame draws.
 pub(crate) struct Draws<'a> {
@@ -51,8 +52,8 @@ pub(crate) struct Passes {
     layouts: Layouts,
     /// One for each kind of shadows that was needed.
     styles: Vec<Style>,
-    /// The one for pictures without colours, made when it is needed first.
-    classes: Option<wgpu::RenderPipeline>,
+    /// Those for pictures without colours, made when they are needed first.
+    classes: Option<[wgpu::RenderPipeline; FINISHES]>,
     /// For pixels' middles and for their corners.
     scenes: [SceneBinding; 2],
     shadow_sampler: wgpu::Sampler,
@@ -108,10 +109,11 @@ impl Passes {
         let ground = textures::ground_view(gpu);
         let light_map = textures::light_map(gpu);
         let light_map_view = light_map.create_view(&Default::default());
+        let leaves = textures::leaves_view(gpu);
         let scenes = core::array::from_fn(|_| {
             let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
-            let [noise, light_map, ground] = [&noise, &light_map_view, &ground].map(R::TextureView);
-            let scene = [uniform.as_entire_binding(), noise, R::Sampler(&noise_sampler), light_map, ground];
+            let [noise, light_map, ground, leaves] = [&noise, &light_map_view, &ground, &leaves].map(R::TextureView);
+            let scene = [uniform.as_entire_binding(), noise, R::Sampler(&noise_sampler), light_map, ground, leaves];
             SceneBinding { group: bind(gpu, &layouts.scene, &scene), uniform }
         });
         Self {
@@ -222,7 +224,7 @@ impl Passes {
 
     /// Classes, instances and depth: the sky is where nothing is.
     fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, targets: &Targets) {
-        let pipeline = self.classes.get_or_insert_with(|| pipelines::classes(gpu, &self.layouts)).clone();
+        let pipelines = self.classes.get_or_insert_with(|| pipelines::classes(gpu, &self.layouts)).clone();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let (ids, depth) = (view(&targets.middles.ids), view(&targets.middles.depth));
         let sky = wgpu::Color { r: f64::from(SemanticTag::Sky as u8), ..wgpu::Color::TRANSPARENT };
@@ -233,9 +235,10 @@ impl Passes {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
-        pass.set_pipeline(&pipeline);
+        pass.set_pipeline(&pipelines[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
-        for finish in FIXED {
+        for finish in DRAW_ORDER {
+            pass.set_pipeline(&pipelines[finish as usize]);
             self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
         }
     }
@@ -261,7 +264,7 @@ impl Passes {
         pass.set_bind_group(1, &style.all_group, &[]);
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
-        for finish in FIXED {
+        for finish in DRAW_ORDER {
             // What is drawn after them mirrors nothing: it is not paved.
             if finish == Finish::Grainy {
                 draw_quads(&mut pass, &pipelines.mirror, &self.streaks, draws.streaks.len());

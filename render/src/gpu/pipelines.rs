@@ -4,13 +4,13 @@ use super::targets::{COLOUR, DEPTH, IDS};
 use super::{Gpu, shaders};
 use crate::SemanticTag;
 use crate::glows::Glow;
-use crate::mesh::{FINISHES, Vertex};
+use crate::mesh::{FINISHES, Finish, Vertex};
 use crate::mirrors::Streak;
 use crate::spray::Puff;
 
 /// Bind group layouts that the pipelines share.
 pub(super) struct Layouts {
-    /// Scene uniform, noise and its sampler, map of lamps' light, textures of ground.
+    /// Scene uniform, noise and its sampler, map of lamps' light, textures of ground, leaves.
     pub(super) scene: wgpu::BindGroupLayout,
     /// Shadow map and its sampler.
     pub(super) shadow: wgpu::BindGroupLayout,
@@ -47,9 +47,9 @@ impl Layouts {
         use wgpu::TextureViewDimension::{D2, D2Array};
         let texture = |sample_type, view_dimension| T::Texture { sample_type, view_dimension, multisampled: false };
         let colours = K::Float { filterable: true };
-        let [noise, ground] = [D2, D2Array].map(|dimension| texture(colours, dimension));
+        let [noise, layers] = [D2, D2Array].map(|dimension| texture(colours, dimension));
         Self {
-            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise, ground]),
+            scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise, layers, layers]),
             shadow: layout(gpu, &[texture(K::Depth, D2), T::Sampler(S::Comparison)]),
         }
     }
@@ -116,9 +116,9 @@ impl Recipe<'_> {
     }
 }
 
-/// The pipeline that draws classes and instances, and no colours.
-pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> wgpu::RenderPipeline {
-    Recipe {
+/// The pipelines that draw classes and instances, and no colours, one for each [`crate::mesh::Finish`].
+pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> [wgpu::RenderPipeline; FINISHES] {
+    let base = Recipe {
         module: &module(gpu, "classes"),
         layout: &pipeline_layout(gpu, &[Some(&layouts.scene)]),
         vertex: "vertex",
@@ -130,8 +130,10 @@ pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> wgpu::RenderPipeline {
         depth_write: true,
         depth_compare: wgpu::CompareFunction::Greater,
         bias: Default::default(),
-    }
-    .make(gpu)
+    };
+    let opaque = base.make(gpu);
+    let leafy = Recipe { vertex: "vertex_leafy", fragment: Some("fragment_leafy"), ..base }.make(gpu);
+    core::array::from_fn(|finish| if finish == Finish::Leafy as usize { &leafy } else { &opaque }.clone())
 }
 
 fn module(gpu: &Gpu, name: &str) -> wgpu::ShaderModule {
@@ -191,6 +193,7 @@ impl Pipelines {
             ("vertex_facade", "fragment_facade"),
             ("vertex", "fragment_asphalt"),
             ("vertex", "fragment_paving"),
+            ("vertex_leafy", "fragment_leafy"),
         ];
         Self {
             world: finishes.map(|(vertex, fragment)| Recipe { vertex, fragment: Some(fragment), ..base }.make(gpu)),

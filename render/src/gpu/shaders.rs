@@ -5,19 +5,24 @@ const SCENE: &str = include_str!("../shaders/scene.wgsl");
 
 /// The world's surfaces, a fragment shader for each finish.
 const WORLD: &str = concat!(
+    include_str!("../shaders/leaf.wgsl"),
     include_str!("../shaders/surface.wgsl"),
     include_str!("../shaders/ground.wgsl"),
     include_str!("../shaders/asphalt.wgsl"),
     include_str!("../shaders/paving.wgsl"),
     include_str!("../shaders/wet.wgsl"),
     include_str!("../shaders/masonry.wgsl"),
-    include_str!("../shaders/facade.wgsl")
+    include_str!("../shaders/facade.wgsl"),
+    include_str!("../shaders/foliage.wgsl")
 );
+
+/// Classes and instances alone.
+const CLASSES: &str = concat!(include_str!("../shaders/leaf.wgsl"), include_str!("../shaders/classes.wgsl"));
 
 /// The shaders with their names, without the common start.
 const SOURCES: [(&str, &str); 8] = [
     ("world", WORLD),
-    ("classes", include_str!("../shaders/classes.wgsl")),
+    ("classes", CLASSES),
     ("sky", include_str!("../shaders/sky.wgsl")),
     ("shadow", include_str!("../shaders/shadow.wgsl")),
     ("rain", include_str!("../shaders/rain.wgsl")),

@@ -1,7 +1,7 @@
 //! Textures that are filled once.
 
 use super::Gpu;
-use crate::{ground_textures, light_map, noise, tile};
+use crate::{ground_textures, leaves, light_map, noise, tile};
 
 /// The noise texture with its mip levels.
 pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
@@ -12,7 +12,15 @@ pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
 /// The textures of ground, a layer each.
 pub(super) fn ground_view(gpu: &Gpu) -> wgpu::TextureView {
     let side = tile::SIDE as u32;
-    let texture = tiles(gpu, "ground", wgpu::TextureFormat::Rgba8Unorm, side, &ground_textures::layers());
+    all_layers(&tiles(gpu, "ground", wgpu::TextureFormat::Rgba8Unorm, side, &ground_textures::layers()))
+}
+
+/// The textures of leaves, a layer each.
+pub(super) fn leaves_view(gpu: &Gpu) -> wgpu::TextureView {
+    all_layers(&tiles(gpu, "leaves", wgpu::TextureFormat::Rg8Unorm, leaves::SIDE, &leaves::layers()))
+}
+
+fn all_layers(texture: &wgpu::Texture) -> wgpu::TextureView {
     let dimension = Some(wgpu::TextureViewDimension::D2Array);
     texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() })
 }
@@ -27,7 +35,7 @@ fn tiles(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, side: u32, layers:
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: size(0, layers.len() as u32),
-        mip_level_count: side.ilog2() + 1,
+        mip_level_count: layers.iter().map(Vec::len).max().unwrap_or(1) as u32,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,

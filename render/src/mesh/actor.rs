@@ -2,12 +2,14 @@
 
 use std::sync::OnceLock;
 
+use kernel::map::FurnitureKind;
 use kernel::scene::ActorKind;
 
 use super::model::{Detail, Model};
 use super::people::person;
-use super::street::loose;
+use super::street::furniture;
 use super::vehicles::{bus, car, emergency, lorry, motorcycle, tram, two_wheeler, van, wheeled};
+use crate::SemanticTag;
 
 /// The model of an actor in dry weather; vehicles have people in them at their finest.
 pub fn actor_model(kind: ActorKind, variant: u32, detail: Detail) -> Model {
@@ -38,7 +40,10 @@ pub fn sheltered_model(kind: ActorKind, variant: u32, detail: Detail, under_umbr
         ActorKind::Wheelchair => wheeled::wheelchair(variant, detail),
         ActorKind::Tram => Model::rigid(tram::tram(variant, detail)),
         ActorKind::Door => Model::rigid(car::door(variant)),
-        ActorKind::Obstacle => Model::rigid(loose::movable(variant, kind.size_m(), detail)),
+        ActorKind::Obstacle => {
+            let (what, tag) = (FurnitureKind::Other, SemanticTag::Dynamic);
+            Model::rigid(furniture::mesh(what, tag, variant, kind.size_m(), detail))
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! by [`model`], so that another renderer can pose them on its own.
 
 pub mod actor;
+pub mod foliage;
 pub mod gait;
 pub mod model;
 pub mod motion;
@@ -37,10 +38,13 @@ pub enum Finish {
     Asphalt = 3,
     /// Laid stones; uv are metres along a road and from its kerb, [`Vertex::code`] is how they are laid.
     Paving = 4,
+    /// Leaves with air between them; [`Vertex::code`] is their [`foliage::Leaf`], [`Vertex::param`] how much light they
+    /// let through, uv are sides of its picture.
+    Leafy = 5,
 }
 
 /// Number of variants of [`Finish`].
-pub const FINISHES: usize = 5;
+pub const FINISHES: usize = 6;
 
 /// [`Vertex::code`] of a lamp that shines.
 pub const CODE_LIT: u8 = 255;
@@ -56,6 +60,8 @@ pub const CODE_HEAD: u8 = 251;
 pub const CODE_STREET: u8 = 250;
 /// [`Vertex::code`] of a brake lamp that is no tail lamp (UN regulation 48: S3).
 pub const CODE_CENTRE_BRAKE: u8 = 249;
+/// [`Vertex::code`] of the face of a sign, which sends the light of headlights back.
+pub const CODE_RETRO: u8 = 248;
 /// [`Vertex::code`] of paint on asphalt.
 pub const CODE_PAINT: u8 = 64;
 /// [`Vertex::code`] of asphalt of an age from 0 to 7; with [`CODE_COVERS`] it has manholes.

@@ -6,7 +6,7 @@ use kernel::map::{FurnitureKind, Prop, PropKind};
 use super::Mesh;
 use super::actor::parked_model;
 use super::model::Detail;
-use super::street::{barrier, building, posts, signal, street_furniture, structure, tree};
+use super::street::{barrier, building, furniture, hedge, lamp, sign, signal, structure, tree};
 use super::variety::Variety;
 use crate::SemanticTag;
 
@@ -19,17 +19,17 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
     match prop.kind {
         PropKind::Building => building::building(variant, size, detail),
         PropKind::Tree => tree::tree(variant, size.x, size.z, detail),
-        PropKind::Hedge => tree::hedge(variant, size),
-        PropKind::Lamp => posts::lamp(size.z, detail),
-        PropKind::Sign => posts::sign(variant, size.z, detail),
+        PropKind::Hedge => hedge::hedge(variant, size, detail),
+        PropKind::Lamp => lamp::lamp(size.z, detail),
+        PropKind::Sign => sign::sign(variant, size.z, detail),
         PropKind::SignalPole => signal::pole(size.z, detail),
         PropKind::ParkedCar => parked_model(prop.parked_kind(), variant, detail).at_rest(),
         PropKind::Fence => barrier::fence(variant, size, detail),
         PropKind::Wall => barrier::wall(variant, size),
         PropKind::GuardRail => barrier::guard_rail(size, detail),
-        PropKind::Furniture => street_furniture::mesh(what, SemanticTag::Static, variant, size, detail),
-        PropKind::Movable => street_furniture::mesh(what, SemanticTag::Dynamic, variant, size, detail),
-        PropKind::Sundry => street_furniture::mesh(what, SemanticTag::Other, variant, size, detail),
+        PropKind::Furniture => furniture::mesh(what, SemanticTag::Static, variant, size, detail),
+        PropKind::Movable => furniture::mesh(what, SemanticTag::Dynamic, variant, size, detail),
+        PropKind::Sundry => furniture::mesh(what, SemanticTag::Other, variant, size, detail),
         PropKind::Bridge => structure::bridge(size, prop.rise_m()),
         PropKind::Tunnel => structure::tunnel(size, prop.rise_m()),
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Quat, Vec3};
-use kernel::map::MapData;
+use kernel::map::{MapData, PropKind};
 use kernel::scene::{ActorKind, ActorScene, EgoScene, Weather, lamps};
 use kernel::{Scenario, World, map};
 
@@ -64,6 +64,27 @@ fn what_is_left_out_before_it_is_drawn_is_in_no_picture() {
         // pixels.
         assert!(differing <= 8, "{name}: {differing} pixels");
     }
+}
+
+/// Leaves have air between them near the eye, the same in pictures with colours and without.
+#[test]
+fn leaves_are_where_their_labels_are() {
+    let network = network("rural");
+    let mut renderer = renderer(&network);
+    let scene = places("rural", &network, 1).remove(0);
+    let trees = network.props.iter().filter(|prop| prop.kind == PropKind::Tree);
+    let camera = Camera { position: Vec3::new(0.0, 0.0, 3.0), ..Camera::driver(256, 128) };
+    let mut gaps = 0;
+    for tree in trees.step_by(50).take(8) {
+        let ego = EgoScene { position: tree.position - Vec3::X * 5.0, rotation: Quat::IDENTITY, ..scene.ego };
+        let scene = SceneSnapshot { ego, actors: Vec::new(), ..scene.clone() };
+        let [seen, labels] = [renderer.draw(&scene, &camera), renderer.draw_classes(&scene, &camera)]
+            .map(|frame| Frame { rgb: Vec::new(), ..frame.expect("drawn") });
+        assert!(seen == labels, "{}", tree.position);
+        let is_plant: Vec<bool> = seen.class_ids.iter().map(|id| *id == SemanticTag::Vegetation as u8).collect();
+        gaps += is_plant.windows(4).filter(|w| w[0] && w[3] && !(w[1] && w[2])).count();
+    }
+    assert!(gaps > 200, "{gaps}");
 }
 
 const PAVED: [SemanticTag; 3] = [SemanticTag::Road, SemanticTag::RoadLine, SemanticTag::SideWalk];

@@ -62,6 +62,7 @@ override SUN: bool = true;
 @group(0) @binding(2) var noise_sampler: sampler;
 @group(0) @binding(3) var light_map: texture_2d<f32>;
 @group(0) @binding(4) var ground: texture_2d_array<f32>;
+@group(0) @binding(5) var leaves: texture_2d_array<f32>;
 
 const NEAR_M = 0.1;
 

@@ -56,6 +56,9 @@ fn vertex(in: VertexIn) -> Lit {
 
 // Code of the glass of a street lamp.
 const STREET_LAMP = 250u;
+// Code of the face of a sign, and how much brighter than dull paint it is in its own headlights, high as it is.
+const RETRO = 248u;
+const RETRO_GAIN = 1.5;
 
 // Lamps do not light what shines: it is as if the sun did, beyond the reach of all shadows.
 fn shine(out: ptr<function, Lit>, colour: vec3f) {
@@ -87,6 +90,14 @@ fn vertex_plain(in: VertexIn) -> Lit {
     }
     if NIGHT && code_of(in.ids) == STREET_LAMP {
         shine(&out, mix(out.shade, vec3f(2.4, 2.0, 1.3), scene.shine));
+    }
+    if NIGHT && code_of(in.ids) == RETRO {
+        // What headlights reach comes back to who drives behind them.
+        let uv = out.from_eye.xy * scene.light_map_per_m + scene.light_map_at;
+        let lit = textureSampleLevel(light_map, noise_sampler, clamp(uv, vec2f(0.003), vec2f(0.997)), 0.0).g;
+        let back = max(-dot(view, normal), 0.0) * RETRO_GAIN * lit * lit;
+        out.sunlit += to_linear(in.colour_param.rgb) * scene.headlight * back;
+        out.shadow = vec3f(2.0);
     }
     return out;
 }

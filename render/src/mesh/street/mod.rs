@@ -3,10 +3,12 @@
 mod along;
 pub mod barrier;
 pub mod building;
-pub mod loose;
-pub mod posts;
+pub mod furniture;
+mod glyphs;
+pub mod hedge;
+pub mod lamp;
+pub mod sign;
 pub mod signal;
-pub mod street_furniture;
 pub mod structure;
 pub mod surface;
 pub mod tree;

@@ -57,6 +57,25 @@ fn a_street_gets_darker_and_stays_readable() {
     }
 }
 
+/// The face of a sign does, its grey back does not.
+#[test]
+fn signs_send_headlights_back_at_night() {
+    let size = Vec3::new(0.08, 0.7, 2.6);
+    for (turn_rad, [least, most]) in [(core::f32::consts::PI, [4.0, 99.0]), (0.0, [0.5, 2.0])] {
+        let (mut renderer, scene) = with_props(|scene| {
+            let sign = prop_at(scene, PropKind::Sign, size, [14.0, 0.5]);
+            vec![Prop { heading_rad: sign.heading_rad + turn_rad, ..sign }]
+        });
+        let mut sign = |scene: &SceneSnapshot| {
+            let frame = renderer.draw(scene, &Camera::driver(256, 128)).expect("drawn");
+            mean(&frame, |i| frame.class_ids[i] == SemanticTag::TrafficSign as u8)
+        };
+        let night = at_altitude(&scene, -30.0);
+        let share = sign(&with_headlights(&night)) / sign(&night);
+        assert!((least..most).contains(&share), "{share} times as bright, turned by {turn_rad}");
+    }
+}
+
 #[test]
 fn night_changes_colours_alone() {
     let network = network("city");

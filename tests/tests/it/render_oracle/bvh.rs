@@ -1,6 +1,8 @@
 //! Triangles in a tree of boxes, and the nearest one along a ray.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+
+use super::air::Air;
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +20,8 @@ pub struct Triangle {
     pub corners: [DVec3; 3],
     /// What it shows.
     pub label: Label,
+    /// Of leaves which picture shows them, and where in it the corners are.
+    pub leaf: Option<(u8, [DVec2; 3])>,
 }
 
 enum Node {
@@ -29,6 +33,7 @@ enum Node {
 pub struct Bvh {
     triangles: Vec<Triangle>,
     nodes: Vec<Node>,
+    air: Air,
 }
 
 const LEAF: usize = 6;
@@ -37,7 +42,7 @@ impl Bvh {
     /// Sorts triangles by halving along the longest side.
     pub fn new(triangles: Vec<Triangle>) -> Self {
         let count = triangles.len();
-        let mut bvh = Self { triangles, nodes: Vec::new() };
+        let mut bvh = Self { triangles, nodes: Vec::new(), air: Air::new() };
         bvh.split(0, count);
         bvh
     }
@@ -83,15 +88,21 @@ impl Bvh {
                 }
                 Node::Leaf { low, high, from, to } if meets(*low, *high, origin, inverse, limit) => {
                     for triangle in &self.triangles[*from..*to] {
-                        let hit =
-                            intersect(triangle, origin, direction).filter(|&t| nearest.is_none_or(|(n, _)| t < n));
-                        nearest = hit.map(|t| (t, triangle.label)).or(nearest);
+                        let hit = intersect(triangle, origin, direction)
+                            .filter(|&(t, _)| nearest.is_none_or(|(n, _)| t < n))
+                            .filter(|&(_, at)| !self.is_air(triangle, at));
+                        nearest = hit.map(|(t, _)| (t, triangle.label)).or(nearest);
                     }
                 }
                 _ => {}
             }
         }
         nearest
+    }
+
+    /// Whether there is no leaf at a place of a triangle, given by the shares of its second and third corner.
+    fn is_air(&self, triangle: &Triangle, at: DVec2) -> bool {
+        triangle.leaf.is_some_and(|(leaf, [a, b, c])| self.air.is_at(leaf, a + at.x * (b - a) + at.y * (c - a)))
     }
 }
 
@@ -102,8 +113,8 @@ fn meets(low: DVec3, high: DVec3, origin: DVec3, inverse: DVec3, limit: f64) -> 
     enter <= leave && leave > 0.0 && enter < limit
 }
 
-/// Moeller and Trumbore (1997).
-fn intersect(triangle: &Triangle, origin: DVec3, direction: DVec3) -> Option<f64> {
+/// Distance, and shares of the second and third corner (Moeller and Trumbore 1997).
+fn intersect(triangle: &Triangle, origin: DVec3, direction: DVec3) -> Option<(f64, DVec2)> {
     let [a, b, c] = triangle.corners;
     let (ab, ac) = (b - a, c - a);
     let p = direction.cross(ac);
@@ -116,5 +127,5 @@ fn intersect(triangle: &Triangle, origin: DVec3, direction: DVec3) -> Option<f64
     let q = s.cross(ab);
     let v = direction.dot(q);
     let t = ac.dot(q);
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.1).then_some(t)
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.1).then_some((t, DVec2::new(u, v)))
 }

@@ -1,6 +1,7 @@
 //! Label images agree with an independent ray-caster on the processor, which shares the renderer's
 //! meshes and nothing else.
 
+mod air;
 mod bvh;
 mod pose;
 mod small;

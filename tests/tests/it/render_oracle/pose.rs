@@ -1,16 +1,16 @@
 //! From a snapshot to triangles in the world: only the meshes are the renderer's, every transform is
 //! computed here from their documentation.
 
-use glam::{DAffine3, DQuat, DVec3, Vec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3, Vec3};
 use kernel::map::{Prop, PropKind, RoadNetwork};
 use kernel::scene::{SceneSnapshot, Weather};
-use render::mesh::Mesh;
 use render::mesh::actor::{ego_model, has_umbrella_up, sheltered_model};
 use render::mesh::gait::{Cycle, Gait, RUNS_MPS};
 use render::mesh::model::{Detail, Joint, Model};
 use render::mesh::motion::Motion;
 use render::mesh::prop;
 use render::mesh::street::{signal, surface};
+use render::mesh::{Finish, Mesh};
 use render::{Camera, EGO_INSTANCE, instance_of_actor, instance_of_parked};
 
 use super::bvh::{Label, Triangle};
@@ -65,8 +65,15 @@ impl Collector {
             at + self.sway(at, v.sway)
         };
         let label = |i: u32| Label { class: class_of(mesh.vertices[i as usize].tag), instance };
-        let triangles: Vec<Triangle> =
-            mesh.all_triangles().map(|t| Triangle { corners: t.map(corner), label: label(t[0]) }).collect();
+        let leaf = |finish: usize, t: &[u32; 3]| {
+            let v = t.map(|i| mesh.vertices[i as usize]);
+            let uv = v.map(|v| DVec2::new(f64::from(v.uv[0]), f64::from(v.uv[1])));
+            (finish == Finish::Leafy as usize).then_some((v[0].code, uv))
+        };
+        let all = mesh.triangles.iter().enumerate().flat_map(|(finish, list)| list.iter().map(move |t| (finish, t)));
+        let triangles: Vec<Triangle> = all
+            .map(|(finish, t)| Triangle { corners: t.map(corner), label: label(t[0]), leaf: leaf(finish, t) })
+            .collect();
         self.triangles.extend(triangles);
     }
 

@@ -6,6 +6,14 @@ use super::bvh::Label;
 
 /// Depths agree when they differ by less than this share.
 const DEPTH_SHARE: f64 = 0.01;
+/// Or, of plants, than this, metres: which leaves cover a sample depends on how coarse their picture is.
+const LEAVES_M: f64 = 1.2;
+
+/// By how much depths may differ that agree, metres.
+fn depth_room(class: u8, distance: f64) -> f64 {
+    let leaves = if class == SemanticTag::Vegetation as u8 { LEAVES_M } else { 0.0 };
+    leaves.max(DEPTH_SHARE * distance)
+}
 
 /// What rays found in a picture's pixels, and how far away.
 pub struct Truth {
@@ -56,7 +64,7 @@ impl Tally {
             let (label, distance) = truth.pixels[at];
             let same = frame.class_ids[at] == label.class;
             let depth = f64::from(frame.depth_m[at]);
-            let close = depth == distance || (depth - distance).abs() < DEPTH_SHARE * distance;
+            let close = depth == distance || (depth - distance).abs() < depth_room(label.class, distance);
             let count = &mut self.classes[label.class as usize];
             count.all += 1;
             count.same += u32::from(same);
