@@ -12,7 +12,7 @@ use crate::light_map::LightMap;
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadows::ShadowMaps;
-use crate::sieve::Sieve;
+use crate::sieve::{MOVING, Sieve};
 use crate::street_lamps::{self, StreetLamp};
 use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, Quality, RenderError};
@@ -23,6 +23,7 @@ pub struct Renderer {
     passes: Passes,
     /// Whether triangles that nobody sees are left out before they are drawn: a GPU does so faster.
     sifts: bool,
+    sieve: Sieve,
     scenery: Scenery,
     heads: Vec<LightHead>,
     light_groups: usize,
@@ -51,6 +52,7 @@ impl Renderer {
             sifts: gpu.info.is_cpu,
             gpu,
             passes,
+            sieve: Sieve::default(),
             scenery,
             heads: network.light_heads.clone(),
             light_groups: network.light_groups.len(),
@@ -108,9 +110,11 @@ impl Renderer {
         self.cast.pose(scene, &self.heads, (&seen, horizon), shines.then_some(&shadow), &mut self.moving);
         self.shine(scene, &seen, &light, colours);
         let samples = [width, height].map(|side| side * means.samples);
-        let sieve = Sieve::new(&view, samples, takes_corners, scene);
-        let mut sieve = if self.sifts { sieve } else { sieve.open() };
         let gone = gone(scene);
+        self.sieve.begin(&view, samples, takes_corners, scene, !self.sifts);
+        let moving_triangles = core::iter::once((MOVING, &self.moving.indices[..]));
+        self.sieve.sift(&self.moving.vertices, 0, moving_triangles);
+        self.scenery.sift(&seen, &gone, &mut self.sieve);
         let (shadow_map, is_cast) = if shines { self.shadows.find(shadow, gone.clone()) } else { (0, true) };
         let texel = 1.0 / means.shadows.side as f32;
         let draws = Draws {
@@ -118,8 +122,7 @@ impl Renderer {
                 SceneUniform::new(&view, scene, &light, shadow.matrix(), texel).lit(&light, &self.light_map)
             }),
             moving_vertices: &self.moving.vertices,
-            moving_indices: &sieve.sifted(&self.moving.vertices, &self.moving.indices),
-            fixed_indices: self.scenery.visible(&seen, &gone, &mut sieve),
+            seen: self.sieve.finish(),
             moving_casters: &self.moving.casters,
             casters: (!is_cast).then(|| self.scenery.casters(&shadow, &gone)),
             shadows: means.shadows,
