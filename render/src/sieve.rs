@@ -12,7 +12,7 @@ use kernel::SceneSnapshot;
 use crate::mesh::{FINISHES, Vertex};
 use crate::view::View;
 use crate::wind::Gusts;
-use grid::{Grid, NEAR_M, Place};
+use grid::{Grid, Look, NEAREST, Place, Surface};
 
 /// Which list a triangle is drawn from: what moves, or what stands still for each finish.
 pub(crate) const LISTS: usize = FINISHES + 1;
@@ -63,13 +63,13 @@ impl Sieve {
         let corner = |i: usize| Vec3::new(extent[i & 1].x, extent[i >> 1 & 1].y, extent[i >> 2].z);
         let mut reach = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for place in (0..8).map(|i| self.place_of(corner(i))) {
-            if self.keeps_all || place.z < NEAR_M {
+            if self.keeps_all || !(0.0..NEAREST).contains(&place.z) {
                 return true;
             }
             reach = (reach.0.min(place), reach.1.max(place));
         }
         let (low, high) = (reach.0.truncate(), reach.1.truncate());
-        self.grids.iter().any(|grid| grid.may_show_between(low, high, 1.0 / reach.0.z))
+        self.grids.iter().any(|grid| grid.may_show_between(low, high, reach.1.z))
     }
 
     /// Takes the triangles of a mesh that may be seen, nearer meshes best first. `first` is the index of its first vertex; lists of
@@ -90,11 +90,7 @@ impl Sieve {
             }
             for &triangle in indices.as_chunks::<3>().0 {
                 let corners = triangle.map(|i| self.places[(i - first) as usize]);
-                for (grid, kept) in self.grids.iter_mut().zip(&mut self.kept) {
-                    if grid.cover(corners) {
-                        kept[list].push((triangle, corners));
-                    }
-                }
+                self.cover(list, triangle, corners);
             }
         }
     }
@@ -106,11 +102,36 @@ impl Sieve {
             return vec![core::mem::take(&mut self.all)];
         }
         let of_grid = |(grid, kept): (&Grid, &[Vec<([u32; 3], [Place; 3])>; LISTS])| {
-            let seen =
-                |list: usize| kept[list].iter().filter(|(_, corners)| grid.may_show(*corners)).flat_map(|kept| kept.0);
+            let may_show = |corners: [Place; 3]| match Look::at(corners, false) {
+                Look::Unseen => false,
+                Look::Crossing => true,
+                Look::Facing(outline) => {
+                    grid.around(&outline).is_some_and(|samples| grid.may_show(&Surface::of(&outline), &samples))
+                }
+            };
+            let seen = |list: usize| kept[list].iter().filter(|kept| may_show(kept.1)).flat_map(|kept| kept.0);
             core::array::from_fn(|list| seen(list).collect())
         };
         self.grids.iter().zip(&self.kept).map(of_grid).collect()
+    }
+
+    #[inline]
+    fn cover(&mut self, list: usize, triangle: [u32; 3], corners: [Place; 3]) {
+        let outline = match Look::at(corners, false) {
+            Look::Unseen => return,
+            Look::Crossing => {
+                self.kept.iter_mut().for_each(|kept| kept[list].push((triangle, corners)));
+                return;
+            }
+            Look::Facing(outline) => outline,
+        };
+        let mut surface = None;
+        for (grid, kept) in self.grids.iter_mut().zip(&mut self.kept) {
+            let Some(samples) = grid.around(&outline) else { continue };
+            if grid.cover(surface.get_or_insert_with(|| Surface::of(&outline)), &samples) {
+                kept[list].push((triangle, corners));
+            }
+        }
     }
 
     fn place(&mut self, vertices: &[Vertex]) {
@@ -131,8 +152,8 @@ impl Sieve {
         let View { eye, ahead, right, up, tan_x, tan_y, .. } = self.view;
         let (right, up) = (right / tan_x, up / tan_y);
         let (rel, half) = (at - eye, 0.5 * self.size);
-        let ahead_m = rel.dot(ahead);
-        let scale = half / ahead_m;
-        Vec3::new(half.x + scale.x * rel.dot(right), half.y - scale.y * rel.dot(up), ahead_m)
+        let nearness = 1.0 / rel.dot(ahead);
+        let scale = half * nearness;
+        Vec3::new(half.x + scale.x * rel.dot(right), half.y - scale.y * rel.dot(up), nearness)
     }
 }
