@@ -19,6 +19,9 @@ pub(crate) const LISTS: usize = FINISHES + 1;
 /// That of what moves.
 pub(crate) const MOVING: usize = FINISHES;
 
+/// Of pixels' middles and of their corners.
+const MOST_GRIDS: usize = 2;
+
 /// Indices of triangles, list by list.
 pub(crate) type Lists = [Vec<u32>; LISTS];
 
@@ -125,10 +128,13 @@ impl Sieve {
             }
             Look::Facing(outline) => outline,
         };
-        let mut surface = None;
-        for (grid, kept) in self.grids.iter_mut().zip(&mut self.kept) {
-            let Some(samples) = grid.around(&outline) else { continue };
-            if grid.cover(surface.get_or_insert_with(|| Surface::of(&outline)), &samples) {
+        let around = core::array::from_fn(|i| self.grids.get(i).and_then(|grid| grid.around(&outline)));
+        if around == [const { None }; MOST_GRIDS] {
+            return;
+        }
+        let surface = Surface::of(&outline);
+        for ((grid, kept), around) in self.grids.iter_mut().zip(&mut self.kept).zip(&around) {
+            if around.as_ref().is_some_and(|samples| grid.cover(&surface, samples)) {
                 kept[list].push((triangle, corners));
             }
         }

@@ -102,6 +102,7 @@ impl Look {
 }
 
 impl Surface {
+    #[inline]
     pub(super) fn of(outline: &Outline) -> Self {
         let &Outline { corners, known_px, area, nearest, .. } = outline;
         let [a, b, c] = corners.map(|p| p.truncate());
