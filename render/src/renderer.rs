@@ -14,7 +14,7 @@ use crate::mirrors::{self, Feet, Streak};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadows::ShadowMaps;
-use crate::sieve::Sieve;
+use crate::sieve::{MOVING, Sieve};
 use crate::spray::{self, Puff};
 use crate::street_lamps::{self, StreetLamp};
 use crate::view::View;
@@ -26,6 +26,7 @@ pub struct Renderer {
     passes: Passes,
     /// Whether triangles that nobody sees are left out before they are drawn: a GPU does so faster.
     sifts: bool,
+    sieve: Sieve,
     scenery: Scenery,
     heads: Vec<LightHead>,
     light_groups: usize,
@@ -56,6 +57,7 @@ impl Renderer {
             sifts: gpu.info.is_cpu,
             gpu,
             passes,
+            sieve: Sieve::default(),
             scenery,
             heads: network.light_heads.clone(),
             light_groups: network.light_groups.len(),
@@ -116,9 +118,11 @@ impl Renderer {
         self.shine(scene, &seen, &light, colours);
         spray::of(scene, &seen, &mut self.spray);
         let samples = [width, height].map(|side| side * means.samples);
-        let sieve = Sieve::new(&view, samples, takes_corners, scene);
-        let mut sieve = if self.sifts { sieve } else { sieve.open() };
         let gone = gone(scene);
+        self.sieve.begin(&view, samples, takes_corners, scene, !self.sifts);
+        let moving_triangles = core::iter::once((MOVING, &self.moving.indices[..]));
+        self.sieve.sift(&self.moving.vertices, 0, moving_triangles);
+        self.scenery.sift(&seen, &gone, &mut self.sieve);
         let (shadow_map, is_cast) = if shines { self.shadows.find(shadow, gone.clone()) } else { (0, true) };
         let texel = 1.0 / means.shadows.side as f32;
         let draws = Draws {
@@ -126,8 +130,7 @@ impl Renderer {
                 SceneUniform::new(&view, scene, &light, shadow.matrix(), texel).lit(&light, &self.light_map)
             }),
             moving_vertices: &self.moving.vertices,
-            moving_indices: &sieve.sifted(&self.moving.vertices, &self.moving.indices),
-            fixed_indices: self.scenery.visible(&seen, &gone, &mut sieve),
+            seen: self.sieve.finish(),
             moving_casters: &self.moving.casters,
             casters: (!is_cast).then(|| self.scenery.casters(&shadow, &gone)),
             shadows: means.shadows,

@@ -121,8 +121,8 @@ impl Scenery {
         Horizon::new(eye, &self.houses, HOUSES_M)
     }
 
-    /// Indices of what a view sees for each finish, front to back, without the parked cars that are gone.
-    pub(crate) fn visible(&self, view: &View, gone: &[usize], sieve: &mut Sieve) -> [Vec<u32>; FINISHES] {
+    /// Sifts what a view sees, front to back, without the parked cars that are gone.
+    pub(crate) fn sift(&self, view: &View, gone: &[usize], sieve: &mut Sieve) {
         let large = |p: &Piece| view.pixels(2.0 * p.radius_m, p.centre, p.radius_m) > SMALLEST_PX;
         let is_seen = |p: &&Piece| p.stands(gone) && view.sees(p.centre, p.radius_m) && large(p);
         let near_m = |p: &Piece| p.centre.truncate().distance(view.eye.truncate()) - p.radius_m;
@@ -131,7 +131,6 @@ impl Scenery {
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut horizon = self.horizon(view.eye);
         seen.retain(|(_, p)| !horizon.hides(p.centre, p.radius_m));
-        let mut lists: [Vec<u32>; FINISHES] = Default::default();
         for piece in seen.into_iter().map(|(_, piece)| piece).chain(plain) {
             if !sieve.may_show_of(piece.extent) {
                 continue;
@@ -139,9 +138,8 @@ impl Scenery {
             let level = &piece.levels[view.detail(piece.centre, piece.radius_m) as usize];
             let vertices = &self.vertices[level.vertices.start as usize..level.vertices.end as usize];
             let indices = level.ranges.iter().map(|range| self.indices_of(range));
-            sieve.sift(vertices, level.vertices.start, indices.zip(&mut lists));
+            sieve.sift(vertices, level.vertices.start, indices.enumerate());
         }
-        lists
     }
 
     /// Indices of all coarse pieces that may cast a shadow on a map, all finishes together, without the parked cars that are

@@ -27,7 +27,7 @@ pub fn offset(weather: &Weather, tick: Tick, at: Vec2) -> Vec2 {
 }
 
 /// The wind at a tick.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Gusts {
     phase_rad: f32,
     strength_m: f32,

@@ -10,6 +10,7 @@ use crate::glows::Glow;
 use crate::mesh::{FINISHES, Finish, Vertex};
 use crate::mirrors::Streak;
 use crate::quality::Shadows;
+use crate::sieve::{LISTS, Lists, MOVING};
 use crate::spray::Puff;
 
 /// Nearest and most covering first: hidden fragments are cheap. Last what writes its depth late, as it discards.
@@ -21,9 +22,8 @@ pub(crate) struct Draws<'a> {
     /// As pixels' middles see it, and as their corners do.
     pub(crate) uniforms: [SceneUniform; 2],
     pub(crate) moving_vertices: &'a [Vertex],
-    pub(crate) moving_indices: &'a [u32],
-    /// Indices of the static world for each finish.
-    pub(crate) fixed_indices: [Vec<u32>; FINISHES],
+    /// Indices of what is seen by pixels' middles and by their corners, or by both.
+    pub(crate) seen: Vec<Lists>,
     /// Indices of what moves and casts a shadow into the picture, whether it is seen or not.
     pub(crate) moving_casters: &'a [u32],
     /// Indices of the static world to draw the shadow map with; `None` keeps the map as it is.
@@ -149,7 +149,7 @@ impl Passes {
         if draws.colours {
             self.colour_passes(gpu, &mut encoder, &ranges, draws, targets);
         } else {
-            self.class_pass(gpu, &mut encoder, &ranges, targets);
+            self.class_pass(gpu, &mut encoder, &ranges.seen, targets);
         }
         readback::record(&mut encoder, targets, draws.colours);
         gpu.queue.submit([encoder.finish()]);
@@ -170,26 +170,25 @@ impl Passes {
         if draws.lighting != Lighting::Night {
             self.shadow_passes(encoder, &style, ranges, draws);
         }
-        for (samples, scene) in
-            [Some(&targets.middles), targets.corners.as_ref()].into_iter().flatten().zip(&self.scenes)
-        {
-            self.main_pass(encoder, &style, ranges, draws, (samples, scene));
+        let grids = [Some(&targets.middles), targets.corners.as_ref()].into_iter().flatten().zip(&self.scenes);
+        for (grid, seen) in grids.zip(ranges.seen.iter().cycle()) {
+            self.main_pass(encoder, &style, seen, draws, grid);
         }
         self.styles.push(style);
     }
 
     fn write_indices(&mut self, gpu: &Gpu, draws: &Draws<'_>) -> Ranges {
-        let mut all = draws.moving_indices.to_vec();
+        let mut all = Vec::new();
         let mut push = |list: &[u32]| {
             let start = all.len() as u32;
             all.extend_from_slice(list);
             start..all.len() as u32
         };
-        let fixed = core::array::from_fn(|finish| push(&draws.fixed_indices[finish]));
+        let seen = draws.seen.iter().map(|lists| lists.each_ref().map(|list| push(list))).collect();
         let moving_casters = push(draws.moving_casters);
         let casters = push(draws.casters.as_deref().unwrap_or_default());
         self.indices.write(gpu, &all);
-        Ranges { moving: 0..draws.moving_indices.len() as u32, fixed, moving_casters, casters }
+        Ranges { seen, moving_casters, casters }
     }
 
     /// What stands still is drawn where it is not known yet; what moves, over a copy of that.
@@ -223,7 +222,7 @@ impl Passes {
     }
 
     /// Classes, instances and depth: the sky is where nothing is.
-    fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, ranges: &Ranges, targets: &Targets) {
+    fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, seen: &[Seen], targets: &Targets) {
         let pipelines = self.classes.get_or_insert_with(|| pipelines::classes(gpu, &self.layouts)).clone();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let (ids, depth) = (view(&targets.middles.ids), view(&targets.middles.depth));
@@ -235,11 +234,13 @@ impl Passes {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
-        pass.set_pipeline(&pipelines[Finish::Plain as usize]);
-        self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
-        for finish in DRAW_ORDER {
-            pass.set_pipeline(&pipelines[finish as usize]);
-            self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
+        for ranges in seen {
+            pass.set_pipeline(&pipelines[Finish::Plain as usize]);
+            self.draw_mesh(&mut pass, &self.moving.buffer, &ranges[MOVING]);
+            for finish in DRAW_ORDER {
+                pass.set_pipeline(&pipelines[finish as usize]);
+                self.draw_mesh(&mut pass, &self.fixed, &ranges[finish as usize]);
+            }
         }
     }
 
@@ -247,7 +248,7 @@ impl Passes {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         style: &Style,
-        ranges: &Ranges,
+        seen: &Seen,
         draws: &Draws<'_>,
         (samples, scene): (&Samples, &SceneBinding),
     ) {
@@ -263,14 +264,14 @@ impl Passes {
         pass.set_bind_group(0, &scene.group, &[]);
         pass.set_bind_group(1, &style.all_group, &[]);
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
-        self.draw_mesh(&mut pass, &self.moving.buffer, &ranges.moving);
+        self.draw_mesh(&mut pass, &self.moving.buffer, &seen[MOVING]);
         for finish in DRAW_ORDER {
             // What is drawn after them mirrors nothing: it is not paved.
             if finish == Finish::Grainy {
                 draw_quads(&mut pass, &pipelines.mirror, &self.streaks, draws.streaks.len());
             }
             pass.set_pipeline(&pipelines.world[finish as usize]);
-            self.draw_mesh(&mut pass, &self.fixed, &ranges.fixed[finish as usize]);
+            self.draw_mesh(&mut pass, &self.fixed, &seen[finish as usize]);
         }
         pass.set_pipeline(&pipelines.sky);
         pass.draw(0..3, 0..1);
@@ -340,10 +341,13 @@ impl Style {
     }
 }
 
+/// Where lists lie in the index buffer.
+type Seen = [Range<u32>; LISTS];
+
 /// Where each list lies in the index buffer.
 struct Ranges {
-    moving: Range<u32>,
-    fixed: [Range<u32>; FINISHES],
+    /// As [`Draws::seen`].
+    seen: Vec<Seen>,
     moving_casters: Range<u32>,
     casters: Range<u32>,
 }
