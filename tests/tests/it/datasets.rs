@@ -13,7 +13,7 @@ use drivers::vision::{Eye, Vision};
 use lab::dataset::{FrameLine, Manifest, Part, cases, mix, natural, rebuild};
 use lab::redrive::{Counterfactual, Need};
 use perception::training::Split;
-use render::{AdapterChoice, Quality, Renderer};
+use render::{AdapterChoice, Imaging, Renderer};
 use replay::{Annotation, Case, Label, Recording};
 use tests::files::contents;
 use tests::recordings::{TAKEOVER, recorded, recorded_in};
@@ -27,7 +27,7 @@ fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
         frames: 2,
         test_frames: 1,
         size: (64, 32),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         maps: vec!["rural".into(), "city".into()],
         pedestrians: Some(20),
         seed: 5,
@@ -44,7 +44,7 @@ fn cases_args(files: &[&Path], out: PathBuf) -> cases::Options {
         verdict: Vec::new(),
         split: "train".into(),
         size: (64, 32),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         jobs: None,
         out,
     }

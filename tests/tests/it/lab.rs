@@ -8,7 +8,7 @@ use aeye::commands::{inspect, rerender};
 use aeye::exit::{self, Verdict};
 use drivers::checkpoint::CheckpointChoice;
 use lab::report;
-use render::Quality;
+use render::Imaging;
 use replay::Recording;
 use tests::files::contents;
 use tests::recordings::{ALONE, TAKEOVER, record, recorded, recorded_in};
@@ -22,7 +22,7 @@ fn rerender_args(file: &Path, out: PathBuf) -> RerenderArgs {
         last: 180,
         fps: 10,
         size: Some((128, 64)),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         jobs: None,
         shard: None,
         out,

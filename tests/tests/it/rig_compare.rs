@@ -10,7 +10,7 @@ use aeye::exit::{self, Verdict};
 use base::failure::sentence;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::events::EventKind;
-use render::{AdapterChoice, Camera, Quality, Renderer};
+use render::{AdapterChoice, Camera, Imaging, Renderer};
 use replay::{Case, Recording};
 use serde_json::Value;
 use tests::files::contents;
@@ -49,7 +49,7 @@ fn args(files: &[&Path], checkpoint: &[CheckpointChoice], out: &Path) -> Compare
         gate: vec![],
         no_worse_than: None,
         size: Some(SIZE),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         jobs: Some(2),
         shard: None,
         out: out.to_owned(),

@@ -10,7 +10,7 @@ use aeye::commands::rerender;
 use aeye::exit::Verdict;
 use base::failure::sentence;
 use drivers::checkpoint::CheckpointChoice;
-use render::Quality;
+use render::Imaging;
 use replay::Recording;
 use tests::files::contents;
 use tests::recordings::recorded_in;
@@ -36,7 +36,7 @@ fn args(files: &[&Path], checkpoint: &[CheckpointChoice], jobs: u16, out: &Path)
         last: 60,
         fps: 10,
         size: Some((128, 64)),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         jobs: Some(jobs),
         shard: None,
         out,

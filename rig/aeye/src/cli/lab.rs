@@ -13,12 +13,12 @@ use lab::export::Format;
 use lab::redrive::Need;
 use lab::share::Share;
 use lab::still::{LAYERS, Layer};
-use render::Quality;
+use render::{Quality, Sensor};
 
 use super::library::verdict;
 use super::values::{
-    CHECKPOINT, CHECKPOINTS, QUALITY, duration, file, frame_rate, jobs, moment, one_checkpoint, people, quality,
-    seconds, size, weather,
+    CHECKPOINT, CHECKPOINTS, ImagingArgs, SENSOR, duration, file, frame_rate, jobs, moment, one_checkpoint, people,
+    quality, seconds, size, weather,
 };
 
 /// Arguments of `rerender`.
@@ -41,9 +41,9 @@ pub struct RerenderArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -91,9 +91,9 @@ pub struct RenderArgs {
     /// Size of the picture.
     #[arg(long, default_value = "1280x640", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Where it goes; a file that is there stays.
     #[arg(long, value_name = "FILE.png")]
     pub out: PathBuf,
@@ -120,6 +120,9 @@ pub struct GalleryArgs {
     /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
     #[arg(long, default_value = "fine", value_parser = quality(), value_name = "NAME")]
     pub quality: Quality,
+    /// What lens and chip do to the pictures, as in `exposure_ev=-1,noise=4` (default: nothing).
+    #[arg(long, value_name = SENSOR)]
+    pub sensor: Option<Sensor>,
     /// Folder they go to; a gallery of the same options there is gone on with.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -159,9 +162,9 @@ pub struct ExportArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -197,9 +200,9 @@ pub struct CompareArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,

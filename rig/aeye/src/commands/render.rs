@@ -10,8 +10,8 @@ use crate::print;
 
 /// Runs `aeye render`.
 pub fn run(args: &RenderArgs, json: bool) -> anyhow::Result<Verdict> {
-    let RenderArgs { at: tick, camera, layer, size, quality, out, .. } = args.clone();
-    let options = Options { subject: subject(args)?, tick, camera, layer, size, quality, out };
+    let RenderArgs { at: tick, camera, layer, size, imaging, out, .. } = args.clone();
+    let options = Options { subject: subject(args)?, tick, camera, layer, size, imaging: imaging.into(), out };
     print::result(json, &render(&options, &Interrupt::listen())?)?;
     Ok(Verdict::Ok)
 }

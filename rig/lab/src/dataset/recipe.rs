@@ -3,7 +3,7 @@
 use base::files::{check_name, most};
 use base::maps::Map;
 use kernel::time::Tick;
-use render::Quality;
+use render::{Imaging, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 
 use super::provenance::Part;
@@ -56,12 +56,12 @@ impl Recipe {
         }
     }
 
-    /// How good the pictures are.
-    pub fn quality(&self) -> Quality {
+    /// How the pictures are made.
+    pub fn imaging(&self) -> Imaging {
         match self {
-            Self::Natural(recipe) => recipe.quality,
-            Self::Cases(recipe) => recipe.quality,
-            Self::Mix(recipe) => recipe.natural.quality(),
+            Self::Natural(recipe) => recipe.imaging(),
+            Self::Cases(recipe) => recipe.imaging(),
+            Self::Mix(recipe) => recipe.natural.imaging(),
         }
     }
 }
@@ -88,6 +88,9 @@ pub struct NaturalRecipe {
     /// How good the pictures are.
     #[serde(default = "Quality::unsaid")]
     pub quality: Quality,
+    /// What lens and chip do to them; left out where they are ideal.
+    #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
+    pub sensor: Sensor,
     /// People on foot, where not as many as in the map's default scenario.
     pub pedestrians: Option<u16>,
     /// The scenes' maps, in turn.
@@ -95,6 +98,11 @@ pub struct NaturalRecipe {
 }
 
 impl NaturalRecipe {
+    /// How the pictures are made.
+    pub fn imaging(&self) -> Imaging {
+        Imaging { quality: self.quality, sensor: self.sensor }
+    }
+
     /// Refuses what no drives can be made from.
     pub fn check(&self) -> Result<(), String> {
         check_size(self.size)?;
@@ -153,11 +161,19 @@ pub struct CasesRecipe {
     /// How good the pictures are.
     #[serde(default = "Quality::unsaid")]
     pub quality: Quality,
+    /// What lens and chip do to them; left out where they are ideal.
+    #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
+    pub sensor: Sensor,
     /// The cases, in the order of their scenes' numbers.
     pub cases: Vec<CaseUsed>,
 }
 
 impl CasesRecipe {
+    /// How the pictures are made.
+    pub fn imaging(&self) -> Imaging {
+        Imaging { quality: self.quality, sensor: self.sensor }
+    }
+
     fn check(&self) -> Result<(), String> {
         check_size(self.size)?;
         check_name(&self.split)?;

@@ -148,11 +148,11 @@ fn draw(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::
         fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;
     }
     let bar = progress::bar("frames", 0);
-    let settings = Settings::new(args.last, args.fps, size, args.quality);
+    let settings = Settings::new(args.last, args.fps, size, args.imaging);
     let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings: settings.clone() };
     let left = work.left();
     bar.set_length(work.expected() * left.len() as u64);
-    let (jobs, studios) = (jobs(args.jobs), Studios::new(args.quality));
+    let (jobs, studios) = (jobs(args.jobs), Studios::new(args.imaging));
     let (_, unread) = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
     bar.finish_and_clear();
     failed.extend(set_aside(&mut files, unread));

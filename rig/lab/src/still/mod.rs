@@ -20,7 +20,7 @@ use drivers::vision::{Eye, Vision};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Scenario, SceneSnapshot, World};
 use measures::footage::decisive_tick;
-use render::{AdapterChoice, Frame, Quality, Renderer};
+use render::{AdapterChoice, Frame, Imaging, Renderer};
 use serde::Serialize;
 
 pub use self::layer::{LAYERS, Layer};
@@ -58,7 +58,7 @@ pub struct Options {
     /// Its width and height, pixels.
     pub size: Size,
     /// How good the pictures are.
-    pub quality: Quality,
+    pub imaging: Imaging,
     /// Where it goes.
     pub out: PathBuf,
 }
@@ -90,17 +90,17 @@ impl fmt::Display for Still {
 
 /// Makes a picture, in a file that there is not yet.
 pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Still> {
-    let Options { subject, tick, camera, layer, size, quality, out } = options;
+    let Options { subject, tick, camera, layer, size, imaging, out } = options;
     if out.exists() {
         bail!("{}: exists already; expected a new file", out.display());
     }
     asked::check_size(*size)?;
     output::check_file(out)?;
     let frame = match subject {
-        Subject::File(path) => of_file(path, *tick, (*camera, *size, *quality))?,
+        Subject::File(path) => of_file(path, *tick, (*camera, *size, *imaging))?,
         Subject::Run { map, scenario } => {
             let (scene, mut renderer) = of_run(map, scenario, tick.unwrap_or(USUAL_TICK), interrupt)?;
-            renderer.draw(&scene, &camera.camera(*size).at(*quality))?
+            renderer.draw(&scene, &camera.camera(*size).at(*imaging))?
         }
     };
     output::write_file(out, &layer.png(&frame)?)?;
@@ -110,11 +110,11 @@ pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Still>
 fn of_file(
     path: &Path,
     tick: Option<Tick>,
-    (camera, size, quality): (Viewpoint, Size, Quality),
+    (camera, size, imaging): (Viewpoint, Size, Imaging),
 ) -> anyhow::Result<Frame> {
     let stage = Arc::new(Stage::open(path, &Arc::default())?);
     let tick = tick.unwrap_or_else(|| decisive_tick(stage.recording().log()));
-    Ok(Shots::of_tick(&stage, tick, camera, size)?.at(quality).draw(0)?.frame)
+    Ok(Shots::of_tick(&stage, tick, camera, size)?.at(imaging).draw(0)?.frame)
 }
 
 /// The scene at a tick of a run, and what drew the truth for its semantic driver.
