@@ -143,7 +143,7 @@ fn rerender_options(options: &Options, cases: &[PathBuf], checkpoint: &[Checkpoi
     let (last, fps) = (CLIP_TICKS, CLIP_FPS);
     let (files, checkpoint) = (cases.to_vec(), checkpoint.to_vec());
     let imaging = Imaging::default();
-    rerender::Options { files, checkpoint, last, fps, size: None, imaging, jobs: options.jobs, out }
+    rerender::Options { files, checkpoint, last, fps, size: None, imaging, cameras: None, jobs: options.jobs, out }
 }
 
 /// Recordings and cases of a campaign.

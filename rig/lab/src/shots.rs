@@ -161,6 +161,11 @@ impl Shots {
         Ok(Self { stage: stage.clone(), camera: viewpoint.camera(size), ticks, scenes })
     }
 
+    /// What another camera sees.
+    pub fn through(self, camera: Camera) -> Self {
+        Self { camera, ..self }
+    }
+
     /// The same, made otherwise.
     pub fn at(self, imaging: impl Into<Imaging>) -> Self {
         Self { camera: self.camera.at(imaging), ..self }

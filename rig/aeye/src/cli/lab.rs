@@ -44,6 +44,9 @@ pub struct RerenderArgs {
     /// How the pictures are made.
     #[command(flatten)]
     pub imaging: ImagingArgs,
+    /// A file with cameras that see the windows, too (as of `render`): colour and labels in `OUT/FILE/cameras/NAME`.
+    #[arg(long, value_name = "FILE.toml")]
+    pub cameras: Option<PathBuf>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -85,6 +88,10 @@ pub struct RenderArgs {
     /// From where: as both drivers see, from behind the car, or from above, north up.
     #[arg(long, default_value = "driver", value_name = "driver|chase|top")]
     pub camera: Viewpoint,
+    /// Instead of that, through each camera of a file: `[[cameras]]` with name, x_m, y_m, z_m, yaw_rad, pitch_rad, fov_x_rad,
+    /// width, height, quality and sensor. Their pictures go to the folder `--out`.
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "camera")]
+    pub cameras: Option<PathBuf>,
     /// What of the picture: colour, classes in the colours of their tags, instances, or depth in parts of 1/256 m.
     #[arg(long, default_value = "rgb", value_name = LAYERS)]
     pub layer: Layer,
@@ -94,8 +101,8 @@ pub struct RenderArgs {
     /// How the pictures are made.
     #[command(flatten)]
     pub imaging: ImagingArgs,
-    /// Where it goes; a file that is there stays.
-    #[arg(long, value_name = "FILE.png")]
+    /// Where it goes; a file that is there stays. With `--cameras` a new folder, with a file for each.
+    #[arg(long, value_name = "FILE.png|DIR")]
     pub out: PathBuf,
 }
 

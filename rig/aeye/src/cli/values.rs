@@ -75,7 +75,7 @@ pub fn quality() -> impl TypedValueParser<Value = Quality> {
 pub const SENSOR: &str = "SETTING=VALUE,...";
 
 /// How pictures are made. In drives, it is the pictures that networks look at.
-#[derive(Args, Clone, Copy, Debug)]
+#[derive(Args, Clone, Copy, Debug, Default)]
 pub struct ImagingArgs {
     /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
     #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]

@@ -21,6 +21,8 @@ pub struct Options {
     pub size: Option<(u32, u32)>,
     /// How good the pictures are.
     pub imaging: Imaging,
+    /// A file with cameras that see the windows, too ([`crate::cameras`]).
+    pub cameras: Option<PathBuf>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began with the same options is completed: what is whole and
