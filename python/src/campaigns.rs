@@ -81,7 +81,7 @@ pub fn campaign<'py>(
         pedestrians,
         hazards: level(hazards)?,
         weather: preset(weather)?,
-        quality: values::quality(quality)?,
+        imaging: values::quality(quality)?.into(),
         run_seconds: whole_seconds(max_time, "max_time", 10..=86_400)?,
         seed: seed.within("seed", 0..=u64::MAX)?,
         jobs: jobs_at_once(jobs)?,

@@ -55,7 +55,7 @@ pub fn compare<'py>(
         gate: gates.iter().map(gate).collect::<PyResult<_>>()?,
         no_worse_than: named(no_worse_than, "no_worse_than")?,
         size: size.map(|size| picture_size(size, "size")).transpose()?,
-        quality: values::quality(quality)?,
+        imaging: values::quality(quality)?.into(),
         jobs: jobs_at_once(jobs)?,
         out,
     };

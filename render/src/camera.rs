@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 use kernel::scene::EgoScene;
 
-use crate::Quality;
+use crate::{Imaging, Quality, Sensor};
 
 /// What a camera is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Mount {
     World,
 }
 
-/// A pinhole camera.
+/// A camera: a pinhole, behind which a sensor may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// What it is fixed to.
@@ -33,6 +33,8 @@ pub struct Camera {
     pub height: u32,
     /// How good its pictures are.
     pub quality: Quality,
+    /// What its lens and its chip make of them.
+    pub sensor: Sensor,
 }
 
 /// From optical axes (x right, y down, z along the view) to those of a [`Camera`].
@@ -80,17 +82,30 @@ impl Camera {
 
     fn level(width: u32, height: u32) -> Self {
         let fov_x_rad = core::f32::consts::FRAC_PI_2;
-        let quality = Quality::default();
-        Self { mount: Mount::World, position: Vec3::ZERO, rotation: Quat::IDENTITY, fov_x_rad, width, height, quality }
+        let Imaging { quality, sensor } = Imaging::default();
+        let (position, rotation) = (Vec3::ZERO, Quat::IDENTITY);
+        Self { mount: Mount::World, position, rotation, fov_x_rad, width, height, quality, sensor }
     }
 
-    /// The same with pictures of another quality.
-    pub fn at(self, quality: Quality) -> Self {
-        Self { quality, ..self }
+    /// The same with pictures of another kind; of a quality alone, by an ideal sensor.
+    pub fn at(self, imaging: impl Into<Imaging>) -> Self {
+        let Imaging { quality, sensor } = imaging.into();
+        Self { quality, sensor, ..self }
     }
 
-    /// What its pixels are, row by row as a 3x3 matrix: square, without distortion, the middle of the first one at
-    /// (0.5, 0.5).
+    /// How it makes its pictures.
+    pub fn imaging(&self) -> Imaging {
+        Imaging { quality: self.quality, sensor: self.sensor }
+    }
+
+    /// What moves its pixels from where the pinhole has them: k1, k2, p1, p2 and k3 of OpenCV.
+    pub fn distortion(&self) -> [f64; 5] {
+        let [k1, k2] = self.sensor.distortion().map(f64::from);
+        [k1, k2, 0.0, 0.0, 0.0]
+    }
+
+    /// What its pixels are, row by row as a 3x3 matrix: square, the middle of the first one at (0.5, 0.5), before
+    /// [`Camera::distortion`].
     pub fn intrinsics(&self) -> [f64; 9] {
         let (width, height) = (f64::from(self.width), f64::from(self.height));
         let focal = 0.5 * width / f64::from(kernel::ops::tan(0.5 * self.fov_x_rad));

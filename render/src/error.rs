@@ -1,5 +1,7 @@
 //! Why nothing could be drawn.
 
+use crate::Sensor;
+
 /// Why nothing could be drawn; each says in one sentence what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
@@ -31,6 +33,14 @@ pub enum RenderError {
         height: u32,
         /// Largest side that the adapter draws.
         limit: u32,
+    },
+    /// The lens shows what no pinhole camera sees.
+    #[error(
+        "a lens of {sensor} folds the picture of this camera before its corners: expected weaker distortion, or a greater k2"
+    )]
+    Distortion {
+        /// What was asked for.
+        sensor: Sensor,
     },
     /// The snapshot belongs to another map.
     #[error("snapshot has {got} light groups, the map has {expected}: it belongs to another map")]

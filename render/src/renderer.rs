@@ -13,6 +13,7 @@ use crate::light_map::LightMap;
 use crate::mirrors::{self, Feet, Streak};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
+use crate::sensor::{self, Lens};
 use crate::shadows::ShadowMaps;
 use crate::sieve::{MOVING, Sieve};
 use crate::spray::{self, Puff};
@@ -86,13 +87,24 @@ impl Renderer {
 
     /// Draws a snapshot and reads all planes back.
     pub fn draw(&mut self, scene: &SceneSnapshot, camera: &Camera) -> Result<Frame, RenderError> {
-        self.planes(scene, camera, true)
+        self.take(scene, camera, true)
     }
 
     /// The same but the colours: [`Frame::rgb`] is empty. On a CPU it takes some half of the time.
     pub fn draw_classes(&mut self, scene: &SceneSnapshot, camera: &Camera) -> Result<Frame, RenderError> {
-        let frame = self.planes(scene, camera, false)?;
+        let frame = self.take(scene, camera, false)?;
         Ok(Frame { rgb: Vec::new(), ..frame })
+    }
+
+    /// What the camera's sensor makes of what its pinhole sees.
+    fn take(&mut self, scene: &SceneSnapshot, camera: &Camera, colours: bool) -> Result<Frame, RenderError> {
+        if camera.sensor.is_ideal() {
+            return self.planes(scene, camera, colours);
+        }
+        let lens = Lens::of(camera)?;
+        let seen = self.planes(scene, lens.pinhole(), colours)?;
+        let seen = if colours { seen } else { Frame { rgb: Vec::new(), ..seen } };
+        Ok(sensor::take(seen, scene, camera, &lens))
     }
 
     fn planes(&mut self, scene: &SceneSnapshot, camera: &Camera, colours: bool) -> Result<Frame, RenderError> {

@@ -8,10 +8,11 @@ use kernel::scene::{ActorKind, ActorScene, EgoScene, Weather, lamps};
 use kernel::{Scenario, World, map};
 
 use super::*;
-use crate::{EGO_INSTANCE, SemanticTag, instance_of_actor};
+use crate::{EGO_INSTANCE, Imaging, SemanticTag, instance_of_actor};
 
 mod houses;
 mod night;
+mod sensor;
 
 fn network(name: &str) -> Arc<RoadNetwork> {
     map::bundled(name).expect("it is bundled")
@@ -127,7 +128,10 @@ fn a_used_renderer_draws_what_a_new_one_does() {
         let car = ActorScene { lamps: lamps::HEADLIGHTS | lamps::BRAKE, ..car_at(scene, 14.0, 2.0 - i as f32) };
         scenes.push(SceneSnapshot { weather, ego, actors: vec![car], ..scene.clone() });
     }
-    let camera = |i: usize| Camera::driver(128, 64).at(Quality::ALL[i % 3]);
+    let sensors =
+        ["noise=0", "noise=3,motion_blur_s=0.03", "k1=-0.1,vignetting=1"].map(|text| text.parse().expect("a sensor"));
+    let imaging = |i: usize| Imaging { quality: Quality::ALL[i % 3], sensor: sensors[i / 2 % 3] };
+    let camera = |i: usize| Camera::driver(128, 64).at(imaging(i));
     let mut new = renderer(&network);
     let first: Vec<Frame> = (0..scenes.len()).map(|i| new.draw(&scenes[i], &camera(i)).expect("drawn")).collect();
     for maps in [1, 3] {

@@ -7,7 +7,7 @@ use base::failure::Usage;
 use base::files::check_name;
 use perception::classes::TAGS;
 use perception::{BUNDLED, Mask, RgbView, TRUTH};
-use render::Quality;
+use render::Imaging;
 
 /// How an identity begins, as no digest does.
 const EXTERNAL: &str = "external ";
@@ -25,7 +25,7 @@ pub struct External {
     name: String,
     version: String,
     size: (u32, u32),
-    quality: Quality,
+    imaging: Imaging,
     sight: Arc<dyn Sight>,
 }
 
@@ -38,7 +38,7 @@ impl External {
             return Err(Usage(format!("the name {name} is that of a checkpoint of this program; expected another")));
         }
         check_version(version)?;
-        Ok(Self { name: name.to_owned(), version: version.to_owned(), size, quality: Quality::default(), sight })
+        Ok(Self { name: name.to_owned(), version: version.to_owned(), size, imaging: Imaging::default(), sight })
     }
 
     /// What it is called in results.
@@ -61,14 +61,14 @@ impl External {
         self.size
     }
 
-    /// How good the pictures are that it looks at.
-    pub fn quality(&self) -> Quality {
-        self.quality
+    /// How the pictures are made that it looks at.
+    pub fn imaging(&self) -> Imaging {
+        self.imaging
     }
 
-    /// The same for pictures of another quality.
-    pub fn of_quality(self, quality: Quality) -> Self {
-        Self { quality, ..self }
+    /// The same for pictures that are made otherwise.
+    pub fn of_imaging(self, imaging: Imaging) -> Self {
+        Self { imaging, ..self }
     }
 
     /// The same for pictures of another size.

@@ -1,7 +1,7 @@
 //! What drivers at screens are shown, as people ask for it.
 
 use perception::Compute;
-use render::Quality;
+use render::Imaging;
 
 /// How the live rig makes its pictures.
 #[derive(Clone, Debug)]
@@ -10,8 +10,8 @@ pub struct Pictures {
     pub image_size: (u32, u32),
     /// Size of the semantic driver's mask, pixels (default: the checkpoint's own).
     pub mask_size: Option<(u32, u32)>,
-    /// How good the pictures are that the network looks at.
-    pub quality: Quality,
+    /// How the pictures are made that the network looks at.
+    pub imaging: Imaging,
     /// What computes the networks.
     pub inference: Compute,
     /// Monitors that the safety driver's view is spread over.
@@ -19,9 +19,9 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Size and quality of the pictures that networks look at.
-    pub fn of_networks(&self) -> (Option<(u32, u32)>, Quality) {
-        (self.mask_size, self.quality)
+    /// Size and kind of the pictures that networks look at.
+    pub fn of_networks(&self) -> (Option<(u32, u32)>, Imaging) {
+        (self.mask_size, self.imaging)
     }
 }
 

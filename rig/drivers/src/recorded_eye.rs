@@ -2,7 +2,7 @@
 
 use anyhow::anyhow;
 use perception::Compute;
-use render::{Camera, Quality};
+use render::{Camera, Imaging};
 use replay::Provenance;
 
 use crate::checkpoint::CheckpointChoice;
@@ -30,7 +30,8 @@ impl RecordedEye {
     /// As the provenance of a recording has it.
     pub fn of(provenance: &Provenance) -> anyhow::Result<Self> {
         let said = |name: &str| provenance.get(name).cloned().unwrap_or_default();
-        let expected = "expected as in \"driver 256x128\" or \"driver 256x128 standard\"";
+        let expected =
+            "expected as in \"driver 256x128\", \"driver 256x128 standard\" or \"driver 256x128 plain noise=4\"";
         let camera = match provenance.get("camera") {
             None => Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1),
             Some(text) => camera_of(text).ok_or_else(|| anyhow!("provenance \"camera\" is {text:?}; {expected}"))?,
@@ -64,7 +65,7 @@ impl RecordedEye {
             return Ok(Some(eye));
         }
         let on_it = Eye::open_on(self.compute, &choice, Some(self.size()));
-        Ok(Some(on_it.map_or(eye, |eye| eye.at(self.camera.quality))))
+        Ok(Some(on_it.map_or(eye, |eye| eye.at(self.camera.imaging()))))
     }
 
     /// A sentence for where it is not found; `option` names the file on the command line.
@@ -86,7 +87,7 @@ impl RecordedEye {
     fn choice(&self, choices: &[CheckpointChoice]) -> anyhow::Result<Option<(CheckpointChoice, Eye)>> {
         let bundled = perception::BUNDLED.map(CheckpointChoice::Bundled);
         for choice in choices.iter().chain(&bundled).chain(&[CheckpointChoice::Truth]) {
-            let eye = Eye::open_at(choice, self.size())?.at(self.camera.quality);
+            let eye = Eye::open_at(choice, self.size())?.at(self.camera.imaging());
             if eye.digest() == self.digest {
                 return Ok(Some((choice.clone(), eye)));
             }
@@ -102,31 +103,50 @@ pub fn digest_of(provenance: &Provenance) -> Option<String> {
     external.or_else(|| provenance.get("checkpoint_digest").cloned())
 }
 
-/// From `driver WxH` or `driver WxH QUALITY`.
+/// From `driver WxH`, `driver WxH QUALITY` or `driver WxH QUALITY SENSOR`.
 fn camera_of(text: &str) -> Option<Camera> {
     let said = text.strip_prefix("driver ")?;
-    let (size, quality) = match said.split_once(' ') {
-        Some((size, name)) => (size, name.parse().ok()?),
-        None => (said, Quality::unsaid()),
+    let (size, imaging) = match said.split_once(' ') {
+        Some((size, imaging)) => (size, imaging.parse().ok()?),
+        None => (said, Imaging::unsaid()),
     };
     let (width, height) = size.split_once('x')?;
     let side = |text: &str| text.parse().ok().filter(|pixels| (1..=8192).contains(pixels));
-    Some(Camera::driver(side(width)?, side(height)?).at(quality))
+    Some(Camera::driver(side(width)?, side(height)?).at(imaging))
 }
 
 #[cfg(test)]
 mod tests {
+    use render::Quality;
+
     use super::*;
     use crate::vision::camera_text;
 
     #[test]
-    fn a_camera_has_a_size_and_a_quality() {
+    fn a_camera_has_a_size_a_quality_and_a_sensor() {
         for quality in Quality::ALL {
-            let camera = Camera::driver(256, 128).at(quality);
-            assert_eq!(camera_of(&camera_text(&camera)), Some(camera));
+            for sensor in ["noise=0", "exposure_ev=-1,noise=4", "k1=-0.3,k2=0.1,motion_blur_s=0.01,vignetting=1"] {
+                let sensor = sensor.parse().expect("a sensor");
+                let camera = Camera::driver(256, 128).at(Imaging { quality, sensor });
+                assert_eq!(camera_of(&camera_text(&camera)), Some(camera));
+            }
         }
+        let noisy = Camera::driver(64, 32).at("plain noise=4".parse::<Imaging>().expect("an imaging"));
+        assert_eq!(camera_text(&noisy), "driver 64x32 plain noise=4");
+        assert_eq!(camera_text(&Camera::driver(64, 32)), "driver 64x32");
+        assert_eq!(camera_text(&Camera::driver(64, 32).at(Quality::Fine)), "driver 64x32 fine");
         assert_eq!(camera_of("driver 64x32"), Some(Camera::driver(64, 32)), "as it was before there were qualities");
-        let wrong = ["", "driver", "driver 256", "driver 0x128", "driver 256x128x3", "roof 256x128", "driver 2x1 best"];
+        let wrong = [
+            "",
+            "driver",
+            "driver 256",
+            "driver 0x128",
+            "driver 256x128x3",
+            "roof 256x128",
+            "driver 2x1 best",
+            "driver 2x1 noise=4",
+            "driver 2x1 plain noise=-1",
+        ];
         wrong.iter().for_each(|wrong| assert_eq!(camera_of(wrong), None, "{wrong}"));
     }
 

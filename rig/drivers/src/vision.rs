@@ -9,7 +9,7 @@ use base::failure::Usage;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
 use kernel::{SceneSnapshot, World};
 use perception::{BUNDLED, Checkpoint, Compute, Mask, RgbView, Segmenter};
-use render::{AdapterChoice, Camera, Frame, Quality, RenderError, Renderer};
+use render::{AdapterChoice, Camera, Frame, Imaging, RenderError, Renderer};
 use replay::{MaskShown, Provenance};
 
 use crate::MaskView;
@@ -35,8 +35,8 @@ pub enum Eye {
         checkpoint: Box<Checkpoint>,
         /// Itself, ready for its size.
         segmenter: Box<Segmenter>,
-        /// Of the pictures it looks at.
-        quality: Quality,
+        /// How the pictures are made that it looks at.
+        imaging: Imaging,
     },
     /// A function of whoever uses these libraries.
     External(External),
@@ -66,15 +66,16 @@ impl Eye {
         let own = || checkpoint.input_size().unwrap_or((DEFAULT_SIZE.0 as usize, DEFAULT_SIZE.1 as usize));
         let (width, height) = size.map_or_else(own, |(width, height)| (width as usize, height as usize));
         let segmenter = Box::new(Segmenter::on(compute, &checkpoint, width, height)?);
-        Ok(Self::Network { checkpoint, segmenter, quality: Quality::default() })
+        Ok(Self::Network { checkpoint, segmenter, imaging: Imaging::default() })
     }
 
-    /// The same for pictures of another quality; truth is the same in all of them.
-    pub fn at(self, quality: Quality) -> Self {
+    /// The same for pictures that are made otherwise; truth is the same in all of them, and sees through no lens.
+    pub fn at(self, imaging: impl Into<Imaging>) -> Self {
+        let imaging = imaging.into();
         match self {
             Self::Truth => Self::Truth,
-            Self::Network { checkpoint, segmenter, .. } => Self::Network { checkpoint, segmenter, quality },
-            Self::External(external) => Self::External(external.of_quality(quality)),
+            Self::Network { checkpoint, segmenter, .. } => Self::Network { checkpoint, segmenter, imaging },
+            Self::External(external) => Self::External(external.of_imaging(imaging)),
         }
     }
 
@@ -113,19 +114,19 @@ impl Eye {
         }
     }
 
-    /// How good the pictures are that it looks at.
-    pub fn quality(&self) -> Quality {
+    /// How the pictures are made that it looks at.
+    pub fn imaging(&self) -> Imaging {
         match self {
-            Self::Truth => Quality::default(),
-            Self::Network { quality, .. } => *quality,
-            Self::External(external) => external.quality(),
+            Self::Truth => Imaging::default(),
+            Self::Network { imaging, .. } => *imaging,
+            Self::External(external) => external.imaging(),
         }
     }
 
     /// The driver's camera, which takes those pictures.
     pub fn camera(&self) -> Camera {
         let (width, height) = self.size();
-        Camera::driver(width, height).at(self.quality())
+        Camera::driver(width, height).at(self.imaging())
     }
 
     /// Whether it looks at colours.
@@ -184,7 +185,7 @@ const OF_EYE: [&str; 4] = ["checkpoint", "checkpoint_digest", EXTERNAL, "inferen
 pub(crate) const EXTERNAL: &str = "external";
 
 /// What recordings say about how their masks came about: through which checkpoint, computed by what,
-/// from pictures of which size and quality, drawn by which adapter with which driver.
+/// from pictures of which size and kind, drawn by which adapter with which driver.
 pub fn provenance(eye: &Eye, camera: &Camera) -> Provenance {
     let which = match eye {
         Eye::External(external) => (EXTERNAL, external.version().to_owned()),
@@ -198,11 +199,12 @@ pub fn provenance(eye: &Eye, camera: &Camera) -> Provenance {
     entries.into_iter().chain(inference).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-/// A driver's camera in words, as in `driver 256x128 standard`. Nothing is said of pictures that are plain.
+/// A driver's camera in words, as in `driver 256x128 standard` or `driver 256x128 plain noise=4`. Nothing is said of pictures that
+/// are plain, and of an ideal sensor.
 pub fn camera_text(camera: &Camera) -> String {
-    let Camera { width, height, quality, .. } = camera;
-    let size = format!("driver {width}x{height}");
-    if *quality == Quality::unsaid() { size } else { format!("{size} {}", quality.name()) }
+    let Camera { width, height, .. } = camera;
+    let (size, imaging) = (format!("driver {width}x{height}"), camera.imaging());
+    if imaging == Imaging::unsaid() { size } else { format!("{size} {imaging}") }
 }
 
 /// Says in a recording's provenance that from now on this eye looks, and no longer the one that did.

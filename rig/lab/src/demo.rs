@@ -13,7 +13,7 @@ use base::progress::Interrupt;
 use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
-use render::{AdapterChoice, Quality};
+use render::{AdapterChoice, Imaging};
 use serde::Serialize;
 
 use crate::campaign::{self, CampaignFigures, Until};
@@ -129,7 +129,7 @@ fn campaign_options(
         pedestrians: None,
         hazards: None,
         weather: None,
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         run_seconds: RUN_SECONDS,
         seed: options.seed,
         jobs: options.jobs,
@@ -142,8 +142,8 @@ fn rerender_options(options: &Options, cases: &[PathBuf], checkpoint: &[Checkpoi
     let out = options.out.join("rerendered");
     let (last, fps) = (CLIP_TICKS, CLIP_FPS);
     let (files, checkpoint) = (cases.to_vec(), checkpoint.to_vec());
-    let quality = Quality::default();
-    rerender::Options { files, checkpoint, last, fps, size: None, quality, jobs: options.jobs, out }
+    let imaging = Imaging::default();
+    rerender::Options { files, checkpoint, last, fps, size: None, imaging, cameras: None, jobs: options.jobs, out }
 }
 
 /// Recordings and cases of a campaign.

@@ -17,7 +17,7 @@ use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use kernel::weather::{Weather, WeatherPreset};
 use kernel::{RoadNetwork, Scenario};
-use render::Quality;
+use render::{Imaging, Quality, Sensor};
 use serde::Serialize;
 
 use super::looks::Size;
@@ -40,8 +40,8 @@ pub struct Options {
     pub camera: Viewpoint,
     /// Width and height, pixels.
     pub size: Size,
-    /// How good they are.
-    pub quality: Quality,
+    /// How they are made.
+    pub imaging: Imaging,
     /// The folder they go to.
     pub out: PathBuf,
 }
@@ -63,6 +63,9 @@ pub struct Gallery {
     pub size_px: [u32; 2],
     /// How good they are.
     pub quality: Quality,
+    /// What lens and chip do to them; left out where they are ideal.
+    #[serde(skip_serializing_if = "Sensor::is_ideal")]
+    pub sensor: Sensor,
     /// A picture of each map in each light.
     pub pictures: Vec<Picture>,
 }
@@ -124,7 +127,7 @@ pub fn gallery(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Galle
             let scenario = Scenario { weather: *weather, ..scenario };
             let (scene, mut renderer) = still::of_run(&setting.map, &scenario, options.tick, interrupt)
                 .with_context(|| format!("{} at {}", picture.map, picture.light))?;
-            let frame = renderer.draw(&scene, &options.camera.camera(options.size).at(options.quality))?;
+            let frame = renderer.draw(&scene, &options.camera.camera(options.size).at(options.imaging))?;
             output::write_file(&path, &png::rgb(options.size, &frame.rgb)?)?;
         }
         bar.inc(1);
@@ -148,7 +151,8 @@ fn of(options: &Options, settings: &[Setting], lights: [&'static str; 5]) -> Gal
         tick: options.tick,
         camera: options.camera.name().to_owned(),
         size_px: [width, height],
-        quality: options.quality,
+        quality: options.imaging.quality,
+        sensor: options.imaging.sensor,
         pictures: maps.flat_map(|map| lights.map(|light| picture(map, light))).collect(),
     }
 }

@@ -1,6 +1,7 @@
 //! The offline lab: simulated campaigns, and pictures, datasets, checkpoints, comparisons and reports made
 //! from recordings. Options come as plain structs, results say themselves as JSON and as text.
 
+pub mod cameras;
 pub mod campaign;
 pub mod cases;
 pub mod cityscapes;

@@ -7,7 +7,7 @@ use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{RoadNetwork, SceneSnapshot};
 use perception::Mask;
-use render::{AdapterChoice, Camera, Frame, Quality, Renderer};
+use render::{AdapterChoice, Camera, Frame, Imaging, Renderer};
 
 /// The eyes that a command line asks for, and the size of the pictures that they all look at: the one that is
 /// asked for, else that which the first network takes. Others see those pictures resampled.
@@ -39,9 +39,9 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// For pictures of one size and quality.
-    pub fn new((width, height): (u32, u32), quality: Quality) -> Self {
-        Self { camera: Camera::driver(width, height).at(quality), renderers: BTreeMap::new() }
+    /// For pictures of one size, made in one way.
+    pub fn new((width, height): (u32, u32), imaging: Imaging) -> Self {
+        Self { camera: Camera::driver(width, height).at(imaging), renderers: BTreeMap::new() }
     }
 
     /// The driver's camera.

@@ -12,7 +12,7 @@ use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use kernel::{RoadNetwork, SceneSnapshot};
 use measures::footage::{Asked, Window, scenes};
-use render::{AdapterChoice, Camera, Frame, Quality, Renderer};
+use render::{AdapterChoice, Camera, Frame, Imaging, Renderer};
 use replay::{Log, Manifest, Recording};
 
 use super::looks::Size;
@@ -161,9 +161,14 @@ impl Shots {
         Ok(Self { stage: stage.clone(), camera: viewpoint.camera(size), ticks, scenes })
     }
 
-    /// The same at another quality.
-    pub fn at(self, quality: Quality) -> Self {
-        Self { camera: self.camera.at(quality), ..self }
+    /// What another camera sees.
+    pub fn through(self, camera: Camera) -> Self {
+        Self { camera, ..self }
+    }
+
+    /// The same, made otherwise.
+    pub fn at(self, imaging: impl Into<Imaging>) -> Self {
+        Self { camera: self.camera.at(imaging), ..self }
     }
 
     /// Their ticks.

@@ -9,7 +9,7 @@ use base::library::Entry;
 use base::output::{self, OutputFolder};
 use drivers::vision::Eye;
 use kernel::time::Tick;
-use render::Quality;
+use render::Imaging;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
@@ -27,7 +27,7 @@ pub struct Key {
     pub fps: u32,
     /// Width and height of the pictures, pixels.
     pub size: (u32, u32),
-    /// How good the pictures are.
+    /// How good the pictures are, and what lens and chip do to them.
     pub quality: String,
     /// Version of the program, hence of the measures.
     pub program: String,
@@ -47,14 +47,14 @@ pub struct Settings {
     last_ticks: Tick,
     fps: u32,
     size: (u32, u32),
-    quality: Quality,
+    imaging: Imaging,
     machine: Machine,
 }
 
 impl Settings {
-    /// For windows of so many ticks at so many frames a second, drawn in one size and quality on this machine.
-    pub fn new(last_ticks: Tick, fps: u32, size: (u32, u32), quality: Quality) -> Self {
-        Self { last_ticks, fps, size, quality, machine: Machine::this() }
+    /// For windows of so many ticks at so many frames a second, made in one size and way on this machine.
+    pub fn new(last_ticks: Tick, fps: u32, size: (u32, u32), imaging: Imaging) -> Self {
+        Self { last_ticks, fps, size, imaging, machine: Machine::this() }
     }
 
     /// The key of what is found out about a file, by an eye or without any.
@@ -64,7 +64,7 @@ impl Settings {
             last_ticks: self.last_ticks,
             fps: self.fps,
             size: self.size,
-            quality: self.quality.name().into(),
+            quality: self.imaging.to_string(),
             program: env!("CARGO_PKG_VERSION").into(),
             kernel: kernel::identity(),
             renderer: render::identity(),

@@ -5,7 +5,7 @@ use drivers::checkpoint::{CheckpointChoice, check_names};
 use drivers::vision::{self, DEFAULT_SIZE, Eye};
 use kernel::rng::{self, Stream};
 use perception::{Compute, Mask};
-use render::{Camera, Frame, Quality};
+use render::{Camera, Frame, Imaging};
 use replay::Provenance;
 
 use crate::Study;
@@ -55,13 +55,13 @@ pub struct Lineup {
 }
 
 impl Lineup {
-    /// Opens the candidates of a blind session, or else the one checkpoint. All of them look at pictures of one quality and
+    /// Opens the candidates of a blind session, or else the one checkpoint. All of them look at pictures that are made alike and
     /// of one size, so that it gives nothing away: the one asked for, or else that of the first. All of
     /// them are computed by the same.
     pub fn open(
         study: &Study,
         checkpoint: &CheckpointChoice,
-        (size, quality): (Option<(u32, u32)>, Quality),
+        (size, imaging): (Option<(u32, u32)>, Imaging),
         compute: Compute,
         seed: u64,
     ) -> anyhow::Result<Self> {
@@ -73,11 +73,11 @@ impl Lineup {
         let first = Eye::open_on(compute, first, wanted)?;
         let size = wanted.unwrap_or(first.size());
         let others = others.iter().map(|choice| Eye::open_on(compute, choice, Some(size)));
-        let eyes = std::iter::once(Ok(first)).chain(others).map(|eye| Ok(eye?.at(quality)));
+        let eyes = std::iter::once(Ok(first)).chain(others).map(|eye| Ok(eye?.at(imaging)));
         let eyes = eyes.collect::<anyhow::Result<Vec<_>>>()?;
-        // Truth is the same at every quality.
-        let quality = if eyes.iter().any(Eye::needs_colours) { quality } else { Quality::default() };
-        let camera = Camera::driver(size.0, size.1).at(quality);
+        // Truth is the same however pictures are made.
+        let imaging = if eyes.iter().any(Eye::needs_colours) { imaging } else { Imaging::default() };
+        let camera = Camera::driver(size.0, size.1).at(imaging);
         let cast = Cast { seed, public_name: public_name(&eyes), provenances: provenances(&eyes, &camera) };
         Ok(Self { eyes, camera, cast })
     }
@@ -150,9 +150,14 @@ mod tests {
     fn candidates_differ_in_nothing_that_is_shown() {
         let study =
             Study { blind: vec![CheckpointChoice::Truth, CheckpointChoice::Bundled("early")], ..Default::default() };
-        let lineup =
-            Lineup::open(&study, &CheckpointChoice::Truth, (Some((64, 32)), Quality::Standard), Compute::Cpu, 3)
-                .expect("bundled");
+        let lineup = Lineup::open(
+            &study,
+            &CheckpointChoice::Truth,
+            (Some((64, 32)), render::Quality::Standard.into()),
+            Compute::Cpu,
+            3,
+        )
+        .expect("bundled");
         let cast = lineup.cast();
         assert_eq!((cast.public_name(), lineup.camera().width), ("blind, one of 2", 64));
         for eye in &lineup.eyes {

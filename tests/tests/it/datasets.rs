@@ -14,7 +14,7 @@ use kernel::weather::WeatherPreset;
 use lab::dataset::{FrameLine, Manifest, Part, cases, mix, natural, rebuild};
 use lab::redrive::{Counterfactual, Need};
 use perception::training::Split;
-use render::{AdapterChoice, Quality, Renderer};
+use render::{AdapterChoice, Imaging, Renderer};
 use replay::{Annotation, Case, Label, Recording};
 use tests::files::contents;
 use tests::recordings::{TAKEOVER, recorded, recorded_in};
@@ -28,7 +28,7 @@ fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
         frames: 2,
         test_frames: 1,
         size: (64, 32),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         maps: vec!["rural".into(), "city".into()],
         pedestrians: Some(20),
         weather: Vec::new(),
@@ -46,7 +46,7 @@ fn cases_args(files: &[&Path], out: PathBuf) -> cases::Options {
         verdict: Vec::new(),
         split: "train".into(),
         size: (64, 32),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         jobs: None,
         out,
     }

@@ -3,12 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use aeye::cli::{InspectArgs, RerenderArgs};
+use aeye::cli::{ImagingArgs, InspectArgs, RerenderArgs};
 use aeye::commands::{inspect, rerender};
 use aeye::exit::{self, Verdict};
 use drivers::checkpoint::CheckpointChoice;
 use lab::report;
-use render::Quality;
 use replay::Recording;
 use tests::files::contents;
 use tests::recordings::{ALONE, TAKEOVER, record, recorded, recorded_in};
@@ -22,7 +21,8 @@ fn rerender_args(file: &Path, out: PathBuf) -> RerenderArgs {
         last: 180,
         fps: 10,
         size: Some((128, 64)),
-        quality: Quality::default(),
+        imaging: ImagingArgs::default(),
+        cameras: None,
         jobs: None,
         shard: None,
         out,

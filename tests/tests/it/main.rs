@@ -38,6 +38,7 @@ mod rig_pipeline;
 mod rig_redrive;
 mod rig_rerender;
 mod rig_ros2;
+mod rig_sensor;
 mod rig_shards;
 mod rig_sight;
 mod rig_statistics;

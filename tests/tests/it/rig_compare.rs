@@ -4,13 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use aeye::cli::CompareArgs;
+use aeye::cli::{CompareArgs, ImagingArgs};
 use aeye::commands::compare;
 use aeye::exit::{self, Verdict};
 use base::failure::sentence;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::events::EventKind;
-use render::{AdapterChoice, Camera, Quality, Renderer};
+use render::{AdapterChoice, Camera, Renderer};
 use replay::{Case, Recording};
 use serde_json::Value;
 use tests::files::contents;
@@ -49,7 +49,7 @@ fn args(files: &[&Path], checkpoint: &[CheckpointChoice], out: &Path) -> Compare
         gate: vec![],
         no_worse_than: None,
         size: Some(SIZE),
-        quality: Quality::default(),
+        imaging: ImagingArgs::default(),
         jobs: Some(2),
         shard: None,
         out: out.to_owned(),

@@ -8,7 +8,7 @@ use base::failure::sentence;
 use base::progress::Interrupt;
 use drivers::film::Viewpoint;
 use lab::export;
-use render::Quality;
+use render::Imaging;
 use replay::Recording;
 use tests::command::aeye;
 use tests::files::contents;
@@ -129,7 +129,7 @@ fn an_export_that_is_interrupted_leaves_no_empty_folder() {
         to: None,
         fps: 10,
         size: Some((16, 8)),
-        quality: Quality::default(),
+        imaging: Imaging::default(),
         jobs: None,
         out: out.clone(),
     };

@@ -9,7 +9,7 @@ use base::progress::Interrupt;
 use drivers::vision::Eye;
 use lab::pipeline::{OpenFile, Pipeline, Studios, Work};
 use measures::footage::Footage;
-use render::{Frame, Quality};
+use render::{Frame, Imaging};
 use tests::recordings::recorded;
 
 /// Looks at one file and panics at a frame, or at each.
@@ -39,7 +39,7 @@ impl Work for Broken {
 /// Whether the work ends by a panic.
 fn panics(work: &Broken, jobs: usize) -> bool {
     let interrupt = Interrupt::default();
-    let (size, studios) = ((16, 8), Studios::new(Quality::default()));
+    let (size, studios) = ((16, 8), Studios::new(Imaging::default()));
     let pipeline = Pipeline { work, files: &[0], size, eyes: &[], jobs, interrupt: &interrupt, studios };
     thread::scope(|scope| scope.spawn(|| pipeline.run()).join().is_err())
 }

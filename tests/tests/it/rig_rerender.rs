@@ -5,12 +5,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use aeye::cli::RerenderArgs;
+use aeye::cli::{ImagingArgs, RerenderArgs};
 use aeye::commands::rerender;
 use aeye::exit::Verdict;
 use base::failure::sentence;
 use drivers::checkpoint::CheckpointChoice;
-use render::Quality;
 use replay::Recording;
 use tests::files::contents;
 use tests::recordings::recorded_in;
@@ -36,7 +35,8 @@ fn args(files: &[&Path], checkpoint: &[CheckpointChoice], jobs: u16, out: &Path)
         last: 60,
         fps: 10,
         size: Some((128, 64)),
-        quality: Quality::default(),
+        imaging: ImagingArgs::default(),
+        cameras: None,
         jobs: Some(jobs),
         shard: None,
         out,

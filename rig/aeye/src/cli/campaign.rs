@@ -8,9 +8,8 @@ use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
 use lab::share::Share;
-use render::Quality;
 
-use super::values::{CHECKPOINTS, MAPS, QUALITY, file, hazards, jobs, people, preset, quality, seconds, weather};
+use super::values::{CHECKPOINTS, ImagingArgs, MAPS, file, hazards, jobs, people, preset, seconds, weather};
 
 /// What says when a campaign is over, or that there is none.
 const ENDS: [&str; 7] = ["runs", "vary", "km", "cases", "pedestrian_cases", "print_scenario", "collect"];
@@ -86,9 +85,9 @@ pub struct CampaignArgs {
     /// one that is drawn for each run.
     #[arg(long, value_parser = weather(), value_name = "NAME")]
     pub weather: Option<WeatherPreset>,
-    /// How good the pictures are that networks look at: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Longest simulated time of a run, 10s to 24h.
     #[arg(long = "max-time", default_value = "4m", value_parser = seconds(10..=86_400), value_name = "DURATION")]
     pub run_seconds: u32,

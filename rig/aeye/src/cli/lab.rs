@@ -13,12 +13,12 @@ use lab::export::Format;
 use lab::redrive::Need;
 use lab::share::Share;
 use lab::still::{LAYERS, Layer};
-use render::Quality;
+use render::{Quality, Sensor};
 
 use super::library::verdict;
 use super::values::{
-    CHECKPOINT, CHECKPOINTS, QUALITY, duration, file, frame_rate, jobs, moment, one_checkpoint, people, quality,
-    seconds, size, weather,
+    CHECKPOINT, CHECKPOINTS, ImagingArgs, SENSOR, duration, file, frame_rate, jobs, moment, one_checkpoint, people,
+    quality, seconds, size, weather,
 };
 
 /// Arguments of `rerender`.
@@ -41,9 +41,12 @@ pub struct RerenderArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
+    /// A file with cameras that see the windows, too (as of `render`): colour and labels in `OUT/FILE/cameras/NAME`.
+    #[arg(long, value_name = "FILE.toml")]
+    pub cameras: Option<PathBuf>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -85,17 +88,21 @@ pub struct RenderArgs {
     /// From where: as both drivers see, from behind the car, or from above, north up.
     #[arg(long, default_value = "driver", value_name = "driver|chase|top")]
     pub camera: Viewpoint,
+    /// Instead of that, through each camera of a file: `[[cameras]]` with name, x_m, y_m, z_m, yaw_rad, pitch_rad, fov_x_rad,
+    /// width, height, quality and sensor. Their pictures go to the folder `--out`.
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "camera")]
+    pub cameras: Option<PathBuf>,
     /// What of the picture: colour, classes in the colours of their tags, instances, or depth in parts of 1/256 m.
     #[arg(long, default_value = "rgb", value_name = LAYERS)]
     pub layer: Layer,
     /// Size of the picture.
     #[arg(long, default_value = "1280x640", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
-    /// Where it goes; a file that is there stays.
-    #[arg(long, value_name = "FILE.png")]
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
+    /// Where it goes; a file that is there stays. With `--cameras` a new folder, with a file for each.
+    #[arg(long, value_name = "FILE.png|DIR")]
     pub out: PathBuf,
 }
 
@@ -120,6 +127,9 @@ pub struct GalleryArgs {
     /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
     #[arg(long, default_value = "fine", value_parser = quality(), value_name = "NAME")]
     pub quality: Quality,
+    /// What lens and chip do to the pictures, as in `exposure_ev=-1,noise=4` (default: nothing).
+    #[arg(long, value_name = SENSOR)]
+    pub sensor: Option<Sensor>,
     /// Folder they go to; a gallery of the same options there is gone on with.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -159,9 +169,9 @@ pub struct ExportArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -197,9 +207,9 @@ pub struct CompareArgs {
     /// networks see them resampled.
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub size: Option<(u32, u32)>,
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,

@@ -7,11 +7,10 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::weather::WeatherPreset;
 use lab::redrive::Need;
 use lab::share::Share;
-use render::Quality;
 use replay::Label;
 
 use super::library::verdict;
-use super::values::{CHECKPOINT, MAPS, QUALITY, file, jobs, one_checkpoint, people, quality, rate, size, weather};
+use super::values::{CHECKPOINT, ImagingArgs, MAPS, file, jobs, one_checkpoint, people, rate, size, weather};
 
 /// The datasets that can be made.
 #[derive(Debug, Subcommand)]
@@ -44,9 +43,9 @@ pub struct CasesArgs {
     /// Size of the pictures.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Cases drawn at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -119,9 +118,9 @@ pub struct NaturalArgs {
     /// Size of the pictures.
     #[arg(long, default_value = "256x128", value_parser = size, value_name = "WxH")]
     pub size: (u32, u32),
-    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
     #[arg(long, value_delimiter = ',', default_value = "all", value_name = MAPS)]
     pub maps: Vec<String>,

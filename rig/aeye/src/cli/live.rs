@@ -10,13 +10,12 @@ use drivers::seat::SeatChoice;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
 use perception::Compute;
-use render::Quality;
 use study::{Pseudonym, Study};
 use viewers::server::{self, Endpoint};
 
 use super::values::{
-    CHECKPOINT, CHECKPOINTS, QUALITY, file, force, hazards, new_recording, one_checkpoint, quality, screens, seconds,
-    size, threshold, weather,
+    CHECKPOINT, CHECKPOINTS, ImagingArgs, file, force, hazards, new_recording, one_checkpoint, screens, seconds, size,
+    threshold, weather,
 };
 
 /// Arguments of `drive`.
@@ -118,9 +117,9 @@ pub struct PictureArgs {
     /// Size of the semantic driver's mask (default: the checkpoint's own, 256x128).
     #[arg(long, value_parser = size, value_name = "WxH")]
     pub mask_size: Option<(u32, u32)>,
-    /// How good the pictures are that networks look at: fast, with smooth edges, or the best (for GPUs).
-    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
-    pub quality: Quality,
+    /// How the pictures are made.
+    #[command(flatten)]
+    pub imaging: ImagingArgs,
     /// What computes the networks: one core of the CPU, or an NVIDIA GPU with the libraries of CUDA 13 and
     /// cuDNN, if it sees in a picture what the CPU sees.
     #[arg(long, default_value = "cpu", value_name = "cpu|cuda")]
@@ -135,8 +134,8 @@ const IMAGE_SIZE: &str = "640x360";
 
 impl From<&PictureArgs> for Pictures {
     fn from(args: &PictureArgs) -> Self {
-        let PictureArgs { image_size, mask_size, quality, inference, screens } = *args;
-        Self { image_size, mask_size, quality, inference, screens }
+        let PictureArgs { image_size, mask_size, imaging, inference, screens } = *args;
+        Self { image_size, mask_size, imaging: imaging.into(), inference, screens }
     }
 }
 

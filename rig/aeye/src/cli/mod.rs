@@ -22,6 +22,7 @@ pub use live::{
 pub use maps::{MapCommand, MapDrawArgs, MapInspectArgs};
 pub use recordings::{InspectArgs, QuestionnaireArgs, StatisticsArgs, VerifyArgs};
 pub use shell::{CompletionsArgs, ManArgs};
+pub use values::ImagingArgs;
 
 /// Drive by the eyes of a network, record every tick, and learn from every takeover.
 ///

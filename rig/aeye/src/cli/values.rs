@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use base::{asked, library};
+use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::Screens;
@@ -11,7 +12,7 @@ use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
-use render::Quality;
+use render::{Imaging, Quality, Sensor};
 
 /// What stands for a checkpoint in help.
 pub const CHECKPOINT: &str = "early|full|truth|FILE.onnx";
@@ -68,6 +69,27 @@ pub const QUALITY: &str = "plain";
 /// A quality of pictures by its name.
 pub fn quality() -> impl TypedValueParser<Value = Quality> {
     PossibleValuesParser::new(Quality::ALL.map(Quality::name)).try_map(|name| name.parse::<Quality>())
+}
+
+/// What stands for a sensor in help.
+pub const SENSOR: &str = "SETTING=VALUE,...";
+
+/// How pictures are made. In drives, it is the pictures that networks look at.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct ImagingArgs {
+    /// How good the pictures are: fast, with smooth edges, or the best (for GPUs).
+    #[arg(long, default_value = QUALITY, value_parser = quality(), value_name = "NAME")]
+    pub quality: Quality,
+    /// What lens and chip do to the pictures, as in `exposure_ev=-1,noise=4`; settings are exposure_ev, noise, k1, k2,
+    /// motion_blur_s and vignetting (default: nothing).
+    #[arg(long, value_name = SENSOR)]
+    pub sensor: Option<Sensor>,
+}
+
+impl From<ImagingArgs> for Imaging {
+    fn from(args: ImagingArgs) -> Self {
+        Self { quality: args.quality, sensor: args.sensor.unwrap_or_default() }
+    }
 }
 
 /// A weather with a name.

@@ -11,8 +11,8 @@ use crate::print;
 
 /// Runs `aeye compare`; says which gates were not passed.
 pub fn run(args: &CompareArgs, json: bool) -> anyhow::Result<Verdict> {
-    let CompareArgs { files, verdict, checkpoint, gate, no_worse_than, size, quality, jobs, shard, out } = args.clone();
-    let options = Options { files, verdict, checkpoint, gate, no_worse_than, size, quality, jobs, out };
+    let CompareArgs { files, verdict, checkpoint, gate, no_worse_than, size, imaging, jobs, shard, out } = args.clone();
+    let options = Options { files, verdict, checkpoint, gate, no_worse_than, size, imaging: imaging.into(), jobs, out };
     let interrupt = Interrupt::listen();
     if let Some(share) = shard {
         return super::share(json, &compare_shard(&options, share, &interrupt)?);

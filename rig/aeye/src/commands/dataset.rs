@@ -16,7 +16,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         frames,
         test_frames,
         size,
-        quality,
+        imaging,
         maps,
         pedestrians,
         weather,
@@ -32,7 +32,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         frames,
         test_frames,
         size,
-        quality,
+        imaging: imaging.into(),
         maps,
         pedestrians,
         weather,
@@ -51,8 +51,8 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
 
 /// Runs `aeye dataset cases`.
 pub fn cases(args: &CasesArgs, json: bool) -> anyhow::Result<Verdict> {
-    let CasesArgs { files, label, verdict, split, size, quality, jobs, out } = args.clone();
-    let options = cases::Options { files, label, verdict, split, size, quality, jobs, out };
+    let CasesArgs { files, label, verdict, split, size, imaging, jobs, out } = args.clone();
+    let options = cases::Options { files, label, verdict, split, size, imaging: imaging.into(), jobs, out };
     let manifest = cases::make(&options, &Interrupt::listen())?;
     print(json, &manifest, || manifest.sentence(&options.out))?;
     Ok(Verdict::Ok)

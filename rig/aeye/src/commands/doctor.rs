@@ -9,7 +9,7 @@ use base::maps::Map;
 use drivers::vision::{DEFAULT_SIZE, Eye};
 use kernel::{TickInput, World};
 use perception::Compute;
-use render::{AdapterChoice, Camera, Renderer};
+use render::{AdapterChoice, Camera, Imaging, Renderer};
 use serde::Serialize;
 
 use super::windows::{self, LiveFigures};
@@ -124,7 +124,7 @@ fn measure(args: &DoctorArgs, findings: &mut Findings) -> anyhow::Result<()> {
     let mut renderer = Renderer::new(&map.network, &AdapterChoice::default())?;
     let seen = args.pictures.mask_size.unwrap_or(DEFAULT_SIZE);
     let ((width, height), image) = (seen, args.pictures.image_size);
-    let small = Camera::driver(width, height).at(args.pictures.quality);
+    let small = Camera::driver(width, height).at(Imaging::from(args.pictures.imaging));
     let mut cameras = vec![small, Camera::driver(image.0, image.1).at(renderer.quality_for_people())];
     cameras.dedup();
     for camera in cameras {

@@ -124,7 +124,7 @@ fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> any
     let study = Study::from(&args.study);
     let about = study.provenance()?;
     let mut lineup =
-        Lineup::open(&study, &args.checkpoint, (None, args.pictures.quality), Compute::Cpu, scenario.seed)?;
+        Lineup::open(&study, &args.checkpoint, (None, args.pictures.imaging.into()), Compute::Cpu, scenario.seed)?;
     let eye = lineup.of_run(1).clone();
     let mut manifest = simulate::manifest(scenario, map, &eye);
     manifest.provenance.extend(lineup.cast().provenance_of_run(1).clone());

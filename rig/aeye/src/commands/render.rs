@@ -10,9 +10,11 @@ use crate::print;
 
 /// Runs `aeye render`.
 pub fn run(args: &RenderArgs, json: bool) -> anyhow::Result<Verdict> {
-    let RenderArgs { at: tick, camera, layer, size, quality, out, .. } = args.clone();
-    let options = Options { subject: subject(args)?, tick, camera, layer, size, quality, out };
-    print::result(json, &render(&options, &Interrupt::listen())?)?;
+    let RenderArgs { at: tick, camera, cameras, layer, size, imaging, out, .. } = args.clone();
+    let options = Options { subject: subject(args)?, tick, camera, cameras, layer, size, imaging: imaging.into(), out };
+    for still in render(&options, &Interrupt::listen())? {
+        print::result(json, &still)?;
+    }
     Ok(Verdict::Ok)
 }
 

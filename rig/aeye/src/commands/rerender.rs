@@ -10,8 +10,8 @@ use crate::print;
 
 /// Runs `aeye rerender`.
 pub fn run(args: &RerenderArgs, json: bool) -> anyhow::Result<Verdict> {
-    let RerenderArgs { files, checkpoint, last, fps, size, quality, jobs, shard, out } = args.clone();
-    let options = Options { files, checkpoint, last, fps, size, quality, jobs, out };
+    let RerenderArgs { files, checkpoint, last, fps, size, imaging, cameras, jobs, shard, out } = args.clone();
+    let options = Options { files, checkpoint, last, fps, size, imaging: imaging.into(), cameras, jobs, out };
     let interrupt = Interrupt::listen();
     if let Some(share) = shard {
         return super::share(json, &rerender_shard(&options, share, &interrupt)?);

@@ -49,7 +49,7 @@ pub fn drive_shard(options: &Options, share: Share, interrupt: &Interrupt) -> an
 pub(super) fn open(options: &Options) -> anyhow::Result<(Plan, Vec<Eye>)> {
     check_names(&options.checkpoint)?;
     let plan = plan(options)?;
-    let eyes = options.checkpoint.iter().map(|choice| Ok(Eye::open(choice)?.at(options.quality)));
+    let eyes = options.checkpoint.iter().map(|choice| Ok(Eye::open(choice)?.at(options.imaging)));
     let eyes = eyes.collect::<anyhow::Result<Vec<_>>>()?;
     AdapterChoice::default().find()?;
     Ok((plan, eyes))

@@ -8,7 +8,7 @@ use base::scenario_file::ScenarioFile;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
-use render::Quality;
+use render::Imaging;
 
 use super::plan::{Plan, seed_of};
 use super::until::{Goal, Until};
@@ -35,7 +35,7 @@ pub struct Options {
     /// Weather, if not as the scenario or the map's default says.
     pub weather: Option<WeatherPreset>,
     /// How good the pictures are that networks look at.
-    pub quality: Quality,
+    pub imaging: Imaging,
     /// Longest simulated time of a run, seconds.
     pub run_seconds: u32,
     /// Seed of the campaign; run `i` follows from it and `i` alone.

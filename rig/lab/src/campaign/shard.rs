@@ -9,7 +9,7 @@ use base::json::{self, Typed};
 use base::maps::Map;
 use base::output;
 use drivers::vision::Eye;
-use render::Quality;
+use render::{Imaging, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -46,6 +46,9 @@ pub struct ShardPlan {
     /// How good the pictures are that they look at.
     #[serde(default = "Quality::unsaid")]
     pub quality: Quality,
+    /// What lens and chip do to them; left out where they are ideal.
+    #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
+    pub sensor: Sensor,
     /// Maps, in turn.
     pub maps: Vec<Named>,
     /// Whether the files of foreign maps stand in the recordings.
@@ -91,9 +94,13 @@ impl ShardPlan {
             Named { name: map.network.name.clone(), digest }
         };
         let scenario = plan.scenario.as_ref().map(|scenario| hex(blake3::hash(scenario.to_toml().as_bytes())));
+        // All of them that look at colours look at the same kind of pictures.
+        let Imaging { quality, sensor } =
+            eyes.iter().find(|eye| eye.needs_colours()).map(Eye::imaging).unwrap_or_default();
         Self {
             checkpoints: eyes.iter().map(checkpoint).collect(),
-            quality: eyes.iter().map(Eye::quality).max_by_key(|quality| *quality as u8).unwrap_or_default(),
+            quality,
+            sensor,
             maps: plan.maps.iter().map(map).collect(),
             embed_map: plan.maps.iter().filter_map(|map| map.foreign.as_ref()).any(|map| map.embedded),
             scenario,

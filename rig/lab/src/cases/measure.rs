@@ -77,7 +77,7 @@ pub fn measure(
         };
         let (work, all): (_, Vec<usize>) = (Looking { files: &files, keep, bar: &bar }, (0..files.len()).collect());
         let eyes = [eye];
-        let (size, studios) = ((camera.width, camera.height), Studios::new(camera.quality));
+        let (size, studios) = ((camera.width, camera.height), Studios::new(camera.imaging()));
         let pipeline = Pipeline { work: &work, files: &all, size, eyes: &eyes, jobs, interrupt, studios };
         let (_, unread) = pipeline.run()?;
         if interrupt.is_raised() {

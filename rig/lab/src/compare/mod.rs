@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use drivers::checkpoint::{CheckpointChoice, check_names};
 use kernel::time::{CLIP_FPS, CLIP_FRAMES, CLIP_TICKS};
-use render::{AdapterChoice, Quality};
+use render::{AdapterChoice, Imaging};
 
 use self::contest::Contest;
 pub use self::gate::Passage;
@@ -65,7 +65,7 @@ pub struct Options {
     /// Size of the pictures; none: that which the first network takes.
     pub size: Option<(u32, u32)>,
     /// How good the pictures are.
-    pub quality: Quality,
+    pub imaging: Imaging,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began is completed: what follows from the same cases,
@@ -126,12 +126,12 @@ fn look(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::
         None => found,
     };
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
-    let settings = Settings::new(CLIP_TICKS, CLIP_FPS, size, args.quality);
+    let settings = Settings::new(CLIP_TICKS, CLIP_FPS, size, args.imaging);
     let bar = progress::bar("frames", 0);
     let work = Looking { cases: &cases, eyes: &eyes, store: &store, settings: settings.clone(), bar: &bar };
     let left = work.left();
     bar.set_length(left.len() as u64 * u64::from(CLIP_FRAMES));
-    let (jobs, studios) = (jobs(args.jobs), Studios::new(args.quality));
+    let (jobs, studios) = (jobs(args.jobs), Studios::new(args.imaging));
     let pipeline = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios };
     let alone = if share.is_none() { pipeline.alone()? } else { None };
     let (pace, unread) = pipeline.run()?;

@@ -13,7 +13,7 @@ use drivers::vision;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::footage::Footage;
 use perception::cityscapes::Place;
-use render::Quality;
+use render::Imaging;
 use replay::{Label, Recording};
 
 use super::manifest::Manifest;
@@ -38,7 +38,7 @@ pub struct Options {
     /// Size of the pictures.
     pub size: (u32, u32),
     /// How good the pictures are.
-    pub quality: Quality,
+    pub imaging: Imaging,
     /// Cases drawn at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the dataset; must not exist, be empty, or hold this dataset already.
@@ -58,7 +58,8 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     }
     let found = keep_judged(found, |(path, _)| path, &args.verdict)?;
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality: args.quality, cases };
+    let Imaging { quality, sensor } = args.imaging;
+    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality, sensor, cases };
     build(&recipe, &files, &args.out, args.jobs, interrupt)
 }
 
@@ -102,7 +103,7 @@ pub(super) fn build(
         return Ok(finished);
     }
     let adapter = vision::find_adapter()?;
-    let (pending, studios) = (PendingFolder::new(out)?, Studios::new(recipe.quality));
+    let (pending, studios) = (PendingFolder::new(out)?, Studios::new(recipe.imaging()));
     let bar = progress::bar("cases", files.len() as u64);
     let draw = |scene: usize| {
         studios.with(recipe.size, |studio| {

@@ -21,7 +21,7 @@ use drivers::vision;
 use kernel::World;
 use kernel::weather::WeatherPreset;
 use perception::cityscapes::Place;
-use render::{AdapterChoice, Camera, Quality, Renderer};
+use render::{AdapterChoice, Camera, Imaging, Renderer};
 
 use super::drive::ExpertDrive;
 use super::manifest::{Manifest, PARTS};
@@ -48,7 +48,7 @@ pub struct Options {
     /// Size of the pictures.
     pub size: (u32, u32),
     /// How good the pictures are.
-    pub quality: Quality,
+    pub imaging: Imaging,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
     pub maps: Vec<String>,
     /// People on foot in each scene, instead of as many as the map's default scenario has.
@@ -181,7 +181,8 @@ impl NaturalRecipe {
             frames: args.frames,
             test_frames: args.test_frames,
             size: args.size,
-            quality: args.quality,
+            quality: args.imaging.quality,
+            sensor: args.imaging.sensor,
             pedestrians: args.pedestrians,
             weather: args.weather.iter().map(|preset| preset.name.to_owned()).collect(),
             maps: maps.iter().map(MapUsed::new).collect(),
@@ -266,7 +267,7 @@ impl Studio<'_> {
             bail!("{}: interrupted; the same command completes it", self.out.display());
         }
         let ((width, height), snapshot) = (self.recipe.size, world.scene());
-        let camera = Camera::driver(width, height).at(self.recipe.quality);
+        let camera = Camera::driver(width, height).at(self.recipe.imaging());
         let frame = self.renderer.draw(&snapshot, &camera)?;
         let map = &self.recipe.maps[scene.map].name;
         let place = Place { split: scene.split, city: map, scene: scene.number, frame: number };

@@ -48,7 +48,7 @@ pub struct FrameLine {
     /// What the corner case was labelled as.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
-    /// Which camera, and size and quality of its picture.
+    /// Which camera, size and quality of its picture, and what its sensor does.
     pub camera: String,
     /// Version of the renderer.
     pub renderer: String,

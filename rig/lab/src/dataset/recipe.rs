@@ -4,7 +4,7 @@ use base::files::{check_name, most};
 use base::maps::Map;
 use kernel::time::Tick;
 use kernel::weather::WeatherPreset;
-use render::Quality;
+use render::{Imaging, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 
 use super::provenance::Part;
@@ -57,12 +57,12 @@ impl Recipe {
         }
     }
 
-    /// How good the pictures are.
-    pub fn quality(&self) -> Quality {
+    /// How the pictures are made.
+    pub fn imaging(&self) -> Imaging {
         match self {
-            Self::Natural(recipe) => recipe.quality,
-            Self::Cases(recipe) => recipe.quality,
-            Self::Mix(recipe) => recipe.natural.quality(),
+            Self::Natural(recipe) => recipe.imaging(),
+            Self::Cases(recipe) => recipe.imaging(),
+            Self::Mix(recipe) => recipe.natural.imaging(),
         }
     }
 }
@@ -89,6 +89,9 @@ pub struct NaturalRecipe {
     /// How good the pictures are.
     #[serde(default = "Quality::unsaid")]
     pub quality: Quality,
+    /// What lens and chip do to them; left out where they are ideal.
+    #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
+    pub sensor: Sensor,
     /// People on foot, where not as many as in the map's default scenario.
     pub pedestrians: Option<u16>,
     /// The scenes' weathers by name, in turn after each round of maps; drawn by each scene's seed where there are none.
@@ -99,6 +102,11 @@ pub struct NaturalRecipe {
 }
 
 impl NaturalRecipe {
+    /// How the pictures are made.
+    pub fn imaging(&self) -> Imaging {
+        Imaging { quality: self.quality, sensor: self.sensor }
+    }
+
     /// Refuses what no drives can be made from.
     pub fn check(&self) -> Result<(), String> {
         check_size(self.size)?;
@@ -163,11 +171,19 @@ pub struct CasesRecipe {
     /// How good the pictures are.
     #[serde(default = "Quality::unsaid")]
     pub quality: Quality,
+    /// What lens and chip do to them; left out where they are ideal.
+    #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
+    pub sensor: Sensor,
     /// The cases, in the order of their scenes' numbers.
     pub cases: Vec<CaseUsed>,
 }
 
 impl CasesRecipe {
+    /// How the pictures are made.
+    pub fn imaging(&self) -> Imaging {
+        Imaging { quality: self.quality, sensor: self.sensor }
+    }
+
     fn check(&self) -> Result<(), String> {
         check_size(self.size)?;
         check_name(&self.split)?;

@@ -10,7 +10,7 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::footage::Footage;
 use perception::ConfusionMatrix;
-use render::Quality;
+use render::Imaging;
 use serde::Serialize;
 
 use crate::figures::{Figures, decimal};
@@ -41,13 +41,13 @@ struct Cell {
 pub fn shots(
     cases: &[PathBuf],
     checkpoints: &[PathBuf],
-    (size, quality): ((u32, u32), Quality),
+    (size, imaging): ((u32, u32), Imaging),
     with_truth: bool,
     seen: &mut Seen,
 ) -> anyhow::Result<Vec<Shot>> {
     let choices: Vec<_> = checkpoints.iter().cloned().map(CheckpointChoice::File).collect();
     let (mut eyes, _) = open_eyes(&choices, Some(size))?;
-    let mut studio = Studio::new(size, quality);
+    let mut studio = Studio::new(size, imaging);
     let mut shots = Vec::new();
     for path in cases.iter().take(CASES) {
         let footage = Footage::read(path, CLIP_TICKS, CLIP_FPS)?;

@@ -9,7 +9,7 @@ use base::toml_text;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::CLIP_FRAMES;
 use perception::training::TrainOptions;
-use render::Quality;
+use render::{Imaging, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 
 use crate::dataset::recipe::{MOST_IN_A_SPLIT, MOST_MAPS, check_size};
@@ -25,6 +25,9 @@ pub struct Recipe {
     /// How good the pictures are.
     #[serde(default = "Quality::unsaid")]
     pub quality: Quality,
+    /// What lens and chip do to them, as in `noise=4`; left out where they are ideal.
+    #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
+    pub sensor: Sensor,
     /// Maps, in turn.
     pub maps: Vec<String>,
     /// The initial data.
@@ -160,6 +163,11 @@ impl Preset {
 }
 
 impl Recipe {
+    /// How the pictures are made.
+    pub fn imaging(&self) -> Imaging {
+        Imaging { quality: self.quality, sensor: self.sensor }
+    }
+
     /// Reads a recipe's file.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         Self::parse(&files::read_text(path, most::TEXT)?).with_context(|| path.display().to_string())

@@ -23,7 +23,7 @@ pub fn about(
         ("ticks", format!("{} to {}", window.ticks.start(), window.ticks.end())),
         ("fps", args.fps.to_string()),
         ("size", format!("{}x{}", size.0, size.1)),
-        ("quality", args.quality.name().to_owned()),
+        ("quality", args.imaging.to_string()),
         ("checkpoints", eyes.join(", ")),
         ("adapter", drivers::vision::adapter()),
         ("program", env!("CARGO_PKG_VERSION").to_owned()),

@@ -85,7 +85,7 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
     args.format.check(args.camera, &args.checkpoint)?;
     let Places { layout, files, mut failed, folder } = places(args)?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
-    let (studios, workshop) = (Studios::new(args.quality), Arc::new(Workshop::default()));
+    let (studios, workshop) = (Studios::new(args.imaging), Arc::new(Workshop::default()));
     let bar = progress::bar("files", files.len() as u64);
     let work = |index: usize| {
         let (file, out) = &files[index];

@@ -6,7 +6,7 @@ use drivers::checkpoint::CheckpointChoice;
 use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use measures::footage::Asked;
-use render::Quality;
+use render::Imaging;
 use serde::Serialize;
 
 use super::film::Counts;
@@ -53,7 +53,7 @@ pub struct Options {
     /// Size of the pictures; none: that which the first network takes.
     pub size: Option<(u32, u32)>,
     /// How good the pictures are.
-    pub quality: Quality,
+    pub imaging: Imaging,
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// File of the export, with its layout for viewers beside it; or a folder, for several files.

@@ -38,7 +38,7 @@ pub fn export(
     interrupt: &Interrupt,
 ) -> anyhow::Result<Export> {
     let stage = Arc::new(Stage::open(file, screen.workshop)?);
-    let shots = Shots::of_window(&stage, &args.asked(), args.camera, screen.size)?.at(args.quality);
+    let shots = Shots::of_window(&stage, &args.asked(), args.camera, screen.size)?.at(args.imaging);
     let (Some(&from), Some(&to)) = (shots.ticks().first(), shots.ticks().last()) else {
         bail!("no picture falls into the window; expected a longer one, or more pictures a second");
     };
@@ -70,7 +70,7 @@ fn source(stage: &Stage, shots: &Shots, args: &Options, screen: &Screen<'_>) -> 
     let eyes: Vec<String> = screen.eyes.iter().map(Eye::digest).collect();
     let recording = blake3::Hash::from_bytes(stage.recording().digest()).to_hex();
     let (camera, adapter, version) = (args.camera.name(), drivers::vision::adapter(), env!("CARGO_PKG_VERSION"));
-    let pictures = (screen.size, args.quality, camera);
+    let pictures = (screen.size, args.imaging.to_string(), camera);
     let all = (recording.as_str(), shots.ticks(), args.fps, pictures, eyes, adapter, version);
     blake3::hash(format!("{all:?}").as_bytes()).to_hex().to_string()
 }

@@ -14,7 +14,7 @@ use base::library::Entry;
 use base::progress::Interrupt;
 use drivers::vision::Eye;
 use measures::footage::Footage;
-use render::{Frame, Quality};
+use render::{Frame, Imaging};
 
 use super::looks::Studio;
 
@@ -106,20 +106,20 @@ pub struct Pipeline<'a, W> {
 
 /// Renderers that outlast the threads that draw with them.
 pub struct Studios {
-    quality: Quality,
+    imaging: Imaging,
     free: Mutex<Vec<Studio>>,
 }
 
 impl Studios {
-    /// For pictures of one quality.
-    pub fn new(quality: Quality) -> Self {
-        Self { quality, free: Mutex::default() }
+    /// For pictures of one kind.
+    pub fn new(imaging: Imaging) -> Self {
+        Self { imaging, free: Mutex::default() }
     }
 
     /// Calls `draw` with a set for pictures of one size.
     pub fn with<T>(&self, size: (u32, u32), draw: impl FnOnce(&mut Studio) -> T) -> T {
         let free = lock(&self.free).pop();
-        let mut studio = free.unwrap_or_else(|| Studio::new(size, self.quality));
+        let mut studio = free.unwrap_or_else(|| Studio::new(size, self.imaging));
         let value = draw(&mut studio);
         lock(&self.free).push(studio);
         value

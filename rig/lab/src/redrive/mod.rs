@@ -358,8 +358,8 @@ fn line(
 fn eye_of(args: &Options, log: &Log) -> anyhow::Result<Eye> {
     let recorded = RecordedEye::of(&log.manifest.provenance)?;
     if let Some(choice) = &args.checkpoint {
-        // The pictures stay as good as they were, so that the network alone is another.
-        return Ok(Eye::open(choice)?.at(recorded.camera.quality));
+        // The pictures are made as they were, so that the network alone is another.
+        return Ok(Eye::open(choice)?.at(recorded.camera.imaging()));
     }
     let found = recorded.find(&args.recorded)?;
     found.with_context(|| recorded.not_found("--recorded-checkpoint"))

@@ -24,7 +24,7 @@ use measures::Tally;
 use measures::footage::Footage;
 use measures::statistics::Library;
 use perception::ConfusionMatrix;
-use render::{AdapterChoice, Quality};
+use render::{AdapterChoice, Imaging};
 
 use super::looks::{Size, Studio, look, open_eyes};
 use super::pipeline::Studios;
@@ -69,7 +69,7 @@ pub fn render(
     if files.is_empty() && failed.is_empty() {
         bail!("none of the files and folders holds a corner case; expected at least one *.case.mcap");
     }
-    let (bar, studios) = (progress::bar("report", files.len() as u64), Studios::new(Quality::default()));
+    let (bar, studios) = (progress::bar("report", files.len() as u64), Studios::new(Imaging::default()));
     let work = |index: usize| studios.with(size, |studio| tell(&files[index], studio, &mut eyes.clone()));
     in_order(jobs(threads), files.len(), work, |index, told| {
         let path = &files[index].path;

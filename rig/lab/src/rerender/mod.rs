@@ -2,11 +2,12 @@
 //!
 //! `OUT/NAME/rgb/TICK.png`, `OUT/NAME/labels/TICK.png`, `OUT/NAME/predictions/CHECKPOINT/TICK.png`
 //! (ids are tags of CARLA 0.9.10), and `OUT/metrics.jsonl`: a line for each frame and checkpoint, for
-//! each file and checkpoint, and for each checkpoint over all. What is whole is found again through
+//! each file and checkpoint, and for each checkpoint over all. Further cameras have `OUT/NAME/cameras/CAMERA`. What is whole is found again through
 //! `OUT/.rerender`; pictures in a folder are of the same options, through as many checkpoints as one likes.
 
 mod options;
 mod pictures;
+mod surround;
 
 pub use self::options::Options;
 use std::{fmt, fs};
@@ -27,6 +28,8 @@ use render::AdapterChoice;
 use serde::Serialize;
 
 use self::pictures::{Matrices, Pictures};
+use self::surround::Surround;
+use super::cameras;
 use super::figures::{Figures, table};
 use super::looks::open_eyes;
 use super::pipeline::{Pipeline, Studios, set_aside};
@@ -141,6 +144,7 @@ fn draw(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::
         None => found,
     };
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
+    let cameras = args.cameras.as_ref().map(|path| cameras::read(path, size, args.imaging)).transpose()?;
     store.hold(&options::of_pictures(args, size))?;
     let metrics = args.out.join(TABLE);
     // That of an earlier call would not be about these files.
@@ -148,16 +152,19 @@ fn draw(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::
         fs::remove_file(&metrics).with_context(|| metrics.display().to_string())?;
     }
     let bar = progress::bar("frames", 0);
-    let settings = Settings::new(args.last, args.fps, size, args.quality);
+    let settings = Settings::new(args.last, args.fps, size, args.imaging);
     let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings: settings.clone() };
     let left = work.left();
     bar.set_length(work.expected() * left.len() as u64);
-    let (jobs, studios) = (jobs(args.jobs), Studios::new(args.quality));
+    let (jobs, studios) = (jobs(args.jobs), Studios::new(args.imaging));
     let (_, unread) = Pipeline { work: &work, files: &left, size, eyes: &eyes, jobs, interrupt, studios }.run()?;
     bar.finish_and_clear();
     failed.extend(set_aside(&mut files, unread));
     if files.is_empty() && !failed.is_empty() {
         return Err(Failed::new(failed).into());
+    }
+    if let Some(cameras) = &cameras {
+        Surround { args, cameras, store: &store, settings: &settings }.draw(&files, interrupt)?;
     }
     let work = Pictures { args, files: &files, eyes: &eyes, store: &store, bar: &bar, settings };
     let Some(found) = work.found() else {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use drivers::checkpoint::CheckpointChoice;
 use kernel::time::{TICK_HZ, Tick};
-use render::Quality;
+use render::Imaging;
 
 /// What is drawn and looked at again.
 #[derive(Clone, Debug)]
@@ -20,7 +20,9 @@ pub struct Options {
     /// Size of the pictures; none: that which the first network takes.
     pub size: Option<(u32, u32)>,
     /// How good the pictures are.
-    pub quality: Quality,
+    pub imaging: Imaging,
+    /// A file with cameras that see the windows, too ([`crate::cameras`]).
+    pub cameras: Option<PathBuf>,
     /// Frames looked at at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the results. One that this command began with the same options is completed: what is whole and
@@ -32,5 +34,8 @@ pub struct Options {
 pub fn of_pictures(args: &Options, (width, height): (u32, u32)) -> Vec<String> {
     let last_s = args.last as f64 / f64::from(TICK_HZ);
     let size = format!("--size {width}x{height}");
-    vec![format!("--last {last_s}s"), format!("--fps {}", args.fps), size, format!("--quality {}", args.quality.name())]
+    let quality = format!("--quality {}", args.imaging.quality.name());
+    let sensor =
+        Some(args.imaging.sensor).filter(|sensor| !sensor.is_ideal()).map(|sensor| format!("--sensor {sensor}"));
+    [format!("--last {last_s}s"), format!("--fps {}", args.fps), size, quality].into_iter().chain(sensor).collect()
 }

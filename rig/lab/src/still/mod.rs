@@ -10,6 +10,7 @@ use anyhow::{Context, bail};
 use base::failure::Usage;
 use base::json::Typed;
 use base::maps::Map;
+use base::output::PendingFolder;
 use base::progress::{self, Interrupt};
 use base::{asked, output};
 use drivers::crew::Crew;
@@ -20,10 +21,11 @@ use drivers::vision::{Eye, Vision};
 use kernel::time::{TICK_HZ, Tick, seconds};
 use kernel::{Scenario, SceneSnapshot, World};
 use measures::footage::decisive_tick;
-use render::{AdapterChoice, Frame, Quality, Renderer};
+use render::{AdapterChoice, Camera, Frame, Imaging, Renderer};
 use serde::Serialize;
 
 pub use self::layer::{LAYERS, Layer};
+use super::cameras::{self, Named};
 use super::looks::Size;
 use super::shots::{Shots, Stage};
 
@@ -53,13 +55,15 @@ pub struct Options {
     pub tick: Option<Tick>,
     /// From where it is taken.
     pub camera: Viewpoint,
+    /// Instead of that, through each of the cameras of this file ([`cameras`]).
+    pub cameras: Option<PathBuf>,
     /// What of the picture.
     pub layer: Layer,
     /// Its width and height, pixels.
     pub size: Size,
     /// How good the pictures are.
-    pub quality: Quality,
-    /// Where it goes.
+    pub imaging: Imaging,
+    /// Where it goes; with cameras of a file the folder of their pictures, each named after its camera.
     pub out: PathBuf,
 }
 
@@ -76,7 +80,7 @@ pub struct Still {
     pub size_px: [u32; 2],
 }
 
-/// What `aeye render` prints.
+/// What `aeye render` prints, a line for each picture.
 impl Typed for Still {
     const TYPE: &'static str = "aeye.still";
 }
@@ -88,33 +92,74 @@ impl fmt::Display for Still {
     }
 }
 
-/// Makes a picture, in a file that there is not yet.
-pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Still> {
-    let Options { subject, tick, camera, layer, size, quality, out } = options;
+/// Makes a picture, in a file that there is not yet, or one of each camera of a file, in a folder that there is not yet.
+pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Vec<Still>> {
+    let Options { camera, size, imaging, out, .. } = options;
+    asked::check_size(*size)?;
+    if let Some(path) = &options.cameras {
+        return render_all(options, &cameras::read(path, *size, *imaging)?, interrupt);
+    }
     if out.exists() {
         bail!("{}: exists already; expected a new file", out.display());
     }
-    asked::check_size(*size)?;
     output::check_file(out)?;
-    let frame = match subject {
-        Subject::File(path) => of_file(path, *tick, (*camera, *size, *quality))?,
-        Subject::Run { map, scenario } => {
-            let (scene, mut renderer) = of_run(map, scenario, tick.unwrap_or(USUAL_TICK), interrupt)?;
-            renderer.draw(&scene, &camera.camera(*size).at(*quality))?
-        }
-    };
-    output::write_file(out, &layer.png(&frame)?)?;
-    Ok(Still { out: out.display().to_string(), tick: frame.tick, layer: layer.name(), size_px: [size.0, size.1] })
+    let (bytes, still) = Moment::of(options, interrupt)?.still(&camera.camera(*size).at(*imaging), options, out)?;
+    output::write_file(out, &bytes)?;
+    Ok(vec![still])
 }
 
-fn of_file(
-    path: &Path,
-    tick: Option<Tick>,
-    (camera, size, quality): (Viewpoint, Size, Quality),
-) -> anyhow::Result<Frame> {
-    let stage = Arc::new(Stage::open(path, &Arc::default())?);
-    let tick = tick.unwrap_or_else(|| decisive_tick(stage.recording().log()));
-    Ok(Shots::of_tick(&stage, tick, camera, size)?.at(quality).draw(0)?.frame)
+fn render_all(options: &Options, cameras: &[Named], interrupt: &Interrupt) -> anyhow::Result<Vec<Still>> {
+    let folder = PendingFolder::new(&options.out)?;
+    let mut moment = Moment::of(options, interrupt)?;
+    let mut stills = Vec::new();
+    for Named { name, camera } in cameras {
+        let file = format!("{name}.png");
+        let (bytes, still) = moment.still(camera, options, &options.out.join(&file)).with_context(|| name.clone())?;
+        output::write_file(&folder.path().join(file), &bytes)?;
+        stills.push(still);
+    }
+    folder.finish()?;
+    Ok(stills)
+}
+
+/// A moment that can be drawn.
+enum Moment {
+    OfFile(Arc<Stage>, Tick),
+    OfRun(Box<SceneSnapshot>, Box<Renderer>),
+}
+
+impl Moment {
+    fn of(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Self> {
+        match &options.subject {
+            Subject::File(path) => {
+                let stage = Arc::new(Stage::open(path, &Arc::default())?);
+                let tick = options.tick.unwrap_or_else(|| decisive_tick(stage.recording().log()));
+                Ok(Self::OfFile(stage, tick))
+            }
+            Subject::Run { map, scenario } => {
+                let (scene, renderer) = of_run(map, scenario, options.tick.unwrap_or(USUAL_TICK), interrupt)?;
+                Ok(Self::OfRun(Box::new(scene), Box::new(renderer)))
+            }
+        }
+    }
+
+    fn draw(&mut self, camera: &Camera) -> anyhow::Result<Frame> {
+        match self {
+            Self::OfFile(stage, tick) => {
+                let size = (camera.width, camera.height);
+                Ok(Shots::of_tick(stage, *tick, Viewpoint::Driver, size)?.through(*camera).draw(0)?.frame)
+            }
+            Self::OfRun(scene, renderer) => Ok(renderer.draw(scene, camera)?),
+        }
+    }
+
+    /// The bytes of a picture's file, and what is to be said of it.
+    fn still(&mut self, camera: &Camera, options: &Options, out: &Path) -> anyhow::Result<(Vec<u8>, Still)> {
+        let (layer, frame) = (options.layer, self.draw(camera)?);
+        let size_px = [camera.width, camera.height];
+        let still = Still { out: out.display().to_string(), tick: frame.tick, layer: layer.name(), size_px };
+        Ok((layer.png(&frame)?, still))
+    }
 }
 
 /// The scene at a tick of a run, and what drew the truth for its semantic driver.

@@ -69,7 +69,7 @@ impl Bench {
         let lineup = Lineup::open(
             &study,
             &CheckpointChoice::Truth,
-            (None, render::Quality::Plain),
+            (None, render::Imaging::default()),
             perception::Compute::Cpu,
             scenario.seed,
         )

@@ -41,7 +41,7 @@ pub fn watch(film: &Film, choices: &[CheckpointChoice]) -> anyhow::Result<()> {
 fn eyes(film: &Film, recorded: Option<&Eye>, choices: &[CheckpointChoice]) -> anyhow::Result<Vec<Eye>> {
     let bundled = perception::BUNDLED.map(CheckpointChoice::Bundled);
     let choices = if choices.is_empty() { &bundled } else { choices };
-    let open = |choice| Ok(Eye::open_at(choice, film.eye.size())?.at(film.eye.camera.quality));
+    let open = |choice| Ok(Eye::open_at(choice, film.eye.size())?.at(film.eye.camera.imaging()));
     let asked = choices.iter().map(open).collect::<anyhow::Result<Vec<_>>>()?;
     let mut known = BTreeSet::new();
     Ok(recorded.cloned().into_iter().chain(asked).filter(|eye| known.insert(eye.digest())).collect())

@@ -106,7 +106,7 @@ impl<'a> Projector<'a> {
             take.large = Some(self.large.draw(&moment.scene, &camera)?);
         }
         if wants(&[Layer::Prediction, Layer::Difference, Layer::Confidence]) {
-            let camera = request.viewpoint.camera(small).at(self.film.eye.camera.quality);
+            let camera = request.viewpoint.camera(small).at(self.film.eye.camera.imaging());
             let frame = self.small.draw(&moment.scene, &camera)?;
             let eye = &mut self.eyes[request.checkpoint];
             let (mask, confidence) = if wants(&[Layer::Confidence]) {

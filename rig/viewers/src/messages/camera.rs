@@ -10,7 +10,7 @@ use super::parts::stamp;
 /// Frame of the camera's optical axes: x right, y down, z along the view.
 pub const CAMERA: &str = "camera";
 
-/// What the camera's pixels are: square, and without distortion.
+/// What the camera's pixels are: square, and where its lens shows them.
 pub fn calibration(camera: &Camera, time_ns: u64) -> CameraCalibration {
     let k = camera.intrinsics();
     let [fx, _, cx, _, fy, cy, ..] = k;
@@ -20,7 +20,7 @@ pub fn calibration(camera: &Camera, time_ns: u64) -> CameraCalibration {
         width: camera.width,
         height: camera.height,
         distortion_model: "plumb_bob".into(),
-        d: vec![0.0; 5],
+        d: camera.distortion().to_vec(),
         k: k.to_vec(),
         r: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         p: vec![fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],

@@ -58,10 +58,10 @@ impl Dataset {
             let (width, height) = manifest.recipe.size();
             format!("{width}x{height}")
         };
-        let quality = |manifest: &Manifest| manifest.recipe.quality().name().to_owned();
+        let imaging = |manifest: &Manifest| manifest.recipe.imaging().to_string();
         let alike = [
             ("pictures of", size(this), size(that)),
-            ("pictures of the quality", quality(this), quality(that)),
+            ("pictures of the quality", imaging(this), imaging(that)),
             ("pictures drawn by", this.adapter.clone(), that.adapter.clone()),
             ("pictures drawn by renderer", this.renderer.clone(), that.renderer.clone()),
             ("the classes", this.classes.join(" "), that.classes.join(" ")),

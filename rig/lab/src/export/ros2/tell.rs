@@ -66,7 +66,7 @@ pub fn odometry(ego: &EgoScene, twist: &Twist, time_ns: u64) -> Odometry {
     }
 }
 
-/// What the camera's pixels are: square, and without distortion.
+/// What the camera's pixels are: square, and where its lens shows them.
 pub fn camera_info(camera: &Camera, time_ns: u64) -> CameraInfo {
     let k = camera.intrinsics();
     let [fx, _, cx, _, fy, cy, ..] = k;
@@ -75,7 +75,7 @@ pub fn camera_info(camera: &Camera, time_ns: u64) -> CameraInfo {
         height: camera.height,
         width: camera.width,
         distortion_model: "plumb_bob".into(),
-        d: vec![0.0; 5],
+        d: camera.distortion().to_vec(),
         k,
         r: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         p: [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
