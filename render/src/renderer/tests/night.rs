@@ -61,7 +61,7 @@ fn a_street_gets_darker_and_stays_readable() {
 #[test]
 fn signs_send_headlights_back_at_night() {
     let size = Vec3::new(0.08, 0.7, 2.6);
-    for (turn_rad, [least, most]) in [(core::f32::consts::PI, [4.0, 99.0]), (0.0, [0.5, 2.0])] {
+    for (turn_rad, [least, most]) in [(core::f32::consts::PI, [4.0, 99.0]), (0.0, [0.5, 3.0])] {
         let (mut renderer, scene) = with_props(|scene| {
             let sign = prop_at(scene, PropKind::Sign, size, [14.0, 0.5]);
             vec![Prop { heading_rad: sign.heading_rad + turn_rad, ..sign }]
