@@ -9,11 +9,11 @@ fn hash(p: vec2f) -> f32 {
 
 // Share of a pixel `width` wide at x that lies in [low, high].
 fn span(x: f32, low: f32, high: f32, width: f32) -> f32 {
-    return clamp((x - low) / width + 0.5, 0.0, 1.0) * clamp((high - x) / width + 0.5, 0.0, 1.0);
+    return max(min(high, x + 0.5 * width) - max(low, x - 0.5 * width), 0.0) / width;
 }
 
 fn box(at: vec2f, low: vec2f, high: vec2f, width: vec2f) -> f32 {
-    let inside = clamp((at - low) / width + 0.5, vec2f(0.0), vec2f(1.0)) * clamp((high - at) / width + 0.5, vec2f(0.0), vec2f(1.0));
+    let inside = max(min(high, at + 0.5 * width) - max(low, at - 0.5 * width), vec2f(0.0)) / width;
     return inside.x * inside.y;
 }
 
