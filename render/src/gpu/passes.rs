@@ -13,7 +13,8 @@ use crate::quality::Shadows;
 use crate::spray::Puff;
 
 /// The order in which what stands still is drawn: nearest and most covering first, as hidden fragments are cheap.
-const FIXED: [Finish; FINISHES] = [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy];
+const FIXED: [Finish; FINISHES] =
+    [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy, Finish::Grass];
 
 /// What a frame draws.
 pub(crate) struct Draws<'a> {

@@ -191,6 +191,7 @@ impl Pipelines {
             ("vertex", "fragment_facade"),
             ("vertex", "fragment_asphalt"),
             ("vertex", "fragment_paving"),
+            ("vertex", "fragment_grass"),
         ];
         Self {
             world: finishes.map(|(vertex, fragment)| Recipe { vertex, fragment: Some(fragment), ..base }.make(gpu)),

@@ -37,10 +37,12 @@ pub enum Finish {
     Asphalt = 3,
     /// Laid stones; uv are metres along a road and from its kerb, [`Vertex::code`] is how they are laid.
     Paving = 4,
+    /// Grass; [`Vertex::param`] is how bare the soil is, uv are metres.
+    Grass = 5,
 }
 
 /// Number of variants of [`Finish`].
-pub const FINISHES: usize = 5;
+pub const FINISHES: usize = 6;
 
 /// [`Vertex::code`] of a lamp that shines.
 pub const CODE_LIT: u8 = 255;
@@ -68,8 +70,6 @@ pub const CODE_SETTS: u8 = 0;
 pub const CODE_KERBED: u8 = 4;
 /// [`Vertex::code`] of a kerb.
 pub const CODE_KERB: u8 = 8;
-/// [`Vertex::code`] of grass; [`Vertex::param`] is how bare the soil is.
-pub const CODE_GRASS: u8 = 2;
 
 /// A vertex as the GPU reads it, 32 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
