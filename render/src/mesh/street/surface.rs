@@ -66,7 +66,7 @@ impl<'a> Lay<'a> {
     fn new(kind: SurfaceKind, place: Vec3, roads: &Roads<'a>) -> Self {
         let paint = paint(kind);
         match kind {
-            SurfaceKind::Road => roads.stretch(place).map(|on| Self::Road(asphalt_of(on.lane), on)),
+            SurfaceKind::Road => roads.stretch(place).map(|on| Self::Road(asphalt_of(on.on.lane), on)),
             SurfaceKind::Setts => roads.stretch(place).map(|on| Self::Road(paint, on)),
             SurfaceKind::Sidewalk => roads.pavement(place).map(|on| Self::Pavement(pavement_of(&on), on)),
             _ => None,
@@ -94,7 +94,7 @@ fn asphalt_of(lane: &Lane) -> Paint {
 }
 
 fn pavement_of(on: &Pavement) -> Paint {
-    let bond = variety_of(road_of(on.lane)).pick(&[FLAGS, FLAGS, SLABS, SMALL_STONES]);
+    let bond = variety_of(road_of(on.on.lane)).pick(&[FLAGS, FLAGS, SLABS, SMALL_STONES]);
     let kerb = if on.road.is_some() { CODE_KERBED } else { 0 };
     paint(SurfaceKind::Sidewalk).coded(bond | kerb)
 }
