@@ -255,6 +255,12 @@ impl Lane {
         self.project_onto(std::iter::once(0..self.points.len() - 1), position)
     }
 
+    /// The same, of the stretch within `reach_m` of a place on it alone.
+    pub fn project_near(&self, position: Vec3, s_m: f32, reach_m: f32) -> (f32, f32, f32) {
+        let [first, last] = [s_m - reach_m, s_m + reach_m].map(|s_m| self.segment(s_m).0);
+        self.project_onto(std::iter::once(first..last + 1), position)
+    }
+
     /// The same, of the segments in some ranges only.
     pub(crate) fn project_onto(&self, segments: impl Iterator<Item = Range<usize>>, position: Vec3) -> (f32, f32, f32) {
         let p = position.truncate();

@@ -15,7 +15,7 @@ use crate::spray::Puff;
 
 /// Nearest and most covering first: hidden fragments are cheap. Last what writes its depth late, as it discards.
 const DRAW_ORDER: [Finish; FINISHES] =
-    [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy, Finish::Leafy];
+    [Finish::Facade, Finish::Plain, Finish::Asphalt, Finish::Paving, Finish::Grainy, Finish::Grass, Finish::Leafy];
 
 /// What a frame draws.
 pub(crate) struct Draws<'a> {

@@ -193,6 +193,7 @@ impl Pipelines {
             ("vertex_facade", "fragment_facade"),
             ("vertex", "fragment_asphalt"),
             ("vertex", "fragment_paving"),
+            ("vertex", "fragment_grass"),
             ("vertex_leafy", "fragment_leafy"),
         ];
         Self {

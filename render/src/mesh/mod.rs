@@ -38,13 +38,15 @@ pub enum Finish {
     Asphalt = 3,
     /// Laid stones; uv are metres along a road and from its kerb, [`Vertex::code`] is how they are laid.
     Paving = 4,
+    /// Grass; [`Vertex::param`] is how bare the soil is, uv are metres.
+    Grass = 5,
     /// Leaves with air between them; [`Vertex::code`] is their [`foliage::Leaf`], [`Vertex::param`] how much light they
     /// let through, uv are sides of its picture.
-    Leafy = 5,
+    Leafy = 6,
 }
 
 /// Number of variants of [`Finish`].
-pub const FINISHES: usize = 6;
+pub const FINISHES: usize = 7;
 
 /// [`Vertex::code`] of a lamp that shines.
 pub const CODE_LIT: u8 = 255;
@@ -74,8 +76,6 @@ pub const CODE_SETTS: u8 = 0;
 pub const CODE_KERBED: u8 = 4;
 /// [`Vertex::code`] of a kerb.
 pub const CODE_KERB: u8 = 8;
-/// [`Vertex::code`] of grass; [`Vertex::param`] is how bare the soil is.
-pub const CODE_GRASS: u8 = 2;
 
 /// A vertex as the GPU reads it, 32 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

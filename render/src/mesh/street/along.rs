@@ -8,6 +8,8 @@ use kernel::ops;
 
 /// Pavements look for the road that they are beside so far away, metres.
 const BESIDE_M: f32 = 12.0;
+/// Corners of a triangle of the ground are closer to its middle than this, and so are the places of lanes side by side, metres.
+const REACH_M: f32 = 60.0;
 
 /// The roads of a map.
 pub(super) struct Roads<'a> {
@@ -16,12 +18,20 @@ pub(super) struct Roads<'a> {
     driven: BTreeMap<&'a str, Vec<LaneId>>,
 }
 
+/// A stretch of a lane around a place on it.
+#[derive(Clone, Copy)]
+pub(super) struct Piece<'a> {
+    pub(super) lane: &'a Lane,
+    /// Where the place is on it.
+    s_m: f32,
+}
+
 /// A stretch of a road on which the same lanes lie side by side.
 pub(super) struct Stretch<'a> {
     /// Whose surface it is.
-    pub(super) lane: &'a Lane,
-    /// The lane that distances count along.
-    along: &'a Lane,
+    pub(super) on: Piece<'a>,
+    /// Of the lane that distances count along.
+    along: Piece<'a>,
     /// Whether the surface's lane leads the other way.
     turned: bool,
     /// Driven lanes to the left of it, as that one leads.
@@ -30,8 +40,8 @@ pub(super) struct Stretch<'a> {
 
 /// A stretch of a pavement.
 pub(super) struct Pavement<'a> {
-    pub(super) lane: &'a Lane,
-    /// Whether its road is to the left of it, and to the right.
+    pub(super) on: Piece<'a>,
+    /// On which side of it its road is: 1 is left, -1 right.
     pub(super) road: Option<f32>,
 }
 
@@ -54,53 +64,71 @@ impl<'a> Roads<'a> {
     /// The stretch that a place of a roadway is on; nothing in junctions and beside all lanes.
     pub(super) fn stretch(&self, place: Vec3) -> Option<Stretch<'a>> {
         let kinds = [LaneKind::Driving, LaneKind::Shoulder, LaneKind::Parking, LaneKind::Biking, LaneKind::Other];
-        let on = kinds.into_iter().map(|kind| self.network.lanes_at(place, kind)).find(|found| !found.is_empty())?;
-        let lane = &self.network.lanes[on.first()?.lane as usize];
-        if lane.junction.is_some() {
+        let on = kinds.into_iter().find_map(|kind| self.on(place, kind))?;
+        if on.lane.junction.is_some() {
             return None;
         }
-        let is_beside = |lane: &&Lane| {
-            let (s_m, ..) = lane.project(place);
-            s_m > 0.0 && s_m < lane.length_m
-        };
-        let lanes = self.driven.get(road_of(lane))?.iter().map(|&id| &self.network.lanes[id as usize]);
-        let beside: Vec<&Lane> = lanes.filter(is_beside).collect();
+        let lanes = self.driven.get(road_of(on.lane))?.iter().map(|&id| &self.network.lanes[id as usize]);
+        let beside: Vec<Piece> = lanes.filter_map(|lane| on.beside(lane, place)).collect();
         let along = *beside.first()?;
-        let heading = |lane: &Lane| lane.at(lane.project(place).0).heading_rad;
-        let is_turned = |lane: &Lane| ops::cos(heading(lane) - heading(along)) < 0.0;
-        let is_left = |other: &&&Lane| {
-            let (_, lateral_m, _) = other.project(place);
+        let is_turned = |piece: &Piece| ops::cos(piece.heading_rad() - along.heading_rad()) < 0.0;
+        let is_left = |other: &&Piece| {
             // A place on the right of a lane has it on the left.
-            (lateral_m < 0.0) != is_turned(other) && !core::ptr::eq(**other, lane)
+            (other.uv(place).y < 0.0) != is_turned(other) && !core::ptr::eq(other.lane, on.lane)
         };
         let to_the_left = beside.iter().filter(is_left).count();
-        Some(Stretch { lane, along, turned: is_turned(lane), to_the_left })
+        Some(Stretch { on, along, turned: is_turned(&on), to_the_left })
     }
 
     /// The pavement that a place is on.
     pub(super) fn pavement(&self, place: Vec3) -> Option<Pavement<'a>> {
-        let on = self.network.lanes_at(place, LaneKind::Sidewalk);
-        let lane = &self.network.lanes[on.first()?.lane as usize];
+        let on = self.on(place, LaneKind::Sidewalk)?;
         let road = self.network.nearest_lane(place, LaneKind::Driving, None, BESIDE_M).map(|road| {
             let middle = self.network.lanes[road.lane as usize].at(road.s_m).position;
-            let (s_m, lateral_m, _) = lane.project(place);
-            let ahead = Vec2::from_angle(lane.at(s_m).heading_rad);
-            (ahead.perp_dot((middle - place).truncate()) + lateral_m).signum()
+            let ahead = Vec2::from_angle(on.heading_rad());
+            (ahead.perp_dot((middle - place).truncate()) + on.uv(place).y).signum()
         });
-        Some(Pavement { lane, road })
+        Some(Pavement { on, road })
+    }
+
+    /// The lane of a kind that a place is on.
+    fn on(&self, place: Vec3, kind: LaneKind) -> Option<Piece<'a>> {
+        let on = *self.network.lanes_at(place, kind).first()?;
+        Some(Piece { lane: &self.network.lanes[on.lane as usize], s_m: on.s_m })
+    }
+}
+
+impl<'a> Piece<'a> {
+    /// The stretch of another lane of its road around a place, if that one has any there.
+    fn beside(&self, lane: &'a Lane, place: Vec3) -> Option<Piece<'a>> {
+        // Both are about as long, and lead the same way or the other.
+        let share = self.s_m / self.lane.length_m;
+        let tried = [share, 1.0 - share].map(|share| Piece { lane, s_m: share * lane.length_m });
+        let found = tried.map(|piece| lane.project_near(place, piece.s_m, REACH_M));
+        let (s_m, _, distance_m) = if found[0].2 < found[1].2 { found[0] } else { found[1] };
+        (s_m > 0.0 && s_m < lane.length_m && distance_m < REACH_M).then_some(Piece { lane, s_m })
+    }
+
+    fn heading_rad(&self) -> f32 {
+        self.lane.at(self.s_m).heading_rad
+    }
+
+    /// Metres along the lane and to the left of its middle.
+    fn uv(&self, place: Vec3) -> Vec2 {
+        let (s_m, lateral_m, _) = self.lane.project_near(place, self.s_m, REACH_M);
+        Vec2::new(s_m, lateral_m)
     }
 }
 
 impl Stretch<'_> {
     /// Metres along the road and to the left of the middle of one of its lanes.
     pub(super) fn uv(&self, place: Vec3) -> Vec2 {
-        let (s_m, lateral_m, _) = self.along.project(place);
-        Vec2::new(s_m, lateral_m)
+        self.along.uv(place)
     }
 
     /// 0 or 1, each at one edge of a lane: neighbours share the one between them. Beside driven lanes it is that of their edge.
     pub(super) fn phase(&self, place: Vec3) -> u8 {
-        let is_right = self.lane.kind == LaneKind::Driving && (self.lane.project(place).1 < 0.0) != self.turned;
+        let is_right = self.on.lane.kind == LaneKind::Driving && (self.on.uv(place).y < 0.0) != self.turned;
         ((self.to_the_left + usize::from(is_right)) % 2) as u8
     }
 }
@@ -108,8 +136,8 @@ impl Stretch<'_> {
 impl Pavement<'_> {
     /// Metres along it and from the edge beside the road.
     pub(super) fn uv(&self, place: Vec3) -> Vec2 {
-        let (s_m, lateral_m, _) = self.lane.project(place);
-        Vec2::new(s_m, self.lane.at(s_m).half_width_m - self.road.unwrap_or(1.0) * lateral_m)
+        let Vec2 { x: s_m, y: lateral_m } = self.on.uv(place);
+        Vec2::new(s_m, self.on.lane.at(s_m).half_width_m - self.road.unwrap_or(1.0) * lateral_m)
     }
 }
 
@@ -134,16 +162,17 @@ mod tests {
         for name in ["city", "motorway"] {
             let network = kernel::map::bundled(name).expect("a bundled map");
             let roads = Roads::new(&network);
-            let mut known: BTreeMap<([u32; 3], *const Lane), ([u32; 2], u8)> = BTreeMap::new();
+            let mut known = BTreeMap::new();
             let (mut driven, mut torn) = (0, 0);
             for (corners, stretch) in corners(&network, &roads) {
                 let phases = corners.map(|at| stretch.phase(at));
-                let is_driven = stretch.lane.kind == LaneKind::Driving;
+                let is_driven = stretch.on.lane.kind == LaneKind::Driving;
                 driven += usize::from(is_driven);
                 torn += usize::from(is_driven != (phases[0] != phases[1] || phases[1] != phases[2]));
                 for (at, phase) in corners.into_iter().zip(phases) {
                     let here = (stretch.uv(at).to_array().map(f32::to_bits), phase);
-                    let there = *known.entry((at.to_array().map(f32::to_bits), stretch.along)).or_insert(here);
+                    let road = core::ptr::from_ref(stretch.along.lane);
+                    let there = *known.entry((at.to_array().map(f32::to_bits), road)).or_insert(here);
                     assert_eq!(here.0, there.0, "{name}: {at}");
                     torn += usize::from(here != there);
                 }

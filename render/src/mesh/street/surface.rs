@@ -9,9 +9,7 @@ use super::along::{Pavement, Roads, Stretch, road_of};
 use super::verge;
 use crate::SemanticTag;
 use crate::mesh::variety::Variety;
-use crate::mesh::{
-    CODE_COVERS, CODE_GRASS, CODE_KERB, CODE_KERBED, CODE_OLDEST, CODE_PAINT, CODE_SETTS, Finish, Mesh, Paint,
-};
+use crate::mesh::{CODE_COVERS, CODE_KERB, CODE_KERBED, CODE_OLDEST, CODE_PAINT, CODE_SETTS, Finish, Mesh, Paint};
 
 /// Side of the square cells that surfaces are cut into, metres.
 const CELL_M: f32 = 24.0;
@@ -21,7 +19,7 @@ fn paint(kind: SurfaceKind) -> Paint {
         SurfaceKind::Road => asphalt(JUNCTION_AGE),
         SurfaceKind::RoadLine => laid(SemanticTag::RoadLine, [208, 208, 200], Finish::Asphalt, CODE_PAINT),
         SurfaceKind::Sidewalk => laid(SemanticTag::SideWalk, [150, 145, 138], Finish::Paving, FLAGS),
-        SurfaceKind::Terrain => Paint::plain(SemanticTag::Terrain, [94, 100, 66]).grainy(0).coded(CODE_GRASS),
+        SurfaceKind::Terrain => laid(SemanticTag::Terrain, [94, 100, 66], Finish::Grass, 0),
         SurfaceKind::Ground => laid(SemanticTag::Ground, [140, 134, 124], Finish::Paving, SMALL_STONES),
         SurfaceKind::Gravel => Paint::plain(SemanticTag::Road, [152, 142, 122]).grainy(220),
         SurfaceKind::Track => Paint::plain(SemanticTag::RailTrack, [112, 102, 92]).grainy(220),
@@ -68,7 +66,7 @@ impl<'a> Lay<'a> {
     fn new(kind: SurfaceKind, place: Vec3, roads: &Roads<'a>) -> Self {
         let paint = paint(kind);
         match kind {
-            SurfaceKind::Road => roads.stretch(place).map(|on| Self::Road(asphalt_of(on.lane), on)),
+            SurfaceKind::Road => roads.stretch(place).map(|on| Self::Road(asphalt_of(on.on.lane), on)),
             SurfaceKind::Setts => roads.stretch(place).map(|on| Self::Road(paint, on)),
             SurfaceKind::Sidewalk => roads.pavement(place).map(|on| Self::Pavement(pavement_of(&on), on)),
             _ => None,
@@ -96,7 +94,7 @@ fn asphalt_of(lane: &Lane) -> Paint {
 }
 
 fn pavement_of(on: &Pavement) -> Paint {
-    let bond = variety_of(road_of(on.lane)).pick(&[FLAGS, FLAGS, SLABS, SMALL_STONES]);
+    let bond = variety_of(road_of(on.on.lane)).pick(&[FLAGS, FLAGS, SLABS, SMALL_STONES]);
     let kerb = if on.road.is_some() { CODE_KERBED } else { 0 };
     paint(SurfaceKind::Sidewalk).coded(bond | kerb)
 }
@@ -212,8 +210,8 @@ mod tests {
     #[test]
     fn worn_ground_is_bare_at_the_edge_of_what_is_paved_alone() {
         let network = kernel::map::bundled("rural").expect("a bundled map");
-        let grass = cells(&network).flat_map(|cell| cell.mesh.vertices).filter(|v| v.code == CODE_GRASS);
-        let (bare, green): (Vec<_>, Vec<_>) = grass.partition(|v| v.param > 0 && v.tag == SemanticTag::Terrain as u8);
+        let grass = cells(&network).flat_map(|cell| cell.mesh.vertices).filter(|v| v.tag == SemanticTag::Terrain as u8);
+        let (bare, green): (Vec<_>, Vec<_>) = grass.partition(|v| v.param > 0);
         assert!(bare.len() > 1000 && green.len() > bare.len());
     }
 }
