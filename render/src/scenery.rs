@@ -47,6 +47,8 @@ struct Piece {
     extent: [Vec3; 2],
     /// Of a parked car its number.
     parked: Option<usize>,
+    /// Whether it may keep the sun from something: what lies flat on the ground does not, nor does the plain below all.
+    casts: bool,
     /// In the order of [`Detail::ALL`].
     levels: [Level; Detail::ALL.len()],
 }
@@ -79,17 +81,17 @@ impl Scenery {
                 mesh = simplify::simplified(&mesh, detail.error_m().max(FLAT_M));
                 skirt::with_skirt(&mesh, skirt * detail.error_m())
             });
-            scenery.add(levels, None);
+            scenery.add(levels, None, !kind.lies_on_ground());
         }
         for (object, parked) in numbered(network) {
-            scenery.add(Detail::ALL.map(|detail| placed(object, parked, detail)), parked);
+            scenery.add(Detail::ALL.map(|detail| placed(object, parked, detail)), parked, true);
         }
         let plain = surface::plain(network);
-        scenery.add(Detail::ALL.map(|_| plain.clone()), None);
+        scenery.add(Detail::ALL.map(|_| plain.clone()), None, false);
         scenery
     }
 
-    fn add(&mut self, meshes: [Mesh; Detail::ALL.len()], parked: Option<usize>) {
+    fn add(&mut self, meshes: [Mesh; Detail::ALL.len()], parked: Option<usize>, casts: bool) {
         if meshes[0].is_empty() {
             return;
         }
@@ -102,7 +104,7 @@ impl Scenery {
             let same = i > 0 && meshes[i] == meshes[i - 1];
             levels[i] = if same { levels[i - 1].clone() } else { self.store(&meshes[i]) };
         }
-        self.pieces.push(Piece { centre, radius_m, extent: all, parked, levels });
+        self.pieces.push(Piece { centre, radius_m, extent: all, parked, casts, levels });
     }
 
     fn store(&mut self, mesh: &Mesh) -> Level {
@@ -146,7 +148,7 @@ impl Scenery {
     /// gone.
     pub(crate) fn casters(&self, shadow: &ShadowBox, gone: &[usize]) -> Vec<u32> {
         let near = |p: &&Piece| shadow.reaches(p.centre, p.radius_m);
-        let pieces = self.pieces.iter().filter(|p| p.stands(gone)).filter(near);
+        let pieces = self.pieces.iter().filter(|p| p.casts && p.stands(gone)).filter(near);
         let levels = pieces.map(|p| &p.levels[Detail::Coarse as usize]);
         levels.flat_map(|level| level.ranges.iter().flat_map(|range| self.indices_of(range))).copied().collect()
     }

@@ -31,8 +31,12 @@ pub(crate) type Lists = [Vec<u32>; LISTS];
 /// What a picture shows of triangles.
 #[derive(Default)]
 pub(crate) struct Sieve {
-    view: View,
-    size: Vec2,
+    eye: Vec3,
+    ahead: Vec3,
+    /// Samples to the right and downwards of the middle of the picture for what is one metre ahead.
+    right: Vec3,
+    down: Vec3,
+    middle: Vec2,
     /// Of the wind at the tick of the picture.
     gusts: Gusts,
     /// Everything is kept.
@@ -50,8 +54,10 @@ pub(crate) struct Sieve {
 impl Sieve {
     /// Begins a picture of so many samples of a view, and as many corners and one more each way; `keeps_all` leaves nothing out.
     pub(crate) fn begin(&mut self, view: &View, size: [u32; 2], corners: bool, scene: &SceneSnapshot, keeps_all: bool) {
-        self.view = *view;
-        self.size = Vec2::new(size[0] as f32, size[1] as f32);
+        self.middle = 0.5 * Vec2::new(size[0] as f32, size[1] as f32);
+        (self.eye, self.ahead) = (view.eye, view.ahead);
+        self.right = view.right * (self.middle.x / view.tan_x);
+        self.down = view.up * (-self.middle.y / view.tan_y);
         self.gusts = Gusts::new(&scene.weather, scene.tick);
         self.keeps_all = keeps_all;
         self.all.iter_mut().for_each(Vec::clear);
@@ -161,11 +167,9 @@ impl Sieve {
     }
 
     fn place_of(&self, at: Vec3) -> Place {
-        let View { eye, ahead, right, up, tan_x, tan_y, .. } = self.view;
-        let (right, up) = (right / tan_x, up / tan_y);
-        let (rel, half) = (at - eye, 0.5 * self.size);
-        let nearness = 1.0 / rel.dot(ahead);
-        let scale = half * nearness;
-        Vec3::new(half.x + scale.x * rel.dot(right), half.y - scale.y * rel.dot(up), nearness)
+        let rel = at - self.eye;
+        let nearness = 1.0 / rel.dot(self.ahead);
+        let place = self.middle + Vec2::new(rel.dot(self.right), rel.dot(self.down)) * nearness;
+        place.extend(nearness)
     }
 }

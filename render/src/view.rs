@@ -8,7 +8,7 @@ use crate::Camera;
 use crate::mesh::model::Detail;
 
 /// A camera's axes in the world.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) eye: Vec3,
     pub(crate) ahead: Vec3,
