@@ -67,7 +67,7 @@ fn a_dataset_says_what_its_sensor_does_and_is_made_again() {
     let kinds = |folder: &Path, ending: &str| -> Vec<Vec<u8>> {
         contents(folder)
             .into_iter()
-            .filter(|(name, _)| name.to_string().ends_with(ending))
+            .filter(|(name, _)| name.to_string_lossy().ends_with(ending))
             .map(|(_, bytes)| bytes)
             .collect()
     };
