@@ -81,7 +81,7 @@ impl Scenery {
                 mesh = simplify::simplified(&mesh, detail.error_m().max(FLAT_M));
                 skirt::with_skirt(&mesh, skirt * detail.error_m())
             });
-            scenery.add(levels, None, !kind.lies_on_ground());
+            scenery.add(levels, None, !is_thin);
         }
         for (object, parked) in numbered(network) {
             scenery.add(Detail::ALL.map(|detail| placed(object, parked, detail)), parked, true);
