@@ -99,6 +99,9 @@ pub(crate) struct ShadowBox {
 /// Depth of the shadow map before and behind its centre, metres.
 const SHADOW_DEPTH_M: f32 = 400.0;
 
+/// A shadow map shows what is so far above or below its centre at least, as a share of its reach: walls and slopes.
+const HIGH: f32 = 0.5;
+
 /// Shadows of what moves are not looked for any farther from it, metres.
 const LONGEST_SHADOW_M: f32 = 60.0;
 
@@ -114,7 +117,24 @@ impl ShadowBox {
 
     /// Whether anything in a sphere may cast a shadow on the map.
     pub(crate) fn reaches(&self, centre: Vec3, radius_m: f32) -> bool {
-        (centre - self.centre).reject_from(self.sun).length() < core::f32::consts::SQRT_2 * self.reach_m + radius_m
+        let (rel, [right, up]) = (centre - self.centre, self.axes());
+        rel.dot(right).abs() < self.reach_m + radius_m && rel.dot(up).abs() < self.rise_m() + radius_m
+    }
+
+    /// Axes of the map, to the right and up as the sun sees it; to the right is level, so that shadows of what is upright lie
+    /// along columns of texels.
+    fn axes(&self) -> [Vec3; 2] {
+        let side = if self.sun.z.abs() > 0.95 { Vec3::X } else { Vec3::Z };
+        let right = side.cross(self.sun).normalize();
+        [right, self.sun.cross(right)]
+    }
+
+    /// How far the map reaches up and down as the sun sees it, metres. A low sun sees the ground foreshortened: the less of the
+    /// map it takes, the finer are the texels, whose traces on the ground it stretches.
+    fn rise_m(&self) -> f32 {
+        let sine = self.sun.z.clamp(0.0, 1.0);
+        let cosine = ops::sqrt(1.0 - sine * sine);
+        (self.reach_m * (sine + HIGH * cosine)).min(self.reach_m)
     }
 
     /// A sphere around what stands on the ground in another one, and its shadow.
@@ -125,10 +145,8 @@ impl ShadowBox {
 
     /// From the world to uv (v down) and depth (0 nearest to the sun) of the map.
     pub(crate) fn matrix(&self) -> Mat4 {
-        let side = if self.sun.z.abs() > 0.95 { Vec3::X } else { Vec3::Z };
-        let right = side.cross(self.sun).normalize();
-        let up = self.sun.cross(right);
-        let (u, v, w) = (right / (2.0 * self.reach_m), -up / (2.0 * self.reach_m), -self.sun / (2.0 * SHADOW_DEPTH_M));
+        let [right, up] = self.axes();
+        let (u, v, w) = (right / (2.0 * self.reach_m), -up / (2.0 * self.rise_m()), -self.sun / (2.0 * SHADOW_DEPTH_M));
         let rows = Mat4::from_cols(u.extend(0.0), v.extend(0.0), w.extend(0.0), Vec3::ZERO.extend(1.0)).transpose();
         Mat4::from_translation(Vec3::splat(0.5)) * rows * Mat4::from_translation(-self.centre)
     }
@@ -169,6 +187,27 @@ mod tests {
             let tip = top - sun * (top.z / sun.z);
             assert!(centre.distance(tip) < radius_m && centre.distance(top) < radius_m, "{altitude_deg}");
         }
+    }
+
+    #[test]
+    fn a_low_sun_has_finer_texels_and_loses_neither_ground_nor_walls() {
+        let shadow = |altitude_deg: f32| {
+            let sun = Light::new(&Weather::dry(0.0, 0.0, altitude_deg, 40.0)).sun;
+            ShadowBox { centre: Vec3::new(7.0, -3.0, 2.0), sun, reach_m: 64.0 }
+        };
+        for altitude_deg in [6.0, 15.0, 30.0, 60.0, 85.0] {
+            let shadow = shadow(altitude_deg);
+            for aside in [Vec3::new(0.766, 0.643, 0.0), Vec3::new(0.643, -0.766, 0.0)] {
+                for (along_m, high_m) in [(-60.0, 0.0), (60.0, 0.0), (20.0, 30.0), (20.0, -20.0)] {
+                    let at = shadow.centre + aside * along_m + Vec3::Z * high_m;
+                    let place = shadow.matrix().project_point3(at) - 0.5;
+                    assert!(place.truncate().abs().max_element() < 0.495, "{altitude_deg}, {at}: {place}");
+                    assert!(shadow.reaches(at + shadow.sun * 100.0, 0.0));
+                }
+            }
+        }
+        let per_m = |shadow: ShadowBox| shadow.matrix().transform_vector3(Vec3::Z).y.abs();
+        assert!(per_m(shadow(8.0)) > 1.5 / 128.0, "of height");
     }
 
     #[test]

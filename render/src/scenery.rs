@@ -207,6 +207,7 @@ fn extent(mesh: &Mesh, sway_m: f32) -> [Vec3; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::SemanticTag;
 
     #[test]
     fn a_parked_car_that_is_gone_is_not_drawn() {
@@ -217,5 +218,17 @@ mod tests {
         let drawn = |gone: &[usize]| scenery.casters(&shadow, gone).len();
         assert!(drawn(&[5]) < drawn(&[]));
         assert_eq!(drawn(&[900]), drawn(&[]));
+    }
+
+    #[test]
+    fn neither_lines_on_the_road_nor_the_plain_cast_shadows() {
+        let city = kernel::map::bundled("city").expect("a bundled map");
+        let scenery = Scenery::new(&city);
+        let middle = 0.5 * (city.bounds[0] + city.bounds[1]);
+        let casters = scenery.casters(&ShadowBox { centre: middle, sun: Vec3::Z, reach_m: 1000.0 }, &[]);
+        let plain = scenery.pieces.last().expect("a piece").levels[0].vertices.clone();
+        let tags: Vec<u8> = casters.iter().map(|i| scenery.vertices[*i as usize].tag).collect();
+        assert!(casters.iter().all(|i| !plain.contains(i)) && !tags.contains(&(SemanticTag::RoadLine as u8)));
+        assert!([SemanticTag::Building, SemanticTag::SideWalk].iter().all(|tag| tags.contains(&(*tag as u8))));
     }
 }

@@ -28,6 +28,9 @@ const MOST_GRIDS: usize = 2;
 /// Indices of triangles, list by list.
 pub(crate) type Lists = [Vec<u32>; LISTS];
 
+/// A triangle's indices and places.
+type Kept = ([u32; 3], [Place; 3]);
+
 /// What a picture shows of triangles.
 #[derive(Default)]
 pub(crate) struct Sieve {
@@ -44,7 +47,7 @@ pub(crate) struct Sieve {
     /// Of pixels' middles and, where they are drawn, of their corners.
     grids: Vec<Grid>,
     /// What may be seen so far, for each grid, with places in the picture.
-    kept: Vec<[Vec<([u32; 3], [Place; 3])>; LISTS]>,
+    kept: Vec<[Vec<Kept>; LISTS]>,
     /// What is kept of everything.
     all: Lists,
     /// The vertices of the mesh at hand.
@@ -113,8 +116,8 @@ impl Sieve {
         if self.keeps_all {
             return vec![core::mem::take(&mut self.all)];
         }
-        let of_grid = |(grid, kept): (&Grid, &[Vec<([u32; 3], [Place; 3])>; LISTS])| {
-            let may_show = |corners: [Place; 3]| match Look::at(corners, false) {
+        let of_grid = |(grid, kept): (&Grid, &[Vec<Kept>; LISTS])| {
+            let may_show = |corners: [Place; 3]| match Look::at(corners) {
                 Look::Unseen => false,
                 Look::Crossing => true,
                 Look::Facing(outline) => {
@@ -129,7 +132,7 @@ impl Sieve {
 
     #[inline]
     fn cover(&mut self, list: usize, triangle: [u32; 3], corners: [Place; 3]) {
-        let outline = match Look::at(corners, false) {
+        let outline = match Look::at(corners) {
             Look::Unseen => return,
             Look::Crossing => {
                 self.kept.iter_mut().for_each(|kept| kept[list].push((triangle, corners)));

@@ -77,9 +77,8 @@ struct Edge {
 }
 
 impl Look {
-    /// At a triangle; its back is seen too if it is `thin`.
     #[inline]
-    pub(super) fn at(corners: [Place; 3], thin: bool) -> Self {
+    pub(super) fn at(corners: [Place; 3]) -> Self {
         let [na, nb, nc] = corners.map(|p| p.z);
         let (nearest, farthest) = (largest(largest(na, nb), nc), smallest(smallest(na, nb), nc));
         if farthest <= 0.0 || nearest > NEAREST {
@@ -88,12 +87,7 @@ impl Look {
         let [a, b, c] = corners.map(|p| p.truncate());
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         let (known_px, reach) = (known_px(low, high), high - low);
-        let mut area = (c - a).perp_dot(b - a);
-        let mut corners = corners;
-        if area < 0.0 && thin {
-            corners.swap(1, 2);
-            area = -area;
-        }
+        let area = (c - a).perp_dot(b - a);
         if area < -2.0 * known_px * (reach.x + reach.y) {
             return Self::Unseen;
         }
@@ -120,11 +114,6 @@ impl Surface {
 
     fn nearness_at(&self, at: Vec2) -> f32 {
         self.nearness + self.slope.dot(at - self.corner)
-    }
-
-    /// Whether any sample of some that are moved so much may lie in it.
-    pub(super) fn may_cover(&self, [columns, rows]: &Samples, shift: f32) -> bool {
-        rows.clone().any(|row| !self.spans(columns, row, shift)[0].is_empty())
     }
 
     /// Columns of a row that it may cover, and those that it does.
@@ -285,7 +274,7 @@ mod tests {
 
     /// Tries a triangle with or without covering what it does.
     fn shows(grid: &mut Grid, triangle: [Place; 3], covers: bool) -> bool {
-        match Look::at(triangle, false) {
+        match Look::at(triangle) {
             Look::Unseen => false,
             Look::Crossing => true,
             Look::Facing(outline) => grid.around(&outline).is_some_and(|samples| {
@@ -351,7 +340,7 @@ mod tests {
         let floor = [Vec3::new(0.0, 127.0, 0.5), Vec3::new(250.0, 127.0, 0.5), Vec3::new(125.0, 65.0, 0.01)];
         assert!(shows(&mut grid, floor, true));
         let post = |ahead_m: f32| at([(124.0, 100.0), (127.0, 100.0), (125.0, 96.0)], ahead_m);
-        let there_m = 1.0 / (1.0 / 100.0 + (1.0 / 2.0 - 1.0 / 100.0) * (96.5 - 65.0) / 62.0);
+        let there_m = 1.0 / (1.0 / 100.0 + (1.0 / 2.0 - 1.0 / 100.0) * (97.5 - 65.0) / 62.0);
         assert!(shows(&mut grid, post(there_m * 0.99), false) && !shows(&mut grid, post(there_m * 1.2), false));
     }
 }
