@@ -152,10 +152,10 @@ impl Streaks {
         if length < LEAST_PX {
             return light.0[at];
         }
-        let moments = (2 * length as usize + 3).min(MOST_MOMENTS);
+        let moments = (2 * length as usize + 3).min(MOST_MOMENTS) as f32;
         let (mut behind, mut before, mut n_behind, mut n_before) = (Vec3::ZERO, Vec3::ZERO, 0.0, 0.0);
-        for moment in 0..moments {
-            let time = (moment as f32 + 0.5) / moments as f32 - 0.5;
+        for moment in 0..moments as usize {
+            let time = (moment as f32 + 0.5) / moments - 0.5;
             let there = self.pixel(at, own * -time);
             let hides = depth_m[there] < depth_m[at] && !alike(self.moved_px[there], own);
             if !hides {
@@ -165,14 +165,15 @@ impl Streaks {
             if comes_by {
                 let there = self.pixel(at, longest * -time);
                 let moved = self.moved_px[there];
-                if depth_m[there] < depth_m[at] && alike(moved, longest) {
-                    before += Vec3::from(light.0[there]);
-                    n_before += 1.0;
+                if depth_m[there] < depth_m[at] && !alike(moved, own) {
+                    let stays = stays(moved, longest, time);
+                    before += stays * Vec3::from(light.0[there]);
+                    n_before += stays;
                 }
             }
         }
         let behind = if n_behind > 0.0 { behind / n_behind } else { Vec3::from(light.0[at]) };
-        let moments = moments as f32;
+        let moments = moments.max(n_before);
         ((behind * (moments - n_before) + before) / moments).to_array()
     }
 
@@ -181,6 +182,14 @@ impl Streaks {
         let on = |at: usize, aside: f32, side: usize| (at as f32 + 0.5 + aside).clamp(0.0, side as f32 - 0.5) as usize;
         on(at / self.width, aside_px.y, self.height) * self.width + on(at % self.width, aside_px.x, self.width)
     }
+}
+
+/// How many moments what moves so stays at a place that the longest streak leads to from it in this time, a share of the
+/// exposure: none if it goes elsewhere or does not come so far, and more than one if it is slower.
+fn stays(moved: Vec2, longest: Vec2, time: f32) -> f32 {
+    let (moved2, longest2, along) = (moved.length_squared(), longest.length_squared(), moved.dot(longest));
+    let comes = along > 0.0 && along * along > 0.9 * moved2 * longest2 && moved2 >= 4.0 * time * time * longest2;
+    if comes { ops::sqrt(longest2 / moved2) } else { 0.0 }
 }
 
 fn longer(one: Vec2, other: Vec2) -> Vec2 {

@@ -123,5 +123,6 @@ fn camera(shot: &Shot, film: &Film, moment: &Moment, at: usize) -> Option<Camera
         width: WIDTH,
         height: HEIGHT,
         quality: Quality::Fine,
+        sensor: Default::default(),
     })
 }
