@@ -494,7 +494,7 @@ def campaign(
     and `campaign.json` go to the folder `out`. Ctrl-C ends it; what was driven stays, and the same call goes on there.
 
     `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
-    scenario's, or all bundled ones), `weather` is one of CARLA's names, `quality` how good the pictures are that networks look
+    scenario's, or all bundled ones), `weather` is one with a name, `quality` how good the pictures are that networks look
     at. `vary` are as many runs, each with values drawn for those
     parameters of the scenario's story that have ranges. A run takes at most `max_time` simulated seconds.
     `jobs` worlds are simulated at the same time (None: one a core); the results do not depend on it.
@@ -652,7 +652,7 @@ def cases(
 
     Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom.
     `verdict`: necessary, near-miss, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a
-    checkpoint's digest begins with). `weather`: rain, wet, dry, fog, night, day, or a name of CARLA's. `hazards`:
+    checkpoint's digest begins with). `weather`: rain, wet, dry, fog, night, day, or the name of a weather. `hazards`:
     none, natural, raised, own. `perception_caused`: yes, no, unknown, True, False. `overlooked`: any, walker, vehicle or a kind
     of road user, as in `child:200` with so many pixels of them. `ttc_below` and `fork_ttc_below`: seconds to
     collision, measured, and without the takeover. `reviewed`: yes, no, accepted, rejected, unclear. `tag`: tags.

@@ -19,7 +19,7 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 /// `campaign.json` go to the folder `out`. Ctrl-C ends it; what was driven stays, and the same call goes on there.
 ///
 /// `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
-/// scenario's, or all bundled ones), `hazards` is `none`, `natural` or `raised`, `weather` one of CARLA's names. Networks look at
+/// scenario's, or all bundled ones), `hazards` is `none`, `natural` or `raised`, `weather` one with a name. Networks look at
 /// pictures of the `quality` `plain`, `standard` or `fine` (None: the usual). A run takes at most `max_time` simulated seconds. `jobs` worlds are simulated at the same time (None: one a core); the
 /// results do not depend on it.
 ///

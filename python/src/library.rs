@@ -45,7 +45,7 @@ impl<'py> Argument<'py> for Whether {
 ///
 /// Everything holds that is given, and of a list one is enough. `label`: walker, vehicle, rules, boredom. `verdict`: necessary,
 /// near-miss, early, needless, in-vain. `map`, `checkpoint`: names (or 8 or more digits that a checkpoint's digest begins with). `weather`: rain,
-/// wet, dry, fog, night, day, or a name of CARLA's. `hazards`: none, natural, raised, own. `perception_caused`: yes, no, unknown, True, False.
+/// wet, dry, fog, night, day, or the name of a weather. `hazards`: none, natural, raised, own. `perception_caused`: yes, no, unknown, True, False.
 /// `overlooked`: any, walker, vehicle or a kind of road user, as in `child:200` with so many pixels of them. `ttc_below` and
 /// `fork_ttc_below`: seconds to collision, measured, and without the takeover. `reviewed`: yes, no, accepted, rejected,
 /// unclear. `tag`: tags. `near`: cases whose situation is nearly that of this file; `unique`: one of each group that

@@ -68,7 +68,7 @@ pub fn level_named(name: &str) -> PyResult<HazardLevel> {
     HazardLevel::named(name).ok_or_else(|| input(format!("hazards=\"{name}\"; expected one of {}", names())))
 }
 
-/// A weather by CARLA's name.
+/// A weather by its name.
 pub fn preset(name: Option<Given<String>>) -> PyResult<Option<WeatherPreset>> {
     let Some(name) = named(name, "weather")? else { return Ok(None) };
     let names = || WeatherPreset::names().collect::<Vec<_>>().join(", ");

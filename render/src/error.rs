@@ -36,7 +36,8 @@ pub enum RenderError {
     },
     /// The lens shows what no pinhole camera sees.
     #[error(
-        "a lens of {sensor} folds the picture of this camera before its corners: expected weaker distortion, or a greater k2"
+        "a lens of {sensor} folds the picture of this camera before its corners, or sees farther than 72 degrees from its axis: \
+         expected weaker distortion, a greater k2 or a smaller field of view"
     )]
     Distortion {
         /// What was asked for.

@@ -106,8 +106,11 @@ const HIGH: f32 = 0.5;
 const LONGEST_SHADOW_M: f32 = 60.0;
 
 impl ShadowBox {
-    /// A box ahead of a camera, on a grid so that it seldom changes.
-    pub(crate) fn ahead_of(eye: Vec3, ahead: Vec3, sun: Vec3, reach_m: f32) -> Self {
+    /// A box on the ground ahead of a camera, on a grid so that it seldom changes. The ego car stands on the ground, and cameras are
+    /// mostly near it.
+    pub(crate) fn ahead_of(eye: Vec3, ahead: Vec3, ego: Vec3, sun: Vec3, reach_m: f32) -> Self {
+        let is_near = eye.truncate().distance(ego.truncate()) < reach_m;
+        let eye = eye.truncate().extend(if is_near { ego.z } else { eye.z });
         let step = 0.25 * reach_m;
         let flat = Vec3::new(ahead.x, ahead.y, 0.0).normalize_or_zero();
         let wanted = (eye + flat * (0.7 * reach_m)) / step;
@@ -186,6 +189,16 @@ mod tests {
             let (centre, radius_m) = shadow.around_shadow(top * Vec3::new(1.0, 1.0, 0.5), 1.0);
             let tip = top - sun * (top.z / sun.z);
             assert!(centre.distance(tip) < radius_m && centre.distance(top) < radius_m, "{altitude_deg}");
+        }
+    }
+
+    #[test]
+    fn the_ground_below_a_high_camera_has_shadows_too() {
+        let sun = Light::new(&Weather::dry(0.0, 0.0, 10.0, 40.0)).sun;
+        let ego = Vec3::new(300.0, 40.0, 12.0);
+        for eye_m in [1.5, 20.0, 50.0, 300.0] {
+            let shadow = ShadowBox::ahead_of(ego + Vec3::Z * eye_m, Vec3::X, ego, sun, 64.0);
+            assert!(shadow.reaches(ego + Vec3::X * 40.0, 0.0) && shadow.reaches(ego, 0.0), "{eye_m} m");
         }
     }
 

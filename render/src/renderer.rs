@@ -117,7 +117,7 @@ impl Renderer {
         let seen = if takes_corners { corners } else { view };
         let light = Light::new(&scene.weather);
         let horizon = self.scenery.horizon(view.eye);
-        let shadow = ShadowBox::ahead_of(view.eye, view.ahead, light.sun, means.shadows.reach_m);
+        let shadow = ShadowBox::ahead_of(view.eye, view.ahead, scene.ego.position, light.sun, means.shadows.reach_m);
         let lamps_shine = colours && light.lamps.is_some();
         let lighting = match (lamps_shine, light.sun_light == Vec3::ZERO) {
             (false, _) => Lighting::Day,

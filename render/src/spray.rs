@@ -31,6 +31,8 @@ const HEAVY_COVER: f32 = 0.5;
 const PUFFS: [(f32, f32); 4] = [(0.02, 1.0), (0.2, 0.85), (0.5, 0.6), (0.95, 0.35)];
 /// How far a cloud reaches in a second's way of its vehicle.
 const REACH_S: f32 = 0.42;
+/// Discs are so much wider than high, as in `spray.wgsl`.
+const WIDE: f32 = 1.3;
 /// Spray farther away is not drawn, metres.
 const FAR_M: f32 = 140.0;
 
@@ -55,7 +57,7 @@ pub(crate) fn of(scene: &SceneSnapshot, view: &View, puffs: &mut Vec<Puff>) {
             );
         }
     }
-    puffs.retain(|puff| view.sees(puff.position.into(), puff.radius_m));
+    puffs.retain(|puff| view.sees(puff.position.into(), WIDE * puff.radius_m));
     let far_m = |puff: &Puff| Vec3::from(puff.position).distance(view.eye);
     puffs.sort_by(|a, b| far_m(b).total_cmp(&far_m(a)));
 }

@@ -116,7 +116,7 @@ mod tests {
             preset.starts_with("line 4: weather.preset is \"HardRian\", expected one of ClearNoon, Cl"),
             "{preset}"
         );
-        assert!(preset.ends_with(", HardRainNight"), "{preset}");
+        assert!(preset.ends_with(", DryNight"), "{preset}");
         let later = said("[weather.later]\npreset = \"clearnoon\"");
         assert!(later.starts_with("line 4: weather.later.preset is \"clearnoon\""), "{later}");
         let range = said("[weather]\nfog_distance_m = -1");

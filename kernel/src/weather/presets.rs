@@ -1,8 +1,8 @@
-//! Weather by CARLA's names.
+//! Weather by its name: CARLA's and ours.
 
 use super::fields::Weather;
 
-/// A weather of CARLA.
+/// A weather with a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeatherPreset {
     /// Its name there.
@@ -17,7 +17,7 @@ impl WeatherPreset {
         PRESETS.iter().find(|preset| preset.name == name)
     }
 
-    /// Every name, in CARLA's order.
+    /// Every name, CARLA's in its order and then ours.
     pub fn names() -> impl Iterator<Item = &'static str> {
         PRESETS.iter().map(|preset| preset.name)
     }
@@ -66,7 +66,7 @@ pub static PRESETS: [WeatherPreset; 24] = [
     preset("SoftRainNight", [60.0, 30.0, 50.0, 30.0, -90.0, 60.0, 0.75, 60.0]),
     preset("MidRainyNight", [80.0, 60.0, 60.0, 60.0, -90.0, 60.0, 0.75, 80.0]),
     preset("HardRainNight", [100.0, 100.0, 90.0, 100.0, -90.0, 100.0, 0.75, 100.0]),
-    preset("Dusk", [30.0, 0.0, 0.0, 10.0, -2.0, 0.0, 0.0, 0.0]),
-    preset("Fog", [80.0, 0.0, 0.0, 10.0, 45.0, 50.0, 0.75, 0.0]),
-    preset("Night", [30.0, 0.0, 0.0, 10.0, -30.0, 0.0, 0.0, 0.0]),
+    preset("ClearDusk", [30.0, 0.0, 0.0, 10.0, -2.0, 0.0, 0.0, 0.0]),
+    preset("FoggyNoon", [80.0, 0.0, 0.0, 10.0, 45.0, 50.0, 0.75, 0.0]),
+    preset("DryNight", [30.0, 0.0, 0.0, 10.0, -30.0, 0.0, 0.0, 0.0]),
 ];

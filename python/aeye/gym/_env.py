@@ -33,7 +33,7 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     for `ticks` ticks of 1/60 s, 1 to 60; beyond its range each counts as its end. The semantic driver's indicators are set by themselves.
 
     `checkpoint` is `early`, `full`, `truth`, an ONNX file or an `External`; `map` a bundled map or an OpenDRIVE file, or `scenario` a
-    scenario file; `hazards` is `none`, `natural` or `raised`, `weather` one of CARLA's names; a run takes at most `max_time`
+    scenario file; `hazards` is `none`, `natural` or `raised`, `weather` one with a name; a run takes at most `max_time`
     seconds, 4 to 86,400 (None: the scenario's, 600 unless it says otherwise). `observe` is `mask`, `rgb` or `both` (None: what the seat's driver sees), `size` (width, height) of
     images (None: that of masks). With `record`, each episode is kept in that folder as a recording that `aeye verify` and all
     other commands take.

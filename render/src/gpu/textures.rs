@@ -1,5 +1,7 @@
 //! Textures that are filled once.
 
+use std::sync::OnceLock;
+
 use super::Gpu;
 use crate::{ground_textures, leaves, light_map, noise, tile};
 
@@ -11,13 +13,16 @@ pub(super) fn noise_view(gpu: &Gpu) -> wgpu::TextureView {
 
 /// The textures of ground, a layer each.
 pub(super) fn ground_view(gpu: &Gpu) -> wgpu::TextureView {
-    let side = tile::SIDE as u32;
-    all_layers(&tiles(gpu, "ground", wgpu::TextureFormat::Rgba8Unorm, side, &ground_textures::layers()))
+    static LAYERS: OnceLock<Vec<Vec<Vec<u8>>>> = OnceLock::new();
+    let (side, layers) = (tile::SIDE as u32, LAYERS.get_or_init(|| ground_textures::layers().into()));
+    all_layers(&tiles(gpu, "ground", wgpu::TextureFormat::Rgba8Unorm, side, layers))
 }
 
 /// The textures of leaves, a layer each.
 pub(super) fn leaves_view(gpu: &Gpu) -> wgpu::TextureView {
-    all_layers(&tiles(gpu, "leaves", wgpu::TextureFormat::Rg8Unorm, leaves::SIDE, &leaves::layers()))
+    static LAYERS: OnceLock<Vec<Vec<Vec<u8>>>> = OnceLock::new();
+    let layers = LAYERS.get_or_init(leaves::layers);
+    all_layers(&tiles(gpu, "leaves", wgpu::TextureFormat::Rg8Unorm, leaves::SIDE, layers))
 }
 
 fn all_layers(texture: &wgpu::Texture) -> wgpu::TextureView {

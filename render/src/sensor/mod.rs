@@ -84,6 +84,6 @@ pub(crate) fn take(seen: Frame, scene: &SceneSnapshot, camera: &Camera, lens: &L
     }
     let mut light = lens.bent(light);
     chip::expose(&mut light, camera);
-    let rgb = noise::developed(&light, sensor.noise, noise::seed(scene));
+    let rgb = noise::developed(&light, sensor.noise, noise::seed(scene, camera));
     Frame { rgb, ..lens.labels(seen) }
 }

@@ -4,6 +4,7 @@ use kernel::SceneSnapshot;
 use xxhash_rust::xxh3::{xxh3_64, xxh3_64_with_seed};
 
 use super::tone::{Light, colour_of, light_of};
+use crate::Camera;
 
 /// The colour at which a sensor's noise is what its setting says.
 const MID_GREY: f32 = 127.5;
@@ -28,11 +29,12 @@ pub(super) fn developed(light: &Light, noise: f32, seed: u64) -> Vec<u8> {
     rgb
 }
 
-/// What the noise of a picture follows from, beside the pixels' numbers: its tick, and the ego car's place, without which all drives
-/// had the same.
-pub(super) fn seed(scene: &SceneSnapshot) -> u64 {
-    let place = scene.ego.position.to_array().map(f32::to_le_bytes);
-    xxh3_64(&[&scene.tick.to_le_bytes(), place.as_flattened()].concat())
+/// What the noise of a picture follows from, beside the pixels' numbers: its tick, the ego car's place, without which all drives
+/// had the same, and the camera's, without which all cameras of a car had.
+pub(super) fn seed(scene: &SceneSnapshot, camera: &Camera) -> u64 {
+    let numbers = scene.ego.position.to_array().into_iter().chain(camera.position.to_array());
+    let places: Vec<u8> = numbers.chain(camera.rotation.to_array()).flat_map(f32::to_le_bytes).collect();
+    xxh3_64(&[&scene.tick.to_le_bytes()[..], &places].concat())
 }
 
 /// The deviation for each colour, in steps of 8 bits. Shot noise has a variance that is proportional to the light, and
@@ -62,6 +64,9 @@ fn normal(bits: u64) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use glam::{Quat, Vec3};
+    use kernel::scene::{EgoScene, Weather};
+
     use super::*;
 
     fn grey(colour: f32) -> Light {
@@ -103,6 +108,24 @@ mod tests {
         let correlation: f64 =
             one.iter().zip(&other).map(|(a, b)| (f64::from(*a) - 100.0) * (f64::from(*b) - 100.0)).sum();
         assert!((correlation / one.len() as f64).abs() < 0.5, "{correlation}");
+    }
+
+    #[test]
+    fn each_tick_and_each_camera_has_noise_of_its_own() {
+        let ego =
+            EgoScene { position: Vec3::ONE, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0, lamps: 0 };
+        let scene = |tick| SceneSnapshot {
+            tick,
+            ego,
+            actors: Vec::new(),
+            lights: Vec::new(),
+            weather: Weather::dry(0.0, 0.0, 40.0, 0.0),
+        };
+        let driver = Camera::driver(64, 32);
+        let turned = Camera { rotation: Quat::from_rotation_z(1.0), ..driver };
+        let seeds = [seed(&scene(1), &driver), seed(&scene(2), &driver), seed(&scene(1), &turned)];
+        assert_eq!(seeds[0], seed(&scene(1), &driver));
+        assert!(seeds[0] != seeds[1] && seeds[0] != seeds[2] && seeds[1] != seeds[2]);
     }
 
     #[test]

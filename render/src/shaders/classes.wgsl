@@ -1,4 +1,4 @@
-// Classes and instances alone: where surfaces are is what `world.wgsl` says.
+// Classes and instances alone: where surfaces are is what `surface.wgsl` says.
 
 struct Seen {
     @builtin(position) @invariant clip: vec4f,

@@ -96,7 +96,9 @@ fn spot_of(in: Lit) -> Spot {
     it.luck = fract(it.chance * 37.0);
     it.ground = it.cell.y == 0.0;
     it.has_windows = it.cell.y >= 0.0 && it.material != TILES;
-    it.door = it.ground && (it.code & DOOR) != 0u && u32(it.cell.x) == (it.look >> 4u) % 3u;
+    // Their fronts may have one column.
+    let narrow = it.material == GARAGE && it.cell.x == 0.0;
+    it.door = it.ground && (it.code & DOOR) != 0u && (narrow || u32(it.cell.x) == (it.look >> 4u) % 3u);
     it.shop = it.ground && (it.code & SHOP) != 0u && !it.door;
     it.garage = it.material == GARAGE;
     it.curtain_wall = it.material == GLASS && !(it.door || it.shop);

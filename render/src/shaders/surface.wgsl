@@ -71,6 +71,8 @@ fn shine(out: ptr<function, Lit>, colour: vec3f) {
 @vertex
 fn vertex_plain(in: VertexIn) -> Lit {
     var out = lit(in);
+    // Of these surfaces it is what shines of them.
+    out.uv_param = vec3f(0.0);
     let normal = in.normal_sway.xyz;
     let gloss = in.colour_param.a;
     let view = normalize(in.position - scene.eye);
@@ -96,8 +98,7 @@ fn vertex_plain(in: VertexIn) -> Lit {
         let uv = out.from_eye.xy * scene.light_map_per_m + scene.light_map_at;
         let lit = textureSampleLevel(light_map, noise_sampler, clamp(uv, vec2f(0.003), vec2f(0.997)), 0.0).g;
         let back = max(-dot(view, normal), 0.0) * RETRO_GAIN * lit * lit;
-        out.sunlit += to_linear(in.colour_param.rgb) * scene.headlight * back;
-        out.shadow = vec3f(2.0);
+        out.uv_param = to_linear(in.colour_param.rgb) * scene.headlight * back;
     }
     return out;
 }
@@ -139,5 +140,5 @@ fn finish_shining(in: Lit, shade: vec3f, sunlit: vec3f, shining: vec3f) -> Pixel
 
 @fragment
 fn fragment_plain(in: Lit) -> Pixel {
-    return finish(in, in.shade, in.sunlit);
+    return finish_shining(in, in.shade, in.sunlit, in.uv_param);
 }

@@ -16,6 +16,8 @@ const KNOWN_PX: f32 = 0.02;
 const KNOWN_SHARE: f32 = 1e-5;
 /// Nearness is known so well, as a share of that of a triangle's nearest corner.
 const KNOWN_NEARNESS: f32 = 1e-5;
+/// And its slope so well, as a share of its spread where a triangle is as high as wide.
+const KNOWN_SPREAD: f32 = 5e-7;
 
 /// Samples in rows and columns.
 #[derive(Debug, Default)]
@@ -98,17 +100,19 @@ impl Look {
 impl Surface {
     #[inline]
     pub(super) fn of(outline: &Outline) -> Self {
-        let &Outline { corners, known_px, area, nearest, .. } = outline;
+        let &Outline { corners, low, high, known_px, area, nearest } = outline;
         let [a, b, c] = corners.map(|p| p.truncate());
         let [na, nb, nc] = corners.map(|p| p.z);
         let slope = ((b - a).perp() * (nc - na) - (c - a).perp() * (nb - na)) / -area;
+        // Of slivers little is known: what rounds in a long side times a difference of nearness stays, and the area is small.
+        let (reach, spread) = (high - low, (nb - na).abs() + (nc - na).abs());
+        let rounded = KNOWN_SPREAD * reach.length_squared() / area.abs() * spread;
         Self {
             edges: [(a, b), (b, c), (c, a)].map(|(p, q)| Edge::new(p, q, known_px)),
             corner: a,
             nearness: na,
             slope,
-            // Of slivers nothing is known, as slopes are steep.
-            known: known_px * (slope.x.abs() + slope.y.abs()) + KNOWN_NEARNESS * nearest,
+            known: known_px * (slope.x.abs() + slope.y.abs()) + KNOWN_NEARNESS * nearest + rounded,
         }
     }
 
@@ -331,6 +335,36 @@ mod tests {
         let [low, high] = [Vec2::new(15.0, 35.0), Vec2::new(20.0, 40.0)];
         assert!(!grid.may_show_between(low, high, 1.0 / 21.0) && grid.may_show_between(low, high, 1.0 / 19.0));
         assert!(grid.may_show_between(low, high + 20.0, 1.0 / 21.0));
+    }
+
+    /// Long triangles, as rails and edges of kerbs are.
+    #[test]
+    fn slivers_are_not_known_to_be_nearer_than_they_are() {
+        let mut number = 1u32;
+        let mut drawn = |low: f32, high: f32| {
+            number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            low + (high - low) * (number >> 8) as f32 / 16_777_216.0
+        };
+        let mut covered = 0;
+        for _ in 0..20_000 {
+            let a = Vec3::new(drawn(-300.0, 256.0), drawn(0.0, 128.0), 1.0 / drawn(5.0, 60.0));
+            let b = a.truncate() + Vec2::new(drawn(50.0, 700.0), drawn(-30.0, 30.0));
+            let c = b - Vec2::Y * drawn(0.1, 4.0);
+            let corners = [a, b.extend(1.0 / drawn(5.0, 60.0)), c.extend(1.0 / drawn(5.0, 60.0))];
+            let Look::Facing(outline) = Look::at(corners) else { continue };
+            let mut grid = grid();
+            let Some(samples) = grid.around(&outline) else { continue };
+            grid.cover(&Surface::of(&outline), &samples);
+            let [p, q, r] = corners.map(|corner| corner.as_dvec3());
+            let normal = (q - p).cross(r - p);
+            for (at, known) in grid.nearness.iter().enumerate().filter(|(_, known)| **known > 0.0) {
+                let sample = grid.sample(at / 256, at % 256).as_dvec2();
+                let there = p.z - normal.truncate().dot(sample - p.truncate()) / normal.z;
+                assert!(f64::from(*known) <= there * (1.0 + 1e-7), "{corners:?} at {sample}: {known} of {there}");
+                covered += 1;
+            }
+        }
+        assert!(covered > 50_000, "{covered}");
     }
 
     /// A floor that rises to the horizon hides what is below and nothing of what stands on it.

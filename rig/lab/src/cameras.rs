@@ -117,16 +117,15 @@ mod tests {
     #[test]
     fn a_file_describes_cameras() {
         let text = "[[cameras]]\nname = \"driver\"\nx_m = 2.55\nz_m = 1.5\n\
-                    [[cameras]]\nname = \"rear\"\nx_m = -0.8\nz_m = 1.1\nyaw_rad = 3.14159265\npitch_rad = -0.1\n\
+                    [[cameras]]\nname = \"rear\"\nx_m = -0.8\ny_m = 0.3\nz_m = 1.1\nyaw_rad = 3.14159265\npitch_rad = -0.1\n\
                     fov_x_rad = 2.0\nwidth = 128\nheight = 96\nquality = \"standard\"\nsensor = \"k1=-0.1\"\n";
         let imaging = "plain noise=4".parse().expect("an imaging");
         let [driver, rear] = &parse(text, (64, 32), imaging).expect("readable")[..] else { panic!("two cameras") };
         let expected = Camera::driver(64, 32).at(imaging);
         assert_eq!((driver.name.as_str(), driver.camera.imaging(), driver.camera.width), ("driver", imaging, 64));
-        assert!(
-            driver.camera.position.distance(expected.position) < 1.5 && driver.camera.rotation == expected.rotation
-        );
+        assert!((driver.camera.position, driver.camera.rotation) == (Vec3::new(2.55, 0.0, 1.5), expected.rotation));
         assert_eq!((rear.camera.width, rear.camera.imaging().to_string()), (128, "standard k1=-0.1".into()));
+        assert_eq!(rear.camera.position, Vec3::new(-0.8, 0.3, 1.1));
         let looks = rear.camera.rotation * Vec3::X;
         assert!(looks.x < -0.99 && looks.z < -0.09, "back and down: {looks}");
     }

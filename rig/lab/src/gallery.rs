@@ -99,10 +99,10 @@ fn lights() -> anyhow::Result<[(&'static str, Weather); 5]> {
     let preset = |name| WeatherPreset::find(name).context(name).map(|preset| preset.weather(SUN_AZIMUTH_DEG));
     Ok([
         ("noon", preset("ClearNoon")?),
-        ("dusk", preset("Dusk")?),
+        ("dusk", preset("ClearDusk")?),
         ("rain", preset("MidRainyNoon")?),
-        ("fog", preset("Fog")?),
-        ("night", preset("Night")?),
+        ("fog", preset("FoggyNoon")?),
+        ("night", preset("DryNight")?),
     ])
 }
 

@@ -110,7 +110,7 @@ fn a_dataset_is_the_same_in_parallel_and_when_it_was_interrupted() {
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn each_map_meets_each_weather_that_is_asked_for() {
     let dir = tempfile::tempdir().unwrap();
-    let weather = ["Night", "Fog"].map(|name| *WeatherPreset::find(name).unwrap()).to_vec();
+    let weather = ["DryNight", "FoggyNoon"].map(|name| *WeatherPreset::find(name).unwrap()).to_vec();
     let asked = natural::Options {
         scenes: 4,
         val_scenes: 0,

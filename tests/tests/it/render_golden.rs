@@ -15,10 +15,10 @@ const MOMENTS: [u32; 4] = [0, 4, 9, 14];
 const WEATHERS: [(u32, &str); 8] = [
     (2, "CloudyNoon"),
     (3, "HardRainNoon"),
-    (5, "Fog"),
+    (5, "FoggyNoon"),
     (6, "WetSunset"),
-    (7, "Dusk"),
-    (8, "Night"),
+    (7, "ClearDusk"),
+    (8, "DryNight"),
     (10, "CloudyNight"),
     (11, "HardRainNight"),
 ];

@@ -14,13 +14,14 @@ const REACH_M: f32 = 60.0;
 /// The roads of a map.
 pub(super) struct Roads<'a> {
     network: &'a RoadNetwork,
-    /// Lanes that are driven on, by the names of their roads, without those in junctions, which lie over each other.
-    driven: BTreeMap<&'a str, Vec<LaneId>>,
+    /// For each lane those of its road that are driven on and lie beside it; none in junctions, where lanes lie over each other.
+    beside: Vec<Vec<LaneId>>,
 }
 
 /// A stretch of a lane around a place on it.
 #[derive(Clone, Copy)]
 pub(super) struct Piece<'a> {
+    id: LaneId,
     pub(super) lane: &'a Lane,
     /// Where the place is on it.
     s_m: f32,
@@ -50,6 +51,13 @@ pub(super) fn road_of(lane: &Lane) -> &str {
     lane.name.split('/').next().unwrap_or_default()
 }
 
+/// Whether two lanes of a road may be side by side: a road of many sections has others before and after, and its other leg beyond
+/// a bend.
+fn lie_beside(one: &Lane, other: &Lane) -> bool {
+    let middle = |lane: &Lane| lane.at(0.5 * lane.length_m).position;
+    middle(one).distance_squared(middle(other)) < REACH_M * REACH_M
+}
+
 impl<'a> Roads<'a> {
     pub(super) fn new(network: &'a RoadNetwork) -> Self {
         let mut driven: BTreeMap<&str, Vec<LaneId>> = BTreeMap::new();
@@ -58,7 +66,12 @@ impl<'a> Roads<'a> {
                 driven.entry(road_of(lane)).or_default().push(id);
             }
         }
-        Self { network, driven }
+        let beside = network.lanes.iter().map(|lane| {
+            let of_road = driven.get(road_of(lane)).filter(|_| lane.junction.is_none());
+            let lies_beside = |id: &&LaneId| lie_beside(lane, &network.lanes[**id as usize]);
+            of_road.into_iter().flatten().filter(lies_beside).copied().collect()
+        });
+        Self { network, beside: beside.collect() }
     }
 
     /// The stretch that a place of a roadway is on; nothing in junctions and beside all lanes.
@@ -68,7 +81,7 @@ impl<'a> Roads<'a> {
         if on.lane.junction.is_some() {
             return None;
         }
-        let lanes = self.driven.get(road_of(on.lane))?.iter().map(|&id| &self.network.lanes[id as usize]);
+        let lanes = self.beside[on.id as usize].iter().map(|&id| (id, &self.network.lanes[id as usize]));
         let beside: Vec<Piece> = lanes.filter_map(|lane| on.beside(lane, place)).collect();
         let along = *beside.first()?;
         let is_turned = |piece: &Piece| ops::cos(piece.heading_rad() - along.heading_rad()) < 0.0;
@@ -94,19 +107,19 @@ impl<'a> Roads<'a> {
     /// The lane of a kind that a place is on.
     fn on(&self, place: Vec3, kind: LaneKind) -> Option<Piece<'a>> {
         let on = *self.network.lanes_at(place, kind).first()?;
-        Some(Piece { lane: &self.network.lanes[on.lane as usize], s_m: on.s_m })
+        Some(Piece { id: on.lane, lane: &self.network.lanes[on.lane as usize], s_m: on.s_m })
     }
 }
 
 impl<'a> Piece<'a> {
     /// The stretch of another lane of its road around a place, if that one has any there.
-    fn beside(&self, lane: &'a Lane, place: Vec3) -> Option<Piece<'a>> {
+    fn beside(&self, (id, lane): (LaneId, &'a Lane), place: Vec3) -> Option<Piece<'a>> {
         // Both are about as long, and lead the same way or the other.
         let share = self.s_m / self.lane.length_m;
-        let tried = [share, 1.0 - share].map(|share| Piece { lane, s_m: share * lane.length_m });
-        let found = tried.map(|piece| lane.project_near(place, piece.s_m, REACH_M));
+        let tried = [share, 1.0 - share].map(|share| share * lane.length_m);
+        let found = tried.map(|s_m| lane.project_near(place, s_m, REACH_M));
         let (s_m, _, distance_m) = if found[0].2 < found[1].2 { found[0] } else { found[1] };
-        (s_m > 0.0 && s_m < lane.length_m && distance_m < REACH_M).then_some(Piece { lane, s_m })
+        (s_m > 0.0 && s_m < lane.length_m && distance_m < REACH_M).then_some(Piece { id, lane, s_m })
     }
 
     fn heading_rad(&self) -> f32 {

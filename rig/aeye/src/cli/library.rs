@@ -76,7 +76,7 @@ pub struct QueryArgs {
     /// On these maps.
     #[arg(long, value_delimiter = ',', value_name = "NAME,...")]
     pub map: Vec<String>,
-    /// In this weather: rain, wet, dry, fog, night, day, or a name of CARLA's as in HardRainNoon.
+    /// In this weather: rain, wet, dry, fog, night, day, or a name as in HardRainNoon.
     #[arg(long, value_delimiter = ',', value_name = "WEATHER,...")]
     pub weather: Vec<WeatherChoice>,
     /// With this level of hazards: none, natural, raised, or own.

@@ -57,7 +57,7 @@ pub fn names(bits: i64) -> Vec<&'static str> {
     Condition::ALL.into_iter().filter(|condition| bits & *condition as i64 != 0).map(Condition::name).collect()
 }
 
-/// CARLA's name of a weather, wherever the sun stands.
+/// The name of a weather, wherever the sun stands.
 pub fn preset(weather: &Weather) -> Option<&'static str> {
     let is_it = |name: &&str| WeatherPreset::find(name).is_some_and(|p| p.weather(weather.sun_azimuth_deg) == *weather);
     WeatherPreset::names().find(is_it)
@@ -75,7 +75,7 @@ pub enum WeatherChoice {
 }
 
 impl WeatherChoice {
-    /// What may be asked for beside names of CARLA.
+    /// What may be asked for beside names.
     pub const WORDS: [&str; 6] = ["rain", "wet", "dry", "fog", "night", "day"];
 }
 
@@ -90,7 +90,7 @@ impl FromStr for WeatherChoice {
         }
         let condition = Condition::ALL.into_iter().find(|condition| condition.name() == text).map(Self::With);
         let preset = || WeatherPreset::find(text).map(|preset| Self::Preset(preset.name));
-        let expected = || format!("expected {}, or a name of CARLA's as in HardRainNoon", Self::WORDS.join(", "));
+        let expected = || format!("expected {}, or a name as in HardRainNoon", Self::WORDS.join(", "));
         condition.or_else(preset).ok_or_else(expected)
     }
 }

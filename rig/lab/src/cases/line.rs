@@ -41,7 +41,7 @@ pub struct CaseLine {
     pub seed: u64,
     /// Version of the kernel that made it.
     pub kernel: String,
-    /// CARLA's name of the weather at the takeover, if it has one.
+    /// The name of the weather at the takeover, if it has one.
     pub weather: Option<String>,
     /// Of it: `rain`, `wet`, `fog`, `night`.
     pub conditions: Vec<&'static str>,

@@ -122,11 +122,12 @@ fn labels(metadata: Metadata, weather: &Weather, camera: Camera, tracks: Tracks,
 
 fn stream(camera: &Camera) -> Stream {
     let [fx, _, cx, _, fy, cy, ..] = camera.intrinsics();
+    let [k1, k2] = camera.sensor.distortion().map(f64::from);
     let intrinsics_pinhole = Pinhole {
         width_px: camera.width,
         height_px: camera.height,
         camera_matrix: [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
-        distortion_coeffs: [0.0; 5],
+        distortion_coeffs: [k1, k2, 0.0, 0.0, 0.0],
     };
     let stream_properties = StreamProperties { intrinsics_pinhole };
     Stream { r#type: "camera", description: "What both drivers see", stream_properties }
