@@ -2,15 +2,9 @@
 
 mod asphalt;
 mod paving;
+mod plan;
 
-use glam::Vec2;
-
-use crate::mesh::variety::Variety;
 use crate::tile::Tile;
-
-/// Metres across the tile of asphalt and that of paving, as `asphalt.wgsl` and `paving.wgsl` have them.
-const ASPHALT_M: f32 = 20.48;
-const PAVING_M: f32 = 5.12;
 
 /// Number of [`layers`].
 pub(crate) const LAYERS: usize = 2;
@@ -18,17 +12,6 @@ pub(crate) const LAYERS: usize = 2;
 /// The tile of asphalt and that of paving, each with its mip levels.
 pub(crate) fn layers() -> [Vec<Vec<u8>>; LAYERS] {
     [asphalt::drawn(), paving::drawn()].map(Tile::levels)
-}
-
-/// A line of so many straight ones between two places, each of which strays by up to `stray_m`. What goes round a tile closes.
-fn wandering([from, to]: [Vec2; 2], (pieces, stray_m): (u32, f32), variety: &mut Variety) -> Vec<Vec2> {
-    let mut off = Vec2::ZERO;
-    let place = |i: u32| {
-        let share = i as f32 / pieces as f32;
-        off = 0.8 * off + Vec2::new(variety.between(-stray_m, stray_m), variety.between(-stray_m, stray_m));
-        from.lerp(to, share) + off * (8.0 * share * (1.0 - share)).min(1.0)
-    };
-    (0..=pieces).map(place).collect()
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 mod actors;
 pub mod adapter;
 pub mod camera;
+mod effects;
 mod error;
 mod frame;
 mod glows;

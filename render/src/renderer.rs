@@ -6,6 +6,7 @@ use kernel::weather::Water;
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::actors::{Cast, Moving};
+use crate::effects::{self, Lens};
 use crate::glows::{self, Glow};
 use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
@@ -13,7 +14,6 @@ use crate::light_map::LightMap;
 use crate::mirrors::{self, Feet, Streak};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
-use crate::sensor::{self, Lens};
 use crate::shadows::ShadowMaps;
 use crate::sieve::{MOVING, Sieve};
 use crate::spray::{self, Puff};
@@ -104,7 +104,7 @@ impl Renderer {
         let lens = Lens::of(camera)?;
         let seen = self.planes(scene, lens.pinhole(), colours)?;
         let seen = if colours { seen } else { Frame { rgb: Vec::new(), ..seen } };
-        Ok(sensor::take(seen, scene, camera, &lens))
+        Ok(effects::take(seen, scene, camera, &lens))
     }
 
     fn planes(&mut self, scene: &SceneSnapshot, camera: &Camera, colours: bool) -> Result<Frame, RenderError> {
@@ -139,7 +139,8 @@ impl Renderer {
         let texel = 1.0 / means.shadows.side as f32;
         let draws = Draws {
             uniforms: [view, corners].map(|view| {
-                SceneUniform::new(&view, scene, &light, shadow.matrix(), texel).lit(&light, &self.light_map)
+                let uniform = SceneUniform::new(&view, scene, &light, shadow.matrix(), texel);
+                uniform.sampled(means.samples).lit(&light, &self.light_map)
             }),
             moving_vertices: &self.moving.vertices,
             seen: self.sieve.finish(),

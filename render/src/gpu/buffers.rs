@@ -45,7 +45,8 @@ pub(crate) struct SceneUniform {
     wet: f32,
     puddles: f32,
     pixel_rad: f32,
-    pad3: [f32; 2],
+    leaf_bias: f32,
+    pad3: f32,
     street: [f32; 3],
     window: f32,
     headlight: [f32; 3],
@@ -97,9 +98,16 @@ impl SceneUniform {
             wet: water.wet,
             puddles: water.level,
             pixel_rad: 1.0 / view.pixels_per_m,
-            pad3: [0.0; 2],
+            leaf_bias: 0.0,
+            pad3: 0.0,
             ..Self::zeroed()
         }
+    }
+
+    /// The same for so many samples a pixel along each axis. Labels are those of pixels' middles however many there are, so leaves are
+    /// those of pixels.
+    pub(crate) fn sampled(self, samples: u32) -> Self {
+        Self { leaf_bias: (samples as f32).log2(), ..self }
     }
 
     /// The same with lamps that shine, if they do.

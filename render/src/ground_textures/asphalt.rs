@@ -3,7 +3,7 @@
 use glam::{IVec2, Vec2};
 use kernel::ops;
 
-use super::{ASPHALT_M, wandering};
+use super::plan::{ASPHALT_M, wandering};
 use crate::mesh::variety::Variety;
 use crate::tile::Tile;
 

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::PAVING_M;
+use super::plan::PAVING_M;
 use crate::mesh::variety::Variety;
 use crate::tile::{CHANNELS, Tile};
 

@@ -1,18 +1,6 @@
-//! What a camera's optics and chip make of what there is to see. Everything happens after a picture was read back, on the
-//! processor and with operations that are exact by their standard, so that it is the same on every adapter.
+//! What a camera has that an ideal one has not.
 
-mod chip;
-mod lens;
-mod noise;
-mod shutter;
 mod text;
-mod tone;
-
-use kernel::SceneSnapshot;
-
-pub(crate) use self::lens::Lens;
-use self::tone::Light;
-use crate::{Camera, Frame};
 
 /// What tells a real camera's picture from an ideal one's. Its values are finite and within their limits: it comes from its
 /// text alone, as in `exposure_ev=-1,noise=4`.
@@ -67,23 +55,7 @@ impl Sensor {
     }
 
     /// Whether it changes colours.
-    fn develops(&self) -> bool {
+    pub(crate) fn develops(&self) -> bool {
         !Self { k1: 0.0, k2: 0.0, ..*self }.is_ideal()
     }
-}
-
-/// What a camera with a sensor takes, from what the pinhole camera of its lens sees of a scene.
-pub(crate) fn take(seen: Frame, scene: &SceneSnapshot, camera: &Camera, lens: &Lens) -> Frame {
-    let sensor = &camera.sensor;
-    if seen.rgb.is_empty() || !(sensor.develops() || sensor.distorts()) {
-        return lens.labels(seen);
-    }
-    let mut light = Light::of(&seen.rgb);
-    if sensor.motion_blur_s > 0.0 {
-        light = shutter::blurred(light, &seen, scene, (lens.pinhole(), sensor.motion_blur_s));
-    }
-    let mut light = lens.bent(light);
-    chip::expose(&mut light, camera);
-    let rgb = noise::developed(&light, sensor.noise, noise::seed(scene, camera));
-    Frame { rgb, ..lens.labels(seen) }
 }

@@ -2,7 +2,7 @@
 
 // How much is leaf and how bright, of the layer that a vertex's code names; layers are those of `leaves.rs`.
 fn leaf_at(uv: vec2f, ids: u32) -> vec2f {
-    let leaf = textureSample(leaves, noise_sampler, uv, i32((ids >> 8u) & 255u)).rg;
+    let leaf = textureSampleBias(leaves, noise_sampler, uv, i32((ids >> 8u) & 255u), scene.leaf_bias).rg;
     // Of what is seen edge-on only a line of dashes would be left.
     let x = dpdx(uv);
     let y = dpdy(uv);

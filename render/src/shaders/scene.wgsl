@@ -34,8 +34,9 @@ struct Scene {
     wet: f32,
     puddles: f32,
     pixel_rad: f32,
+    // Levels of detail that leaves are shown coarser than samples ask for, as many samples are one pixel.
+    leaf_bias: f32,
     pad3: f32,
-    pad4: f32,
     // Of lamps, in the light of the sky: 1 is as bright.
     street: vec3f,
     window: f32,

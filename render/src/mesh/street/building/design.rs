@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{STOREY_M, TAG};
+use super::outline::{STOREY_M, TAG};
 use crate::mesh::variety::Variety;
 use crate::mesh::{Finish, Paint};
 

@@ -1,6 +1,7 @@
 //! Houses: walls with windows and doors, shop fronts, roofs of several shapes, and what stands out from them.
 
 mod design;
+mod outline;
 mod roof;
 mod street;
 
@@ -8,19 +9,10 @@ use glam::{Vec2, Vec3};
 
 pub use self::design::style;
 use self::design::{Design, Kind};
+use self::outline::{CELL_M, NO_WINDOWS, TAG, corners, rim};
 use self::street::Front;
-use crate::SemanticTag;
 use crate::mesh::model::Detail;
 use crate::mesh::{Mesh, Paint};
-
-const TAG: SemanticTag = SemanticTag::Building;
-
-/// Height of a storey, metres.
-const STOREY_M: f32 = 3.0;
-/// Size of a window's part of a wall, metres: about that of all, and what `facade.wgsl` takes it for.
-const CELL_M: Vec2 = Vec2::new(2.7, STOREY_M);
-/// Below 0, where surfaces count their storeys from when they have no windows.
-const NO_WINDOWS: f32 = -64.0;
 
 /// A house that fills a box of `size` metres; its front looks along the x axis.
 pub fn building(variant: u32, size: Vec3, detail: Detail) -> Mesh {
@@ -33,11 +25,6 @@ pub fn building(variant: u32, size: Vec3, detail: Detail) -> Mesh {
     roof::roof(&mut mesh, &design, detail);
     street::adorn(&mut mesh, &design, Front::new(&design, columns), detail);
     mesh
-}
-
-fn corners(size: Vec3, grow: f32, z: f32) -> [Vec3; 4] {
-    let (x, y) = (0.5 * size.x + grow, 0.5 * size.y + grow);
-    [Vec3::new(-x, -y, z), Vec3::new(x, -y, z), Vec3::new(x, y, z), Vec3::new(-x, y, z)]
 }
 
 /// The wall that looks at the street, along the x axis, and the one behind.
@@ -81,15 +68,6 @@ fn plinth(mesh: &mut Mesh, design: &Design) {
     let (size, top) = (design.size, 0.32);
     mesh.walls(stone, &corners(size, 0.05, 0.0), &corners(size, 0.05, top));
     rim(mesh, stone, size, [0.05, 0.0], top);
-}
-
-/// A flat ring between two outlines of the house at a height, seen from above.
-fn rim(mesh: &mut Mesh, paint: Paint, size: Vec3, grow: [f32; 2], z: f32) {
-    let (outer, inner) = (corners(size, grow[0], z), corners(size, grow[1], z));
-    for i in 0..4 {
-        let j = (i + 1) % 4;
-        mesh.polygon(paint, &[outer[i], outer[j], inner[j], inner[i]]);
-    }
 }
 
 #[cfg(test)]

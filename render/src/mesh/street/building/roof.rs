@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::design::{Design, Roof};
-use super::{CELL_M, NO_WINDOWS, TAG, corners, rim, style};
+use super::design::{Design, Roof, style};
+use super::outline::{CELL_M, NO_WINDOWS, TAG, corners, rim};
 use crate::mesh::model::Detail;
 use crate::mesh::variety::Variety;
 use crate::mesh::{Mesh, Paint};

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::design::{Adornment, Design, Kind};
-use super::{NO_WINDOWS, TAG, style};
+use super::design::{Adornment, Design, Kind, style};
+use super::outline::{NO_WINDOWS, TAG};
 use crate::mesh::model::Detail;
 use crate::mesh::{Mesh, Paint};
 

@@ -1,7 +1,10 @@
+//! What houses are like, whatever box and variant they have.
+
 use std::collections::BTreeSet;
 
 use super::design::{Adornment, Roof};
 use super::*;
+use crate::SemanticTag;
 
 const SIZES: [Vec3; 7] = [
     Vec3::new(6.0, 2.9, 2.7),

@@ -5,7 +5,7 @@ use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 use kernel::ops;
 
-use super::{IRON, Piece, RECTANGLE, STEEL, WHITE};
+use super::piece::{IRON, Piece, RECTANGLE, STEEL, WHITE, lengthwise};
 use crate::mesh::foliage::Leaf;
 use crate::mesh::shape::Lump;
 use crate::mesh::variety::Variety;
@@ -18,7 +18,7 @@ const BEAM_M: f32 = 6.0;
 pub(super) fn block(piece: &Piece) -> Mesh {
     let size = piece.size;
     if size.x.max(size.y) > BEAM_M && size.x.min(size.y) < size.z && size.z < 2.5 {
-        return super::lengthwise(piece, beam);
+        return lengthwise(piece, beam);
     }
     let mut mesh = Mesh::default();
     mesh.cuboid(piece.paint([152, 150, 144]).grainy(40), piece.at(-1.0, -1.0, 0.0), piece.at(1.0, 1.0, 1.0));

@@ -5,7 +5,7 @@ use core::f32::consts::TAU;
 use glam::Vec3;
 use kernel::ops;
 
-use super::{IRON, Piece, WHITE, WOOD};
+use super::piece::{IRON, Piece, WHITE, WOOD, lengthwise};
 use crate::mesh::variety::Variety;
 use crate::mesh::{CODE_RETRO, Mesh, Paint};
 
@@ -109,7 +109,7 @@ pub(super) fn beacon(piece: &Piece) -> Mesh {
 
 /// Red and white boards on two feet.
 pub(super) fn barricade(piece: &Piece) -> Mesh {
-    super::lengthwise(piece, |piece| {
+    lengthwise(piece, |piece| {
         let (size, half) = (piece.size, 0.5 * piece.size);
         let mut mesh = Mesh::default();
         let (steel, foot) = (piece.paint([90, 92, 94]), piece.paint([40, 40, 42]));

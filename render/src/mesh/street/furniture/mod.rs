@@ -2,6 +2,7 @@
 
 mod boxes;
 mod loose;
+mod piece;
 mod posts;
 mod seats;
 mod sundry;
@@ -9,15 +10,10 @@ mod sundry;
 use glam::Vec3;
 use kernel::map::FurnitureKind;
 
+use self::piece::{Piece, lengthwise};
 use crate::SemanticTag;
+use crate::mesh::Mesh;
 use crate::mesh::model::Detail;
-use crate::mesh::{Mesh, Paint};
-
-const IRON: [u8; 3] = [52, 54, 58];
-const STEEL: [u8; 3] = [132, 136, 138];
-const WOOD: [u8; 3] = [140, 100, 64];
-const WHITE: [u8; 3] = [226, 226, 220];
-const GLASS: [u8; 3] = [150, 172, 178];
 
 /// A piece of street furniture of a class in a box of `size` metres.
 pub fn mesh(what: FurnitureKind, tag: SemanticTag, variant: u32, size: Vec3, detail: Detail) -> Mesh {
@@ -44,63 +40,6 @@ pub fn mesh(what: FurnitureKind, tag: SemanticTag, variant: u32, size: Vec3, det
             _ => boxes::block(&piece),
         },
     }
-}
-
-/// What a piece is made in: its class, its box and how finely.
-#[derive(Clone, Copy)]
-struct Piece {
-    tag: SemanticTag,
-    size: Vec3,
-    detail: Detail,
-}
-
-/// Corners of a rectangle, anticlockwise from above.
-const RECTANGLE: [(f32, f32); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-
-impl Piece {
-    fn paint(&self, colour: [u8; 3]) -> Paint {
-        Paint::plain(self.tag, colour)
-    }
-
-    /// Half its extent on the ground.
-    fn half(&self) -> Vec3 {
-        Vec3::new(0.5 * self.size.x, 0.5 * self.size.y, 0.0)
-    }
-
-    fn is_fine(&self) -> bool {
-        self.detail == Detail::Fine
-    }
-
-    fn is_rough(&self) -> bool {
-        self.detail == Detail::Rough
-    }
-
-    fn sides(&self) -> u32 {
-        if self.is_fine() { 10 } else { 5 }
-    }
-
-    /// A point in its box by shares: of half its length and width from the middle, of its height from the ground.
-    fn at(&self, x: f32, y: f32, z: f32) -> Vec3 {
-        Vec3::new(x, y, z) * Vec3::new(0.5 * self.size.x, 0.5 * self.size.y, self.size.z)
-    }
-
-    /// The rectangle that takes such a share of its length and width, at a share of its height.
-    fn ring(&self, share: f32, z: f32) -> [Vec3; 4] {
-        RECTANGLE.map(|(x, y)| self.at(share * x, share * y, z))
-    }
-}
-
-/// Makes what is longer than wide, turned where its box is not.
-fn lengthwise(piece: &Piece, make: impl Fn(&Piece) -> Mesh) -> Mesh {
-    if piece.size.x >= piece.size.y {
-        return make(piece);
-    }
-    let mut mesh = make(&Piece { size: Vec3::new(piece.size.y, piece.size.x, piece.size.z), ..*piece });
-    for vertex in &mut mesh.vertices {
-        let ([x, y, z], [nx, ny, nz]) = (vertex.position, vertex.normal);
-        (vertex.position, vertex.normal) = ([-y, x, z], [-ny, nx, nz]);
-    }
-    mesh
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{IRON, Piece, STEEL, WHITE};
+use super::piece::{IRON, Piece, STEEL, WHITE};
 use crate::mesh::{CODE_RETRO, Mesh};
 
 /// What is higher is a pole, and no bollard, metres.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{GLASS, IRON, Piece, WHITE, WOOD};
+use super::piece::{GLASS, IRON, Piece, WHITE, WOOD};
 use crate::mesh::Mesh;
 use crate::mesh::variety::Variety;
 

@@ -5,7 +5,8 @@ use core::f32::consts::TAU;
 use glam::Vec3;
 use kernel::ops;
 
-use super::{GLASS, IRON, Piece, STEEL, WHITE, WOOD, lengthwise, loose};
+use super::loose;
+use super::piece::{GLASS, IRON, Piece, STEEL, WHITE, WOOD, lengthwise};
 use crate::mesh::variety::Variety;
 use crate::mesh::{Mesh, Paint};
 

@@ -7,7 +7,7 @@ use crate::Camera;
 
 /// Exposes a camera's picture.
 pub(super) fn expose(light: &mut Light, camera: &Camera) {
-    let (exposure_ev, vignetting) = (camera.sensor.exposure_ev, camera.sensor.vignetting);
+    let (exposure_ev, vignetting) = (camera.sensor.exposure_ev(), camera.sensor.vignetting());
     if exposure_ev == 0.0 && vignetting == 0.0 {
         return;
     }
