@@ -1,5 +1,5 @@
 //! How people on foot are seen: `people_spread PEOPLE|default SEED [MAP]...` drives each map with so many people on foot, draws a
-//! frame a second, and prints the tables of docs/people.md.
+//! frame a second, and prints the tables of docs/people.md (on stderr).
 //!
 //! Occluded is the share of who is 8 pixels high or more that is hidden by others: the silhouette in the street against that
 //! without a street.
