@@ -346,11 +346,15 @@ mod tests {
             low + (high - low) * (number >> 8) as f32 / 16_777_216.0
         };
         let mut covered = 0;
-        for _ in 0..20_000 {
+        for _ in 0..300_000 {
             let a = Vec3::new(drawn(-300.0, 256.0), drawn(0.0, 128.0), 1.0 / drawn(5.0, 60.0));
-            let b = a.truncate() + Vec2::new(drawn(50.0, 700.0), drawn(-30.0, 30.0));
-            let c = b - Vec2::Y * drawn(0.1, 4.0);
-            let corners = [a, b.extend(1.0 / drawn(5.0, 60.0)), c.extend(1.0 / drawn(5.0, 60.0))];
+            let b = a.truncate() + Vec2::new(drawn(50.0, 900.0), drawn(-300.0, 300.0));
+            let c = b + Vec2::new(drawn(-2.0, 2.0), drawn(-4.0, 4.0));
+            // Nearness changes along it and not across, as that of the ground beside the eye.
+            let far = 1.0 / drawn(5.0, 60.0);
+            let (along, slope) = (b - a.truncate(), far - a.z);
+            let share = (c - a.truncate()).dot(along) / along.length_squared();
+            let corners = [a, b.extend(far), c.extend(a.z + slope * share)];
             let Look::Facing(outline) = Look::at(corners) else { continue };
             let mut grid = grid();
             let Some(samples) = grid.around(&outline) else { continue };
