@@ -80,9 +80,9 @@ impl Renderer {
         Self { shadows: ShadowMaps::new(count), ..self }
     }
 
-    /// What people are shown on their screens, which no network sees: the best that a GPU draws in time, the usual on a CPU.
+    /// What people are shown on their screens, which no network sees: the best that a GPU draws in time, the cheapest on a CPU.
     pub fn quality_for_people(&self) -> Quality {
-        if self.gpu.info.is_cpu { Quality::default() } else { Quality::Fine }
+        if self.gpu.info.is_cpu { Quality::Plain } else { Quality::Fine }
     }
 
     /// Draws a snapshot and reads all planes back.
