@@ -46,17 +46,34 @@ impl Glass {
         let size = [*width, *height];
         sensor.distorts().then(|| Self { size, fov_x_rad: *fov_x_rad, distortion: sensor.distortion() })
     }
+
+    fn tan(&self) -> f32 {
+        ops::tan(0.5 * self.fov_x_rad)
+    }
+
+    /// Of its pixels, focal lengths.
+    fn pitch(&self) -> f32 {
+        2.0 * self.tan() / self.size[0] as f32
+    }
+
+    /// None where the picture folds, or no pinhole camera sees so far.
+    fn inverse(&self) -> Option<Inverse> {
+        let [width, height] = self.size.map(|side| 0.5 * side as f32);
+        Inverse::new(self.distortion, ops::hypot(width, height) * self.pitch())
+    }
+
+    /// Whether a pinhole camera can see its picture.
+    pub(super) fn is_seen(&self) -> bool {
+        self.inverse().is_some()
+    }
 }
 
 impl Bend {
     /// That of a lens whose picture a pinhole camera can see.
     pub(super) fn of(glass: Glass) -> Option<Self> {
-        let Glass { size, fov_x_rad, distortion } = glass;
-        let tan = ops::tan(0.5 * fov_x_rad);
-        let pitch = 2.0 * tan / size[0] as f32;
+        let inverse = glass.inverse()?;
+        let (size, tan, pitch) = (glass.size, glass.tan(), glass.pitch());
         let half = size.map(|side| 0.5 * side as f32);
-        let corner = ops::hypot(half[0], half[1]) * pitch;
-        let inverse = Inverse::new(distortion, corner)?;
         let aside = |at: u32, axis: usize| (at as f32 + 0.5 - half[axis]) * pitch;
         // Relative to the middle.
         let pixel = |x: u32, y: u32| {

@@ -11,7 +11,7 @@ mod tone;
 use kernel::SceneSnapshot;
 
 use self::lens::Lens;
-pub(crate) use self::lenses::Lenses;
+pub(crate) use self::lenses::{Lenses, check};
 use self::tone::Light;
 use crate::{Camera, Frame};
 

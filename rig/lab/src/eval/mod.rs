@@ -20,7 +20,7 @@ use serde::Serialize;
 
 pub use people::{Pedestrians, Person, Range, Recall, people};
 
-use super::dataset::check_whole;
+use super::dataset::{Manifest, check_whole};
 use super::figures::{Confusion, Figures, decimal, pixels_per, table};
 use base::output::PendingFolder;
 use base::png;
@@ -163,6 +163,7 @@ fn look(
     interrupt: &Interrupt,
 ) -> anyhow::Result<Evaluation> {
     check_whole(dataset)?;
+    let is_of_drivers = Manifest::read(dataset).map_or(true, |manifest| manifest.recipe.cameras().is_empty());
     let images = split::images(dataset, split)?;
     let (first, _) = png::read(&images[0], 3)?;
     let eye = Eye::open_at(checkpoint, first)?;
@@ -189,7 +190,9 @@ fn look(
             if let Some(folder) = predictions {
                 write(&prediction(folder, image), &png::grey(size, &mask)?)?;
             }
-            let _ = seen[index].set(Seen { matrix, people: people(&labelled.instances, size, &mask) });
+            let mut people = people(&labelled.instances, size, &mask);
+            people.iter_mut().for_each(|person| person.distance_m = person.distance_m.filter(|_| is_of_drivers));
+            let _ = seen[index].set(Seen { matrix, people });
             bar.inc(1);
             Ok(())
         },
@@ -293,7 +296,7 @@ mod tests {
                 class_ids,
                 ..Frame::default()
             };
-            cityscapes::write(dir, &Place { split: "val", city: "toy", scene, frame: number }, &frame)
+            cityscapes::write(dir, &Place { split: "val", city: "toy", scene, frame: number, camera: None }, &frame)
                 .expect("written");
         }
     }

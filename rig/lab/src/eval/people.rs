@@ -3,7 +3,7 @@
 //! A dataset holds no depth. The distance is that of the point of flat ground at which the lowest
 //! visible row of the person is seen by the level driver's camera, along the view: `f h / (v - v0)`
 //! with focal length `f` and horizon `v0` in pixels, and height `h` in metres. Who would be too tall at
-//! that distance has hidden feet, and none is told. Slopes, a pitching car and other hidden feet bend
+//! that distance has hidden feet, and none is told; nor is it of datasets of other cameras. Slopes, a pitching car and other hidden feet bend
 //! it, and one row is much of a great distance, hence few and wide ranges.
 
 use std::collections::BTreeMap;
@@ -71,7 +71,7 @@ pub struct Pedestrians {
     pub by_height_px: Vec<Range>,
     /// By distance, metres.
     pub by_distance_m: Vec<Range>,
-    /// Of those whose distance is not known, because their feet are hidden.
+    /// Of those whose distance is not known: their feet are hidden, or other cameras than the drivers' took the dataset.
     pub feet_hidden: Recall,
 }
 

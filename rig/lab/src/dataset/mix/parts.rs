@@ -59,9 +59,11 @@ impl Dataset {
             format!("{width}x{height}")
         };
         let imaging = |manifest: &Manifest| manifest.recipe.imaging().to_string();
+        let cameras = |manifest: &Manifest| serde_json::to_string(manifest.recipe.cameras()).unwrap_or_default();
         let alike = [
             ("pictures of", size(this), size(that)),
             ("pictures of the quality", imaging(this), imaging(that)),
+            ("pictures through the cameras", cameras(this), cameras(that)),
             ("pictures drawn by", this.adapter.clone(), that.adapter.clone()),
             ("pictures drawn by renderer", this.renderer.clone(), that.renderer.clone()),
             ("the classes", this.classes.join(" "), that.classes.join(" ")),
