@@ -29,7 +29,13 @@ impl Camera {
         let rows = [row(0, eye.x), row(1, eye.y), row(2, eye.z), [0.0, 0.0, 0.0, 1.0]];
         let mut pose = [0.0; 16];
         pose.as_chunks_mut::<4>().0.copy_from_slice(&rows);
-        Self { width: camera.width, height: camera.height, intrinsics: camera.intrinsics(), distortion: camera.distortion(), pose }
+        Self {
+            width: camera.width,
+            height: camera.height,
+            intrinsics: camera.intrinsics(),
+            distortion: camera.distortion(),
+            pose,
+        }
     }
 }
 

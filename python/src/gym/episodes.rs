@@ -100,7 +100,11 @@ impl Episodes {
             })
             .map_err(|error| raise(&error))?;
         let mask_size = fleet.eye().size();
-        let sizes = Sizes { places, mask: masks.then(|| bytes(mask_size)), image: images.map(|camera| 3 * bytes(size_of(&camera))) };
+        let sizes = Sizes {
+            places,
+            mask: masks.then(|| bytes(mask_size)),
+            image: images.map(|camera| 3 * bytes(size_of(&camera))),
+        };
         let image_size = images.map_or(mask_size, |camera| size_of(&camera));
         Ok(Self { fleet: Owned::new(Mutex::new(fleet)), sizes, mask_size, image_size, camera, raised })
     }

@@ -97,6 +97,37 @@ fn every_camera_takes_every_frame_of_a_case() {
     assert!(far == 0 && near > 0, "{far} {near}");
 }
 
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn parts_of_a_mix_have_the_same_cameras() {
+    let dir = tempfile::tempdir().unwrap();
+    let (_, case) = recorded(dir.path());
+    let rig = rig(dir.path(), &[("left", LEFT)]);
+    let at = |name: &str| dir.path().join(name);
+    let size = "--size 64x32 --quality plain";
+    let natural = format!("dataset natural --scenes 1 --val-scenes 0 --test-scenes 0 --frames 2 {size} --maps rural");
+    let cameras = format!("--cameras {}", rig.display());
+    assert_eq!(aeye(&format!("{natural} --seed 5 {cameras}"), &[], &at("natural")), (0, String::new()));
+    assert_eq!(aeye(&format!("{natural} --seed 6 {cameras}"), &[], &at("pool")), (0, String::new()));
+    assert_eq!(aeye(&format!("dataset cases {size} {cameras}"), &[&case], &at("cases")), (0, String::new()));
+    assert_eq!(aeye(&format!("dataset cases {size}"), &[&case], &at("driver")), (0, String::new()));
+    let mix = |cases: &str, out: &str| {
+        let [natural, pool, cases] = ["natural", "pool", cases].map(|name| at(name).display().to_string());
+        let parts = format!("--natural {natural} --pool {pool} --corner-cases {cases}");
+        aeye(&format!("dataset mix {parts} --replace 3"), &[], &at(out))
+    };
+    assert_eq!(mix("cases", "mix"), (0, String::new()));
+    let mixed = lines(&at("mix/corner-case"));
+    let of_cases: Vec<_> = mixed.iter().filter(|line| line["part"] == "cases").collect();
+    assert_eq!((mixed.len(), of_cases.len()), (4, 3));
+    for line in mixed {
+        assert!(at("mix/corner-case").join(line["image"].as_str().unwrap()).is_file(), "{line}");
+    }
+    let (code, said) = mix("driver", "none");
+    let words = "holds pictures of other cameras than";
+    assert!(code == 1 && said.contains(words) && !at("none").exists(), "{said}");
+}
+
 /// Messages of a topic.
 fn messages<M: Message + Default>(bytes: &[u8], topic: &str) -> Vec<M> {
     let all = mcap::MessageStream::new(bytes).unwrap().map(Result::unwrap);
@@ -114,7 +145,8 @@ fn exports_hold_what_every_camera_saw() {
     let dir = tempfile::tempdir().unwrap();
     let (_, case) = recorded(dir.path());
     let at = |name: &str| dir.path().join(name);
-    let options = format!("--size 64x32 --quality plain --last 0.5s --cameras {}", rig(dir.path(), &[("left", LEFT)]).display());
+    let options =
+        format!("--size 64x32 --quality plain --last 0.5s --cameras {}", rig(dir.path(), &[("left", LEFT)]).display());
     let export = |more: &str, out: &str| aeye(&format!("export {options} {more}"), &[&case], &at(out));
     let rerender = format!("rerender --checkpoint truth {options}");
     assert_eq!(aeye(&rerender, &[&case], &at("drawn")), (0, String::new()));
@@ -234,11 +266,13 @@ fn files_of_cameras_that_cannot_be_are_refused_in_one_sentence() {
     for (format, code) in [("gif", 2), ("osi", 2), ("openscenario", 2)] {
         let command = format!("export --format {format} --cameras {}", file.display());
         let said = aeye(&command, &[&case], &dir.path().join("out"));
-        let words = format!("{format} holds no pictures of several cameras; --cameras is for mcap, coco, openlabel, ros2");
+        let words =
+            format!("{format} holds no pictures of several cameras; --cameras is for mcap, coco, openlabel, ros2");
         assert_eq!(said, (code, words));
     }
     fs::write(&file, camera("a b", "") + &camera("a_b", "")).unwrap();
-    let (code, said) = aeye(&format!("export --format ros2 --cameras {}", file.display()), &[&case], &dir.path().join("out"));
+    let (code, said) =
+        aeye(&format!("export --format ros2 --cameras {}", file.display()), &[&case], &dir.path().join("out"));
     assert!(code == 2 && said.contains("would both have topics of \"a_b\""), "{said}");
 }
 

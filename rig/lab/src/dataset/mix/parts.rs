@@ -59,11 +59,9 @@ impl Dataset {
             format!("{width}x{height}")
         };
         let imaging = |manifest: &Manifest| manifest.recipe.imaging().to_string();
-        let cameras = |manifest: &Manifest| serde_json::to_string(manifest.recipe.cameras()).unwrap_or_default();
         let alike = [
             ("pictures of", size(this), size(that)),
             ("pictures of the quality", imaging(this), imaging(that)),
-            ("pictures through the cameras", cameras(this), cameras(that)),
             ("pictures drawn by", this.adapter.clone(), that.adapter.clone()),
             ("pictures drawn by renderer", this.renderer.clone(), that.renderer.clone()),
             ("the classes", this.classes.join(" "), that.classes.join(" ")),
@@ -71,6 +69,9 @@ impl Dataset {
         let (place, other) = (self.folder.display(), natural.folder.display());
         if let Some((what, got, expected)) = alike.into_iter().find(|(_, got, expected)| got != expected) {
             bail!("{place}: holds {what} {got}; expected {expected}, as {other} has");
+        }
+        if this.recipe.cameras() != that.recipe.cameras() {
+            bail!("{place}: holds pictures of other cameras than {other}; expected the same file after --cameras");
         }
         let drives: BTreeSet<&str> = natural.frames.iter().map(|line| &*line.recording).collect();
         if let Some(line) = self.training().find(|line| drives.contains(&*line.recording)) {

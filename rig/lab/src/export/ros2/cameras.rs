@@ -1,7 +1,6 @@
 //! The topics of a camera: what it is, its pictures, and the ground truth of these. Images are named as `image_transport`
 //! expects.
 
-use anyhow::bail;
 use base::failure::Usage;
 use base::png;
 use render::{Camera, Frame};
@@ -56,7 +55,8 @@ pub fn check_names(cameras: &[Named]) -> anyhow::Result<()> {
     for (i, one) in cameras.iter().enumerate() {
         if let Some(other) = cameras[..i].iter().find(|other| token(&other.name) == token(&one.name)) {
             let (a, b, name) = (&other.name, &one.name, token(&one.name));
-            bail!(Usage(format!("cameras {a:?} and {b:?} would both have topics of {name:?}; expected other names")));
+            let said = format!("cameras {a:?} and {b:?} would both have topics of {name:?}; expected other names");
+            return Err(Usage(said).into());
         }
     }
     Ok(())

@@ -45,7 +45,7 @@ pub fn export(
     let recording = Recording::open(file)?;
     let (log, network) = (recording.log(), recording.network()?);
     let window = Window::of(log, &args.asked())?;
-    let mut about = about(&recording, &window, (args, size), (camera.eyes, camera.others));
+    let mut about = about(&recording, &window, (args, size), (&*camera.eyes, camera.others));
     about.extend(origin(&network));
     let (from, to) = window.ticks.clone().into_inner();
     let kept = exported(&out.join(MESSAGES)) == Some(Exported { about: about.clone(), is_whole: true });
