@@ -260,4 +260,39 @@ mod tests {
         let top = Motion::new(&scene, &Camera::top(64, 64, 50.0));
         assert!(top.of(ray, 5.0, EGO_INSTANCE).length() < 1e-4 && top.of(ray, 5.0, 0).length() > 1.0);
     }
+
+    /// A car that goes straight and then ever tighter to one side: after so many ticks its yaw rate by the shutter, and how far
+    /// the kernel turned it in the tick around, rad/s.
+    fn yaws_radps(speed_mps: f32, steer: f32) -> Vec<(f32, f32)> {
+        let network = kernel::map::bundled("motorway").expect("it is bundled");
+        let mut world = kernel::World::new(&Scenario::default_for("motorway", 7), &network).expect("it fits");
+        let mut scenes = Vec::new();
+        for tick in 0..900 {
+            let ego = world.scene().ego;
+            let steer = if scenes.is_empty() && ego.speed_mps < speed_mps { 0.0 } else { steer };
+            let throttle = (0.3 * (speed_mps - ego.speed_mps)).clamp(0.0, 1.0);
+            let semantic = kernel::Controls::from_fractions(steer, throttle, 0.0);
+            world.step(&kernel::TickInput { semantic, ..Default::default() });
+            if steer != 0.0 && tick > 0 {
+                scenes.push(world.scene());
+            }
+        }
+        let about_z = |one: &SceneSnapshot, other: &SceneSnapshot| {
+            let turned = one.ego.rotation.inverse() * other.ego.rotation;
+            2.0 * turned.z * turned.w.signum() * kernel::time::TICK_HZ as f32
+        };
+        let turn = |scene: &SceneSnapshot| Motion::new(scene, &Camera::driver(64, 32)).turn_radps.z;
+        // The middle of an exposure is the tick's.
+        let around = scenes.windows(3).map(|w| (turn(&w[1]), 0.5 * (about_z(&w[0], &w[1]) + about_z(&w[1], &w[2]))));
+        around.take(120).collect()
+    }
+
+    #[test]
+    fn the_ego_car_turns_as_the_kernel_turns_it() {
+        for (speed_mps, steer) in [(4.0, 0.3), (8.0, -0.1), (12.0, 0.05), (12.0, -0.05)] {
+            for (tick, (shutter, kernel)) in yaws_radps(speed_mps, steer).into_iter().enumerate() {
+                println!("{speed_mps} {steer} {tick} {shutter} {kernel}");
+            }
+        }
+    }
 }

@@ -33,7 +33,7 @@ impl RecordedEye {
         let expected =
             "expected as in \"driver 256x128\", \"driver 256x128 standard\" or \"driver 256x128 plain noise=4\"";
         let camera = match provenance.get("camera") {
-            None => Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1),
+            None => Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1).at(Imaging::unsaid()),
             Some(text) => camera_of(text).ok_or_else(|| anyhow!("provenance \"camera\" is {text:?}; {expected}"))?,
         };
         let compute = match provenance.get("inference") {

@@ -202,8 +202,13 @@ pub fn provenance(eye: &Eye, camera: &Camera) -> Provenance {
 /// A driver's camera in words, as in `driver 256x128 standard` or `driver 256x128 plain noise=4`. Nothing is said of pictures that
 /// are plain, and of an ideal sensor.
 pub fn camera_text(camera: &Camera) -> String {
+    named_camera_text("driver", camera)
+}
+
+/// The same of a camera with another name.
+pub fn named_camera_text(name: &str, camera: &Camera) -> String {
     let Camera { width, height, .. } = camera;
-    let (size, imaging) = (format!("driver {width}x{height}"), camera.imaging());
+    let (size, imaging) = (format!("{name} {width}x{height}"), camera.imaging());
     if imaging == Imaging::unsaid() { size } else { format!("{size} {imaging}") }
 }
 

@@ -21,7 +21,7 @@ use serde::Serialize;
 pub use road_users::{Group, Kind, Range, Recall, RoadUser, RoadUsers, road_users};
 
 use self::split::Labelled;
-use super::dataset::check_whole;
+use super::dataset::{Manifest, check_whole};
 use super::figures::{Confusion, Figures, pixels_per};
 use super::trust::Trust;
 use base::output::PendingFolder;
@@ -194,6 +194,7 @@ fn look(
     interrupt: &Interrupt,
 ) -> anyhow::Result<Evaluation> {
     check_whole(dataset)?;
+    let is_of_drivers = Manifest::read(dataset).map_or(true, |manifest| manifest.recipe.cameras().is_empty());
     let images = split::images(dataset, split)?;
     let (first, _) = png::read(&images[0], 3)?;
     let eye = Eye::open_at(checkpoint, first)?;
@@ -213,9 +214,12 @@ fn look(
             if !matches!(eye, Eye::Truth) && eye.size() != size {
                 *eye = Eye::open_at(checkpoint, size)?;
             }
-            let (found, mask) = Seen::of(eye, &labelled)?;
+            let (mut found, mask) = Seen::of(eye, &labelled)?;
             if let Some(folder) = predictions {
                 write(&prediction(folder, image), &png::grey(size, &mask)?)?;
+            }
+            if !is_of_drivers {
+                found.road_users.iter_mut().for_each(|user| user.distance_m = None);
             }
             let _ = seen[index].set(found);
             bar.inc(1);
@@ -297,7 +301,7 @@ mod tests {
                 class_ids,
                 ..Frame::default()
             };
-            cityscapes::write(dir, &Place { split: "val", city: "toy", scene, frame: number }, &frame)
+            cityscapes::write(dir, &Place { split: "val", city: "toy", scene, frame: number, camera: None }, &frame)
                 .expect("written");
         }
     }

@@ -6,8 +6,8 @@
 //! A dataset holds no depth. The distance is that of the point of flat ground at which the lowest
 //! visible row of the road user is seen by the level driver's camera, along the view: `f h / (v - v0)`
 //! with focal length `f` and horizon `v0` in pixels, and height `h` in metres. Who would be too tall at
-//! that distance has hidden feet, and none is told. Slopes, a pitching car and other hidden feet bend
-//! it, and one row is much of a great distance, hence few and wide ranges.
+//! that distance has hidden feet, and none is told; nor is it of datasets of other cameras. Slopes, a pitching
+//! car and other hidden feet bend it, and one row is much of a great distance, hence few and wide ranges.
 
 use std::collections::BTreeMap;
 
@@ -95,7 +95,8 @@ pub struct Group {
     pub by_height_px: Vec<Range>,
     /// By distance, metres.
     pub by_distance_m: Vec<Range>,
-    /// Of those whose distance is not known, because their feet or wheels are hidden.
+    /// Of those whose distance is not known: their feet or wheels are hidden, or other cameras than the drivers' took
+    /// the dataset.
     pub feet_hidden: Recall,
 }
 
