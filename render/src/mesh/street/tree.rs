@@ -11,7 +11,7 @@ use crate::mesh::foliage::Leaf;
 use crate::mesh::model::Detail;
 use crate::mesh::shape::Lump;
 use crate::mesh::variety::Variety;
-use crate::mesh::{Mesh, Paint};
+use crate::mesh::{Finish, Mesh, Paint};
 
 const NEEDLES: [[u8; 3]; 2] = [[52, 84, 56], [60, 90, 50]];
 const BARKS: [[u8; 3]; 3] = [[92, 76, 60], [110, 98, 84], [78, 66, 54]];
@@ -209,7 +209,8 @@ impl Plant {
             let paint = needles.shaded(0.86 + 0.06 * i as f32);
             let within = if self.is_fine() { 0.8 } else { 1.0 };
             let mut boughs = Variety::of(self.variant ^ (i + 1) << 24);
-            tier(&mut mesh, paint.shaded(within), (z0, z1), within * radius, boughs.between(0.0, TAU));
+            let needles = if self.is_fine() { Leaf::Clipped.paint(paint.shaded(0.9), 60) } else { paint };
+            tier(&mut mesh, needles, (z0, z1), within * radius, boughs.between(0.0, TAU));
             if self.is_fine() {
                 twigs(&mut mesh, paint, (z0, z1), radius, &mut boughs);
             }
@@ -228,6 +229,9 @@ fn closed(mesh: &mut Mesh, leaves: Paint, lump: &Lump, dents: &mut Variety) {
 /// Grain of crowns is so much coarser than that of ground and bark: clusters of leaves, not single ones.
 const COARSER: f32 = 0.3;
 
+/// Side of the picture of a near bough, metres.
+const NEEDLES_M: f32 = 0.6;
+
 /// Corners of a tier of boughs: every other one reaches out and hangs.
 const BOUGHS: u32 = 10;
 
@@ -241,14 +245,15 @@ fn tier(mesh: &mut Mesh, paint: Paint, (z0, z1): (f32, f32), radius: f32, turn: 
         let (reach, hang, light) = if i % 2 == 0 { (1.1, -0.05, 1.1) } else { (0.78, 0.1, 0.8) };
         let normal = (out + 0.4 * Vec3::Z).normalize_or(Vec3::Z);
         let foot = out * (reach * radius) + Vec3::Z * (z0 + hang * deep);
-        mesh.vertex(paint.shaded(light), foot, normal, Vec2::new(angle * radius, 0.0));
-        mesh.vertex(paint, Vec3::Z * z1 + out * 0.02, normal, Vec2::new(angle * radius, deep));
+        mesh.vertex(paint.shaded(light), foot, normal, Vec2::new(angle * radius, 0.0) / NEEDLES_M);
+        mesh.vertex(paint, Vec3::Z * z1, normal, Vec2::new(angle * radius, deep) / NEEDLES_M);
     }
     for i in 0..BOUGHS {
         let (p, q) = (first + 2 * i, first + 2 * ((i + 1) % BOUGHS));
         mesh.triangle(paint.finish, [p, q, p + 1]);
     }
-    mesh.disc(paint.shaded(0.5), Vec3::Z * (z0 + 0.1 * deep), Vec3::NEG_Z, 0.76 * radius, BOUGHS);
+    let underside = Paint { finish: Finish::Grainy, ..paint.shaded(0.5) };
+    mesh.disc(underside, Vec3::Z * (z0 + 0.1 * deep), Vec3::NEG_Z, 0.76 * radius, BOUGHS);
 }
 
 /// Twigs that hang from a cone between two heights: two rows, the lower ones longer.
@@ -289,7 +294,6 @@ mod tests {
     use std::collections::{BTreeMap, BTreeSet};
 
     use super::*;
-    use crate::mesh::Finish;
 
     fn leafy(mesh: &Mesh) -> usize {
         mesh.triangles[Finish::Leafy as usize].len()
