@@ -17,7 +17,7 @@ fn fragment_asphalt(in: Lit) -> Pixel {
     let clouds = textureSample(noise, noise_sampler, uv * 0.023).rg - 0.5;
     let broad = clouds.r;
     // The tile is bent, and what is on it comes and goes: no two look alike.
-    let tile = (uv + vec2f(1.7, 0.8) * clouds.g) * (1.0 / ASPHALT_M);
+    let tile = (uv + vec2f(1.1, 0.5) * clouds.g) * (1.0 / ASPHALT_M);
     let marks = textureSample(ground, noise_sampler, tile, 0);
     let grain = 0.55 * fine + 0.4 * broad;
     if code == GRATING {
