@@ -209,7 +209,7 @@ impl Plant {
             let paint = needles.shaded(0.86 + 0.06 * i as f32);
             let within = if self.is_fine() { 0.8 } else { 1.0 };
             let mut boughs = Variety::of(self.variant ^ (i + 1) << 24);
-            let needles = if self.is_fine() { Leaf::Clipped.paint(paint.shaded(0.9), 60) } else { paint };
+            let needles = if self.is_fine() { Leaf::Clipped.paint(paint.shaded(0.82), 60) } else { paint };
             tier(&mut mesh, needles, (z0, z1), within * radius, boughs.between(0.0, TAU));
             if self.is_fine() {
                 twigs(&mut mesh, paint, (z0, z1), radius, &mut boughs);
