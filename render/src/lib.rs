@@ -29,6 +29,8 @@ mod rain;
 mod renderer;
 mod scenery;
 mod sensor;
+#[cfg(test)]
+mod shader_constants;
 mod shadows;
 mod sieve;
 mod spray;

@@ -35,10 +35,26 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
     }
 }
 
-/// What selects colour and shape. Maps have few variants; where a thing stands tells it apart from its neighbours.
+/// Pieces of hedges, fences and walls that stand in the same square, metres, are one row.
+const ROW_M: f32 = 64.0;
+
+/// What selects colour and shape. Maps have few variants; where a thing stands tells it apart from its neighbours. Of what
+/// stands in rows the upper half is that of the row: [`row_of`].
 pub fn look(prop: &Prop) -> u32 {
-    let place = prop.position.x.to_bits().rotate_left(16) ^ prop.position.y.to_bits();
-    prop.variant ^ Variety::of(place).bits()
+    let at = prop.position;
+    let own = prop.variant ^ Variety::of(at.x.to_bits().rotate_left(16) ^ at.y.to_bits()).bits();
+    if !matches!(prop.kind, PropKind::Hedge | PropKind::Fence | PropKind::Wall) {
+        return own;
+    }
+    let [x, y] = [at.x, at.y].map(|m| (m / ROW_M).floor() as i32 as u32);
+    Variety::of(x.rotate_left(16) ^ y).bits() & ROW | own & !ROW
+}
+
+const ROW: u32 = 0xffff_0000;
+
+/// What is chosen for all pieces of a row alike.
+pub fn row_of(look: u32) -> Variety {
+    Variety::of(look & ROW)
 }
 
 /// Moves a mesh from the frame of an object standing at `position` with a heading into the world.
@@ -48,5 +64,22 @@ pub fn place(mesh: &mut Mesh, position: Vec3, heading_rad: f32) {
         v.position = (position + turn * Vec3::from_array(v.position)).to_array();
         let n = (turn * Vec3::from_array(v.normal.map(f32::from))).round();
         v.normal = [n.x as i8, n.y as i8, n.z as i8];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_of_a_row_share_their_colour_and_differ_in_shape() {
+        let piece = |x: f32| {
+            let (position, size) = (Vec3::new(x, 70.0, 0.0), Vec3::new(5.6, 1.2, 1.5));
+            Prop { kind: PropKind::Hedge, position, heading_rad: 0.0, size, variant: 0 }
+        };
+        let [one, next, beyond] = [3.0, 9.0, 103.0].map(|x| mesh(&piece(x), Detail::Rough));
+        let colours = |mesh: &Mesh| mesh.vertices.iter().map(|v| v.colour).collect::<Vec<_>>();
+        assert!(colours(&one) == colours(&next) && one != next);
+        assert_ne!(colours(&one), colours(&beyond));
     }
 }
