@@ -92,7 +92,7 @@ fn every_camera_takes_every_frame_of_a_case() {
     // Distances would be those of the drivers' camera.
     let [far, near] = [&several, &one].map(|folder| {
         let evaluation = evaluate(&CheckpointChoice::Truth, folder, "train", None, &Interrupt::default()).unwrap();
-        evaluation.pedestrians.by_distance_m.iter().map(|range| range.recall.people).sum::<u64>()
+        evaluation.road_users.pedestrians.by_distance_m.iter().map(|range| range.recall.count).sum::<u64>()
     });
     assert!(far == 0 && near > 0, "{far} {near}");
 }
