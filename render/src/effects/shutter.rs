@@ -261,8 +261,8 @@ mod tests {
         assert!(top.of(ray, 5.0, EGO_INSTANCE).length() < 1e-4 && top.of(ray, 5.0, 0).length() > 1.0);
     }
 
-    /// A car that goes straight and then ever tighter to one side: after so many ticks its yaw rate by the shutter, and how far
-    /// the kernel turned it in the tick around, rad/s.
+    /// A car that comes to a speed and is steered to one side from there on: in each tick its yaw rate by the shutter, and how far
+    /// the kernel turned it from the tick before to the one after, rad/s.
     fn yaws_radps(speed_mps: f32, steer: f32) -> Vec<(f32, f32)> {
         let network = kernel::map::bundled("motorway").expect("it is bundled");
         let mut world = kernel::World::new(&Scenario::default_for("motorway", 7), &network).expect("it fits");
@@ -290,8 +290,13 @@ mod tests {
     #[test]
     fn the_ego_car_turns_as_the_kernel_turns_it() {
         for (speed_mps, steer) in [(4.0, 0.3), (8.0, -0.1), (12.0, 0.05), (12.0, -0.05)] {
-            for (tick, (shutter, kernel)) in yaws_radps(speed_mps, steer).into_iter().enumerate() {
-                println!("{speed_mps} {steer} {tick} {shutter} {kernel}");
+            let yaws = yaws_radps(speed_mps, steer);
+            assert_eq!(yaws.len(), 120);
+            // Tyres take a moment to turn the car.
+            for (tick, (shutter, kernel)) in yaws.into_iter().enumerate().skip(30) {
+                let words = format!("{speed_mps} m/s, steered by {steer}, tick {tick}: {shutter} and {kernel}");
+                assert!(kernel.abs() > 0.02 && kernel * steer < 0.0, "{words}");
+                assert!((shutter - kernel).abs() < 0.1 * kernel.abs() + 0.005, "{words}");
             }
         }
     }
