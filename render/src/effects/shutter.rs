@@ -261,8 +261,8 @@ mod tests {
         assert!(top.of(ray, 5.0, EGO_INSTANCE).length() < 1e-4 && top.of(ray, 5.0, 0).length() > 1.0);
     }
 
-    /// A car that comes to a speed and is steered to one side from there on: in each tick its yaw rate by the shutter, and how far
-    /// the kernel turned it from the tick before to the one after, rad/s.
+    /// A car that comes to a speed and is steered to one side from there on: in each tick its yaw rate by the shutter, and by how
+    /// far the kernel turned it around that tick, rad/s.
     fn yaws_radps(speed_mps: f32, steer: f32) -> Vec<(f32, f32)> {
         let network = kernel::map::bundled("motorway").expect("it is bundled");
         let mut world = kernel::World::new(&Scenario::default_for("motorway", 7), &network).expect("it fits");
@@ -277,13 +277,14 @@ mod tests {
                 scenes.push(world.scene());
             }
         }
-        let about_z = |one: &SceneSnapshot, other: &SceneSnapshot| {
-            let turned = one.ego.rotation.inverse() * other.ego.rotation;
-            2.0 * turned.z * turned.w.signum() * kernel::time::TICK_HZ as f32
+        // Rotations of snapshots are on a grid of 2^-14: over a fifth of a second that is less than a thousandth of a radian.
+        let yaw_radps = |scenes: &[SceneSnapshot]| {
+            let turned = scenes[0].ego.rotation.inverse() * scenes[12].ego.rotation;
+            2.0 * turned.z * turned.w.signum() * kernel::time::TICK_HZ as f32 / 12.0
         };
         let turn = |scene: &SceneSnapshot| Motion::new(scene, &Camera::driver(64, 32)).turn_radps.z;
         // The middle of an exposure is the tick's.
-        let around = scenes.windows(3).map(|w| (turn(&w[1]), 0.5 * (about_z(&w[0], &w[1]) + about_z(&w[1], &w[2]))));
+        let around = scenes.windows(13).map(|scenes| (turn(&scenes[6]), yaw_radps(scenes)));
         around.take(120).collect()
     }
 
@@ -296,7 +297,7 @@ mod tests {
             for (tick, (shutter, kernel)) in yaws.into_iter().enumerate().skip(30) {
                 let words = format!("{speed_mps} m/s, steered by {steer}, tick {tick}: {shutter} and {kernel}");
                 assert!(kernel.abs() > 0.02 && kernel * steer < 0.0, "{words}");
-                assert!((shutter - kernel).abs() < 0.1 * kernel.abs() + 0.005, "{words}");
+                assert!((shutter - kernel).abs() < 0.15 * kernel.abs() + 0.002, "{words}");
             }
         }
     }
