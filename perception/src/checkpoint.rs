@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::metadata::{Layout, Metadata};
 use crate::onnx::{self, Element, pb};
 use crate::peel::peel;
+use crate::taps::Enlarge;
 use crate::tensors;
 use crate::{ClassMap, PerceptionError};
 
@@ -23,7 +24,9 @@ pub struct Checkpoint {
     metadata: Metadata,
     pub(crate) model: Arc<pb::ModelProto>,
     pub(crate) input: Input,
-    pub(crate) align_corners: bool,
+    pub(crate) enlarge: Enlarge,
+    /// Order of the dimensions that scores are most likely to have.
+    pub(crate) scores: Layout,
 }
 
 /// The network's input.
@@ -71,7 +74,9 @@ impl Checkpoint {
             let reason = "mean and std are missing, which a network with a float input needs".into();
             return Err(PerceptionError::Metadata { path: path.into(), reason });
         }
-        let align_corners = peel(&mut model).unwrap_or(metadata.align_corners);
+        let peeled = peel(&mut model, input.layout);
+        let enlarge = if metadata.align_corners { Enlarge::AlignCorners } else { Enlarge::HalfPixel };
+        let (enlarge, scores) = peeled.map_or((enlarge, input.layout), |enlarge| (enlarge, Layout::Nchw));
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         // What is made with it is filed under its name, be it a hidden one.
         intake::check_name(name.trim_start_matches('.')).map_err(refuse)?;
@@ -79,7 +84,8 @@ impl Checkpoint {
         hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes());
         weights_beside.iter().for_each(|weights| _ = hasher.update(weights.as_bytes()));
         let digest = hasher.finalize();
-        Ok(Self { path: path.into(), name, digest, metadata, model: Arc::new(model), input, align_corners })
+        let model = Arc::new(model);
+        Ok(Self { path: path.into(), name, digest, metadata, model, input, enlarge, scores })
     }
 
     /// Where it was read, or the name of a bundled one.
