@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::metadata::{Layout, Metadata, ScoreKind};
 use crate::onnx::{self, Element, pb};
 use crate::peel::peel;
+use crate::taps::Enlarge;
 use crate::tensors;
 use crate::{ClassMap, PerceptionError};
 
@@ -23,8 +24,10 @@ pub struct Checkpoint {
     metadata: Metadata,
     pub(crate) model: Arc<pb::ModelProto>,
     pub(crate) input: Input,
-    pub(crate) align_corners: bool,
-    pub(crate) scores: ScoreKind,
+    pub(crate) enlarge: Enlarge,
+    /// Order of the dimensions that scores are most likely to have.
+    pub(crate) scores: Layout,
+    pub(crate) score_kind: ScoreKind,
 }
 
 /// The network's input.
@@ -72,8 +75,10 @@ impl Checkpoint {
             let reason = "mean and std are missing, which a network with a float input needs".into();
             return Err(PerceptionError::Metadata { path: path.into(), reason });
         }
-        let align_corners = peel(&mut model).unwrap_or(metadata.align_corners);
-        let scores = metadata.scores.unwrap_or_else(|| kind_of_scores(&model));
+        let peeled = peel(&mut model, input.layout);
+        let enlarge = if metadata.align_corners { Enlarge::AlignCorners } else { Enlarge::HalfPixel };
+        let (enlarge, scores) = peeled.map_or((enlarge, input.layout), |enlarge| (enlarge, Layout::Nchw));
+        let score_kind = metadata.scores.unwrap_or_else(|| kind_of_scores(&model));
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         // What is made with it is filed under its name, be it a hidden one.
         intake::check_name(name.trim_start_matches('.')).map_err(refuse)?;
@@ -81,7 +86,8 @@ impl Checkpoint {
         hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes());
         weights_beside.iter().for_each(|weights| _ = hasher.update(weights.as_bytes()));
         let digest = hasher.finalize();
-        Ok(Self { path: path.into(), name, digest, metadata, model: Arc::new(model), input, align_corners, scores })
+        let model = Arc::new(model);
+        Ok(Self { path: path.into(), name, digest, metadata, model, input, enlarge, scores, score_kind })
     }
 
     /// Where it was read, or the name of a bundled one.
@@ -289,11 +295,11 @@ mod tests {
             }
             Checkpoint::load(toy::write(dir.path(), "toy.onnx", &model)).unwrap()
         };
-        let kind = |ending: &[&str]| open(ending, None).scores;
+        let kind = |ending: &[&str]| open(ending, None).score_kind;
         assert_eq!([kind(&[]), kind(&["Identity"])], [ScoreKind::Logits; 2]);
         assert_eq!([kind(&["Sigmoid"]), kind(&["Sigmoid", "Identity"])], [ScoreKind::Probabilities; 2]);
         assert_eq!(kind(&["Sigmoid", "Tanh"]), ScoreKind::Logits);
-        assert_eq!(open(&["Sigmoid"], Some(ScoreKind::Logits)).scores, ScoreKind::Logits, "what is said goes first");
+        assert_eq!(open(&["Sigmoid"], Some(ScoreKind::Logits)).score_kind, ScoreKind::Logits, "what is said goes first");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::metadata::ScoreKind;
-use crate::taps::Taps;
+use crate::taps::{Enlarge, Taps};
 
 /// Pixels that are interpolated at a time.
 const LANES: usize = 8;
@@ -69,8 +69,8 @@ impl Span {
     }
 }
 
-fn spans(from: usize, to: usize, align_corners: bool) -> Vec<Span> {
-    let taps = Taps::new(from, to, align_corners);
+fn spans(from: usize, to: usize, how: Enlarge) -> Vec<Span> {
+    let taps = Taps::enlarging(from, to, how);
     let mut spans: Vec<Span> = Vec::new();
     for (i, &left) in taps.left.iter().enumerate() {
         match spans.last_mut().filter(|span| span.left == left) {
@@ -87,9 +87,9 @@ fn spans(from: usize, to: usize, align_corners: bool) -> Vec<Span> {
 
 impl Decoder {
     /// For scores on `grid` and a picture of `width` x `height` pixels.
-    pub fn new(grid: Grid, width: usize, height: usize, align_corners: bool) -> Self {
-        let columns = spans(grid.width, width, align_corners);
-        let rows = spans(grid.height, height, align_corners);
+    pub fn new(grid: Grid, width: usize, height: usize, how: Enlarge) -> Self {
+        let columns = spans(grid.width, width, how);
+        let rows = spans(grid.height, height, how);
         Self { grid, width, height, columns, rows }
     }
 
@@ -255,6 +255,10 @@ mod tests {
         out
     }
 
+    fn how(align: bool) -> Enlarge {
+        if align { Enlarge::AlignCorners } else { Enlarge::HalfPixel }
+    }
+
     /// Scores of one output pixel by the textbook, in f64.
     fn upsampled(d: &Decoder, scores: &[f32], align: bool, x: usize, y: usize) -> Vec<f64> {
         let g = &d.grid;
@@ -282,7 +286,7 @@ mod tests {
         for (seed, ((w, h), (width, height))) in sizes.into_iter().enumerate() {
             for (interleaved, align) in [(false, false), (true, false), (false, true), (true, true)] {
                 let grid = Grid { channels: 16, width: w, height: h, interleaved };
-                let decoder = Decoder::new(grid, width, height, align);
+                let decoder = Decoder::new(grid, width, height, how(align));
                 let scores = scores(&grid, seed as u32);
                 let classes = decoder.classes(&scores);
                 for (i, &class) in classes.iter().enumerate() {
@@ -302,7 +306,7 @@ mod tests {
             [(false, false, (17, 11)), (true, true, (17, 11)), (true, false, (5, 3))]
         {
             let grid = Grid { channels: 16, width: 5, height: 3, interleaved };
-            let decoder = Decoder::new(grid, width, height, align);
+            let decoder = Decoder::new(grid, width, height, how(align));
             let scores: Vec<f32> = scores(&grid, 7).iter().map(|score| 9.0 * score).collect();
             for kind in [ScoreKind::Logits, ScoreKind::Probabilities] {
                 let Certainty { confidence, entropy } = decoder.certainty(&scores, kind);
@@ -325,7 +329,7 @@ mod tests {
         for (kind, score) in
             [(ScoreKind::Logits, 800.0), (ScoreKind::Probabilities, 0.25), (ScoreKind::Probabilities, 0.0)]
         {
-            let certainty = Decoder::new(grid, 3, 3, false).certainty(&[score; 16], kind);
+            let certainty = Decoder::new(grid, 3, 3, Enlarge::HalfPixel).certainty(&[score; 16], kind);
             assert_eq!(certainty, Certainty { confidence: vec![0.25; 9], entropy: vec![1.0; 9] });
         }
     }
@@ -334,20 +338,30 @@ mod tests {
     fn both_memory_layouts_give_the_same_classes() {
         let planes = Grid { channels: 5, width: 6, height: 4, interleaved: false };
         let pixels = Grid { interleaved: true, ..planes };
-        let of = |grid: Grid| Decoder::new(grid, 48, 32, false).classes(&scores(&grid, 3));
+        let of = |grid: Grid| Decoder::new(grid, 48, 32, Enlarge::HalfPixel).classes(&scores(&grid, 3));
         assert_eq!(of(planes), of(pixels));
     }
 
     #[test]
     fn class_maps_are_resized_to_the_nearest() {
         let grid = Grid { channels: 1, width: 2, height: 2, interleaved: false };
-        let ids = Decoder::new(grid, 4, 4, false).nearest(&[1, 2, 3, 4]);
+        let ids = Decoder::new(grid, 4, 4, Enlarge::HalfPixel).nearest(&[1, 2, 3, 4]);
         assert_eq!(ids, [1, 1, 2, 2, 1, 1, 2, 2, 3, 3, 4, 4, 3, 3, 4, 4]);
+    }
+
+    #[test]
+    fn nearest_neighbours_give_the_class_of_a_source_pixel() {
+        let grid = Grid { channels: 5, width: 6, height: 4, interleaved: true };
+        let scores = scores(&grid, 3);
+        let coarse = argmax(&grid, &scores);
+        let classes = Decoder::new(grid, 18, 10, Enlarge::Nearest).classes(&scores);
+        let source = |i: usize| i / 18 * 4 / 10 * 6 + i % 18 * 6 / 18;
+        assert!(classes.iter().enumerate().all(|(i, class)| *class == coarse[source(i)]));
     }
 
     #[test]
     fn the_first_of_equal_scores_wins() {
         let grid = Grid { channels: 3, width: 2, height: 2, interleaved: false };
-        assert!(Decoder::new(grid, 8, 8, false).classes(&[1.0; 12]).iter().all(|class| *class == 0));
+        assert!(Decoder::new(grid, 8, 8, Enlarge::HalfPixel).classes(&[1.0; 12]).iter().all(|class| *class == 0));
     }
 }

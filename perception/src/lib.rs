@@ -19,9 +19,11 @@ mod image;
 mod metadata;
 mod metrics;
 mod onnx;
+mod operators;
 mod parts;
 mod peel;
 mod segmenter;
+mod simd;
 mod taps;
 mod tensors;
 #[cfg(test)]

@@ -27,7 +27,7 @@ pub struct Segmenter {
     table: Arc<[[f32; 256]; 3]>,
     engine: Engine,
     decoder: Decoder,
-    scores: ScoreKind,
+    score_kind: ScoreKind,
     tags: Vec<u8>,
     floats: Vec<f32>,
     bytes: Vec<u8>,
@@ -81,20 +81,20 @@ impl Segmenter {
         let lacks = |reason| PerceptionError::Compute { name: compute.name(), reason };
         let runtime = onnx::runtime(compute.name()).map_err(lacks)?;
         let engine = Engine::new(runtime, &checkpoint.model, input.element, shape).map_err(refuse)?;
-        let grid = grid(&engine, checkpoint.classes().count(), input.layout).map_err(refuse)?;
-        let decoder = Decoder::new(grid, width, height, checkpoint.align_corners);
+        let grid = grid(&engine, checkpoint.classes().count(), checkpoint.scores).map_err(refuse)?;
+        let decoder = Decoder::new(grid, width, height, checkpoint.enlarge);
         Ok(Self {
             path,
             compute,
             width,
             height,
             network,
-            layout: input.layout,
+            layout: if engine.takes_last { Layout::Nhwc } else { input.layout },
             element: input.element,
             table: Arc::new(checkpoint.metadata().normalisation.map_or([[0.0; 256]; 3], |n| n.table())),
             engine,
             decoder,
-            scores: checkpoint.scores,
+            score_kind: checkpoint.score_kind,
             tags: checkpoint.classes().tags().to_vec(),
             floats: Vec::new(),
             bytes: Vec::new(),
@@ -121,7 +121,7 @@ impl Segmenter {
     pub fn run_with_certainty(&mut self, image: RgbView<'_>) -> Result<(Mask, Option<Certainty>), PerceptionError> {
         let output = self.output(image)?;
         let certainty = match &output {
-            Output::Scores(scores) => Some(self.decoder.certainty(scores, self.scores)),
+            Output::Scores(scores) => Some(self.decoder.certainty(scores, self.score_kind)),
             Output::Ids(_) => None,
         };
         Ok((self.mask(&output)?, certainty))
@@ -193,7 +193,7 @@ fn fill<T: Copy + Default>(out: &mut Vec<T>, rgb: &[u8], layout: Layout, value: 
 }
 
 /// How the network's output is to be read.
-fn grid(engine: &Engine, classes: usize, input: Layout) -> Result<Grid, String> {
+fn grid(engine: &Engine, classes: usize, likely: Layout) -> Result<Grid, String> {
     let shape = &engine.output_shape;
     let text = || shape.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
     if shape.contains(&0) {
@@ -201,8 +201,11 @@ fn grid(engine: &Engine, classes: usize, input: Layout) -> Result<Grid, String> 
     }
     let ids = |height, width| Ok(Grid { channels: 1, width, height, interleaved: false });
     match (engine.gives_ids, shape.as_slice()) {
+        (false, &[1, h, w, c]) if engine.is_moved && c == classes => {
+            Ok(Grid { channels: c, width: w, height: h, interleaved: true })
+        }
         (true, &[1, h, w] | &[1, 1, h, w] | &[1, h, w, 1]) => ids(h, w),
-        (false, &[1, c, h, w]) if c == classes && (input == Layout::Nchw || w != classes) => {
+        (false, &[1, c, h, w]) if c == classes && (likely == Layout::Nchw || w != classes) => {
             Ok(Grid { channels: c, width: w, height: h, interleaved: false })
         }
         (false, &[1, h, w, c]) if c == classes => Ok(Grid { channels: c, width: w, height: h, interleaved: true }),

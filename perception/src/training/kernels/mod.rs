@@ -7,11 +7,7 @@ pub(super) mod loss;
 pub(super) mod norm;
 pub(super) mod patches;
 
-/// Runs a loop with the widest vector instructions of this machine. What it calls must be marked
-/// `#[inline(always)]`.
-pub(super) fn vectorised<R>(work: impl FnOnce() -> R) -> R {
-    macerator::AutoArch::new().dispatch(work)
-}
+use crate::simd::vectorised;
 
 /// Deviation of derivatives from differences, for tests.
 #[cfg(test)]

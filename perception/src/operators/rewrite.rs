@@ -1,0 +1,304 @@
+//! Puts our operators in place of the engine's.
+//!
+//! Each is wired between two moves of the channels, to the end and back. The engine's own rules then cancel moves that
+//! meet, and carry others through what does not care, so that whole stretches stay channels last.
+
+use tract_onnx::tract_core::model::Rewriter;
+use tract_onnx::tract_core::ops::binary::TypedBinOp;
+use tract_onnx::tract_core::ops::cnn::{Conv, KernelFormat, MaxPool, PaddingSpec, SumPool};
+use tract_onnx::tract_core::ops::element_wise::ElementWiseOp;
+use tract_onnx::tract_core::ops::logic::{Iff, comp_gt};
+use tract_onnx::tract_core::ops::math::{Add, Max, Min, Mul};
+use tract_onnx::tract_core::ops::nn::{DataFormat, HardSwish, LeakyRelu, resize};
+use tract_onnx::tract_hir::internal::*;
+
+use super::activation::Activation;
+use super::convolve::Convolve;
+use super::depthwise::Depthwise;
+use super::pool::{Kind, Pool};
+use super::prelu::Prelu;
+use super::residual;
+use super::resize::{Resize, Taps};
+use super::tile::PANEL;
+use super::window::Window;
+
+/// Dimension of the channels, before and after a move.
+const CHANNELS: usize = 1;
+const LAST: usize = 3;
+/// Most floats of an input with its padding, beyond one that is small, for one of the input or of the output: padding
+/// that dwarfs both is left to the engine, which makes nothing of it.
+const MOST_PADDING: usize = 4;
+const SMALL: usize = 1 << 18;
+
+type Rewrite = TractResult<Option<TypedModelPatch>>;
+
+/// The same graph with our operators in it.
+pub(crate) fn prepare(mut model: TypedModel) -> TractResult<TypedModel> {
+    model.prop_consts()?;
+    Rewriter::<()>::default().with_rule_for("prelu", prelu).rewrite(&(), &mut model)?;
+    let windows = Rewriter::<()>::default().with_rule_for("convolve", convolve);
+    let windows = windows.with_rule_for("highest", highest).with_rule_for("mean", mean);
+    windows.rewrite(&(), &mut model)?;
+    // The ONNX form of a resize becomes one that can be looked at.
+    model.declutter()?;
+    let resizes = Rewriter::<()>::default().with_rule_for("resize", resized).with_rule_for("nearest", nearest);
+    resizes.rewrite(&(), &mut model)?;
+    model.declutter()?;
+    residual::absorb(&mut model)?;
+    Ok(model)
+}
+
+/// Wires an operator that has the channels last.
+fn wire_last(patch: &mut TypedModelPatch, name: &str, op: impl TypedOp, x: OutletId) -> TractResult<OutletId> {
+    let last = patch.wire_node(format!("{name}.last"), AxisOp::Move(CHANNELS, LAST), &[x])?;
+    let made = patch.wire_node(name, op, &last)?;
+    Ok(patch.wire_node(format!("{name}.first"), AxisOp::Move(LAST, CHANNELS), &made)?[0])
+}
+
+/// An operator with the channels last instead of the nodes from one to another.
+fn replace(model: &TypedModel, from: &TypedNode, to: usize, op: impl TypedOp) -> Rewrite {
+    let mut patch = TypedModelPatch::default();
+    let x = patch.tap_model(model, from.inputs[0])?;
+    let y = wire_last(&mut patch, &from.name, op, x)?;
+    patch.shunt_outside(model, to.into(), y)?;
+    Ok(Some(patch))
+}
+
+/// Shape of a map of floats, batch, channels, rows and columns.
+fn map(fact: &TypedFact) -> Option<[usize; 4]> {
+    let shape = fact.shape.as_concrete().filter(|_| fact.datum_type == f32::datum_type())?;
+    shape.try_into().ok().filter(|shape: &[usize; 4]| !shape.contains(&0))
+}
+
+/// The value of a constant for each channel of a map, if it has no more to it.
+fn of_channels(fact: &TypedFact, channels: usize) -> Option<Vec<f32>> {
+    let values = fact.konst.as_ref().filter(|konst| konst.datum_type() == f32::datum_type())?;
+    let shape = values.shape();
+    let is_channels = shape.len() == 4 && shape[CHANNELS] == channels || shape.len() == 1;
+    let all: &[f32] = values.try_as_plain_ram().ok()?.as_slice().ok()?;
+    match all.len() {
+        1 => Some(vec![all[0]; channels]),
+        n if n == channels && is_channels => Some(all.to_vec()),
+        _ => None,
+    }
+}
+
+/// What a node computes from another one and a constant: its operator and the constant for each channel.
+fn with_constant<'a>(
+    model: &'a TypedModel,
+    node: &'a TypedNode,
+    of: usize,
+    channels: usize,
+) -> Option<(&'a TypedBinOp, Vec<f32>)> {
+    let op = node.op_as::<TypedBinOp>()?;
+    let slot = node.inputs.iter().position(|input| input.node != of)?;
+    let is_alone = node.outputs[0].fact.shape == model.node(of).outputs[0].fact.shape;
+    let fact = model.outlet_fact(node.inputs[slot]).ok().filter(|_| is_alone && node.inputs.len() == 2)?;
+    Some((op, of_channels(fact, channels)?))
+}
+
+/// `Iff(0 > x, x * slopes, x)`.
+fn prelu(_: &(), model: &TypedModel, node: &TypedNode, name: &str, _: &Iff) -> Rewrite {
+    let x = node.inputs[2];
+    let (test, product) = (model.node(node.inputs[0].node), model.node(node.inputs[1].node));
+    rule_if_some!([_, channels, ..] = map(model.outlet_fact(x)?));
+    rule_if!(test.op_as::<TypedBinOp>().is_some_and(|op| op.0 == comp_gt()) && test.inputs[1] == x);
+    rule_if!(model.outlet_fact(test.inputs[0])?.konst.as_ref().is_some_and(|zero| zero.is_zero().unwrap_or(false)));
+    rule_if!(product.inputs.contains(&x));
+    rule_if_some!((op, slopes) = with_constant(model, product, x.node, channels));
+    rule_if!(op.0.is::<Mul>());
+    let mut patch = TypedModelPatch::default();
+    let tap = patch.tap_model(model, x)?;
+    let y = wire_last(&mut patch, name, Prelu { slopes: rctensor1(&slopes) }, tap)?;
+    patch.shunt_outside(model, node.id.into(), y)?;
+    Ok(Some(patch))
+}
+
+/// Whether the padding of a window is no more than what it is good for.
+fn is_fit(window: &Window, inputs: usize, outputs: usize) -> bool {
+    let [taken, given] = [(window.input, inputs), (window.output, outputs)].map(|([rows, cols], n)| rows * cols * n);
+    inputs.saturating_mul(window.padded_area()) <= (MOST_PADDING * taken.max(given)).max(SMALL)
+}
+
+/// A convolution with what follows it: factors and summands for each channel, and an activation.
+fn convolve(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &Conv) -> Rewrite {
+    let facts = model.node_input_facts(node.id)?;
+    rule_if!(op.q_params.is_none() && op.kernel_fmt == KernelFormat::OIHW && facts.len() == 3);
+    rule_if!(op.pool_spec.data_format == DataFormat::NCHW);
+    rule_if_some!([_, inputs, rows, cols] = map(facts[0]));
+    rule_if_some!(window = Window::new(&op.pool_spec, [rows, cols]));
+    let outputs = op.output_channels();
+    rule_if!(is_fit(&window, inputs, outputs));
+    rule_if_some!(weights = facts[1].konst.as_ref().filter(|weights| weights.datum_type() == f32::datum_type()));
+    rule_if_some!(bias = of_channels(facts[2], outputs));
+    let mut weights = weights.clone().into_tensor();
+    let mut bias = bias;
+    let (end, activation) = follow(model, node.id, &mut weights, &mut bias)?;
+    if op.group == inputs && op.group == outputs && op.group > 1 {
+        return replace(model, node, end, Depthwise::new(window, &weights, &bias, activation)?);
+    }
+    // Narrow groups would leave most of a panel empty.
+    rule_if!(op.group == 1 || 2 * (outputs / op.group) >= PANEL);
+    replace(model, node, end, Convolve::new(window, op.group, &weights, &bias, activation)?)
+}
+
+/// Takes what follows a convolution into its weights, as far as that goes; gives the last node and the activation.
+fn follow(model: &TypedModel, from: usize, weights: &mut Tensor, bias: &mut [f32]) -> TractResult<(usize, Activation)> {
+    let mut at = from;
+    let mut activation = Activation::None;
+    while let Some(next) = successor(model, at) {
+        if let Some((op, values)) = with_constant(model, next, at, bias.len()) {
+            let is_linear = activation == Activation::None;
+            if op.0.is::<Mul>() && is_linear {
+                let per_output = weights.len() / bias.len();
+                let mut plain = weights.try_as_plain_ram_mut()?;
+                for (weights, factor) in plain.as_slice_mut::<f32>()?.chunks_exact_mut(per_output).zip(&values) {
+                    weights.iter_mut().for_each(|weight| *weight *= factor);
+                }
+                bias.iter_mut().zip(&values).for_each(|(bias, factor)| *bias *= factor);
+            } else if op.0.is::<Add>() && is_linear {
+                bias.iter_mut().zip(&values).for_each(|(bias, summand)| *bias += summand);
+            } else if let Some(bounded) = bounded(&activation, op, &values) {
+                activation = bounded;
+            } else {
+                break;
+            }
+        } else if let Some(curve) = curve(next, bias.len()).filter(|_| activation == Activation::None) {
+            activation = curve;
+        } else if let Some(after) = moved_prelu(model, next).filter(|_| activation == Activation::None) {
+            let (end, slopes) = after;
+            return Ok((end, slopes));
+        } else {
+            break;
+        }
+        at = next.id;
+    }
+    Ok((at, activation))
+}
+
+/// The only node that takes a value which nobody else sees.
+pub(super) fn successor(model: &TypedModel, id: usize) -> Option<&TypedNode> {
+    let outputs = &model.node(id).outputs;
+    let is_seen = model.outputs.iter().any(|output| output.node == id);
+    let [output] = outputs.as_slice() else { return None };
+    let [inlet] = output.successors.as_slice() else { return None };
+    (!is_seen).then(|| model.node(inlet.node))
+}
+
+/// A clamp with a further bound, the same for all channels.
+pub(super) fn bounded(activation: &Activation, op: &TypedBinOp, values: &[f32]) -> Option<Activation> {
+    let bound = *values.first()?;
+    let (low, high) = match activation {
+        Activation::None => (f32::NEG_INFINITY, f32::INFINITY),
+        Activation::Clamp(low, high) => (*low, *high),
+        _ => return None,
+    };
+    if values.iter().any(|value| *value != bound) {
+        return None;
+    }
+    match (op.0.is::<Max>(), op.0.is::<Min>()) {
+        (true, _) if bound <= high && bound >= low => Some(Activation::Clamp(bound, high)),
+        (_, true) if bound >= low && bound <= high => Some(Activation::Clamp(low, bound)),
+        _ => None,
+    }
+}
+
+/// An activation of the engine's that is one of ours.
+fn curve(node: &TypedNode, channels: usize) -> Option<Activation> {
+    let op = &node.op_as::<ElementWiseOp>()?.0;
+    if op.is::<HardSwish>() {
+        return Some(Activation::HardSwish);
+    }
+    let slope = op.downcast_ref::<LeakyRelu>()?.alpha;
+    Some(slopes(&vec![slope; channels]))
+}
+
+fn slopes(values: &[f32]) -> Activation {
+    let mut padded = values.to_vec();
+    padded.resize(values.len().next_multiple_of(PANEL) + PANEL, 0.0);
+    Activation::Slopes(rctensor1(&padded))
+}
+
+/// A PReLU between its moves: its last node, and what it is.
+fn moved_prelu(model: &TypedModel, node: &TypedNode) -> Option<(usize, Activation)> {
+    node.op_as::<AxisOp>().filter(|op| **op == AxisOp::Move(CHANNELS, LAST))?;
+    let prelu = successor(model, node.id)?;
+    let op = prelu.op_as::<Prelu>()?;
+    let back = successor(model, prelu.id)?;
+    back.op_as::<AxisOp>().filter(|op| **op == AxisOp::Move(LAST, CHANNELS))?;
+    Some((back.id, slopes(op.slopes.try_as_plain_ram().ok()?.as_slice().ok()?)))
+}
+
+fn highest(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &MaxPool) -> Rewrite {
+    rule_if!(op.with_index_outputs.is_none());
+    pool(model, node, &op.pool_spec, Kind::Highest)
+}
+
+fn mean(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &SumPool) -> Rewrite {
+    // With rounding up a window may overhang the padding, which the engine alone counts right.
+    let is_plain = !matches!(op.pool_spec.padding, PaddingSpec::ExplicitOnnxPool(_, _, true));
+    rule_if!(op.normalize && is_plain);
+    pool(model, node, &op.pool_spec, if op.count_include_pad { Kind::MeanOfWindow } else { Kind::Mean })
+}
+
+fn pool(
+    model: &TypedModel,
+    node: &TypedNode,
+    spec: &tract_onnx::tract_core::ops::cnn::PoolSpec,
+    kind: Kind,
+) -> Rewrite {
+    rule_if!(spec.data_format == DataFormat::NCHW);
+    rule_if_some!([_, channels, rows, cols] = map(model.outlet_fact(node.inputs[0])?));
+    rule_if_some!(window = Window::new(spec, [rows, cols]));
+    rule_if!(is_fit(&window, channels, channels));
+    // A window that meets nothing of the input has no mean.
+    let reaches = |axis: usize| window.before[axis] < window.kernel[axis] * window.dilation[axis];
+    rule_if!(window.kernel.iter().chain(&window.dilation).all(|n| *n > 0) && reaches(0) && reaches(1));
+    replace(model, node, node.id, Pool { window, channels, kind })
+}
+
+/// The engine's plan for each axis of a map, and the shape of what comes of it.
+fn resized(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &resize::Resize) -> Rewrite {
+    rule_if_some!([batch, channels, rows, cols] = map(model.outlet_fact(node.inputs[0])?));
+    rule_if_some!([out_batch, out_channels, out_rows, out_cols] = map(&node.outputs[0].fact));
+    let scales =
+        op.optional_scales_input.and_then(|slot| model.outlet_fact(*node.inputs.get(slot)?).ok()?.konst.clone());
+    let scales = match &scales {
+        Some(scales) if scales.len() == 4 => {
+            Some(scales.cast_to::<f32>()?.try_as_plain_ram()?.as_slice::<f32>()?.to_vec())
+        }
+        _ => None,
+    };
+    // Either the batch and the channels stay, or, where the graph has the channels last already, they are at the ends.
+    rule_if!(batch == out_batch);
+    let plan = |axis: usize, input: usize, output: usize| {
+        let scale = scales.as_ref().map_or(output as f32 / input as f32, |scales| scales[axis]);
+        Taps::new(input, op.plan_axis(scale, input, output))
+    };
+    if channels == out_channels {
+        rule_if_some!((rows, cols) = plan(2, rows, out_rows).zip(plan(3, cols, out_cols)));
+        return replace(model, node, node.id, Resize { rows, cols, channels });
+    }
+    rule_if!(cols == out_cols);
+    rule_if_some!((rows, cols_taps) = plan(1, channels, out_channels).zip(plan(2, rows, out_rows)));
+    let op = Resize { rows, cols: cols_taps, channels: cols };
+    TypedModelPatch::replace_single_op(model, node, &node.inputs[..1], op).map(Some)
+}
+
+/// Every pixel repeated.
+fn nearest(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &resize::NearestUpsample) -> Rewrite {
+    rule_if_some!([_, channels, rows, cols] = map(model.outlet_fact(node.inputs[0])?));
+    rule_if!(op.scales.len() == 4 && op.scales[0] == 1 && op.scales[CHANNELS] == 1);
+    let taps = |input: usize, scale: usize| {
+        let indices = (0..input * scale).map(|i| i / scale).collect::<Vec<_>>();
+        let plan = resize::AxisPlan {
+            window: 1,
+            weights: vec![1.0; indices.len()],
+            extrapolated: vec![false; indices.len()],
+            indices,
+        };
+        Taps::new(input, plan)
+    };
+    rule_if_some!((rows, cols) = taps(rows, op.scales[2]).zip(taps(cols, op.scales[3])));
+    replace(model, node, node.id, Resize { rows, cols, channels })
+}
