@@ -299,7 +299,11 @@ mod tests {
         assert_eq!([kind(&[]), kind(&["Identity"])], [ScoreKind::Logits; 2]);
         assert_eq!([kind(&["Sigmoid"]), kind(&["Sigmoid", "Identity"])], [ScoreKind::Probabilities; 2]);
         assert_eq!(kind(&["Sigmoid", "Tanh"]), ScoreKind::Logits);
-        assert_eq!(open(&["Sigmoid"], Some(ScoreKind::Logits)).score_kind, ScoreKind::Logits, "what is said goes first");
+        assert_eq!(
+            open(&["Sigmoid"], Some(ScoreKind::Logits)).score_kind,
+            ScoreKind::Logits,
+            "what is said goes first"
+        );
     }
 
     #[test]
