@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 use kernel::scene::EgoScene;
 
-use crate::{Imaging, Quality, RenderError, Sensor, effects};
+use crate::{Imaging, Quality, Sensor};
 
 /// What a camera is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,11 +96,6 @@ impl Camera {
     /// How it makes its pictures.
     pub fn imaging(&self) -> Imaging {
         Imaging { quality: self.quality, sensor: self.sensor }
-    }
-
-    /// Refuses a lens through which no picture can be taken, before anything is drawn.
-    pub fn check_lens(&self) -> Result<(), RenderError> {
-        effects::check(self)
     }
 
     /// What moves its pixels from where the pinhole has them: k1, k2, p1, p2 and k3 of OpenCV.

@@ -42,6 +42,7 @@ pub mod wind;
 
 pub use adapter::{AdapterChoice, AdapterInfo, adapters};
 pub use camera::{Camera, Mount};
+pub use effects::check_lens;
 pub use error::RenderError;
 pub use frame::Frame;
 pub use identity::identity;

@@ -40,8 +40,8 @@ impl Lenses {
     }
 }
 
-/// Refuses a camera's lens as [`Lenses::of`] does, sooner.
-pub(crate) fn check(camera: &Camera) -> Result<(), RenderError> {
+/// Refuses a camera's lens through which no picture can be taken, before anything is drawn.
+pub fn check_lens(camera: &Camera) -> Result<(), RenderError> {
     let is_seen = Glass::of(camera).is_none_or(|glass| glass.is_seen());
     if is_seen { Ok(()) } else { Err(RenderError::Distortion { sensor: camera.sensor }) }
 }
@@ -69,7 +69,11 @@ mod tests {
             assert!(!lenses.of(&other).expect("does not fold").is_the_glass_of(&first));
         }
         assert_eq!(lenses.kept.len(), 5);
-        assert!(check(&camera(64, "k1=-0.5")).is_err() && check(&one).is_ok() && check(&camera(64, "noise=4")).is_ok());
+        assert!(
+            check_lens(&camera(64, "k1=-0.5")).is_err()
+                && check_lens(&one).is_ok()
+                && check_lens(&camera(64, "noise=4")).is_ok()
+        );
         assert!(lenses.of(&camera(64, "k1=-0.5")).is_err() && lenses.of(&camera(64, "noise=4")).is_ok());
         assert_eq!(lenses.kept.len(), 5);
     }

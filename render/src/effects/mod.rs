@@ -11,7 +11,8 @@ mod tone;
 use kernel::SceneSnapshot;
 
 use self::lens::Lens;
-pub(crate) use self::lenses::{Lenses, check};
+pub(crate) use self::lenses::Lenses;
+pub use self::lenses::check_lens;
 use self::tone::Light;
 use crate::{Camera, Frame};
 

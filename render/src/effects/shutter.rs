@@ -269,7 +269,7 @@ mod tests {
         let mut scenes = Vec::new();
         for tick in 0..900 {
             let ego = world.scene().ego;
-            let steer = if scenes.is_empty() && ego.speed_mps < speed_mps { 0.0 } else { steer };
+            let steer = if scenes.is_empty() && ego.speed_mps < speed_mps - 0.5 { 0.0 } else { steer };
             let throttle = (0.3 * (speed_mps - ego.speed_mps)).clamp(0.0, 1.0);
             let semantic = kernel::Controls::from_fractions(steer, throttle, 0.0);
             world.step(&kernel::TickInput { semantic, ..Default::default() });

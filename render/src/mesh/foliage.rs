@@ -32,9 +32,6 @@ impl Leaf {
     }
 }
 
-/// Side of the picture on the inside of a crown, metres.
-const CORE_M: f32 = 0.8;
-
 /// Corners of a square around its middle.
 const CORNERS: [Vec2; 4] = [Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(0.5, 0.5), Vec2::new(-0.5, 0.5)];
 
@@ -53,18 +50,6 @@ impl Mesh {
         let corners = CORNERS.map(|c| centre + side_m * (c.x * u + c.y * v));
         let normals = corners.map(|corner| (corner - heart).normalize_or(Vec3::Z));
         self.leaf_quad(paint, corners, normals, CORNERS.map(|c| c + 0.5));
-    }
-
-    /// The inside of a crown, of leaves that repeat all over it: what is seen between the clusters around it.
-    pub fn leafy_core(&mut self, paint: Paint, core: &Lump, variety: &mut Variety) {
-        let first = self.vertices.len();
-        self.lump(Leaf::Clipped.paint(paint, 120), core, variety);
-        for v in &mut self.vertices[first..] {
-            let off = Vec3::from(v.position) - core.centre;
-            // Both halves are alike, so that there is no seam.
-            let (turn, fall) = (ops::atan2(off.y, off.x).abs(), ops::atan2(off.truncate().length(), off.z));
-            v.uv = (Vec2::new(turn * core.radii.x, fall * core.radii.z) / CORE_M).to_array();
-        }
     }
 
     /// Clusters `side_m` wide all over a lump but where it is inside of others, which shade one another towards `heart`.

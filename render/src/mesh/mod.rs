@@ -6,6 +6,7 @@
 pub mod actor;
 pub mod foliage;
 pub mod gait;
+pub mod look;
 pub mod model;
 pub mod motion;
 pub mod people;

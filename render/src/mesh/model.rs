@@ -118,8 +118,7 @@ pub struct Model {
     pub parts: Vec<Part>,
 }
 
-/// How finely a model is made. Shapes agree up to [`Detail::error_m`], but for crowns of trees: single leaves near the eye, they
-/// are closed farther away, about as large and as bright as those.
+/// How finely a model is made. Shapes agree up to [`Detail::error_m`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
     /// All there is.
@@ -131,7 +130,7 @@ pub enum Detail {
 }
 
 impl Detail {
-    /// By how much outlines of what is solid may differ from [`Detail::Fine`], metres.
+    /// By how much outlines may differ from [`Detail::Fine`], metres.
     pub const fn error_m(self) -> f32 {
         match self {
             Self::Fine => 0.0,

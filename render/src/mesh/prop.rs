@@ -5,9 +5,9 @@ use kernel::map::{FurnitureKind, Prop, PropKind};
 
 use super::Mesh;
 use super::actor::parked_model;
+use super::look::look;
 use super::model::Detail;
 use super::street::{barrier, building, furniture, hedge, lamp, sign, signal, structure, tree};
-use super::variety::Variety;
 use crate::SemanticTag;
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
@@ -33,28 +33,6 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
         PropKind::Bridge => structure::bridge(size, prop.rise_m()),
         PropKind::Tunnel => structure::tunnel(size, prop.rise_m()),
     }
-}
-
-/// Pieces of hedges, fences and walls that stand in the same square, metres, are one row.
-const ROW_M: f32 = 64.0;
-
-/// What selects colour and shape. Maps have few variants; where a thing stands tells it apart from its neighbours. Of what
-/// stands in rows the upper half is that of the row: [`row_of`].
-pub fn look(prop: &Prop) -> u32 {
-    let at = prop.position;
-    let own = prop.variant ^ Variety::of(at.x.to_bits().rotate_left(16) ^ at.y.to_bits()).bits();
-    if !matches!(prop.kind, PropKind::Hedge | PropKind::Fence | PropKind::Wall) {
-        return own;
-    }
-    let [x, y] = [at.x, at.y].map(|m| (m / ROW_M).floor() as i32 as u32);
-    Variety::of(x.rotate_left(16) ^ y).bits() & ROW | own & !ROW
-}
-
-const ROW: u32 = 0xffff_0000;
-
-/// What is chosen for all pieces of a row alike.
-pub fn row_of(look: u32) -> Variety {
-    Variety::of(look & ROW)
 }
 
 /// Moves a mesh from the frame of an object standing at `position` with a heading into the world.

@@ -78,6 +78,6 @@ mod tests {
             assert!(said.contains("expected"), "{said}");
         };
         refused("aeye.ticks", "aeye.clocks");
-        refused("\"version\":2", "\"version\":99999999999");
+        refused("\"version\":3", "\"version\":99999999999");
     }
 }

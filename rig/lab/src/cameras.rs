@@ -147,7 +147,7 @@ impl Mounted {
             fov_x_rad: *fov_x_rad,
             ..Camera::driver(width, height).at(imaging)
         };
-        camera.check_lens().map_err(|error| format!("camera {name}: {error}"))?;
+        render::check_lens(&camera).map_err(|error| format!("camera {name}: {error}"))?;
         Ok(Named { name: name.clone(), camera })
     }
 }
@@ -168,7 +168,7 @@ mod tests {
     fn a_file_describes_cameras() {
         let text = "[[cameras]]\nname = \"driver\"\nx_m = 2.55\nz_m = 1.5\n\
                     [[cameras]]\nname = \"rear\"\nx_m = -0.8\ny_m = 0.3\nz_m = 1.1\nyaw_rad = 3.14159265\npitch_rad = -0.1\n\
-                    fov_x_rad = 2.0\nwidth = 128\nheight = 96\nquality = \"standard\"\nsensor = \"k1=-0.1\"\n";
+                    fov_x_rad = 1.2\nwidth = 128\nheight = 96\nquality = \"standard\"\nsensor = \"k1=-0.1\"\n";
         let imaging = "plain noise=4".parse().expect("an imaging");
         let [driver, rear] = &read(text, imaging).expect("readable")[..] else { panic!("two cameras") };
         let expected = Camera::driver(64, 32).at(imaging);

@@ -153,8 +153,8 @@ fn exports_hold_what_every_camera_saw() {
     let rgb = drawn(&at("drawn/a.case/cameras/left/rgb"));
     assert_eq!(rgb.len(), 5);
 
-    assert_eq!(export("--format mcap", "a.mcap"), (0, String::new()));
-    let bytes = fs::read(at("a.mcap")).unwrap();
+    assert_eq!(export("--format mcap", "seen.mcap"), (0, String::new()));
+    let bytes = fs::read(at("seen.mcap")).unwrap();
     let images: Vec<CompressedImage> = messages(&bytes, "/cameras/left/rgb");
     assert!(images.iter().map(|image| image.data.to_vec()).eq(rgb.clone()));
     assert_eq!(images[0].frame_id, "cameras/left");
@@ -203,8 +203,8 @@ fn exports_hold_what_every_camera_saw() {
 
     // What is there of other cameras is not kept.
     rig(dir.path(), &[("right", "")]);
-    assert_eq!(export("--format mcap", "a.mcap"), (0, String::new()));
-    assert!(messages::<CompressedImage>(&fs::read(at("a.mcap")).unwrap(), "/cameras/left/rgb").is_empty());
+    assert_eq!(export("--format mcap", "seen.mcap"), (0, String::new()));
+    assert!(messages::<CompressedImage>(&fs::read(at("seen.mcap")).unwrap(), "/cameras/left/rgb").is_empty());
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use crate::SemanticTag;
+use crate::mesh::look::row_of;
 use crate::mesh::model::Detail;
-use crate::mesh::prop::row_of;
 use crate::mesh::variety::Variety;
 use crate::mesh::{CODE_SETTS, Finish, Mesh, Paint};
 

@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3};
 
 use crate::SemanticTag;
 use crate::mesh::foliage::Leaf;
+use crate::mesh::look::row_of;
 use crate::mesh::model::Detail;
-use crate::mesh::prop::row_of;
 use crate::mesh::shape::Lump;
 use crate::mesh::variety::Variety;
 use crate::mesh::{Mesh, Paint};

@@ -11,7 +11,7 @@ use crate::mesh::foliage::Leaf;
 use crate::mesh::model::Detail;
 use crate::mesh::shape::Lump;
 use crate::mesh::variety::Variety;
-use crate::mesh::{Finish, Mesh, Paint};
+use crate::mesh::{Mesh, Paint};
 
 const NEEDLES: [[u8; 3]; 2] = [[52, 84, 56], [60, 90, 50]];
 const BARKS: [[u8; 3]; 3] = [[92, 76, 60], [110, 98, 84], [78, 66, 54]];
@@ -98,12 +98,12 @@ impl Plant {
             // Dents have choices of their own, so that lumps lie alike at every level of detail.
             let mut dents = Variety::of(self.variant ^ (i as u32 + 1) << 24);
             if !self.is_fine() {
-                closed(&mut mesh, leaves.shaded(light), &lump, &mut dents);
+                mesh.lump(leaves.shaded(light), &lump, &mut dents);
                 continue;
             }
-            let (share, dark) = if species == Species::Birch { (0.55, 0.84) } else { (0.72, 0.8) };
+            let (share, dark) = if species == Species::Birch { (0.55, 0.8) } else { (0.74, 0.72) };
             let within = Lump { radii: share * lump.radii, rough: 0.1, ..lump };
-            mesh.leafy_core(leaves.shaded(dark * light), &within, &mut dents);
+            mesh.lump(leaves.shaded(dark * light), &within, &mut dents);
             let others = [&lumps[..i], &lumps[i + 1..]].concat();
             mesh.leafy_lump(leaf.paint(leaves.shaded(0.94 * light), 200), &lump, &others, side_m, &mut dents);
         }
@@ -201,59 +201,22 @@ impl Plant {
         let needles = Paint::plain(TAG, variety.colour(&NEEDLES)).grainy(200);
         let bark = Paint::plain(TAG, variety.colour(&BARKS));
         let mut mesh = Mesh::default();
+        let sides = if self.is_fine() { 9 } else { 7 };
         mesh.tube(bark, Vec3::ZERO, Vec3::Z * 0.3 * self.height_m, 0.16, 0.12, 6);
         for i in 0..5 {
             let up = i as f32 / 5.0;
             let (z0, z1) = (self.height_m * (0.16 + 0.78 * up), self.height_m * (0.46 + 0.78 * up).min(1.0));
             let radius = 0.5 * self.crown_m * (1.0 - 0.86 * up);
             let paint = needles.shaded(0.86 + 0.06 * i as f32);
-            let within = if self.is_fine() { 0.8 } else { 1.0 };
-            let mut boughs = Variety::of(self.variant ^ (i + 1) << 24);
-            let needles = if self.is_fine() { Leaf::Clipped.paint(paint.shaded(0.82), 60) } else { paint };
-            tier(&mut mesh, needles, (z0, z1), within * radius, boughs.between(0.0, TAU));
+            let within = if self.is_fine() { 0.72 } else { 1.0 };
+            mesh.tube(paint.shaded(within), Vec3::Z * z0, Vec3::Z * z1, within * radius, 0.02, sides);
+            mesh.disc(paint.shaded(0.5), Vec3::Z * z0, Vec3::NEG_Z, within * radius, sides);
             if self.is_fine() {
-                twigs(&mut mesh, paint, (z0, z1), radius, &mut boughs);
+                twigs(&mut mesh, paint, (z0, z1), radius, &mut Variety::of(self.variant ^ (i + 1) << 24));
             }
         }
         mesh
     }
-}
-
-/// A lump of leaves as it is seen from afar.
-fn closed(mesh: &mut Mesh, leaves: Paint, lump: &Lump, dents: &mut Variety) {
-    let first = mesh.vertices.len();
-    mesh.lump(leaves, lump, dents);
-    mesh.vertices[first..].iter_mut().for_each(|v| v.uv = v.uv.map(|m| COARSER * m));
-}
-
-/// Grain of crowns is so much coarser than that of ground and bark: clusters of leaves, not single ones.
-const COARSER: f32 = 0.3;
-
-/// Side of the picture of a near bough, metres.
-const NEEDLES_M: f32 = 0.6;
-
-/// Corners of a tier of boughs: every other one reaches out and hangs.
-const BOUGHS: u32 = 10;
-
-/// A cone of boughs between two heights, with a dark underside.
-fn tier(mesh: &mut Mesh, paint: Paint, (z0, z1): (f32, f32), radius: f32, turn: f32) {
-    let first = mesh.vertices.len() as u32;
-    let deep = z1 - z0;
-    for i in 0..BOUGHS {
-        let angle = turn + TAU * i as f32 / BOUGHS as f32;
-        let out = Vec3::new(ops::cos(angle), ops::sin(angle), 0.0);
-        let (reach, hang, light) = if i % 2 == 0 { (1.1, -0.05, 1.1) } else { (0.78, 0.1, 0.8) };
-        let normal = (out + 0.4 * Vec3::Z).normalize_or(Vec3::Z);
-        let foot = out * (reach * radius) + Vec3::Z * (z0 + hang * deep);
-        mesh.vertex(paint.shaded(light), foot, normal, Vec2::new(angle * radius, 0.0) / NEEDLES_M);
-        mesh.vertex(paint, Vec3::Z * z1, normal, Vec2::new(angle * radius, deep) / NEEDLES_M);
-    }
-    for i in 0..BOUGHS {
-        let (p, q) = (first + 2 * i, first + 2 * ((i + 1) % BOUGHS));
-        mesh.triangle(paint.finish, [p, q, p + 1]);
-    }
-    let underside = Paint { finish: Finish::Grainy, ..paint.shaded(0.5) };
-    mesh.disc(underside, Vec3::Z * (z0 + 0.1 * deep), Vec3::NEG_Z, 0.76 * radius, BOUGHS);
 }
 
 /// Twigs that hang from a cone between two heights: two rows, the lower ones longer.
@@ -291,9 +254,8 @@ fn stakes(mesh: &mut Mesh, height_m: f32) {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::{BTreeMap, BTreeSet};
-
     use super::*;
+    use crate::mesh::Finish;
 
     fn leafy(mesh: &Mesh) -> usize {
         mesh.triangles[Finish::Leafy as usize].len()
@@ -325,64 +287,6 @@ mod tests {
                     "{variant}: {near:?}, {far:?}"
                 );
             }
-        }
-    }
-
-    /// Side of the squares that outlines are made of, metres.
-    const SQUARE_M: f32 = 0.1;
-
-    /// The squares in which something is seen from the side, between leaves nothing.
-    fn outline(mesh: &Mesh, layers: &[Vec<Vec<u8>>]) -> BTreeSet<[i32; 2]> {
-        let side = crate::leaves::SIDE as usize;
-        let is_leaf = |code: u8, uv: Vec2| {
-            let [x, y] = uv.to_array().map(|m| ((m - m.floor()) * side as f32) as usize % side);
-            layers[usize::from(code)][0][2 * (y * side + x)] >= crate::leaves::THRESHOLD
-        };
-        let mut seen = BTreeSet::new();
-        for (finish, triangles) in mesh.triangles.iter().enumerate() {
-            for corners in triangles.iter().map(|t| t.map(|i| mesh.vertices[i as usize])) {
-                let at = corners.map(|v| Vec2::new(v.position[0], v.position[2]) / SQUARE_M);
-                let whole = (at[1] - at[0]).perp_dot(at[2] - at[0]);
-                let (low, high) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
-                for x in low.x as i32 - 1..=high.x as i32 + 1 {
-                    for z in low.y as i32 - 1..=high.y as i32 + 1 {
-                        let p = Vec2::new(x as f32, z as f32);
-                        let share = |a: usize, b: usize| (at[a] - p).perp_dot(at[b] - p) / whole;
-                        let shares = [share(1, 2), share(2, 0), share(0, 1)];
-                        if !shares.iter().all(|s| *s >= 0.0) {
-                            continue;
-                        }
-                        let uv = (0..3).map(|i| shares[i] * Vec2::from(corners[i].uv)).sum();
-                        if finish != Finish::Leafy as usize || is_leaf(corners[0].code, uv) {
-                            seen.insert([x, z]);
-                        }
-                    }
-                }
-            }
-        }
-        seen
-    }
-
-    /// What is seen of a crown is as large at all levels, and nearly at the same place.
-    #[test]
-    fn crowns_do_not_grow_or_shrink_with_distance() {
-        let layers = crate::leaves::layers();
-        let mut found: BTreeMap<u8, Vec<[f32; 4]>> = BTreeMap::new();
-        for variant in 0..40 {
-            let species = Species::of(&mut Variety::of(variant), 9.5);
-            let [fine, coarse, rough] = Detail::ALL.map(|detail| outline(&tree(variant, 4.6, 9.5, detail), &layers));
-            let compared = |other: &BTreeSet<[i32; 2]>| {
-                let [both, either] = [fine.intersection(other).count(), fine.union(other).count()];
-                [other.len() as f32 / fine.len() as f32, both as f32 / either as f32]
-            };
-            let ([a, b], [c, d]) = (compared(&coarse), compared(&rough));
-            found.entry(species as u8).or_default().push([a, b, c, d]);
-        }
-        for (species, values) in found {
-            let mean = |i: usize| values.iter().map(|v| v[i]).sum::<f32>() / values.len() as f32;
-            let [coarse, overlap, rough, rough_overlap] = [0, 1, 2, 3].map(mean);
-            assert!((0.85..1.15).contains(&coarse) && overlap > 0.7, "{species}: {coarse}, {overlap}");
-            assert!((0.85..1.15).contains(&rough) && rough_overlap > 0.68, "{species}: {rough}, {rough_overlap}");
         }
     }
 

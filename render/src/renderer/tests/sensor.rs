@@ -23,7 +23,7 @@ fn labels(frame: &Frame) -> Frame {
 fn labels_are_the_same_whatever_changes_colours_alone() {
     let network = network("suburb");
     let (mut renderer, scene) = (renderer(&network), scene(&network, 15.0));
-    let ideal = renderer.draw(&scene, &Camera::driver(192, 96)).expect("drawn");
+    let ideal = renderer.draw(&scene, &Camera::driver(192, 96).at(Quality::Plain)).expect("drawn");
     for sensor in
         ["exposure_ev=-2", "noise=4", "motion_blur_s=0.03", "vignetting=0.5", "exposure_ev=1,noise=9,motion_blur_s=0.1"]
     {
