@@ -9,6 +9,7 @@ mod activation;
 mod convolve;
 mod depthwise;
 mod ends;
+mod follow;
 mod pool;
 mod prelu;
 mod residual;

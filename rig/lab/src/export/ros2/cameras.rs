@@ -8,7 +8,8 @@ use replay::nanoseconds;
 
 use super::bag::{Bag, Durability, Topic};
 use super::messages::{CameraInfo, CompressedImage};
-use super::{tell, token};
+use super::tell;
+use super::token::token;
 use crate::cameras::Named;
 
 /// Those of one.

@@ -8,6 +8,7 @@ mod motion;
 mod tell;
 #[cfg(test)]
 mod tests;
+mod token;
 
 use std::path::{Path, PathBuf};
 
@@ -27,6 +28,7 @@ use self::cameras::Pictures;
 pub use self::cameras::check_names;
 use self::messages::{Clock, CompressedImage, Log, MarkerArray, Odometry, TFMessage, Time};
 use self::motion::{Motion, SPAN_TICKS};
+use self::token::token;
 use super::about::{about, origin};
 use super::film::{Camera, Counts};
 use super::happenings;
@@ -145,10 +147,4 @@ impl Topics {
             predicted,
         })
     }
-}
-
-/// A name as a part of a topic, which has letters, digits and underscores, and no digit first.
-fn token(name: &str) -> String {
-    let allowed: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if allowed.starts_with(|c: char| c.is_ascii_digit()) { format!("n{allowed}") } else { allowed }
 }

@@ -9,7 +9,8 @@ use render::Camera;
 use super::definitions::{self, fields, made_of};
 use super::messages::{Clock, Message, Time};
 use super::motion::Twist;
-use super::{check_names, tell, token};
+use super::token::token;
+use super::{check_names, tell};
 use crate::cameras::Named;
 
 /// Reads a message by its definition alone.
