@@ -168,7 +168,7 @@ fn exports_hold_what_every_camera_saw() {
     }
     let of = |topic: &str| messages::<CompressedImage>(&bytes, topic);
     assert!(of("/cameras/front/rgb").iter().zip(of("/camera/rgb")).all(|(front, driver)| front.data == driver.data));
-    assert!(fs::read_to_string(at("a.layout.json")).unwrap().contains("\"/cameras/left/calibration\""));
+    assert!(fs::read_to_string(at("seen.layout.json")).unwrap().contains("\"/cameras/left/calibration\""));
 
     assert_eq!(export("--format ros2", "bag"), (0, String::new()));
     let bytes = fs::read(at("bag/bag_0.mcap")).unwrap();

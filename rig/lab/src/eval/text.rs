@@ -30,7 +30,7 @@ impl fmt::Display for Summary<'_> {
 impl Summary<'_> {
     /// IoU and boundary IoU of each class.
     fn classes(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let mut row = |name: &str, iou: &str, boundary: &str| write!(f, "{name:<14} {iou:>12} {boundary:>12}\n");
+        let mut row = |name: &str, iou: &str, boundary: &str| writeln!(f, "{name:<14} {iou:>12} {boundary:>12}");
         row("IoU", self.checkpoint, "boundary")?;
         for class in &TRAIN_CLASSES {
             row(class.name, &decimal(self.figures.iou[class.name]), &decimal(self.boundary_iou[class.name]))?;
@@ -50,7 +50,7 @@ fn certainty(f: &mut Formatter<'_>, trust: &Trust) -> fmt::Result {
         ("the same of pedestrians", trust.surely_wrong_of_people()),
     ];
     f.write_str("\n")?;
-    rows.iter().try_for_each(|(name, value)| write!(f, "{name:<27} {:>12}\n", decimal(*value)))
+    rows.iter().try_for_each(|(name, value)| writeln!(f, "{name:<27} {:>12}", decimal(*value)))
 }
 
 /// A row for all, for each range, and for those whose feet or wheels are hidden.
