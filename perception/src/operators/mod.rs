@@ -6,6 +6,7 @@
 //! machine). [`prepare`] puts them into a typed graph in place of the engine's own.
 
 mod activation;
+mod by_channel;
 mod convolve;
 mod depthwise;
 mod ends;
@@ -13,6 +14,7 @@ mod pool;
 mod prelu;
 mod residual;
 mod resize;
+mod resizing;
 mod rewrite;
 #[cfg(test)]
 mod tests;
