@@ -61,21 +61,25 @@ pub fn product(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &EinSu
     rule_if_some!(slot = facts.iter().position(|fact| fact.konst.is_none()));
     rule_if_some!([_, channels, rows, cols] = map(facts[slot]));
     rule_if_some!(matrix = &facts[1 - slot].konst);
-    rule_if!(map(&node.outputs[0].fact).is_some() && matrix.rank() == 2 && matrix.datum_type() == f32::datum_type());
+    rule_if!(map(&node.outputs[0].fact).is_some() && matrix.datum_type() == f32::datum_type());
+    let (rank, sides) = (matrix.rank(), matrix.shape());
+    rule_if!(rank >= 2 && sides[..rank - 2].iter().all(|n| *n == 1));
     let axis = |k: usize| op.axes.axis((InOut::In(slot), k));
     let mut along = None;
     for k in 0..4 {
         let found = axis(k)?;
-        let (there, here) = (&found.outputs[0], &found.inputs[1 - slot]);
-        if there.is_empty() && here.len() == 1 && along.is_none() {
-            along = Some((k, here[0]));
-        } else if there.as_slice() != [k] || !here.is_empty() {
-            return Ok(None);
+        let (there, here) = (found.outputs[0].as_slice(), found.inputs[1 - slot].as_slice());
+        match (there, here) {
+            ([], &[from]) if along.is_none() && from + 2 >= rank => along = Some((k, from)),
+            // What the matrix has no part in, or has only because it was given as many dimensions.
+            (&[same], []) if same == k => {}
+            (&[same], &[padding]) if same == k && padding + 2 < rank => {}
+            _ => return Ok(None),
         }
     }
     rule_if_some!((along, from) = along.filter(|(along, _)| *along >= 2));
-    let to = op.axes.axis((InOut::In(1 - slot), 1 - from))?;
-    rule_if!(to.outputs[0].as_slice() == [along]);
+    let to = op.axes.axis((InOut::In(1 - slot), 2 * rank - 3 - from))?;
+    rule_if!(to.outputs[0].as_slice() == [along] && to.inputs[slot].is_empty());
     rule_if_some!(taps = dense(matrix, from)?);
     let (rows, cols) = match along {
         2 => (taps, Taps::same(cols)),
@@ -89,11 +93,14 @@ pub fn product(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &EinSu
     Ok(Some(patch))
 }
 
-/// What a matrix does whose dimension of the sources is given, unless it mixes everything.
+/// What a matrix, the last two dimensions of a tensor, does; the dimension of the sources is given. Nothing if it mixes
+/// everything.
 fn dense(matrix: &Tensor, from: usize) -> TractResult<Option<Taps>> {
     let values: &[f32] = matrix.try_as_plain_ram()?.as_slice()?;
-    let (inputs, outputs) = (matrix.shape()[from], matrix.shape()[1 - from]);
-    let at = |input: usize, output: usize| if from == 0 { input * outputs + output } else { output * inputs + input };
+    let rank = matrix.rank();
+    let (inputs, outputs) = (matrix.shape()[from], matrix.shape()[2 * rank - 3 - from]);
+    let at =
+        |input: usize, output: usize| if from + 2 == rank { input * outputs + output } else { output * inputs + input };
     let taken = |output: usize| (0..inputs).filter(move |input| values[at(*input, output)] != 0.0);
     let window = (0..outputs).map(|output| taken(output).count()).max().unwrap_or(0).max(1);
     if window * outputs > 2 * inputs.max(outputs) + 2 * window {

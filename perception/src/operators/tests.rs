@@ -243,7 +243,7 @@ proptest! {
     #[test]
     fn products_that_resize_agree_with_the_engine(
         (channels, rows, cols, outputs) in (1..=9usize, 2..=9usize, 2..=9usize, 2..=20usize),
-        is_rows in any::<bool>(),
+        (is_rows, is_padded) in (any::<bool>(), any::<bool>()),
     ) {
         use tract_onnx::tract_core::ops::einsum::EinSum;
         let inputs = if is_rows { rows } else { cols };
@@ -256,8 +256,14 @@ proptest! {
         }
         let shape = if is_rows { [outputs, inputs] } else { [inputs, outputs] };
         let network = model(&[1, channels, rows, cols], |model, x| {
-            let matrix = model.add_const("matrix", Tensor::from_shape(&shape, &matrix).unwrap()).unwrap();
-            let (axes, wires) = if is_rows { ("mk,abkn->abmn", [matrix, x]) } else { ("abmk,kn->abmn", [x, matrix]) };
+            let dims = [if is_padded { &[1, 1][..] } else { &[] }, &shape].concat();
+            let matrix = model.add_const("matrix", Tensor::from_shape(&dims, &matrix).unwrap()).unwrap();
+            let (axes, wires) = match (is_rows, is_padded) {
+                (true, false) => ("mk,abkn->abmn", [matrix, x]),
+                (true, true) => ("abmk,abkn->abmn", [matrix, x]),
+                (false, false) => ("abmk,kn->abmn", [x, matrix]),
+                (false, true) => ("abmk,abkn->abmn", [x, matrix]),
+            };
             let op = EinSum { axes: axes.parse().unwrap(), operating_dt: f32::datum_type(), q_params: None };
             model.wire_node("product", op, &wires).unwrap()[0]
         });
