@@ -228,10 +228,7 @@ fn panel<S: Simd, const PIXELS: usize, const VECTORS: usize>(
     while from < starts.len() {
         let left = starts.len() - from;
         let y = &mut y[from * tile.stride..];
-        let more = match more {
-            Some(more) => Some(&more[from * tile.stride..]),
-            None => None,
-        };
+        let more = more.map(|more| &more[from * tile.stride..]);
         if left == 1 {
             tile.run::<S, 1, VECTORS>(&[starts[from]], y, more);
         } else {

@@ -55,10 +55,7 @@ impl Tile<'_> {
             }
         }
         for (pixel, (sums, y)) in sums.into_iter().zip(y.chunks_exact_mut(self.stride)).enumerate() {
-            let more = match more {
-                Some(more) => Some(&more[pixel * self.stride + self.channel..]),
-                None => None,
-            };
+            let more = more.map(|more| &more[pixel * self.stride + self.channel..]);
             self.finish(sums, &mut y[self.channel..], more);
         }
     }

@@ -7,8 +7,6 @@ pub(super) mod loss;
 pub(super) mod norm;
 pub(super) mod patches;
 
-use crate::simd::vectorised;
-
 /// Deviation of derivatives from differences, for tests.
 #[cfg(test)]
 pub(super) fn worst_derivative(x: &[f32], derivative: &[f32], mut f: impl FnMut(&[f32]) -> f64) -> f64 {
