@@ -6,11 +6,22 @@
 
 use std::ops::Range;
 
+use crate::metadata::ScoreKind;
 use crate::simd::vectorised;
 use crate::taps::{Enlarge, Taps};
 
 /// Pixels that are interpolated at a time.
 const LANES: usize = 8;
+
+/// How sure a network is of every pixel, row by row from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Certainty {
+    /// Probability of the class with the highest one: 1 over the number of classes where all are alike, 1 where one
+    /// stands alone.
+    pub confidence: Vec<f32>,
+    /// Entropy of the probabilities as a share of the greatest: 1 where all are alike, 0 where one stands alone.
+    pub entropy: Vec<f32>,
+}
 
 /// How the scores lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,11 +125,11 @@ impl Decoder {
         out
     }
 
-    /// The softmax of the highest score at every pixel, with the scores as logits: 1 over the number of
-    /// classes where all are equal, 1 where one stands alone.
-    pub fn confidence(&self, scores: &[f32]) -> Vec<f32> {
+    /// How sure the scores are at every pixel.
+    pub fn certainty(&self, scores: &[f32], kind: ScoreKind) -> Certainty {
         let (step, stride) = (self.grid.pixel_stride(), self.grid.channel_stride());
-        let mut out = vec![0.0; self.width * self.height];
+        let pixels = self.width * self.height;
+        let mut certainty = Certainty { confidence: vec![0.0; pixels], entropy: vec![0.0; pixels] };
         let mut mixed = vec![0.0; self.grid.channels];
         for row in &self.rows {
             for column in &self.columns {
@@ -130,12 +141,15 @@ impl Decoder {
                             let (left, right) = (a + (c - a) * down, b + (d - b) * down);
                             *mixed = left + (right - left) * along;
                         }
-                        out[y * self.width + x] = highest_softmax(&mixed);
+                        let pixel = y * self.width + x;
+                        kind.distribute(&mut mixed);
+                        certainty.confidence[pixel] = mixed.iter().copied().fold(0.0, f32::max);
+                        certainty.entropy[pixel] = entropy(&mixed);
                     }
                 }
             }
         }
-        out
+        certainty
     }
 
     /// The four source pixels around a cell: upper left and right, lower left and right.
@@ -206,9 +220,28 @@ fn argmax(grid: &Grid, scores: &[f32]) -> Vec<u8> {
     class
 }
 
-fn highest_softmax(scores: &[f32]) -> f32 {
-    let highest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    1.0 / scores.iter().map(|score| (score - highest).exp()).sum::<f32>()
+impl ScoreKind {
+    /// Makes probabilities of the scores of a pixel, in place.
+    fn distribute(self, scores: &mut [f32]) {
+        match self {
+            Self::Logits => {
+                let highest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+                scores.iter_mut().for_each(|score| *score = (*score - highest).exp());
+            }
+            // What a network rounds below 0 is none.
+            Self::Probabilities => scores.iter_mut().for_each(|score| *score = score.max(0.0)),
+        }
+        let sum: f32 = scores.iter().sum();
+        // Where nothing has a score, all are alike.
+        let alike = 1.0 / scores.len() as f32;
+        scores.iter_mut().for_each(|score| *score = if sum > 0.0 { *score / sum } else { alike });
+    }
+}
+
+/// That of probabilities, as a share of the greatest.
+fn entropy(probabilities: &[f32]) -> f32 {
+    let nats: f32 = probabilities.iter().filter(|p| **p > 0.0).map(|p| -p * p.ln()).sum();
+    if probabilities.len() > 1 { (nats / (probabilities.len() as f32).ln()).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -279,18 +312,24 @@ mod tests {
     }
 
     #[test]
-    fn confidence_agrees_with_the_textbook() {
+    fn certainty_agrees_with_the_textbook() {
         for (interleaved, align, (width, height)) in
             [(false, false, (17, 11)), (true, true, (17, 11)), (true, false, (5, 3))]
         {
             let grid = Grid { channels: 16, width: 5, height: 3, interleaved };
             let decoder = Decoder::new(grid, width, height, how(align));
             let scores: Vec<f32> = scores(&grid, 7).iter().map(|score| 9.0 * score).collect();
-            for (i, &got) in decoder.confidence(&scores).iter().enumerate() {
-                let sums = upsampled(&decoder, &scores, align, i % width, i / width);
-                let highest = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let expected = highest.exp() / sums.iter().map(|s| s.exp()).sum::<f64>();
-                assert!((f64::from(got) - expected).abs() < 1e-4, "pixel {i}: {got}, expected {expected}");
+            for kind in [ScoreKind::Logits, ScoreKind::Probabilities] {
+                let Certainty { confidence, entropy } = decoder.certainty(&scores, kind);
+                for (i, (&sure, &doubt)) in confidence.iter().zip(&entropy).enumerate() {
+                    let sums = upsampled(&decoder, &scores, align, i % width, i / width).into_iter();
+                    let shares: Vec<f64> = sums.map(|s| if kind == ScoreKind::Logits { s.exp() } else { s }).collect();
+                    let p = shares.iter().map(|share| share / shares.iter().sum::<f64>());
+                    let highest = p.clone().fold(0.0, f64::max);
+                    let nats = p.map(|p| -p * p.ln()).sum::<f64>() / 16f64.ln();
+                    assert!((f64::from(sure) - highest).abs() < 1e-4, "pixel {i}: {sure}, expected {highest}");
+                    assert!((f64::from(doubt) - nats).abs() < 1e-4, "pixel {i}: {doubt}, expected {nats}");
+                }
             }
         }
     }
@@ -298,7 +337,12 @@ mod tests {
     #[test]
     fn equal_scores_are_the_least_confidence() {
         let grid = Grid { channels: 4, width: 2, height: 2, interleaved: false };
-        assert_eq!(Decoder::new(grid, 3, 3, Enlarge::HalfPixel).confidence(&[800.0; 16]), [0.25; 9]);
+        for (kind, score) in
+            [(ScoreKind::Logits, 800.0), (ScoreKind::Probabilities, 0.25), (ScoreKind::Probabilities, 0.0)]
+        {
+            let certainty = Decoder::new(grid, 3, 3, Enlarge::HalfPixel).certainty(&[score; 16], kind);
+            assert_eq!(certainty, Certainty { confidence: vec![0.25; 9], entropy: vec![1.0; 9] });
+        }
     }
 
     #[test]

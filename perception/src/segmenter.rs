@@ -8,9 +8,9 @@ use crate::classes::UNLABELED_TAG;
 use crate::compute::agree;
 use crate::decode::{Decoder, Grid};
 use crate::image::resample;
-use crate::metadata::Layout;
+use crate::metadata::{Layout, ScoreKind};
 use crate::onnx::{self, Element, Engine, Output, Pixels};
-use crate::{Checkpoint, Compute, Mask, PerceptionError, RgbView};
+use crate::{Certainty, Checkpoint, Compute, Mask, PerceptionError, RgbView};
 
 /// A network made ready for pictures of one size. On the CPU single-threaded and deterministic; a
 /// clone shares the weights.
@@ -27,6 +27,7 @@ pub struct Segmenter {
     table: Arc<[[f32; 256]; 3]>,
     engine: Engine,
     decoder: Decoder,
+    score_kind: ScoreKind,
     tags: Vec<u8>,
     floats: Vec<f32>,
     bytes: Vec<u8>,
@@ -93,6 +94,7 @@ impl Segmenter {
             table: Arc::new(checkpoint.metadata().normalisation.map_or([[0.0; 256]; 3], |n| n.table())),
             engine,
             decoder,
+            score_kind: checkpoint.score_kind,
             tags: checkpoint.classes().tags().to_vec(),
             floats: Vec::new(),
             bytes: Vec::new(),
@@ -115,15 +117,14 @@ impl Segmenter {
         self.mask(&output)
     }
 
-    /// The class of every pixel, and how sure the network is of it: the softmax of its scores, (0, 1].
-    /// `None` for a network that gives classes only.
-    pub fn run_with_confidence(&mut self, image: RgbView<'_>) -> Result<(Mask, Option<Vec<f32>>), PerceptionError> {
+    /// The class of every pixel, and how sure the network is of it. `None` for a network that gives classes only.
+    pub fn run_with_certainty(&mut self, image: RgbView<'_>) -> Result<(Mask, Option<Certainty>), PerceptionError> {
         let output = self.output(image)?;
-        let confidence = match &output {
-            Output::Scores(scores) => Some(self.decoder.confidence(scores)),
+        let certainty = match &output {
+            Output::Scores(scores) => Some(self.decoder.certainty(scores, self.score_kind)),
             Output::Ids(_) => None,
         };
-        Ok((self.mask(&output)?, confidence))
+        Ok((self.mask(&output)?, certainty))
     }
 
     /// What the network gives for a picture.
@@ -282,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn confidence_comes_with_the_same_mask_and_only_from_scores() {
+    fn certainty_comes_with_the_same_mask_and_only_from_scores() {
         let tails = [(Tail::None, true), (Tail::Upsample, true), (Tail::Argmax, true), (Tail::CoarseArgmax, false)];
         for (tail, has_scores) in tails {
             let dir = tempfile::tempdir().unwrap();
@@ -290,9 +291,9 @@ mod tests {
             let mut segmenter = Segmenter::new(&checkpoint, SIZE.0, SIZE.1).unwrap();
             let rgb = toy::picture(SIZE.0, SIZE.1);
             let image = RgbView::new(SIZE.0, SIZE.1, &rgb).unwrap();
-            let (mask, confidence) = segmenter.run_with_confidence(image).unwrap();
+            let (mask, certainty) = segmenter.run_with_certainty(image).unwrap();
             assert_eq!(mask, segmenter.run(image).unwrap());
-            assert_eq!(confidence.map(|c| c.len()), has_scores.then_some(SIZE.0 * SIZE.1));
+            assert_eq!(certainty.map(|c| c.confidence.len()), has_scores.then_some(SIZE.0 * SIZE.1));
         }
     }
 

@@ -10,6 +10,7 @@ mod by_channel;
 mod convolve;
 mod depthwise;
 mod ends;
+mod follow;
 mod pool;
 mod prelu;
 mod residual;
@@ -20,6 +21,7 @@ mod rewrite;
 mod tests;
 mod tile;
 mod window;
+mod wiring;
 
 pub(crate) use ends::{give_channels_last, take_channels_last};
 pub(crate) use rewrite::prepare;

@@ -6,7 +6,7 @@ use tract_onnx::tract_hir::internal::*;
 
 use super::activation::Activation;
 use super::convolve::Convolve;
-use super::rewrite::{bounded, successor};
+use super::follow::{bounded, successor};
 
 /// Puts sums, and the clamps behind them, into the convolutions before them.
 pub fn absorb(model: &mut TypedModel) -> TractResult<()> {

@@ -5,7 +5,7 @@ use tract_onnx::tract_core::ops::nn::resize;
 use tract_onnx::tract_hir::internal::*;
 
 use super::resize::{Resize, Taps};
-use super::rewrite::{CHANNELS, Rewrite, map, replace};
+use super::wiring::{CHANNELS, Rewrite, map, replace, wire_last};
 
 /// The engine's plan for each axis of a map, and the shape of what comes of it.
 pub fn resized(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &resize::Resize) -> Rewrite {
@@ -88,7 +88,7 @@ pub fn product(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &EinSu
     let from = model.node(node.inputs[slot].node);
     let mut patch = TypedModelPatch::default();
     let x = patch.tap_model(model, OutletId::new(from.id, node.inputs[slot].slot))?;
-    let y = super::rewrite::wire_last(&mut patch, &node.name, Resize { rows, cols, channels }, x)?;
+    let y = wire_last(&mut patch, &node.name, Resize { rows, cols, channels }, x)?;
     patch.shunt_outside(model, node.id.into(), y)?;
     Ok(Some(patch))
 }

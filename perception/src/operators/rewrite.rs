@@ -8,7 +8,7 @@ use tract_onnx::tract_core::ops::binary::TypedBinOp;
 use tract_onnx::tract_core::ops::cnn::{Conv, KernelFormat, MaxPool, PaddingSpec, SumPool};
 use tract_onnx::tract_core::ops::element_wise::ElementWiseOp;
 use tract_onnx::tract_core::ops::logic::{Iff, comp_gt};
-use tract_onnx::tract_core::ops::math::{Add, Max, Min, Mul, Sub};
+use tract_onnx::tract_core::ops::math::{Add, Mul, Sub};
 use tract_onnx::tract_core::ops::nn::{DataFormat, HardSwish, LeakyRelu};
 use tract_onnx::tract_hir::internal::*;
 
@@ -16,21 +16,18 @@ use super::activation::Activation;
 use super::by_channel::{self, ByChannel};
 use super::convolve::Convolve;
 use super::depthwise::Depthwise;
+use super::follow::{bounded, successor};
 use super::pool::{Kind, Pool};
 use super::prelu::Prelu;
 use super::tile::PANEL;
 use super::window::Window;
+use super::wiring::{CHANNELS, LAST, Rewrite, map, replace, wire_last};
 use super::{residual, resizing};
 
-/// Dimension of the channels, before and after a move.
-pub(super) const CHANNELS: usize = 1;
-const LAST: usize = 3;
 /// Most floats of an input with its padding, beyond one that is small, for one of the input or of the output: padding
 /// that dwarfs both is left to the engine, which makes nothing of it.
 const MOST_PADDING: usize = 4;
 const SMALL: usize = 1 << 20;
-
-pub(super) type Rewrite = TractResult<Option<TypedModelPatch>>;
 
 /// The same graph with our operators in it.
 pub(crate) fn prepare(mut model: TypedModel) -> TractResult<TypedModel> {
@@ -48,33 +45,6 @@ pub(crate) fn prepare(mut model: TypedModel) -> TractResult<TypedModel> {
     residual::absorb(&mut model)?;
     Rewriter::<()>::default().with_rule_for("by-channel", by_channel).rewrite(&(), &mut model)?;
     Ok(model)
-}
-
-/// Wires an operator that has the channels last.
-pub(super) fn wire_last(
-    patch: &mut TypedModelPatch,
-    name: &str,
-    op: impl TypedOp,
-    x: OutletId,
-) -> TractResult<OutletId> {
-    let last = patch.wire_node(format!("{name}.last"), AxisOp::Move(CHANNELS, LAST), &[x])?;
-    let made = patch.wire_node(name, op, &last)?;
-    Ok(patch.wire_node(format!("{name}.first"), AxisOp::Move(LAST, CHANNELS), &made)?[0])
-}
-
-/// An operator with the channels last instead of the nodes from one to another.
-pub(super) fn replace(model: &TypedModel, from: &TypedNode, to: usize, op: impl TypedOp) -> Rewrite {
-    let mut patch = TypedModelPatch::default();
-    let x = patch.tap_model(model, from.inputs[0])?;
-    let y = wire_last(&mut patch, &from.name, op, x)?;
-    patch.shunt_outside(model, to.into(), y)?;
-    Ok(Some(patch))
-}
-
-/// Shape of a map of floats, batch, channels, rows and columns.
-pub(super) fn map(fact: &TypedFact) -> Option<[usize; 4]> {
-    let shape = fact.shape.as_concrete().filter(|_| fact.datum_type == f32::datum_type())?;
-    shape.try_into().ok().filter(|shape: &[usize; 4]| !shape.contains(&0))
 }
 
 /// The value of a constant for each channel of a map, if it has no more to it.
@@ -181,33 +151,6 @@ fn follow(model: &TypedModel, from: usize, weights: &mut Tensor, bias: &mut [f32
         at = next.id;
     }
     Ok((at, activation))
-}
-
-/// The only node that takes a value which nobody else sees.
-pub(super) fn successor(model: &TypedModel, id: usize) -> Option<&TypedNode> {
-    let outputs = &model.node(id).outputs;
-    let is_seen = model.outputs.iter().any(|output| output.node == id);
-    let [output] = outputs.as_slice() else { return None };
-    let [inlet] = output.successors.as_slice() else { return None };
-    (!is_seen).then(|| model.node(inlet.node))
-}
-
-/// A clamp with a further bound, the same for all channels.
-pub(super) fn bounded(activation: &Activation, op: &TypedBinOp, values: &[f32]) -> Option<Activation> {
-    let bound = *values.first()?;
-    let (low, high) = match activation {
-        Activation::None => (f32::NEG_INFINITY, f32::INFINITY),
-        Activation::Clamp(low, high) => (*low, *high),
-        _ => return None,
-    };
-    if values.iter().any(|value| *value != bound) {
-        return None;
-    }
-    match (op.0.is::<Max>(), op.0.is::<Min>()) {
-        (true, _) if bound <= high && bound >= low => Some(Activation::Clamp(bound, high)),
-        (_, true) if bound >= low && bound <= high => Some(Activation::Clamp(low, bound)),
-        _ => None,
-    }
 }
 
 /// An activation of the engine's that is one of ours.

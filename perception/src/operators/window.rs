@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use tract_onnx::tract_core::ops::cnn::PoolSpec;
-use tract_onnx::tract_hir::internal::*;
 
 /// Floats of a band of the input that is worked on at once: a quarter of a usual second-level cache.
 const BAND: usize = 1 << 16;
