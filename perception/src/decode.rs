@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use crate::metadata::ScoreKind;
+use crate::simd::vectorised;
 use crate::taps::{Enlarge, Taps};
 
 /// Pixels that are interpolated at a time.
@@ -95,6 +96,14 @@ impl Decoder {
 
     /// The index of the highest score at every pixel; the lowest index where several are equal.
     pub fn classes(&self, scores: &[f32]) -> Vec<u8> {
+        vectorised(
+            #[inline(always)]
+            || self.chosen(scores),
+        )
+    }
+
+    #[inline(always)]
+    fn chosen(&self, scores: &[f32]) -> Vec<u8> {
         let coarse = argmax(&self.grid, scores);
         if (self.grid.width, self.grid.height) == (self.width, self.height) {
             return coarse;
@@ -160,6 +169,7 @@ impl Decoder {
     }
 
     /// Fills the cell between four source pixels.
+    #[inline(always)]
     fn interpolate(&self, scores: &[f32], corners: [usize; 4], row: &Span, column: &Span, out: &mut [u8]) {
         let (step, stride) = (self.grid.pixel_stride(), self.grid.channel_stride());
         let corners = corners.map(|corner| &scores[corner * step..]);
@@ -188,6 +198,7 @@ impl Decoder {
 }
 
 /// The index of the highest score of each source pixel.
+#[inline(always)]
 fn argmax(grid: &Grid, scores: &[f32]) -> Vec<u8> {
     let pixels = grid.width * grid.height;
     let mut class = vec![0u8; pixels];

@@ -176,18 +176,18 @@ impl WithSimd for Band<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self) {
         match f32::lanes::<S>() {
-            16 => self.run::<S, 8, 2, 1>(),
-            8 => self.run::<S, 6, 2, 2>(),
-            4 => self.run::<S, 2, 4, 4>(),
-            _ => self.run::<S, 1, 8, 8>(),
+            16 => self.run::<S, 8, 2, 14, 1>(),
+            8 => self.run::<S, 6, 2, 6, 2>(),
+            4 => self.run::<S, 2, 4, 2, 4>(),
+            _ => self.run::<S, 1, 8, 1, 8>(),
         }
     }
 }
 
 impl Band<'_> {
-    /// `WIDE` and `NARROW` are the vectors of the two kinds of panels.
+    /// Pixels of a tile and vectors of a panel, of wide panels and of narrow ones.
     #[inline(always)]
-    fn run<S: Simd, const PIXELS: usize, const WIDE: usize, const NARROW: usize>(self) {
+    fn run<S: Simd, const PIXELS: usize, const WIDE: usize, const MORE: usize, const NARROW: usize>(self) {
         let op = self.op;
         let (inputs, outputs) = (op.inputs / op.groups, op.outputs / op.groups);
         let (mut weights, mut bias) = (self.weights, self.bias);
@@ -207,7 +207,7 @@ impl Band<'_> {
                 };
                 (weights, bias) = (rest, &bias[width..]);
                 if WIDE == NARROW || width == NARROW * f32::lanes::<S>() {
-                    panel::<S, PIXELS, NARROW>(&tile, self.starts, self.y, self.more);
+                    panel::<S, MORE, NARROW>(&tile, self.starts, self.y, self.more);
                 } else {
                     panel::<S, PIXELS, WIDE>(&tile, self.starts, self.y, self.more);
                 }

@@ -6,6 +6,7 @@
 //! machine). [`prepare`] puts them into a typed graph in place of the engine's own.
 
 mod activation;
+mod by_channel;
 mod convolve;
 mod depthwise;
 mod ends;
@@ -14,11 +15,13 @@ mod pool;
 mod prelu;
 mod residual;
 mod resize;
+mod resizing;
 mod rewrite;
 #[cfg(test)]
 mod tests;
 mod tile;
 mod window;
+mod wiring;
 
 pub(crate) use ends::{give_channels_last, take_channels_last};
 pub(crate) use rewrite::prepare;

@@ -22,6 +22,11 @@ impl Taps {
         is_inside.then_some(Self { input, window: plan.window, indices: plan.indices, weights: plan.weights })
     }
 
+    /// Every pixel as it is.
+    pub fn same(pixels: usize) -> Self {
+        Self { input: pixels, window: 1, indices: (0..pixels).collect(), weights: vec![1.0; pixels] }
+    }
+
     fn output(&self) -> usize {
         self.indices.len() / self.window
     }
@@ -105,6 +110,9 @@ fn mix(from: &[f32], length: usize, pieces: &[usize], weights: &[f32], to: &mut 
             _ => to.iter_mut().zip(a).zip(b).for_each(|((to, a), b)| *to = left * a + right * b),
         }
         return;
+    }
+    if let (&[a], &[1.0]) = (pieces, weights) {
+        return to.copy_from_slice(&from[a * length..][..length]);
     }
     to.fill(0.0);
     for (piece, weight) in pieces.iter().zip(weights) {

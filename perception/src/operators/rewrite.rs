@@ -8,30 +8,26 @@ use tract_onnx::tract_core::ops::binary::TypedBinOp;
 use tract_onnx::tract_core::ops::cnn::{Conv, KernelFormat, MaxPool, PaddingSpec, SumPool};
 use tract_onnx::tract_core::ops::element_wise::ElementWiseOp;
 use tract_onnx::tract_core::ops::logic::{Iff, comp_gt};
-use tract_onnx::tract_core::ops::math::{Add, Mul};
-use tract_onnx::tract_core::ops::nn::{DataFormat, HardSwish, LeakyRelu, resize};
+use tract_onnx::tract_core::ops::math::{Add, Mul, Sub};
+use tract_onnx::tract_core::ops::nn::{DataFormat, HardSwish, LeakyRelu};
 use tract_onnx::tract_hir::internal::*;
 
 use super::activation::Activation;
+use super::by_channel::{self, ByChannel};
 use super::convolve::Convolve;
 use super::depthwise::Depthwise;
 use super::follow::{bounded, successor};
 use super::pool::{Kind, Pool};
 use super::prelu::Prelu;
-use super::residual;
-use super::resize::{Resize, Taps};
 use super::tile::PANEL;
 use super::window::Window;
+use super::wiring::{CHANNELS, LAST, Rewrite, map, replace, wire_last};
+use super::{residual, resizing};
 
-/// Dimension of the channels, before and after a move.
-const CHANNELS: usize = 1;
-const LAST: usize = 3;
 /// Most floats of an input with its padding, beyond one that is small, for one of the input or of the output: padding
 /// that dwarfs both is left to the engine, which makes nothing of it.
 const MOST_PADDING: usize = 4;
-const SMALL: usize = 1 << 18;
-
-type Rewrite = TractResult<Option<TypedModelPatch>>;
+const SMALL: usize = 1 << 20;
 
 /// The same graph with our operators in it.
 pub(crate) fn prepare(mut model: TypedModel) -> TractResult<TypedModel> {
@@ -39,36 +35,16 @@ pub(crate) fn prepare(mut model: TypedModel) -> TractResult<TypedModel> {
     Rewriter::<()>::default().with_rule_for("prelu", prelu).rewrite(&(), &mut model)?;
     let windows = Rewriter::<()>::default().with_rule_for("convolve", convolve);
     let windows = windows.with_rule_for("highest", highest).with_rule_for("mean", mean);
+    let windows = windows.with_rule_for("product", resizing::product);
     windows.rewrite(&(), &mut model)?;
     // The ONNX form of a resize becomes one that can be looked at.
     model.declutter()?;
-    let resizes = Rewriter::<()>::default().with_rule_for("resize", resized).with_rule_for("nearest", nearest);
-    resizes.rewrite(&(), &mut model)?;
+    let resizes = Rewriter::<()>::default().with_rule_for("resize", resizing::resized);
+    resizes.with_rule_for("nearest", resizing::nearest).rewrite(&(), &mut model)?;
     model.declutter()?;
     residual::absorb(&mut model)?;
+    Rewriter::<()>::default().with_rule_for("by-channel", by_channel).rewrite(&(), &mut model)?;
     Ok(model)
-}
-
-/// Wires an operator that has the channels last.
-fn wire_last(patch: &mut TypedModelPatch, name: &str, op: impl TypedOp, x: OutletId) -> TractResult<OutletId> {
-    let last = patch.wire_node(format!("{name}.last"), AxisOp::Move(CHANNELS, LAST), &[x])?;
-    let made = patch.wire_node(name, op, &last)?;
-    Ok(patch.wire_node(format!("{name}.first"), AxisOp::Move(LAST, CHANNELS), &made)?[0])
-}
-
-/// An operator with the channels last instead of the nodes from one to another.
-fn replace(model: &TypedModel, from: &TypedNode, to: usize, op: impl TypedOp) -> Rewrite {
-    let mut patch = TypedModelPatch::default();
-    let x = patch.tap_model(model, from.inputs[0])?;
-    let y = wire_last(&mut patch, &from.name, op, x)?;
-    patch.shunt_outside(model, to.into(), y)?;
-    Ok(Some(patch))
-}
-
-/// Shape of a map of floats, batch, channels, rows and columns.
-fn map(fact: &TypedFact) -> Option<[usize; 4]> {
-    let shape = fact.shape.as_concrete().filter(|_| fact.datum_type == f32::datum_type())?;
-    shape.try_into().ok().filter(|shape: &[usize; 4]| !shape.contains(&0))
 }
 
 /// The value of a constant for each channel of a map, if it has no more to it.
@@ -104,7 +80,7 @@ fn prelu(_: &(), model: &TypedModel, node: &TypedNode, name: &str, _: &Iff) -> R
     let (test, product) = (model.node(node.inputs[0].node), model.node(node.inputs[1].node));
     rule_if_some!([_, channels, ..] = map(model.outlet_fact(x)?));
     rule_if!(test.op_as::<TypedBinOp>().is_some_and(|op| op.0 == comp_gt()) && test.inputs[1] == x);
-    rule_if!(model.outlet_fact(test.inputs[0])?.konst.as_ref().is_some_and(|zero| zero.is_zero().unwrap_or(false)));
+    rule_if!(of_channels(model.outlet_fact(test.inputs[0])?, 1).is_some_and(|zero| zero == [0.0]));
     rule_if!(product.inputs.contains(&x));
     rule_if_some!((op, slopes) = with_constant(model, product, x.node, channels));
     rule_if!(op.0.is::<Mul>());
@@ -231,48 +207,22 @@ fn pool(
     replace(model, node, node.id, Pool { window, channels, kind })
 }
 
-/// The engine's plan for each axis of a map, and the shape of what comes of it.
-fn resized(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &resize::Resize) -> Rewrite {
-    rule_if_some!([batch, channels, rows, cols] = map(model.outlet_fact(node.inputs[0])?));
-    rule_if_some!([out_batch, out_channels, out_rows, out_cols] = map(&node.outputs[0].fact));
-    let scales =
-        op.optional_scales_input.and_then(|slot| model.outlet_fact(*node.inputs.get(slot)?).ok()?.konst.clone());
-    let scales = match &scales {
-        Some(scales) if scales.len() == 4 => {
-            Some(scales.cast_to::<f32>()?.try_as_plain_ram()?.as_slice::<f32>()?.to_vec())
-        }
-        _ => None,
+/// A map with its channels last, and a number for each of them.
+fn by_channel(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &TypedBinOp) -> Rewrite {
+    let facts = model.node_input_facts(node.id)?;
+    let is_product = op.0.is::<Mul>();
+    let kind = match (op.0.is::<Add>(), op.0.is::<Sub>()) {
+        (true, _) => by_channel::Kind::Sum,
+        (_, true) => by_channel::Kind::Difference,
+        _ => by_channel::Kind::Product,
     };
-    // Either the batch and the channels stay, or, where the graph has the channels last already, they are at the ends.
-    rule_if!(batch == out_batch);
-    let plan = |axis: usize, input: usize, output: usize| {
-        let scale = scales.as_ref().map_or(output as f32 / input as f32, |scales| scales[axis]);
-        Taps::new(input, op.plan_axis(scale, input, output))
-    };
-    if channels == out_channels {
-        rule_if_some!((rows, cols) = plan(2, rows, out_rows).zip(plan(3, cols, out_cols)));
-        return replace(model, node, node.id, Resize { rows, cols, channels });
-    }
-    rule_if!(cols == out_cols);
-    rule_if_some!((rows, cols_taps) = plan(1, channels, out_channels).zip(plan(2, rows, out_rows)));
-    let op = Resize { rows, cols: cols_taps, channels: cols };
-    TypedModelPatch::replace_single_op(model, node, &node.inputs[..1], op).map(Some)
-}
-
-/// Every pixel repeated.
-fn nearest(_: &(), model: &TypedModel, node: &TypedNode, _: &str, op: &resize::NearestUpsample) -> Rewrite {
-    rule_if_some!([_, channels, rows, cols] = map(model.outlet_fact(node.inputs[0])?));
-    rule_if!(op.scales.len() == 4 && op.scales[0] == 1 && op.scales[CHANNELS] == 1);
-    let taps = |input: usize, scale: usize| {
-        let indices = (0..input * scale).map(|i| i / scale).collect::<Vec<_>>();
-        let plan = resize::AxisPlan {
-            window: 1,
-            weights: vec![1.0; indices.len()],
-            extrapolated: vec![false; indices.len()],
-            indices,
-        };
-        Taps::new(input, plan)
-    };
-    rule_if_some!((rows, cols) = taps(rows, op.scales[2]).zip(taps(cols, op.scales[3])));
-    replace(model, node, node.id, Resize { rows, cols, channels })
+    rule_if!(is_product || kind != by_channel::Kind::Product);
+    let is_map = |fact: &TypedFact| map(fact).is_some_and(|[_, rows, cols, channels]| rows * cols > 1 && channels > 1);
+    let slot = usize::from(kind != by_channel::Kind::Difference && !is_map(facts[0]));
+    let (taken, numbers) = (facts[slot], facts[1 - slot]);
+    rule_if!(is_map(taken) && map(numbers).is_some() && taken.shape == node.outputs[0].fact.shape);
+    let (shape, channels) = (&numbers.shape, &taken.shape[LAST]);
+    rule_if!(shape[LAST] == *channels && (0..LAST).all(|axis| shape[axis].is_one()));
+    let inputs = [node.inputs[slot], node.inputs[1 - slot]];
+    TypedModelPatch::replace_single_op(model, node, &inputs, ByChannel { kind }).map(Some)
 }

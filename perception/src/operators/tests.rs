@@ -51,6 +51,7 @@ fn check(model: &TypedModel, expected: &[&str]) {
     for name in expected {
         assert!(names.iter().any(|found| found == name), "{name} is not among {names:?}");
     }
+    assert!(!names.iter().any(|name| name == "Iff"), "a PReLU was overlooked: {names:?}");
     let (theirs, first) = (run(model.clone(), &x), run(ours.clone(), &x));
     assert_eq!(theirs.shape(), first.shape());
     let (theirs, first, second) = (floats(&theirs), floats(&first), floats(&run(ours, &x)));
@@ -237,5 +238,48 @@ proptest! {
         check(&network, &["Convolve"]);
         let adds = |model: &TypedModel| model.nodes().iter().filter(|node| node.op().name() == "Add").count();
         prop_assert_eq!(adds(&prepare(network).unwrap()), 0, "the sum is made in a convolution");
+    }
+
+    #[test]
+    fn products_that_resize_agree_with_the_engine(
+        (channels, rows, cols, outputs) in (1..=9usize, 2..=9usize, 2..=9usize, 2..=20usize),
+        (is_rows, is_padded) in (any::<bool>(), any::<bool>()),
+    ) {
+        use tract_onnx::tract_core::ops::einsum::EinSum;
+        let inputs = if is_rows { rows } else { cols };
+        // Two neighbours for each output.
+        let mut matrix = vec![0.0f32; inputs * outputs];
+        for output in 0..outputs {
+            let from = output * (inputs - 1) / outputs;
+            let at = |input: usize| if is_rows { output * inputs + input } else { input * outputs + output };
+            (matrix[at(from)], matrix[at(from + 1)]) = (0.25, 0.75);
+        }
+        let shape = if is_rows { [outputs, inputs] } else { [inputs, outputs] };
+        let network = model(&[1, channels, rows, cols], |model, x| {
+            let dims = [if is_padded { &[1, 1][..] } else { &[] }, &shape].concat();
+            let matrix = model.add_const("matrix", Tensor::from_shape(&dims, &matrix).unwrap()).unwrap();
+            let (axes, wires) = match (is_rows, is_padded) {
+                (true, false) => ("mk,abkn->abmn", [matrix, x]),
+                (true, true) => ("abmk,abkn->abmn", [matrix, x]),
+                (false, false) => ("abmk,kn->abmn", [x, matrix]),
+                (false, true) => ("abmk,abkn->abmn", [x, matrix]),
+            };
+            let op = EinSum { axes: axes.parse().unwrap(), operating_dt: f32::datum_type(), q_params: None };
+            model.wire_node("product", op, &wires).unwrap()[0]
+        });
+        let is_narrow = 2 * outputs <= 2 * inputs.max(outputs) + 4;
+        check(&network, if is_narrow { &["ResizeRowsAndColumns"] } else { &[] });
+    }
+
+    #[test]
+    fn numbers_of_channels_agree_with_the_engine(
+        (rows, cols, channels) in (2..=9usize, 2..=9usize, 2..=40usize),
+        kind in 0..=2usize,
+    ) {
+        let network = model(&[1, rows, cols, channels], |model, x| {
+            let op = [math::add(), math::sub(), math::mul()][kind].clone();
+            wire_binary(model, op, "numbers", x, values(&[1, 1, 1, channels], 4))
+        });
+        check(&network, &["ByChannel"]);
     }
 }
