@@ -2,39 +2,41 @@
 
 use kernel::time::Tick;
 
-use super::targets::Samples;
+use super::targets::stride_bytes;
 use super::{Gpu, Targets};
+use crate::quincunx::Quincunx;
 use crate::{Frame, RenderError, SemanticTag};
 
 /// Distance at which depth is 1, metres; as in `scene.wgsl`.
 const NEAR_M: f32 = 0.1;
 
+/// Plane of the corners' colours, behind colours, ids and depth.
+const CORNERS: u64 = 3;
+
 /// Records the way from the targets to the read-back buffer.
 pub(super) fn record(encoder: &mut wgpu::CommandEncoder, targets: &Targets, colours: bool) {
-    let resolve = targets.resolve.as_ref();
-    if let Some(resolve) = resolve.filter(|resolve| colours || resolve.planes > 1) {
-        resolve.record(encoder, [targets.width, targets.height], &targets.readback);
+    let Targets { width, height, ref middles, ref corners, ref readback, ref resolve } = *targets;
+    if let Some(resolve) = resolve {
+        return resolve.record(encoder, [width, height], readback);
     }
-    copy(encoder, targets, resolve.map_or(0, |resolve| resolve.planes));
-}
-
-/// Copies the planes from the `first` on as they are.
-fn copy(encoder: &mut wgpu::CommandEncoder, targets: &Targets, first: u32) {
-    let Samples { colour, ids, depth } = &targets.middles;
-    for (plane, texture) in (0..).zip([colour, ids, depth]).skip(first as usize) {
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: plane * targets.plane_bytes(),
-            bytes_per_row: Some(targets.stride_bytes()),
-            rows_per_image: None,
-        };
-        let buffer = wgpu::TexelCopyBufferInfo { buffer: &targets.readback, layout };
+    let mut copy = |plane: u64, texture: &wgpu::Texture| {
+        let offset = plane * targets.plane_bytes();
+        let bytes_per_row = Some(stride_bytes(texture.width()));
+        let layout = wgpu::TexelCopyBufferLayout { offset, bytes_per_row, rows_per_image: None };
+        let buffer = wgpu::TexelCopyBufferInfo { buffer: readback, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), buffer, texture.size());
+    };
+    copy(1, &middles.ids);
+    copy(2, &middles.depth);
+    if colours {
+        copy(0, &middles.colour);
+        corners.iter().for_each(|corners| copy(CORNERS, &corners.colour));
     }
 }
 
 impl Targets {
-    /// Waits for the frame that was submitted last and reads it.
-    pub(crate) fn read(&self, gpu: &Gpu, tick: Tick) -> Result<Frame, RenderError> {
+    /// Waits for the frame that was submitted last and reads it, with or without its colours.
+    pub(crate) fn read(&self, gpu: &Gpu, tick: Tick, colours: bool) -> Result<Frame, RenderError> {
         let failed = |reason: String| RenderError::Readback { tick, reason };
         self.readback.map_async(wgpu::MapMode::Read, .., |_| ());
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| failed(e.to_string()))?;
@@ -42,24 +44,23 @@ impl Targets {
             return Err(failed(reason));
         }
         let bytes = self.readback.get_mapped_range(..).map_err(|e| failed(e.to_string()))?;
-        let frame = self.frame(tick, &bytes);
+        let frame = self.frame(tick, &bytes, colours);
         drop(bytes);
         self.readback.unmap();
         Ok(frame)
     }
 
-    fn frame(&self, tick: Tick, bytes: &[u8]) -> Frame {
+    fn frame(&self, tick: Tick, bytes: &[u8], colours: bool) -> Frame {
         let pixels = (self.width * self.height) as usize;
         let mut frame = Frame { tick, width: self.width, height: self.height, ..Default::default() };
-        frame.rgb.reserve_exact(3 * pixels);
+        if colours {
+            frame.rgb = self.rgb(bytes);
+        }
         frame.class_ids.reserve_exact(pixels);
         frame.fine_ids.reserve_exact(pixels);
         frame.instance_ids.reserve_exact(pixels);
         frame.depth_m.reserve_exact(pixels);
         let coarse = coarse_table();
-        for row in self.rows(bytes, 0) {
-            frame.rgb.extend(row.as_chunks::<4>().0.iter().flat_map(|&[r, g, b, _]| [r, g, b]));
-        }
         for row in self.rows(bytes, 1) {
             let ids = row.as_chunks::<4>().0;
             frame.fine_ids.extend(ids.iter().map(|&[tag, ..]| tag));
@@ -72,9 +73,31 @@ impl Targets {
         frame
     }
 
+    fn rgb(&self, bytes: &[u8]) -> Vec<u8> {
+        let mut rgb = vec![0; 3 * (self.width * self.height) as usize];
+        let middles = self.rows(bytes, 0).zip(rgb.chunks_exact_mut(3 * self.width as usize));
+        let fill = |row: &mut [u8], pixels: &[u8]| {
+            let pixels = row.as_chunks_mut::<3>().0.iter_mut().zip(pixels.as_chunks::<4>().0);
+            pixels.for_each(|(to, &[r, g, b, _])| *to = [r, g, b]);
+        };
+        if self.corners.is_none() {
+            middles.for_each(|(pixels, row)| fill(row, pixels));
+            return rgb;
+        }
+        let width = self.width + 1;
+        let corners = || bytes[(CORNERS * self.plane_bytes()) as usize..].chunks_exact(stride_bytes(width) as usize);
+        let corners = corners().zip(corners().skip(1));
+        let mut quincunx = Quincunx::default();
+        for ((pixels, row), (above, below)) in middles.zip(corners) {
+            let [above, below] = [above, below].map(|corners| &corners[..4 * width as usize]);
+            fill(row, quincunx.row(pixels, above, below));
+        }
+        rgb
+    }
+
     fn rows<'a>(&self, bytes: &'a [u8], plane: usize) -> impl Iterator<Item = &'a [u8]> {
         let (size, width) = (self.plane_bytes() as usize, 4 * self.width as usize);
-        bytes[plane * size..][..size].chunks_exact(self.stride_bytes() as usize).map(move |row| &row[..width])
+        bytes[plane * size..][..size].chunks_exact(stride_bytes(self.width) as usize).map(move |row| &row[..width])
     }
 }
 

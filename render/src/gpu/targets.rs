@@ -23,9 +23,9 @@ pub(crate) struct Targets {
     pub(super) middles: Samples,
     /// One column and one row more.
     pub(super) corners: Option<Samples>,
-    /// Three planes, one after the other, that the processor can read.
+    /// Three planes, one after the other, and the colours of corners if there are any, that the processor can read.
     pub(super) readback: wgpu::Buffer,
-    /// Where pixels are not samples as they are.
+    /// Where pixels are means of samples.
     pub(super) resolve: Option<Resolve>,
 }
 
@@ -54,7 +54,7 @@ impl Targets {
         let Means { samples, corners, .. } = means;
         let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
-            size: 3 * plane_bytes(width, height),
+            size: 3 * plane_bytes(width, height) + if corners { plane_bytes(width + 1, height + 1) } else { 0 },
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -62,10 +62,7 @@ impl Targets {
         let corners = corners.then(|| Samples::new(gpu, width + 1, height + 1));
         let bytes = [stride_bytes(width), plane_bytes(width, height) as u32];
         let Samples { colour, ids, depth } = &middles;
-        let resolve = match &corners {
-            Some(corners) => Some(Resolve::new(gpu, "quincunx", &[colour, &corners.colour], 1, bytes)),
-            None => (samples > 1).then(|| Resolve::new(gpu, "resolve", &[colour, ids, depth], 3, bytes)),
-        };
+        let resolve = (samples > 1).then(|| Resolve::new(gpu, [colour, ids, depth], bytes));
         Self { width, height, middles, corners, readback, resolve }
     }
 
@@ -76,18 +73,14 @@ impl Targets {
         fits && (self.width, self.height) == (width, height) && self.corners.is_some() == means.corners
     }
 
-    /// Bytes a row takes in the read-back buffer.
-    pub(super) fn stride_bytes(&self) -> u32 {
-        stride_bytes(self.width)
-    }
-
     /// Bytes a plane takes in the read-back buffer.
     pub(super) fn plane_bytes(&self) -> u64 {
         plane_bytes(self.width, self.height)
     }
 }
 
-fn stride_bytes(width: u32) -> u32 {
+/// Bytes that a row of so many samples takes in the read-back buffer.
+pub(super) fn stride_bytes(width: u32) -> u32 {
     (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
