@@ -29,6 +29,9 @@ pub struct Renderer {
     passes: Passes,
     /// Whether triangles that nobody sees are left out before they are drawn: a GPU does so faster.
     sifts: bool,
+    /// Whether corners are drawn that are known.
+    #[cfg(test)]
+    draws_all_corners: bool,
     sieve: Sieve,
     scenery: Scenery,
     heads: Vec<LightHead>,
@@ -60,6 +63,8 @@ impl Renderer {
             sifts: gpu.info.is_cpu,
             gpu,
             passes,
+            #[cfg(test)]
+            draws_all_corners: false,
             sieve: Sieve::default(),
             scenery,
             heads: network.light_heads.clone(),
@@ -143,7 +148,7 @@ impl Renderer {
                 uniform.sampled(means.samples).lit(&light, &self.light_map)
             }),
             moving_vertices: &self.moving.vertices,
-            seen: self.sieve.finish(),
+            seen: self.sieve.seen(),
             shadows,
             shadow_style: means.shadows,
             colours,
@@ -158,10 +163,19 @@ impl Renderer {
         let fits = |t: &Targets| t.is_for(width, height, means);
         let targets = match self.targets.take() {
             Some(targets) if fits(&targets) => targets,
-            _ => Targets::new(&self.gpu, width, height, means),
+            _ => Targets::new(&self.gpu, &self.passes, width, height, means),
         };
         self.passes.submit(&self.gpu, &draws, &targets);
-        self.targets.insert(targets).read(&self.gpu, scene.tick, colours)
+        let targets = &*self.targets.insert(targets);
+        if !takes_corners {
+            return targets.read(&self.gpu, scene.tick, colours);
+        }
+        let (frame, middles) = targets.read_middles(&self.gpu, scene.tick)?;
+        #[cfg(test)]
+        let middles = if self.draws_all_corners { middles.unknown() } else { middles };
+        let seen = self.sieve.seen_by_corners(middles.nearness());
+        self.passes.submit_corners(&self.gpu, &draws, (&seen, &middles.known), targets);
+        Ok(Frame { rgb: targets.read_corners(&self.gpu, scene.tick, &middles)?, ..frame })
     }
 
     /// What is to be drawn to a shadow map with so many texels a side.

@@ -24,8 +24,8 @@ pub(crate) struct Draws<'a> {
     /// As pixels' middles see it, and as their corners do.
     pub(crate) uniforms: [SceneUniform; 2],
     pub(crate) moving_vertices: &'a [Vertex],
-    /// Indices of what is seen by pixels' middles and by their corners, or by both.
-    pub(crate) seen: Vec<Lists>,
+    /// Indices of what pixels' middles see.
+    pub(crate) seen: Lists,
     pub(crate) shadows: ShadowDraws,
     pub(crate) shadow_style: Shadows,
     /// Whether colours are to be drawn, not classes and instances alone.
@@ -154,6 +154,38 @@ impl Passes {
         gpu.queue.submit([encoder.finish()]);
     }
 
+    /// Draws the corners of the picture that was submitted last, as far as they are nearer than what is known of them: all that
+    /// is drawn leaves an alpha of 1.
+    pub(crate) fn submit_corners(
+        &mut self,
+        gpu: &Gpu,
+        draws: &Draws<'_>,
+        (seen, known): (&Lists, &[f32]),
+        targets: &Targets,
+    ) {
+        let Some(corners) = &targets.corners else { return };
+        let bytes_per_row = Some(4 * corners.known.width());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+        let bytes = bytemuck::cast_slice(known);
+        gpu.queue.write_texture(corners.known.as_image_copy(), bytes, layout, corners.known.size());
+        let mut all = Vec::new();
+        let seen = push_lists(&mut all, seen);
+        self.indices.write(gpu, &all);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        if let Some(style) = self.styles.iter().find(|style| style.shadows == draws.shadow_style) {
+            let group = Some(&corners.known_group);
+            self.main_pass(&mut encoder, style, (&seen, draws), (&corners.samples, &self.scenes[1], group));
+        }
+        readback::record_corners(&mut encoder, corners);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Binds a texture of depths that are known.
+    pub(super) fn bind_known(&self, gpu: &Gpu, known: &wgpu::Texture) -> wgpu::BindGroup {
+        let view = known.create_view(&Default::default());
+        bind(gpu, &self.layouts.known, &[wgpu::BindingResource::TextureView(&view)])
+    }
+
     fn colour_passes(
         &mut self,
         gpu: &Gpu,
@@ -172,29 +204,22 @@ impl Passes {
             let casters = Casters { fixed: &self.fixed, moving: &self.moving.buffer, indices: &self.indices.buffer };
             self.shadows.record(gpu, encoder, map, &draws.shadows, (&ranges.casters, &casters));
         }
-        let grids = [Some(&targets.middles), targets.corners.as_ref()].into_iter().flatten().zip(&self.scenes);
-        for (grid, seen) in grids.zip(ranges.seen.iter().cycle()) {
-            self.main_pass(encoder, &style, seen, draws, grid);
-        }
+        let (seen, middles) = (&ranges.seen, &targets.middles);
+        self.main_pass(encoder, &style, (seen, draws), (middles, &self.scenes[0], None));
         self.styles.push(style);
     }
 
     fn write_indices(&mut self, gpu: &Gpu, draws: &Draws<'_>) -> Ranges {
         let mut all = Vec::new();
-        let mut push = |list: &[u32]| {
-            let start = all.len() as u32;
-            all.extend_from_slice(list);
-            start..all.len() as u32
-        };
-        let seen = draws.seen.iter().map(|lists| lists.each_ref().map(|list| push(list))).collect();
-        let mut push_all = |castings: &[Casting]| castings.iter().map(|casting| push(&casting.casters)).collect();
+        let seen = push_lists(&mut all, &draws.seen);
+        let mut push_all = |castings: &[Casting]| castings.iter().map(|it| push(&mut all, &it.casters)).collect();
         let casters = CasterRanges { still: push_all(&draws.shadows.still), moving: push_all(&draws.shadows.moving) };
         self.indices.write(gpu, &all);
         Ranges { seen, casters }
     }
 
     /// Classes, instances and depth: the sky is where nothing is.
-    fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, seen: &[Seen], targets: &Targets) {
+    fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, seen: &Seen, targets: &Targets) {
         let pipelines = self.classes.get_or_insert_with(|| pipelines::classes(gpu, &self.layouts)).clone();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let (ids, depth) = (view(&targets.middles.ids), view(&targets.middles.depth));
@@ -206,13 +231,11 @@ impl Passes {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
-        for ranges in seen {
-            pass.set_pipeline(&pipelines[Finish::Plain as usize]);
-            self.draw_mesh(&mut pass, &self.moving.buffer, &ranges[MOVING]);
-            for finish in DRAW_ORDER {
-                pass.set_pipeline(&pipelines[finish as usize]);
-                self.draw_mesh(&mut pass, &self.fixed, &ranges[finish as usize]);
-            }
+        pass.set_pipeline(&pipelines[Finish::Plain as usize]);
+        self.draw_mesh(&mut pass, &self.moving.buffer, &seen[MOVING]);
+        for finish in DRAW_ORDER {
+            pass.set_pipeline(&pipelines[finish as usize]);
+            self.draw_mesh(&mut pass, &self.fixed, &seen[finish as usize]);
         }
     }
 
@@ -220,9 +243,8 @@ impl Passes {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         style: &Style,
-        seen: &Seen,
-        draws: &Draws<'_>,
-        (samples, scene): (&Samples, &SceneBinding),
+        (seen, draws): (&Seen, &Draws<'_>),
+        (samples, scene, known): (&Samples, &SceneBinding, Option<&wgpu::BindGroup>),
     ) {
         let pipelines = style.pipelines();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
@@ -233,6 +255,11 @@ impl Passes {
             depth_stencil_attachment: Some(depth_attachment(&depth, wgpu::LoadOp::Clear(0.0))),
             ..Default::default()
         });
+        if let Some(known) = known {
+            pass.set_pipeline(&pipelines.known);
+            pass.set_bind_group(0, known, &[]);
+            pass.draw(0..3, 0..1);
+        }
         pass.set_bind_group(0, &scene.group, &[]);
         pass.set_bind_group(1, &style.maps[draws.shadows.map].group, &[]);
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
@@ -306,8 +333,18 @@ type Seen = [Range<u32>; LISTS];
 /// Where each list lies in the index buffer.
 struct Ranges {
     /// As [`Draws::seen`].
-    seen: Vec<Seen>,
+    seen: Seen,
     casters: CasterRanges,
+}
+
+fn push(all: &mut Vec<u32>, list: &[u32]) -> Range<u32> {
+    let start = all.len() as u32;
+    all.extend_from_slice(list);
+    start..all.len() as u32
+}
+
+fn push_lists(all: &mut Vec<u32>, lists: &Lists) -> Seen {
+    lists.each_ref().map(|list| push(all, list))
 }
 
 fn colour_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {

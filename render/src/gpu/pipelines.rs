@@ -18,6 +18,8 @@ pub(super) struct Layouts {
     pub(super) clip: wgpu::BindGroupLayout,
     /// A shadow map to copy from.
     pub(super) still: wgpu::BindGroupLayout,
+    /// Depths that are known.
+    pub(super) known: wgpu::BindGroupLayout,
 }
 
 /// Which light there is.
@@ -40,6 +42,8 @@ pub(super) struct Pipelines {
     pub(super) glow: wgpu::RenderPipeline,
     pub(super) mirror: wgpu::RenderPipeline,
     pub(super) spray: wgpu::RenderPipeline,
+    /// Fills in depths that are known.
+    pub(super) known: wgpu::RenderPipeline,
 }
 
 /// The pipelines of shadow maps.
@@ -64,6 +68,7 @@ impl Layouts {
             shadow: layout(gpu, &[texture(K::Depth, D2), T::Sampler(S::Comparison)]),
             clip: layout(gpu, &[one_of_several]),
             still: layout(gpu, &[texture(K::Depth, D2)]),
+            known: layout(gpu, &[texture(K::Float { filterable: false }, D2)]),
         }
     }
 }
@@ -193,13 +198,13 @@ impl Pipelines {
         let shining = Recipe {
             layout: &scene_only,
             fragment: Some("fragment"),
-            targets: &[Some(brightening()), Some(untouched())],
+            targets: &[Some(brightening()), Some(unwritten(IDS))],
             constants: &[],
             cull: false,
             depth_write: false,
             ..base
         };
-        let veil = Recipe { targets: &[Some(covering()), Some(untouched())], constants: &[night], ..shining };
+        let veil = Recipe { targets: &[Some(covering()), Some(unwritten(IDS))], constants: &[night], ..shining };
         let finishes = [
             ("vertex_plain", "fragment_plain"),
             ("vertex", "fragment_grainy"),
@@ -219,6 +224,17 @@ impl Pipelines {
                 constants: &[("SKY_TAG", f64::from(SemanticTag::Sky as u8)), weather, night],
                 depth_write: false,
                 depth_compare: wgpu::CompareFunction::Equal,
+                ..base
+            }
+            .make(gpu),
+            known: Recipe {
+                module: &module(gpu, "known"),
+                layout: &pipeline_layout(gpu, &[Some(&layouts.known)]),
+                fragment: Some("fragment"),
+                buffers: &[],
+                targets: &[Some(unwritten(COLOUR)), Some(unwritten(IDS))],
+                constants: &[],
+                depth_compare: wgpu::CompareFunction::Always,
                 ..base
             }
             .make(gpu),
@@ -310,6 +326,6 @@ fn covering() -> wgpu::ColorTargetState {
     wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::COLOR }
 }
 
-fn untouched() -> wgpu::ColorTargetState {
-    wgpu::ColorTargetState { format: IDS, blend: None, write_mask: wgpu::ColorWrites::empty() }
+fn unwritten(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::empty() }
 }

@@ -1,4 +1,4 @@
-//! From samples to pixels, where these are means of several.
+//! From samples to pixels, where these are means of several or depth cannot be copied.
 
 use super::{Gpu, shaders};
 
@@ -13,15 +13,20 @@ pub(super) struct Resolve {
 const PLANES: u64 = 3;
 
 impl Resolve {
-    /// Of colours, ids and depth.
-    pub(super) fn new(gpu: &Gpu, inputs: [&wgpu::Texture; 3], [stride_bytes, plane_bytes]: [u32; 2]) -> Self {
+    /// Of colours, ids and depth with so many samples a pixel along each axis.
+    pub(super) fn new(
+        gpu: &Gpu,
+        samples: u32,
+        inputs: [&wgpu::Texture; 3],
+        [stride_bytes, plane_bytes]: [u32; 2],
+    ) -> Self {
         let shader = "resolve";
         let text = shaders::source(shader).unwrap_or_default();
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(shader),
             source: wgpu::ShaderSource::Wgsl(text.into()),
         });
-        let constants = [("STRIDE", f64::from(stride_bytes / 4))];
+        let constants = [("STRIDE", f64::from(stride_bytes / 4)), ("SIDE", f64::from(samples))];
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(shader),
             layout: None,

@@ -31,7 +31,8 @@ const SOURCES: [(&str, &str); 7] = [
 ];
 
 /// The shaders that do not need the scene.
-const APART: [(&str, &str); 3] = [
+const APART: [(&str, &str); 4] = [
+    ("known", include_str!("../shaders/known.wgsl")),
     ("shadow", include_str!("../shaders/shadow.wgsl")),
     ("shadow_copy", include_str!("../shaders/shadow_copy.wgsl")),
     ("resolve", include_str!("../shaders/resolve.wgsl")),
