@@ -66,6 +66,7 @@ impl Corners {
         let pair = |from: usize| (&self.differ[from..][..n], &self.sums[from..][..n], &self.steps[from..][..n]);
         let ((da, sa, ta), (db, sb, tb)) = (pair(0), pair(1));
         let (ia, ib, excess) = (&self.ids[0][..n], &self.ids[0][1..][..n], &self.excess.as_chunks::<4>().0[1..][..n]);
+        #[expect(clippy::needless_range_loop, reason = "zips of eight are not made vectors of")]
         for i in 0..n {
             let differ = da[i] | db[i] | (ia[i] ^ ib[i]) | u32::from_le_bytes(excess[i]);
             known[i] = depth(differ, sa[i] + sb[i], ta[i] - tb[i]);
@@ -90,9 +91,9 @@ impl Corners {
         self.excess.extend(self.low[..4].iter().zip(&self.high[..4]).map(|(low, high)| too_much(*low, *high)));
         self.excess.resize(4 + n, 0);
         let (la, lb, ha, hb) = (&self.low[..n], &self.low[4..][..n], &self.high[..n], &self.high[4..][..n]);
-        let excess = &mut self.excess[4..][..n];
-        for i in 0..n {
-            excess[i] = too_much(la[i].min(lb[i]), ha[i].max(hb[i]));
+        let four = la.iter().zip(lb).zip(ha.iter().zip(hb));
+        for (excess, ((la, lb), (ha, hb))) in self.excess[4..].iter_mut().zip(four) {
+            *excess = too_much(*la.min(lb), *ha.max(hb));
         }
         self.excess.extend(self.low[n..].iter().zip(&self.high[n..]).map(|(low, high)| too_much(*low, *high)));
     }
