@@ -61,12 +61,12 @@ impl Corners {
     }
 
     /// The corners between two columns each.
+    #[expect(clippy::needless_range_loop, reason = "zips of eight are not made vectors of")]
     fn inner(&self, known: &mut [f32]) {
         let n = known.len();
         let pair = |from: usize| (&self.differ[from..][..n], &self.sums[from..][..n], &self.steps[from..][..n]);
         let ((da, sa, ta), (db, sb, tb)) = (pair(0), pair(1));
         let (ia, ib, excess) = (&self.ids[0][..n], &self.ids[0][1..][..n], &self.excess.as_chunks::<4>().0[1..][..n]);
-        #[expect(clippy::needless_range_loop, reason = "zips of eight are not made vectors of")]
         for i in 0..n {
             let differ = da[i] | db[i] | (ia[i] ^ ib[i]) | u32::from_le_bytes(excess[i]);
             known[i] = depth(differ, sa[i] + sb[i], ta[i] - tb[i]);
