@@ -61,7 +61,6 @@ impl Corners {
     }
 
     /// The corners between two columns each.
-    #[expect(clippy::needless_range_loop, reason = "zips of eight are not made vectors of")]
     fn inner(&self, known: &mut [f32]) {
         let n = known.len();
         let pair = |from: usize| (&self.differ[from..][..n], &self.sums[from..][..n], &self.steps[from..][..n]);
