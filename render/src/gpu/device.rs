@@ -9,6 +9,8 @@ pub(crate) struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     pub(crate) info: AdapterInfo,
+    /// Whether depth can be copied to a buffer, which OpenGL cannot.
+    pub(crate) copies_depth: bool,
     failure: Arc<Mutex<Option<String>>>,
 }
 
@@ -32,7 +34,9 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             kept.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.to_string());
         }));
-        Ok(Self { device, queue, info, failure })
+        let copies = adapter.get_downlevel_capabilities().flags;
+        let copies_depth = copies.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES);
+        Ok(Self { device, queue, info, copies_depth, failure })
     }
 
     /// The first error since the last call.

@@ -7,6 +7,7 @@ mod pipelines;
 mod readback;
 mod resolve;
 mod shaders;
+mod shadow_passes;
 mod targets;
 mod textures;
 
@@ -14,4 +15,5 @@ pub(crate) use buffers::{GrowingBuffer, SceneUniform};
 pub(crate) use device::Gpu;
 pub(crate) use passes::{Draws, Passes};
 pub(crate) use pipelines::Lighting;
+pub(crate) use shadow_passes::ShadowDraws;
 pub(crate) use targets::Targets;
