@@ -49,8 +49,8 @@ const DRIVES: [Drive; 5] = [
     },
     Drive {
         name: CROSSED,
-        map: "old_town",
-        seed: 7,
+        map: "suburb",
+        seed: 5,
         scenario: "[traffic]\npedestrians = 300\njaywalks_per_min = 60.0\n",
     },
     Drive { name: ROUND, map: ROUND, seed: 61, scenario: "[traffic]\ncars = 50\nmotorcycles = 4\nbicycles = 6\n" },
