@@ -2,9 +2,10 @@
 //! drawn is refused with a sentence.
 
 use glam::{Quat, Vec3};
-use kernel::{Scenario, World, map};
+use kernel::map::{self, Lane, LaneKind};
+use kernel::{Scenario, World};
 use render::{AdapterChoice, Camera, Frame, Quality, RenderError, Renderer, SemanticTag};
-use tests::street;
+use tests::{roads, street};
 
 fn renderer() -> Renderer {
     Renderer::new(&street::network(), &AdapterChoice::default()).unwrap()
@@ -99,6 +100,27 @@ fn half_of_a_standard_pixel_is_its_middle_and_half_its_corners() {
     // The larger picture's own rounding moves edges across a few samples.
     let (far, all) = (far.count(), standard.len());
     assert!(far * 200 < all, "{far} of {all}");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_hundred_kilometres_of_road_can_be_drawn_from_end_to_end() {
+    let network = map::bake("long", &roads::winding(100, 1_000.0)).expect("it bakes");
+    let mut renderer = Renderer::new(&network, &AdapterChoice::default()).unwrap();
+    let camera = Camera::driver(128, 64);
+    for km in (0..100).step_by(9) {
+        let names = |lane: &&Lane| lane.kind == LaneKind::Driving && lane.name.starts_with(&format!("{km}/"));
+        let lane = network.lanes.iter().find(names).expect("each road has lanes");
+        let at = lane.at(0.5 * lane.length_m);
+        let mut scene = street::scene(0);
+        scene.actors.clear();
+        scene.lights.clear();
+        scene.ego.position = at.position;
+        scene.ego.rotation = Quat::from_rotation_z(at.heading_rad);
+        let frame = renderer.draw(&scene, &camera).unwrap();
+        let road = frame.class_ids.iter().filter(|id| **id == SemanticTag::Road as u8).count();
+        assert!(road * 8 > frame.class_ids.len(), "kilometre {km}: {road} pixels of road");
+    }
 }
 
 #[test]
