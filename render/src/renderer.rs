@@ -167,7 +167,7 @@ impl Renderer {
         let fits = |t: &Targets| t.is_for(width, height, means);
         let targets = match self.targets.take() {
             Some(targets) if fits(&targets) => targets,
-            _ => Targets::new(&self.gpu, &self.passes, width, height, means),
+            _ => Targets::new(&self.gpu, width, height, means),
         };
         self.passes.submit(&self.gpu, &draws, &targets);
         let targets = &*self.targets.insert(targets);

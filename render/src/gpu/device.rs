@@ -15,6 +15,17 @@ pub(crate) struct Gpu {
 }
 
 impl Gpu {
+    /// A group of resources, in the order of their bindings.
+    pub(super) fn bind(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, r)| wgpu::BindGroupEntry { binding, resource: r.clone() }).collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
     pub(crate) fn open(choice: &AdapterChoice) -> Result<Self, RenderError> {
         let (adapter, info) = choice.open()?;
         // Roads of a hundred kilometres are one buffer.

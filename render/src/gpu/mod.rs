@@ -1,5 +1,6 @@
 //! Everything that speaks to the graphics adapter.
 
+mod attachments;
 mod buffers;
 mod device;
 mod passes;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::attachments::{colour_attachment, depth_attachment};
 use super::pipelines::{self, Layouts, Pipelines};
 use super::shadow_passes::{CasterRanges, Casters, ShadowDraws, ShadowMap, ShadowPasses};
 use super::targets::Samples;
@@ -78,16 +79,6 @@ struct Style {
     maps: Vec<ShadowMap>,
 }
 
-pub(super) fn bind(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    resources: &[wgpu::BindingResource<'_>],
-) -> wgpu::BindGroup {
-    let entries: Vec<_> =
-        (0..).zip(resources).map(|(binding, r)| wgpu::BindGroupEntry { binding, resource: r.clone() }).collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
-}
-
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, fixed: &[Vertex]) -> Self {
         use wgpu::{BindingResource as R, BufferUsages as U};
@@ -112,7 +103,7 @@ impl Passes {
             let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
             let [noise, light_map, ground, leaves] = [&noise, &light_map_view, &ground, &leaves].map(R::TextureView);
             let scene = [uniform.as_entire_binding(), noise, R::Sampler(&noise_sampler), light_map, ground, leaves];
-            SceneBinding { group: bind(gpu, &layouts.scene, &scene), uniform }
+            SceneBinding { group: gpu.bind(&layouts.scene, &scene), uniform }
         });
         Self {
             styles: Vec::new(),
@@ -173,17 +164,17 @@ impl Passes {
         self.indices.write(gpu, &all);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if let Some(style) = self.styles.iter().find(|style| style.shadows == draws.shadow_style) {
-            let group = Some(&corners.known_group);
-            self.main_pass(&mut encoder, style, (&seen, draws), (&corners.samples, &self.scenes[1], group));
+            let known = self.bind_known(gpu, &corners.known);
+            self.main_pass(&mut encoder, style, (&seen, draws), (&corners.samples, &self.scenes[1], Some(&known)));
         }
         readback::record_corners(&mut encoder, corners);
         gpu.queue.submit([encoder.finish()]);
     }
 
     /// Binds a texture of depths that are known.
-    pub(super) fn bind_known(&self, gpu: &Gpu, known: &wgpu::Texture) -> wgpu::BindGroup {
+    fn bind_known(&self, gpu: &Gpu, known: &wgpu::Texture) -> wgpu::BindGroup {
         let view = known.create_view(&Default::default());
-        bind(gpu, &self.layouts.known, &[wgpu::BindingResource::TextureView(&view)])
+        gpu.bind(&self.layouts.known, &[wgpu::BindingResource::TextureView(&view)])
     }
 
     fn colour_passes(
@@ -345,17 +336,4 @@ fn push(all: &mut Vec<u32>, list: &[u32]) -> Range<u32> {
 
 fn push_lists(all: &mut Vec<u32>, lists: &Lists) -> Seen {
     lists.each_ref().map(|list| push(all, list))
-}
-
-fn colour_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
-    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };
-    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
-}
-
-pub(super) fn depth_attachment(
-    view: &wgpu::TextureView,
-    load: wgpu::LoadOp<f32>,
-) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
-    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::Mat4;
 
+use super::attachments::depth_attachment;
 use super::pipelines::{Layouts, ShadowPipelines};
 use super::{Gpu, textures};
 use crate::castings::{Area, Casting};
@@ -50,8 +51,8 @@ impl ShadowMap {
         use wgpu::BindingResource as R;
         let [still, all] = [(); 2].map(|()| textures::shadow_map(gpu, side).create_view(&Default::default()));
         Self {
-            still_group: super::passes::bind(gpu, &layouts.still, &[R::TextureView(&still)]),
-            group: super::passes::bind(gpu, &layouts.shadow, &[R::TextureView(&all), R::Sampler(sampler)]),
+            still_group: gpu.bind(&layouts.still, &[R::TextureView(&still)]),
+            group: gpu.bind(&layouts.shadow, &[R::TextureView(&all), R::Sampler(sampler)]),
             still,
             all,
             stale: Vec::new(),
@@ -81,7 +82,7 @@ impl ShadowPasses {
         });
         let size = std::num::NonZeroU64::new(size_of::<Mat4>() as u64);
         let one = wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &clips, offset: 0, size });
-        let clips_group = super::passes::bind(gpu, &layouts.clip, &[one]);
+        let clips_group = gpu.bind(&layouts.clip, &[one]);
         Self { pipelines: ShadowPipelines::new(gpu, layouts), clips, clips_group }
     }
 
@@ -143,7 +144,7 @@ impl ShadowPasses {
 fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, map: &wgpu::TextureView) -> wgpu::RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("shadow"),
-        depth_stencil_attachment: Some(super::passes::depth_attachment(map, wgpu::LoadOp::Load)),
+        depth_stencil_attachment: Some(depth_attachment(map, wgpu::LoadOp::Load)),
         ..Default::default()
     })
 }

@@ -1,7 +1,7 @@
 //! The textures a frame is drawn to and the buffer it is read back from, for one image size.
 
+use super::Gpu;
 use super::resolve::Resolve;
-use super::{Gpu, Passes};
 use crate::quality::Means;
 
 /// Formats of the colour, id and depth targets.
@@ -21,7 +21,6 @@ pub(super) struct CornerTargets {
     pub(super) samples: Samples,
     /// What is drawn has a depth above this.
     pub(super) known: wgpu::Texture,
-    pub(super) known_group: wgpu::BindGroup,
     /// Colours, that the processor can read.
     pub(super) readback: wgpu::Buffer,
 }
@@ -59,7 +58,7 @@ impl Samples {
 }
 
 impl CornerTargets {
-    fn new(gpu: &Gpu, passes: &Passes, width: u32, height: u32) -> Self {
+    fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let known = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("known depth"),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -70,9 +69,8 @@ impl CornerTargets {
             usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
-        let known_group = passes.bind_known(gpu, &known);
         let samples = Samples::new(gpu, width, height);
-        Self { samples, known, known_group, readback: readback(gpu, plane_bytes(width, height)) }
+        Self { samples, known, readback: readback(gpu, plane_bytes(width, height)) }
     }
 }
 
@@ -86,11 +84,11 @@ fn readback(gpu: &Gpu, size: u64) -> wgpu::Buffer {
 }
 
 impl Targets {
-    pub(crate) fn new(gpu: &Gpu, passes: &Passes, width: u32, height: u32, means: Means) -> Self {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32, means: Means) -> Self {
         let Means { samples, corners, .. } = means;
         let readback = readback(gpu, 3 * plane_bytes(width, height));
         let middles = Samples::new(gpu, width * samples, height * samples);
-        let corners = corners.then(|| CornerTargets::new(gpu, passes, width + 1, height + 1));
+        let corners = corners.then(|| CornerTargets::new(gpu, width + 1, height + 1));
         let bytes = [stride_bytes(width), plane_bytes(width, height) as u32];
         let Samples { colour, ids, depth } = &middles;
         let resolve =
