@@ -145,3 +145,29 @@ impl AdapterChoice {
         Err(RenderError::NoAdapter { wanted: asked.text(), found })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adapters_are_named_by_their_api_or_by_a_part_of_their_name() {
+        let adapter = |name: &str, backend: &str| AdapterInfo {
+            name: name.into(),
+            backend: backend.into(),
+            driver: String::new(),
+            is_cpu: true,
+        };
+        let accepts = |part: &str, info: &AdapterInfo| AdapterChoice::Named(part.into()).accepts(info);
+        let [vulkan, opengl] = ["vulkan", "gl"].map(|api| adapter("Eagle (LLVM 15)", api));
+        for (part, by_vulkan, by_opengl) in [
+            ("gl", false, true),
+            ("GL", false, true),
+            ("vulkan", true, false),
+            ("eagle", true, true),
+            ("nvidia", false, false),
+        ] {
+            assert_eq!((accepts(part, &vulkan), accepts(part, &opengl)), (by_vulkan, by_opengl), "{part}");
+        }
+    }
+}
