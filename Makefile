@@ -2,7 +2,7 @@
 
 PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers \
 	libxkbcommon-x11-0 libxcursor1 libxi6 libxrandr2 libx11-xcb1
-TEST_PACKAGES := xvfb xdotool python3-venv
+TEST_PACKAGES := xvfb xdotool python3-venv libegl1 libgl1-mesa-dri
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 
 # What checks the dependencies; a version that is not this one is replaced.

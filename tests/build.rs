@@ -1,7 +1,9 @@
-//! Tells the tests whether a Vulkan driver is installed and the real maps are at hand, so that those
+//! Tells the tests whether drivers of Vulkan and OpenGL are installed and the real maps are at hand, so that those
 //! that need them show as ignored and never as passed. With AEYE_GPU=require those on the GPU run all
 //! the same, and fail without one.
 
+#[path = "probes/opengl.rs"]
+mod opengl;
 #[path = "probes/vulkan.rs"]
 mod vulkan;
 
@@ -12,6 +14,7 @@ const MAP_FOLDERS: [&str; 2] = ["../../shared/maps", "../../../shared/maps"];
 
 fn main() {
     vulkan::find();
+    opengl::find();
     find_maps();
 }
 

@@ -8,7 +8,7 @@ pub enum RenderError {
     /// No adapter of the wanted kind answered.
     #[error(
         "no {wanted} found: install a Vulkan driver (on Debian: apt install libvulkan1 mesa-vulkan-drivers, which \
-         draws on the CPU where there is no GPU); adapters of this machine: {found}"
+         draws on the CPU where there is no GPU), or one of OpenGL (libegl1 libgl1-mesa-dri); adapters of this machine: {found}"
     )]
     NoAdapter {
         /// What was asked for.

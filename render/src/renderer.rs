@@ -56,7 +56,9 @@ impl Renderer {
     pub fn new(network: &RoadNetwork, adapter: &AdapterChoice) -> Result<Self, RenderError> {
         let gpu = Gpu::open(adapter)?;
         let scenery = Scenery::new(network);
+        let turn = gpu.turn();
         let passes = Passes::new(&gpu, &scenery.vertices);
+        drop(turn);
         if let Some(reason) = gpu.failure() {
             return Err(RenderError::Device { adapter: gpu.info.name.clone(), reason });
         }
@@ -164,6 +166,7 @@ impl Renderer {
             streaks: &self.streaks,
             spray: &self.spray,
         };
+        let _turn = self.gpu.turn();
         let fits = |t: &Targets| t.is_for(width, height, means);
         let targets = match self.targets.take() {
             Some(targets) if fits(&targets) => targets,

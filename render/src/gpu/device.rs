@@ -1,6 +1,6 @@
 //! The device and what went wrong on it.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::{AdapterChoice, AdapterInfo, RenderError};
 
@@ -12,6 +12,15 @@ pub(crate) struct Gpu {
     /// Whether depth can be copied to a buffer, which OpenGL cannot.
     pub(crate) copies_depth: bool,
     failure: Arc<Mutex<Option<String>>>,
+}
+
+/// Mesa's CPU driver has one screen for all of OpenGL, whatever instances they are of, and that goes wrong as `adapter.rs`
+/// says: so its devices take turns.
+static SCREEN: Mutex<()> = Mutex::new(());
+
+fn turn(info: &AdapterInfo) -> Option<MutexGuard<'static, ()>> {
+    let shares_screen = info.is_cpu && info.backend == wgpu::Backend::Gl.to_str();
+    shares_screen.then(|| SCREEN.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
 impl Gpu {
@@ -28,6 +37,7 @@ impl Gpu {
 
     pub(crate) fn open(choice: &AdapterChoice) -> Result<Self, RenderError> {
         let (adapter, info) = choice.open()?;
+        let _turn = turn(&info);
         // Roads of a hundred kilometres are one buffer.
         let max_buffer_size = adapter.limits().max_buffer_size;
         let descriptor = wgpu::DeviceDescriptor {
@@ -48,6 +58,11 @@ impl Gpu {
         let copies = adapter.get_downlevel_capabilities().flags;
         let copies_depth = copies.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES);
         Ok(Self { device, queue, info, copies_depth, failure })
+    }
+
+    /// Held while the device is at work.
+    pub(crate) fn turn(&self) -> Option<MutexGuard<'static, ()>> {
+        turn(&self.info)
     }
 
     /// The first error since the last call.

@@ -63,12 +63,13 @@ impl Layouts {
         let texture = |sample_type, view_dimension| T::Texture { sample_type, view_dimension, multisampled: false };
         let colours = K::Float { filterable: true };
         let [noise, layers] = [D2, D2Array].map(|dimension| texture(colours, dimension));
+        let numbers = texture(K::Float { filterable: false }, D2);
         Self {
             scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise, layers, layers]),
             shadow: layout(gpu, &[texture(K::Depth, D2), T::Sampler(S::Comparison)]),
             clip: layout(gpu, &[one_of_several]),
-            still: layout(gpu, &[texture(K::Depth, D2)]),
-            known: layout(gpu, &[texture(K::Float { filterable: false }, D2)]),
+            still: layout(gpu, &[numbers]),
+            known: layout(gpu, &[numbers]),
         }
     }
 }

@@ -2,7 +2,8 @@
 
 @group(0) @binding(0) var colours: texture_2d<f32>;
 @group(0) @binding(1) var ids: texture_2d<u32>;
-@group(0) @binding(2) var depths: texture_depth_2d;
+// Depth as numbers: texels of a depth texture cannot be loaded in OpenGL.
+@group(0) @binding(2) var depths: texture_2d<f32>;
 @group(0) @binding(3) var<storage, read_write> out_colours: array<u32>;
 @group(0) @binding(4) var<storage, read_write> out_ids: array<u32>;
 @group(0) @binding(5) var<storage, read_write> out_depths: array<f32>;
@@ -27,5 +28,5 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
     let at = id.y * STRIDE + id.x;
     out_colours[at] = pack4x8unorm(vec4f(sqrt(sum / f32(SIDE * SIDE)), 1.0));
     out_ids[at] = textureLoad(ids, corner + SIDE / 2u, 0).r;
-    out_depths[at] = textureLoad(depths, corner + SIDE / 2u, 0);
+    out_depths[at] = textureLoad(depths, corner + SIDE / 2u, 0).r;
 }

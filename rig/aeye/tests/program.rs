@@ -10,8 +10,12 @@ use base::maps::Map;
 use common::{aeye, blind_drive, names, run};
 use serde_json::Value;
 
-/// Tells old and new Vulkan loaders that the driver is where nothing is.
-const NO_DRIVER: [(&str, &str); 2] = [("VK_ICD_FILENAMES", "/nonexistent"), ("VK_DRIVER_FILES", "/nonexistent")];
+/// Tells old and new Vulkan loaders, and that of OpenGL, that the driver is where nothing is.
+const NO_DRIVER: [(&str, &str); 3] = [
+    ("VK_ICD_FILENAMES", "/nonexistent"),
+    ("VK_DRIVER_FILES", "/nonexistent"),
+    ("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent"),
+];
 
 #[test]
 fn without_a_graphics_driver_each_command_says_what_to_install_and_leaves_nothing() {

@@ -10,6 +10,7 @@ mod lab;
 mod old_recordings;
 mod openscenario_page;
 mod real_maps;
+mod render_apis;
 mod render_frame;
 mod render_golden;
 mod render_oracle;

@@ -43,7 +43,8 @@ fn renderers_on_many_threads_do_not_meet_in_the_driver() {
         let all: Vec<_> = (0..THREADS).map(start).collect();
         all.into_iter().map(|thread| thread.join().expect("no panic")).collect()
     });
-    if AdapterChoice::default().find().expect("an adapter").name.contains("llvmpipe") {
+    let found = AdapterChoice::default().find().expect("an adapter");
+    if found.name.contains("llvmpipe") && found.backend == "vulkan" {
         assert!(done.iter().all(|(_, screens)| *screens >= THREADS as usize), "{done:?}: a screen for each renderer");
     }
 }

@@ -200,6 +200,8 @@ async fn painter(
         None => {
             let mut setup = WgpuSetupCreateNew::from_display_handle(events.owned_display_handle());
             setup.device_descriptor = Arc::new(as_large_as_it_gets);
+            // It is for pictures without a window, where it is asked for.
+            setup.instance_descriptor.backends.remove(wgpu::Backends::GL);
             WgpuSetup::CreateNew(setup)
         }
     };
