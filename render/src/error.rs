@@ -1,6 +1,7 @@
 //! Why nothing could be drawn.
 
 use crate::Sensor;
+use crate::models::ModelsId;
 
 /// Why nothing could be drawn; each says in one sentence what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -42,6 +43,16 @@ pub enum RenderError {
     Distortion {
         /// What was asked for.
         sensor: Sensor,
+    },
+    /// The models that a picture is to be drawn with were not read.
+    #[error(
+        "the picture is one with models of digest {wanted}, expected their folder with --models DIR; digests given: {given}"
+    )]
+    Models {
+        /// Which ones.
+        wanted: ModelsId,
+        /// Those that were read, or "none".
+        given: String,
     },
     /// The snapshot belongs to another map.
     #[error("snapshot has {got} light groups, the map has {expected}: it belongs to another map")]

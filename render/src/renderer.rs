@@ -12,6 +12,7 @@ use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
 use crate::light_map::LightMap;
 use crate::mirrors::{self, Feet, Streak};
+use crate::models::{Models, ModelsId};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadows::ShadowMaps;
@@ -40,6 +41,8 @@ pub struct Renderer {
     glows: Vec<Glow>,
     streaks: Vec<Streak>,
     spray: Vec<Puff>,
+    /// Whose models the scenery is made of.
+    models: Option<ModelsId>,
 }
 
 /// Street lamps are seen to shine up to this distance, metres.
@@ -71,6 +74,7 @@ impl Renderer {
             glows: Vec::new(),
             streaks: Vec::new(),
             spray: Vec::new(),
+            models: None,
         })
     }
 
@@ -109,6 +113,7 @@ impl Renderer {
 
     fn planes(&mut self, scene: &SceneSnapshot, camera: &Camera, colours: bool) -> Result<Frame, RenderError> {
         self.check(scene, camera)?;
+        self.dress(camera.models)?;
         let view = View::new(camera, &scene.ego);
         let (width, height) = (camera.width, camera.height);
         let corners = view.at_corners(width, height);
@@ -164,6 +169,21 @@ impl Renderer {
         };
         self.passes.submit(&self.gpu, &draws, &targets);
         self.targets.insert(targets).read(&self.gpu, scene.tick)
+    }
+
+    /// Takes models of a user's own, or none, for all that is drawn from now on.
+    fn dress(&mut self, wanted: Option<ModelsId>) -> Result<(), RenderError> {
+        if wanted == self.models {
+            return Ok(());
+        }
+        let missing = |wanted| RenderError::Models { wanted, given: Models::known_ids() };
+        let models = wanted.map(|wanted| Models::known(wanted).ok_or_else(|| missing(wanted))).transpose()?;
+        self.scenery.dress(models.as_deref());
+        self.passes.replace_fixed(&self.gpu, &self.scenery.vertices);
+        self.shadows.forget();
+        self.cast.dress(models);
+        self.models = wanted;
+        Ok(())
     }
 
     /// Makes the map of lamps' light and their glows, where they shine.

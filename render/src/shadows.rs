@@ -23,6 +23,11 @@ impl ShadowMaps {
         Self { most: most.max(1), shown: Vec::new(), draws: 0 }
     }
 
+    /// Casts all of them anew: something else stands there.
+    pub(crate) fn forget(&mut self) {
+        self.shown.clear();
+    }
+
     /// The number of the map for a square, and whether it shows that already; if not, it is one that was not used for longest.
     pub(crate) fn find(&mut self, square: ShadowBox, gone: Vec<usize>) -> (usize, bool) {
         self.draws += 1;

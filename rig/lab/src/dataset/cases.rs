@@ -58,8 +58,8 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     }
     let found = keep_judged(found, |(path, _)| path, &args.verdict)?;
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    let Imaging { quality, sensor } = args.imaging;
-    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality, sensor, cases };
+    let Imaging { quality, sensor, models } = args.imaging;
+    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality, sensor, models, cases };
     build(&recipe, &files, &args.out, args.jobs, interrupt)
 }
 

@@ -183,6 +183,7 @@ impl NaturalRecipe {
             size: args.size,
             quality: args.imaging.quality,
             sensor: args.imaging.sensor,
+            models: args.imaging.models,
             pedestrians: args.pedestrians,
             weather: args.weather.iter().map(|preset| preset.name.to_owned()).collect(),
             maps: maps.iter().map(MapUsed::new).collect(),

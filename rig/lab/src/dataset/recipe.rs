@@ -4,7 +4,7 @@ use base::files::{check_name, most};
 use base::maps::Map;
 use kernel::time::Tick;
 use kernel::weather::WeatherPreset;
-use render::{Imaging, Quality, Sensor};
+use render::{Imaging, ModelsId, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 
 use super::provenance::Part;
@@ -92,6 +92,9 @@ pub struct NaturalRecipe {
     /// What lens and chip do to them; left out where they are ideal.
     #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
     pub sensor: Sensor,
+    /// Digest of models of a user's own; left out where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsId>,
     /// People on foot, where not as many as in the map's default scenario.
     pub pedestrians: Option<u16>,
     /// The scenes' weathers by name, in turn after each round of maps; drawn by each scene's seed where there are none.
@@ -104,7 +107,7 @@ pub struct NaturalRecipe {
 impl NaturalRecipe {
     /// How the pictures are made.
     pub fn imaging(&self) -> Imaging {
-        Imaging { quality: self.quality, sensor: self.sensor }
+        Imaging { quality: self.quality, sensor: self.sensor, models: self.models }
     }
 
     /// Refuses what no drives can be made from.
@@ -174,6 +177,9 @@ pub struct CasesRecipe {
     /// What lens and chip do to them; left out where they are ideal.
     #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
     pub sensor: Sensor,
+    /// Digest of models of a user's own; left out where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsId>,
     /// The cases, in the order of their scenes' numbers.
     pub cases: Vec<CaseUsed>,
 }
@@ -181,7 +187,7 @@ pub struct CasesRecipe {
 impl CasesRecipe {
     /// How the pictures are made.
     pub fn imaging(&self) -> Imaging {
-        Imaging { quality: self.quality, sensor: self.sensor }
+        Imaging { quality: self.quality, sensor: self.sensor, models: self.models }
     }
 
     fn check(&self) -> Result<(), String> {
