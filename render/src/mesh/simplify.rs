@@ -7,6 +7,9 @@ use glam::Vec3;
 
 use super::{Finish, Mesh, Vertex};
 
+/// Triangles around a vertex at most in meshes that may be anything.
+const MOST_AROUND: usize = 32;
+
 /// A mesh whose surface lies within `error_m` of the given one, usually of far fewer triangles.
 /// Triangles of different finishes stay apart; vertices that agree in all but their place on the
 /// surface are joined, and on asphalt and laid stones those that agree in that too.
@@ -25,7 +28,9 @@ fn collapsed(mesh: &Mesh, error_m: f32, is_laid: impl Fn(usize) -> bool, differ:
     let mut simpler = Mesh::default();
     for (finish, triangles) in mesh.triangles.iter().enumerate() {
         let mut surface = Welded::new(mesh, triangles, is_laid(finish));
-        surface.differ = differ.unwrap_or(u8::MAX);
+        if let Some(differ) = differ {
+            (surface.differ, surface.most_around) = (differ, MOST_AROUND);
+        }
         surface.collapse_all(error_m);
         surface.append_to(&mut simpler, finish);
     }
@@ -44,6 +49,8 @@ struct Welded {
     waiting: Vec<bool>,
     /// By how much colours of vertices that are joined may differ.
     differ: u8,
+    /// Vertices with more triangles around them stay: each neighbour of each is looked at.
+    most_around: usize,
 }
 
 impl Welded {
@@ -57,6 +64,7 @@ impl Welded {
             moved_m: Vec::new(),
             waiting: Vec::new(),
             differ: u8::MAX,
+            most_around: usize::MAX,
         };
         for triangle in triangles {
             let corners = triangle.map(|i| {
@@ -100,6 +108,9 @@ impl Welded {
     /// Draws a vertex into one of its neighbours, if one will do.
     fn collapse(&mut self, vertex: u32, error_m: f32) -> bool {
         let around = &self.around[vertex as usize];
+        if around.len() > self.most_around {
+            return false;
+        }
         let neighbours: Vec<u32> =
             around.iter().flat_map(|&t| self.triangles[t as usize]).filter(|&n| n != vertex).collect();
         let best = neighbours

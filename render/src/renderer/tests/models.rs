@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::mesh::model::Model;
+use crate::mesh::model::{Detail, Model};
 use crate::mesh::{CODE_LACQUER, Mesh, Paint};
 use crate::models::{Figure, Subject};
 

@@ -83,9 +83,9 @@ fn change(root: &mut Value, (at, fate): &(Index, Fate)) {
         }
         Fate::Gone => Value::Null,
         Fate::Text => json!("../damaged"),
-        Fate::Other(other) => root.pointer(other.get(&all)).cloned().unwrap_or_default(),
+        Fate::Other(other) => root.pointer(other.get(&all[..]).as_str()).cloned().unwrap_or_default(),
     };
-    if let Some(place) = root.pointer_mut(at.get(&all)) {
+    if let Some(place) = root.pointer_mut(at.get(&all[..]).as_str()) {
         *place = value;
     }
 }

@@ -4,7 +4,6 @@ use anyhow::{Context, anyhow, bail};
 use glam::{Mat4, Quat, Vec2, Vec3};
 use gltf::mesh::Mode;
 use gltf::{Node, Primitive, Semantic};
-use kernel::ops;
 use render::SemanticTag;
 use render::mesh::model::{Joint, Model as Posed, Part, Swing};
 use render::mesh::{Finish, Mesh};

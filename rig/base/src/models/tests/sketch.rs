@@ -61,7 +61,7 @@ const FACES: [([f32; 3], [u8; 4]); 6] = [
 /// The bytes of a binary file.
 pub(crate) fn glb(sketch: &Sketch) -> Vec<u8> {
     let (root, bin) = parts(sketch);
-    (root, bin)
+    packed(root.to_string().into_bytes(), bin)
 }
 
 /// A box whose faces have a picture that is green below and not there above.
@@ -141,7 +141,7 @@ pub(crate) fn parts(sketch: &Sketch) -> (Value, Vec<u8>) {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
         root.pointer_mut(parent).expect("it is there")[key] = value.clone();
     }
-    packed(root.to_string().into_bytes(), bin)
+    (root, bin)
 }
 
 /// JSON and binary data as one file.
