@@ -96,8 +96,8 @@ impl Subject {
         match self {
             Ego => T::Vehicles,
             Actor(kind) => match kind {
-                A::Car | A::Suv | A::Emergency | A::Door => T::Vehicles,
-                A::Truck | A::Van => T::Truck,
+                A::Car | A::Suv | A::Van | A::Emergency | A::Door => T::Vehicles,
+                A::Truck => T::Truck,
                 A::Bus => T::Bus,
                 A::Tram => T::Train,
                 A::Motorcycle | A::Scooter => T::Motorcycle,

@@ -32,11 +32,13 @@ fn is_pink(rgb: &[u8]) -> bool {
     u32::from(rgb[0].min(rgb[2])) > 2 * u32::from(rgb[1]) + 40
 }
 
-/// Pixels of the model's colour, and those of a class and instance.
-fn counts(frame: &Frame, tag: SemanticTag, instance: u16) -> [usize; 2] {
-    let pink = frame.rgb.chunks(3).filter(|rgb| is_pink(rgb)).count();
-    let ids = frame.class_ids.iter().zip(&frame.instance_ids);
-    [pink, ids.filter(|(class, id)| **class == tag as u8 && **id == instance).count()]
+/// Pixels of a class and instance, those of them of the model's colour, and pixels of the instance.
+fn counts(frame: &Frame, tag: SemanticTag, instance: u16) -> [usize; 3] {
+    let ids = frame.fine_ids.iter().zip(&frame.instance_ids).zip(frame.rgb.chunks(3));
+    let of_instance = ids.filter(|((_, id), _)| **id == instance);
+    let of_both = of_instance.clone().filter(|((class, _), _)| **class == tag as u8);
+    let pink = of_both.clone().filter(|(_, rgb)| is_pink(rgb));
+    [of_both.count(), pink.count(), of_instance.count()]
 }
 
 fn scene_with(kind: ActorKind) -> (Arc<RoadNetwork>, SceneSnapshot) {
@@ -55,8 +57,8 @@ fn models_stand_for_road_users_with_their_class_and_instance() {
         let mut renderer = renderer(&network);
         let own = Camera { models: Some(models), ..Camera::driver(256, 128) };
         let frame = renderer.draw(&scene, &own).expect("drawn");
-        let [pink, labelled] = counts(&frame, tag, instance_of_actor(1));
-        assert!(pink > 60 && labelled >= pink, "{kind:?}: {pink} of {labelled}");
+        let [labelled, pink, all] = counts(&frame, tag, instance_of_actor(1));
+        assert!(pink > 60 && labelled == all, "{kind:?}: {pink} of {labelled}, {all}");
         let labels = renderer.draw_classes(&scene, &own).expect("drawn");
         assert!(Frame { rgb: Vec::new(), ..frame.clone() } == labels, "{kind:?}");
     }
@@ -106,9 +108,10 @@ fn a_bicycle_alone_has_a_rider() {
     let (network, scene) = scene_with(ActorKind::Bicycle);
     let own = Camera { models: Some(models), ..Camera::driver(256, 128) };
     let frame = renderer(&network).draw(&scene, &own).expect("drawn");
-    let [pink, bicycle] = counts(&frame, SemanticTag::Bicycle, instance_of_actor(1));
-    let [_, rider] = counts(&frame, SemanticTag::Rider, instance_of_actor(1));
-    assert!(pink > 20 && bicycle >= pink && rider > 20, "{pink} {bicycle} {rider}");
+    let [bicycle, pink, all] = counts(&frame, SemanticTag::Bicycle, instance_of_actor(1));
+    let [rider, riders_pink, _] = counts(&frame, SemanticTag::Rider, instance_of_actor(1));
+    assert!(2 * pink > bicycle && bicycle > 20 && rider > 20 && riders_pink == 0, "{pink} {bicycle} {rider}");
+    assert_eq!(bicycle + rider, all);
 }
 
 #[test]

@@ -29,11 +29,25 @@ pub(super) fn read(files: &mut Folder, name: &str) -> anyhow::Result<Document> {
     if is_binary && !(HEADER..=bytes.len()).contains(&told) {
         bail!("is cut off: has {} bytes, expected {told}", bytes.len());
     }
-    let Gltf { document: gltf, blob } = Gltf::from_slice(&bytes).map_err(|error| anyhow!(sentence(&error)))?;
+    let refused = |error: gltf::Error| anyhow!(sentence(&error));
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(&bytes).map_err(refused)?;
     drop(bytes);
+    check_attributes(document.as_json())?;
+    let gltf = gltf::Document::from_json(document.into_json()).map_err(refused)?;
     let mut document = Document { buffers: buffers(files, name, (gltf.as_json(), blob))?, gltf, images: Vec::new() };
     document.images = images(files, name, &document)?;
     Ok(document)
+}
+
+/// Refuses attributes that are nowhere, which the validation of the `gltf` crate (1.4.1) takes to be there.
+fn check_attributes(root: &json::Root) -> anyhow::Result<()> {
+    for (i, mesh) in root.meshes.iter().enumerate() {
+        let attributes = mesh.primitives.iter().flat_map(|primitive| primitive.attributes.values());
+        if let Some(beyond) = attributes.map(json::Index::value).find(|index| *index >= root.accessors.len()) {
+            bail!("mesh {i} has an attribute at accessor {beyond}, expected one of its {}", root.accessors.len());
+        }
+    }
+    Ok(())
 }
 
 /// What is wrong with a file in one sentence.

@@ -49,7 +49,6 @@ struct Limb {
 struct Walk<'a> {
     document: &'a Document,
     said: &'a Model,
-    tag: SemanticTag,
     body: Mesh,
     limbs: Vec<Limb>,
     nodes: usize,
@@ -64,7 +63,7 @@ pub(super) fn model(document: &Document, entry: &Entry, subject: Subject) -> any
     let gltf = &document.gltf;
     let scene = gltf.default_scene().or_else(|| gltf.scenes().next()).ok_or_else(|| anyhow!("has no scene"))?;
     let (tag, body) = (subject.tag(), Mesh::default());
-    let mut walk = Walk { document, said, tag, body, limbs: Vec::new(), nodes: 0, triangles: 0, vertices: 0 };
+    let mut walk = Walk { document, said, body, limbs: Vec::new(), nodes: 0, triangles: 0, vertices: 0 };
     let axes = Mat4::from_cols_array_2d(&[
         [0.0, 1.0, 0.0, 0.0],
         [0.0, 0.0, 1.0, 0.0],
