@@ -226,7 +226,8 @@ impl Surface {
         let count = positions.len();
         let place = |p: &[f32; 3]| frame.transform_point3(Vec3::from(*p));
         let positions: Vec<Vec3> = positions.iter().map(place).collect();
-        if let Some(at) = positions.iter().position(|p| !(p.abs().max_element() < FARTHEST)) {
+        let is_near = |p: &Vec3| p.is_finite() && p.abs().max_element() < FARTHEST;
+        if let Some(at) = positions.iter().position(|p| !is_near(p)) {
             bail!("vertex {at} lies at {}, expected numbers below {FARTHEST:e}", positions[at]);
         }
         let indices = match primitive.indices() {
