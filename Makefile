@@ -50,11 +50,12 @@ oracles: PACKAGES += python3-venv
 oracles: build
 	tests/oracles/run.sh $(AEYE) $(dir $(AEYE))../oracles
 
-## Drives the same towns with SUMO (PyPI), steps environments of Gymnasium (PyPI), and says how fast each is.
+## Drives the same towns with SUMO (PyPI), steps environments of Gymnasium, runs networks with onnxruntime (TORCH=1: also PyTorch's exports), and says how fast each is.
 peers: PACKAGES += python3-venv
 peers: build
 	benches/peers/run.sh $(dir $(AEYE))world_speed $(dir $(AEYE))../peers
 	benches/peers/gym.sh $(dir $(AEYE))episode_speed $(dir $(AEYE))../peers
+	benches/peers/engines.sh $(dir $(AEYE))picture_to_mask $(dir $(AEYE))../peers
 
 ## The same campaign alone, in shards, on Ray (PyPI) and as a Slurm array, with somebody killed in each, and an experiment: the same files.
 cluster: PACKAGES += python3-venv slurm-wlm munge

@@ -4,9 +4,10 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::metadata::{Layout, Metadata};
+use crate::metadata::{Layout, Metadata, ScoreKind};
 use crate::onnx::{self, Element, pb};
 use crate::peel::peel;
+use crate::taps::Enlarge;
 use crate::tensors;
 use crate::{ClassMap, PerceptionError};
 
@@ -23,7 +24,10 @@ pub struct Checkpoint {
     metadata: Metadata,
     pub(crate) model: Arc<pb::ModelProto>,
     pub(crate) input: Input,
-    pub(crate) align_corners: bool,
+    pub(crate) enlarge: Enlarge,
+    /// Order of the dimensions that scores are most likely to have.
+    pub(crate) scores: Layout,
+    pub(crate) score_kind: ScoreKind,
 }
 
 /// The network's input.
@@ -71,7 +75,10 @@ impl Checkpoint {
             let reason = "mean and std are missing, which a network with a float input needs".into();
             return Err(PerceptionError::Metadata { path: path.into(), reason });
         }
-        let align_corners = peel(&mut model).unwrap_or(metadata.align_corners);
+        let peeled = peel(&mut model, input.layout);
+        let enlarge = if metadata.align_corners { Enlarge::AlignCorners } else { Enlarge::HalfPixel };
+        let (enlarge, scores) = peeled.map_or((enlarge, input.layout), |enlarge| (enlarge, Layout::Nchw));
+        let score_kind = metadata.scores.unwrap_or_else(|| kind_of_scores(&model));
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         // What is made with it is filed under its name, be it a hidden one.
         intake::check_name(name.trim_start_matches('.')).map_err(refuse)?;
@@ -79,7 +86,8 @@ impl Checkpoint {
         hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes());
         weights_beside.iter().for_each(|weights| _ = hasher.update(weights.as_bytes()));
         let digest = hasher.finalize();
-        Ok(Self { path: path.into(), name, digest, metadata, model: Arc::new(model), input, align_corners })
+        let model = Arc::new(model);
+        Ok(Self { path: path.into(), name, digest, metadata, model, input, enlarge, scores, score_kind })
     }
 
     /// Where it was read, or the name of a bundled one.
@@ -116,6 +124,24 @@ impl Checkpoint {
     pub fn input_size(&self) -> Option<(usize, usize)> {
         Some((self.input.width?, self.input.height?))
     }
+}
+
+/// What the scores of a model are, by the node that makes them; what only moves them is passed over.
+fn kind_of_scores(model: &pb::ModelProto) -> ScoreKind {
+    const MOVES: [&str; 7] = ["Identity", "Cast", "Transpose", "Reshape", "Squeeze", "Unsqueeze", "Resize"];
+    let graph = model.graph.as_ref();
+    let mut tensor = graph.and_then(|graph| graph.output.first()).map(|output| output.name.as_str());
+    // No graph is deeper than it has nodes.
+    for _ in 0..graph.map_or(0, |graph| graph.node.len()) {
+        let makes = |node: &&pb::NodeProto| node.output.iter().any(|name| Some(name.as_str()) == tensor);
+        let Some(node) = graph.and_then(|graph| graph.node.iter().find(makes)) else { break };
+        match node.op_type.as_str() {
+            "Softmax" | "Sigmoid" => return ScoreKind::Probabilities,
+            moves if MOVES.contains(&moves) => tensor = node.input.first().map(String::as_str),
+            _ => break,
+        }
+    }
+    ScoreKind::Logits
 }
 
 fn read_sidecar(path: &Path) -> Result<Option<String>, PerceptionError> {
@@ -253,6 +279,31 @@ mod tests {
         assert_eq!(checkpoint.classes().names(), toy::CLASSES);
         assert_eq!(checkpoint.metadata(), &toy::metadata());
         assert_eq!(checkpoint.digest(), blake3::hash(&std::fs::read(&path).unwrap()));
+    }
+
+    #[test]
+    fn a_softmax_at_the_end_gives_probabilities() {
+        let dir = tempfile::tempdir().unwrap();
+        let open = |ending: &[&str], scores: Option<ScoreKind>| {
+            let metadata = Some(Metadata { scores, ..toy::metadata() });
+            let mut model = Toy { stride: 1, metadata, ..Toy::default() }.model();
+            let graph = model.graph.as_mut().unwrap();
+            for op in ending {
+                let last = graph.output[0].name.clone();
+                graph.node.push(toy::node(op, &[&last], op, vec![]));
+                graph.output[0].name = (*op).into();
+            }
+            Checkpoint::load(toy::write(dir.path(), "toy.onnx", &model)).unwrap()
+        };
+        let kind = |ending: &[&str]| open(ending, None).score_kind;
+        assert_eq!([kind(&[]), kind(&["Identity"])], [ScoreKind::Logits; 2]);
+        assert_eq!([kind(&["Sigmoid"]), kind(&["Sigmoid", "Identity"])], [ScoreKind::Probabilities; 2]);
+        assert_eq!(kind(&["Sigmoid", "Tanh"]), ScoreKind::Logits);
+        assert_eq!(
+            open(&["Sigmoid"], Some(ScoreKind::Logits)).score_kind,
+            ScoreKind::Logits,
+            "what is said goes first"
+        );
     }
 
     #[test]

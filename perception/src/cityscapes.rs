@@ -3,7 +3,8 @@
 //! `leftImg8bit/SPLIT/CITY/CITY_SEQ_FRAME_leftImg8bit.png` and, below `gtFine/SPLIT/CITY`,
 //! `_gtFine_labelIds.png` (tags of CARLA 0.9.10), `_gtFine_labelTrainIds.png` (train ids of
 //! [`crate::classes`]; 255 counts nowhere), `_gtFine_instanceIds.png` (16 bits: tag * 1000 +
-//! number for road users, else the tag) and `_gtFine_color.png` (the tags' colours).
+//! number for road users, else the tag) and `_gtFine_color.png` (the tags' colours). `CITY` is the map, or `MAP-CAMERA` where
+//! several cameras take each frame.
 
 use std::path::{Path, PathBuf};
 
@@ -21,12 +22,22 @@ pub struct Place<'a> {
     pub scene: u32,
     /// Number of the frame within its scene.
     pub frame: u32,
+    /// Which of several cameras took it; its name follows the map's, with `-` for `_`.
+    pub camera: Option<&'a str>,
 }
 
 impl Place<'_> {
+    fn city_folder(&self) -> String {
+        match self.camera {
+            Some(camera) => format!("{}-{}", self.city, camera.replace('_', "-")),
+            None => self.city.to_owned(),
+        }
+    }
+
     /// Path of one of the frame's files below the dataset folder.
     pub fn path(&self, kind: Kind) -> String {
-        let Self { split, city, scene, frame } = self;
+        let Self { split, scene, frame, .. } = self;
+        let city = self.city_folder();
         let (top, ending) = kind.names();
         format!("{top}/{split}/{city}/{city}_{scene:06}_{frame:06}_{ending}.png")
     }

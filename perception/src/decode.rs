@@ -6,10 +6,22 @@
 
 use std::ops::Range;
 
-use crate::taps::Taps;
+use crate::metadata::ScoreKind;
+use crate::simd::vectorised;
+use crate::taps::{Enlarge, Taps};
 
 /// Pixels that are interpolated at a time.
 const LANES: usize = 8;
+
+/// How sure a network is of every pixel, row by row from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Certainty {
+    /// Probability of the class with the highest one: 1 over the number of classes where all are alike, 1 where one
+    /// stands alone.
+    pub confidence: Vec<f32>,
+    /// Entropy of the probabilities as a share of the greatest: 1 where all are alike, 0 where one stands alone.
+    pub entropy: Vec<f32>,
+}
 
 /// How the scores lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,8 +70,8 @@ impl Span {
     }
 }
 
-fn spans(from: usize, to: usize, align_corners: bool) -> Vec<Span> {
-    let taps = Taps::new(from, to, align_corners);
+fn spans(from: usize, to: usize, how: Enlarge) -> Vec<Span> {
+    let taps = Taps::enlarging(from, to, how);
     let mut spans: Vec<Span> = Vec::new();
     for (i, &left) in taps.left.iter().enumerate() {
         match spans.last_mut().filter(|span| span.left == left) {
@@ -76,14 +88,22 @@ fn spans(from: usize, to: usize, align_corners: bool) -> Vec<Span> {
 
 impl Decoder {
     /// For scores on `grid` and a picture of `width` x `height` pixels.
-    pub fn new(grid: Grid, width: usize, height: usize, align_corners: bool) -> Self {
-        let columns = spans(grid.width, width, align_corners);
-        let rows = spans(grid.height, height, align_corners);
+    pub fn new(grid: Grid, width: usize, height: usize, how: Enlarge) -> Self {
+        let columns = spans(grid.width, width, how);
+        let rows = spans(grid.height, height, how);
         Self { grid, width, height, columns, rows }
     }
 
     /// The index of the highest score at every pixel; the lowest index where several are equal.
     pub fn classes(&self, scores: &[f32]) -> Vec<u8> {
+        vectorised(
+            #[inline(always)]
+            || self.chosen(scores),
+        )
+    }
+
+    #[inline(always)]
+    fn chosen(&self, scores: &[f32]) -> Vec<u8> {
         let coarse = argmax(&self.grid, scores);
         if (self.grid.width, self.grid.height) == (self.width, self.height) {
             return coarse;
@@ -105,11 +125,11 @@ impl Decoder {
         out
     }
 
-    /// The softmax of the highest score at every pixel, with the scores as logits: 1 over the number of
-    /// classes where all are equal, 1 where one stands alone.
-    pub fn confidence(&self, scores: &[f32]) -> Vec<f32> {
+    /// How sure the scores are at every pixel.
+    pub fn certainty(&self, scores: &[f32], kind: ScoreKind) -> Certainty {
         let (step, stride) = (self.grid.pixel_stride(), self.grid.channel_stride());
-        let mut out = vec![0.0; self.width * self.height];
+        let pixels = self.width * self.height;
+        let mut certainty = Certainty { confidence: vec![0.0; pixels], entropy: vec![0.0; pixels] };
         let mut mixed = vec![0.0; self.grid.channels];
         for row in &self.rows {
             for column in &self.columns {
@@ -121,12 +141,15 @@ impl Decoder {
                             let (left, right) = (a + (c - a) * down, b + (d - b) * down);
                             *mixed = left + (right - left) * along;
                         }
-                        out[y * self.width + x] = highest_softmax(&mixed);
+                        let pixel = y * self.width + x;
+                        kind.distribute(&mut mixed);
+                        certainty.confidence[pixel] = mixed.iter().copied().fold(0.0, f32::max);
+                        certainty.entropy[pixel] = entropy(&mixed);
                     }
                 }
             }
         }
-        out
+        certainty
     }
 
     /// The four source pixels around a cell: upper left and right, lower left and right.
@@ -146,6 +169,7 @@ impl Decoder {
     }
 
     /// Fills the cell between four source pixels.
+    #[inline(always)]
     fn interpolate(&self, scores: &[f32], corners: [usize; 4], row: &Span, column: &Span, out: &mut [u8]) {
         let (step, stride) = (self.grid.pixel_stride(), self.grid.channel_stride());
         let corners = corners.map(|corner| &scores[corner * step..]);
@@ -174,6 +198,7 @@ impl Decoder {
 }
 
 /// The index of the highest score of each source pixel.
+#[inline(always)]
 fn argmax(grid: &Grid, scores: &[f32]) -> Vec<u8> {
     let pixels = grid.width * grid.height;
     let mut class = vec![0u8; pixels];
@@ -195,9 +220,28 @@ fn argmax(grid: &Grid, scores: &[f32]) -> Vec<u8> {
     class
 }
 
-fn highest_softmax(scores: &[f32]) -> f32 {
-    let highest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    1.0 / scores.iter().map(|score| (score - highest).exp()).sum::<f32>()
+impl ScoreKind {
+    /// Makes probabilities of the scores of a pixel, in place.
+    fn distribute(self, scores: &mut [f32]) {
+        match self {
+            Self::Logits => {
+                let highest = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+                scores.iter_mut().for_each(|score| *score = (*score - highest).exp());
+            }
+            // What a network rounds below 0 is none.
+            Self::Probabilities => scores.iter_mut().for_each(|score| *score = score.max(0.0)),
+        }
+        let sum: f32 = scores.iter().sum();
+        // Where nothing has a score, all are alike.
+        let alike = 1.0 / scores.len() as f32;
+        scores.iter_mut().for_each(|score| *score = if sum > 0.0 { *score / sum } else { alike });
+    }
+}
+
+/// That of probabilities, as a share of the greatest.
+fn entropy(probabilities: &[f32]) -> f32 {
+    let nats: f32 = probabilities.iter().filter(|p| **p > 0.0).map(|p| -p * p.ln()).sum();
+    if probabilities.len() > 1 { (nats / (probabilities.len() as f32).ln()).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -220,6 +264,10 @@ mod tests {
             }
         }
         out
+    }
+
+    fn how(align: bool) -> Enlarge {
+        if align { Enlarge::AlignCorners } else { Enlarge::HalfPixel }
     }
 
     /// Scores of one output pixel by the textbook, in f64.
@@ -249,7 +297,7 @@ mod tests {
         for (seed, ((w, h), (width, height))) in sizes.into_iter().enumerate() {
             for (interleaved, align) in [(false, false), (true, false), (false, true), (true, true)] {
                 let grid = Grid { channels: 16, width: w, height: h, interleaved };
-                let decoder = Decoder::new(grid, width, height, align);
+                let decoder = Decoder::new(grid, width, height, how(align));
                 let scores = scores(&grid, seed as u32);
                 let classes = decoder.classes(&scores);
                 for (i, &class) in classes.iter().enumerate() {
@@ -264,18 +312,24 @@ mod tests {
     }
 
     #[test]
-    fn confidence_agrees_with_the_textbook() {
+    fn certainty_agrees_with_the_textbook() {
         for (interleaved, align, (width, height)) in
             [(false, false, (17, 11)), (true, true, (17, 11)), (true, false, (5, 3))]
         {
             let grid = Grid { channels: 16, width: 5, height: 3, interleaved };
-            let decoder = Decoder::new(grid, width, height, align);
+            let decoder = Decoder::new(grid, width, height, how(align));
             let scores: Vec<f32> = scores(&grid, 7).iter().map(|score| 9.0 * score).collect();
-            for (i, &got) in decoder.confidence(&scores).iter().enumerate() {
-                let sums = upsampled(&decoder, &scores, align, i % width, i / width);
-                let highest = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let expected = highest.exp() / sums.iter().map(|s| s.exp()).sum::<f64>();
-                assert!((f64::from(got) - expected).abs() < 1e-4, "pixel {i}: {got}, expected {expected}");
+            for kind in [ScoreKind::Logits, ScoreKind::Probabilities] {
+                let Certainty { confidence, entropy } = decoder.certainty(&scores, kind);
+                for (i, (&sure, &doubt)) in confidence.iter().zip(&entropy).enumerate() {
+                    let sums = upsampled(&decoder, &scores, align, i % width, i / width).into_iter();
+                    let shares: Vec<f64> = sums.map(|s| if kind == ScoreKind::Logits { s.exp() } else { s }).collect();
+                    let p = shares.iter().map(|share| share / shares.iter().sum::<f64>());
+                    let highest = p.clone().fold(0.0, f64::max);
+                    let nats = p.map(|p| -p * p.ln()).sum::<f64>() / 16f64.ln();
+                    assert!((f64::from(sure) - highest).abs() < 1e-4, "pixel {i}: {sure}, expected {highest}");
+                    assert!((f64::from(doubt) - nats).abs() < 1e-4, "pixel {i}: {doubt}, expected {nats}");
+                }
             }
         }
     }
@@ -283,27 +337,42 @@ mod tests {
     #[test]
     fn equal_scores_are_the_least_confidence() {
         let grid = Grid { channels: 4, width: 2, height: 2, interleaved: false };
-        assert_eq!(Decoder::new(grid, 3, 3, false).confidence(&[800.0; 16]), [0.25; 9]);
+        for (kind, score) in
+            [(ScoreKind::Logits, 800.0), (ScoreKind::Probabilities, 0.25), (ScoreKind::Probabilities, 0.0)]
+        {
+            let certainty = Decoder::new(grid, 3, 3, Enlarge::HalfPixel).certainty(&[score; 16], kind);
+            assert_eq!(certainty, Certainty { confidence: vec![0.25; 9], entropy: vec![1.0; 9] });
+        }
     }
 
     #[test]
     fn both_memory_layouts_give_the_same_classes() {
         let planes = Grid { channels: 5, width: 6, height: 4, interleaved: false };
         let pixels = Grid { interleaved: true, ..planes };
-        let of = |grid: Grid| Decoder::new(grid, 48, 32, false).classes(&scores(&grid, 3));
+        let of = |grid: Grid| Decoder::new(grid, 48, 32, Enlarge::HalfPixel).classes(&scores(&grid, 3));
         assert_eq!(of(planes), of(pixels));
     }
 
     #[test]
     fn class_maps_are_resized_to_the_nearest() {
         let grid = Grid { channels: 1, width: 2, height: 2, interleaved: false };
-        let ids = Decoder::new(grid, 4, 4, false).nearest(&[1, 2, 3, 4]);
+        let ids = Decoder::new(grid, 4, 4, Enlarge::HalfPixel).nearest(&[1, 2, 3, 4]);
         assert_eq!(ids, [1, 1, 2, 2, 1, 1, 2, 2, 3, 3, 4, 4, 3, 3, 4, 4]);
+    }
+
+    #[test]
+    fn nearest_neighbours_give_the_class_of_a_source_pixel() {
+        let grid = Grid { channels: 5, width: 6, height: 4, interleaved: true };
+        let scores = scores(&grid, 3);
+        let coarse = argmax(&grid, &scores);
+        let classes = Decoder::new(grid, 18, 10, Enlarge::Nearest).classes(&scores);
+        let source = |i: usize| i / 18 * 4 / 10 * 6 + i % 18 * 6 / 18;
+        assert!(classes.iter().enumerate().all(|(i, class)| *class == coarse[source(i)]));
     }
 
     #[test]
     fn the_first_of_equal_scores_wins() {
         let grid = Grid { channels: 3, width: 2, height: 2, interleaved: false };
-        assert!(Decoder::new(grid, 8, 8, false).classes(&[1.0; 12]).iter().all(|class| *class == 0));
+        assert!(Decoder::new(grid, 8, 8, Enlarge::HalfPixel).classes(&[1.0; 12]).iter().all(|class| *class == 0));
     }
 }

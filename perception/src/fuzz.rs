@@ -190,7 +190,7 @@ fn check(files: &[(&str, &[u8])]) -> TestCaseResult {
     let tried = Checkpoint::load(dir.join("case.onnx")).and_then(|checkpoint| {
         let mut segmenter = Segmenter::new(&checkpoint, 32, 16)?;
         let rgb = crate::toy::picture(32, 16);
-        segmenter.run_with_confidence(RgbView::new(32, 16, &rgb).expect("a picture")).map(drop)
+        segmenter.run_with_certainty(RgbView::new(32, 16, &rgb).expect("a picture")).map(drop)
     });
     if let Err(error) = tried {
         let text = error.to_string();

@@ -4,7 +4,9 @@
 //! `u8`. What a network's output channels mean is its checkpoint's business ([`ClassMap`]); the 16
 //! classes that are trained and measured are one table ([`classes::TRAIN_CLASSES`]).
 
+mod boundary;
 mod bundled;
+mod calibration;
 mod checkpoint;
 pub mod cityscapes;
 pub mod classes;
@@ -17,9 +19,11 @@ mod image;
 mod metadata;
 mod metrics;
 mod onnx;
+mod operators;
 mod parts;
 mod peel;
 mod segmenter;
+mod simd;
 mod taps;
 mod tensors;
 #[cfg(test)]
@@ -30,12 +34,15 @@ pub mod training;
 #[cfg(test)]
 mod zoo;
 
+pub use boundary::BoundaryCounts;
 pub use bundled::{BUNDLED, TRUTH, bundled};
+pub use calibration::{Calibration, Reliability, SURE, Trust};
 pub use checkpoint::Checkpoint;
 pub use classes::ClassMap;
 pub use compute::Compute;
+pub use decode::Certainty;
 pub use error::PerceptionError;
 pub use image::{Mask, RgbView};
-pub use metadata::{Layout, Metadata, Normalisation};
+pub use metadata::{Layout, Metadata, Normalisation, ScoreKind};
 pub use metrics::{ConfusionMatrix, Scores};
 pub use segmenter::Segmenter;

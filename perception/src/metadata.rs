@@ -8,6 +8,7 @@
 //! | `aeye.classes` | JSON list of class names in the order of the outputs, or the name of a scheme as a JSON string (see [`ClassMap::named`]) | required |
 //! | `aeye.mean`, `aeye.std` | JSON list of three numbers for red, green, blue; the input is `(byte / 255 - mean) / std` | required for a float input |
 //! | `aeye.layout` | JSON string `"nchw"` or `"nhwc"` | from the input's shape |
+//! | `aeye.scores` | JSON string `"logits"` (or logarithms of probabilities), or `"probabilities"` for a network that ends in a softmax or a sigmoid | probabilities where the graph ends in Softmax or Sigmoid |
 //! | `aeye.align_corners` | JSON bool: whether the upsampling of the logits maps corner pixels onto corner pixels | `false`: edges onto edges (half-pixel centres) |
 //!
 //! Values of `metadata_props` are JSON texts.
@@ -21,7 +22,7 @@ use crate::classes::ClassMap;
 
 /// Prefix of the keys in `metadata_props`.
 const PREFIX: &str = "aeye.";
-const KEYS: [&str; 5] = ["classes", "mean", "std", "layout", "align_corners"];
+const KEYS: [&str; 6] = ["classes", "mean", "std", "layout", "scores", "align_corners"];
 
 /// Order of the dimensions of the network's input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -33,6 +34,16 @@ pub enum Layout {
     Nhwc,
 }
 
+/// What a network's scores are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ScoreKind {
+    /// Their softmax is what the network believes.
+    Logits,
+    /// They are what it believes, but for their sum.
+    Probabilities,
+}
+
 /// What a checkpoint says about its input and output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metadata {
@@ -42,6 +53,8 @@ pub struct Metadata {
     pub normalisation: Option<Normalisation>,
     /// Order of the input's dimensions, where its shape does not tell.
     pub layout: Option<Layout>,
+    /// What its scores are, where its last node does not tell; the class is that of the highest score either way.
+    pub scores: Option<ScoreKind>,
     /// Whether upsampling maps corner pixels onto corner pixels.
     pub align_corners: bool,
 }
@@ -71,6 +84,7 @@ struct Written {
     mean: Option<[f32; 3]>,
     std: Option<[f32; 3]>,
     layout: Option<Layout>,
+    scores: Option<ScoreKind>,
     #[serde(default)]
     align_corners: bool,
 }
@@ -90,6 +104,7 @@ impl Metadata {
             mean: self.normalisation.map(|n| n.mean),
             std: self.normalisation.map(|n| n.std),
             layout: self.layout,
+            scores: self.scores,
             align_corners: self.align_corners,
         };
         let json = serde_json::to_value(written).unwrap_or_default();
@@ -133,6 +148,7 @@ impl Metadata {
             classes: classes.map_err(|e: PerceptionError| format!("key classes: {e}"))?,
             normalisation: normalisation(written.mean, written.std)?,
             layout: written.layout,
+            scores: written.scores,
             align_corners: written.align_corners,
         })
     }
@@ -167,6 +183,7 @@ mod tests {
             classes: ClassMap::named("aeye").unwrap(),
             normalisation: Some(Normalisation { mean: [0.5, 0.25, 0.125], std: [0.2, 0.3, 0.4] }),
             layout: Some(Layout::Nchw),
+            scores: Some(ScoreKind::Probabilities),
             align_corners: false,
         }
     }
@@ -181,7 +198,7 @@ mod tests {
 
     #[test]
     fn sidecar_speaks_the_same_keys() {
-        let text = "classes = \"aeye\"\nmean = [0.5, 0.25, 0.125]\nstd = [0.2, 0.3, 0.4]\nlayout = \"nchw\"\n";
+        let text = "classes = \"aeye\"\nmean = [0.5, 0.25, 0.125]\nstd = [0.2, 0.3, 0.4]\nlayout = \"nchw\"\nscores = \"probabilities\"\n";
         assert_eq!(Metadata::from_toml(text), Ok(example()));
     }
 

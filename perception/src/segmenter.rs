@@ -8,9 +8,9 @@ use crate::classes::UNLABELED_TAG;
 use crate::compute::agree;
 use crate::decode::{Decoder, Grid};
 use crate::image::resample;
-use crate::metadata::Layout;
+use crate::metadata::{Layout, ScoreKind};
 use crate::onnx::{self, Element, Engine, Output, Pixels};
-use crate::{Checkpoint, Compute, Mask, PerceptionError, RgbView};
+use crate::{Certainty, Checkpoint, Compute, Mask, PerceptionError, RgbView};
 
 /// A network made ready for pictures of one size. On the CPU single-threaded and deterministic; a
 /// clone shares the weights.
@@ -27,6 +27,7 @@ pub struct Segmenter {
     table: Arc<[[f32; 256]; 3]>,
     engine: Engine,
     decoder: Decoder,
+    score_kind: ScoreKind,
     tags: Vec<u8>,
     floats: Vec<f32>,
     bytes: Vec<u8>,
@@ -80,19 +81,20 @@ impl Segmenter {
         let lacks = |reason| PerceptionError::Compute { name: compute.name(), reason };
         let runtime = onnx::runtime(compute.name()).map_err(lacks)?;
         let engine = Engine::new(runtime, &checkpoint.model, input.element, shape).map_err(refuse)?;
-        let grid = grid(&engine, checkpoint.classes().count(), input.layout).map_err(refuse)?;
-        let decoder = Decoder::new(grid, width, height, checkpoint.align_corners);
+        let grid = grid(&engine, checkpoint.classes().count(), checkpoint.scores).map_err(refuse)?;
+        let decoder = Decoder::new(grid, width, height, checkpoint.enlarge);
         Ok(Self {
             path,
             compute,
             width,
             height,
             network,
-            layout: input.layout,
+            layout: if engine.takes_last { Layout::Nhwc } else { input.layout },
             element: input.element,
             table: Arc::new(checkpoint.metadata().normalisation.map_or([[0.0; 256]; 3], |n| n.table())),
             engine,
             decoder,
+            score_kind: checkpoint.score_kind,
             tags: checkpoint.classes().tags().to_vec(),
             floats: Vec::new(),
             bytes: Vec::new(),
@@ -115,15 +117,14 @@ impl Segmenter {
         self.mask(&output)
     }
 
-    /// The class of every pixel, and how sure the network is of it: the softmax of its scores, (0, 1].
-    /// `None` for a network that gives classes only.
-    pub fn run_with_confidence(&mut self, image: RgbView<'_>) -> Result<(Mask, Option<Vec<f32>>), PerceptionError> {
+    /// The class of every pixel, and how sure the network is of it. `None` for a network that gives classes only.
+    pub fn run_with_certainty(&mut self, image: RgbView<'_>) -> Result<(Mask, Option<Certainty>), PerceptionError> {
         let output = self.output(image)?;
-        let confidence = match &output {
-            Output::Scores(scores) => Some(self.decoder.confidence(scores)),
+        let certainty = match &output {
+            Output::Scores(scores) => Some(self.decoder.certainty(scores, self.score_kind)),
             Output::Ids(_) => None,
         };
-        Ok((self.mask(&output)?, confidence))
+        Ok((self.mask(&output)?, certainty))
     }
 
     /// What the network gives for a picture.
@@ -192,7 +193,7 @@ fn fill<T: Copy + Default>(out: &mut Vec<T>, rgb: &[u8], layout: Layout, value: 
 }
 
 /// How the network's output is to be read.
-fn grid(engine: &Engine, classes: usize, input: Layout) -> Result<Grid, String> {
+fn grid(engine: &Engine, classes: usize, likely: Layout) -> Result<Grid, String> {
     let shape = &engine.output_shape;
     let text = || shape.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
     if shape.contains(&0) {
@@ -200,8 +201,11 @@ fn grid(engine: &Engine, classes: usize, input: Layout) -> Result<Grid, String> 
     }
     let ids = |height, width| Ok(Grid { channels: 1, width, height, interleaved: false });
     match (engine.gives_ids, shape.as_slice()) {
+        (false, &[1, h, w, c]) if engine.is_moved && c == classes => {
+            Ok(Grid { channels: c, width: w, height: h, interleaved: true })
+        }
         (true, &[1, h, w] | &[1, 1, h, w] | &[1, h, w, 1]) => ids(h, w),
-        (false, &[1, c, h, w]) if c == classes && (input == Layout::Nchw || w != classes) => {
+        (false, &[1, c, h, w]) if c == classes && (likely == Layout::Nchw || w != classes) => {
             Ok(Grid { channels: c, width: w, height: h, interleaved: false })
         }
         (false, &[1, h, w, c]) if c == classes => Ok(Grid { channels: c, width: w, height: h, interleaved: true }),
@@ -279,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn confidence_comes_with_the_same_mask_and_only_from_scores() {
+    fn certainty_comes_with_the_same_mask_and_only_from_scores() {
         let tails = [(Tail::None, true), (Tail::Upsample, true), (Tail::Argmax, true), (Tail::CoarseArgmax, false)];
         for (tail, has_scores) in tails {
             let dir = tempfile::tempdir().unwrap();
@@ -287,9 +291,9 @@ mod tests {
             let mut segmenter = Segmenter::new(&checkpoint, SIZE.0, SIZE.1).unwrap();
             let rgb = toy::picture(SIZE.0, SIZE.1);
             let image = RgbView::new(SIZE.0, SIZE.1, &rgb).unwrap();
-            let (mask, confidence) = segmenter.run_with_confidence(image).unwrap();
+            let (mask, certainty) = segmenter.run_with_certainty(image).unwrap();
             assert_eq!(mask, segmenter.run(image).unwrap());
-            assert_eq!(confidence.map(|c| c.len()), has_scores.then_some(SIZE.0 * SIZE.1));
+            assert_eq!(certainty.map(|c| c.confidence.len()), has_scores.then_some(SIZE.0 * SIZE.1));
         }
     }
 

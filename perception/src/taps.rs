@@ -1,4 +1,15 @@
-//! Where a resampled pixel comes from: two neighbours and a weight (bilinear).
+//! Where a resampled pixel comes from: two neighbours and a weight (bilinear), or one of them (nearest).
+
+/// How coarse scores are enlarged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Enlarge {
+    /// Bilinear; the outermost edges coincide.
+    HalfPixel,
+    /// Bilinear; the outermost pixel centres coincide.
+    AlignCorners,
+    /// Every pixel is the source pixel that its upper left corner lies in.
+    Nearest,
+}
 
 /// For each output pixel along one axis: the left one of its two source pixels, and the weight of
 /// the right one.
@@ -27,6 +38,22 @@ impl Taps {
         }
     }
 
+    /// The same for a way of enlarging.
+    pub fn enlarging(from: usize, to: usize, how: Enlarge) -> Self {
+        match how {
+            Enlarge::HalfPixel => Self::new(from, to, false),
+            Enlarge::AlignCorners => Self::new(from, to, true),
+            Enlarge::Nearest => {
+                let source = |i: usize| i * from / to;
+                let left = |i: usize| source(i).min(from.saturating_sub(2));
+                Self {
+                    left: (0..to).map(left).collect(),
+                    weight: (0..to).map(|i| (source(i) - left(i)) as f32).collect(),
+                }
+            }
+        }
+    }
+
     /// Index of the right source pixel of output pixel `i`, where the axis has `from` pixels.
     pub fn right(&self, i: usize, from: usize) -> usize {
         (self.left[i] + 1).min(from - 1)
@@ -50,6 +77,15 @@ mod tests {
         let taps = Taps::new(3, 5, true);
         let places: Vec<f32> = taps.left.iter().zip(&taps.weight).map(|(&l, w)| l as f32 + w).collect();
         assert_eq!(places, [0.0, 0.5, 1.0, 1.5, 2.0]);
+    }
+
+    #[test]
+    fn nearest_as_in_pytorch() {
+        // torch.nn.functional.interpolate([0, 1, 2], size=7, mode="nearest"): 0, 0, 0, 1, 1, 2, 2
+        let taps = Taps::enlarging(3, 7, Enlarge::Nearest);
+        let places: Vec<f32> = taps.left.iter().zip(&taps.weight).map(|(&l, w)| l as f32 + w).collect();
+        assert_eq!(places, [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0]);
+        assert!((0..7).all(|i| taps.right(i, 3) < 3));
     }
 
     #[test]

@@ -53,6 +53,7 @@ pub fn metadata() -> Metadata {
         classes: ClassMap::from_names(&CLASSES).unwrap(),
         normalisation: Some(Normalisation { mean: [0.25, 0.5, 0.75], std: [0.5, 0.25, 0.125] }),
         layout: None,
+        scores: None,
         align_corners: false,
     }
 }

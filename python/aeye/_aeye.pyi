@@ -94,7 +94,7 @@ class Actors(TypedDict):
 
 @final
 class Camera:
-    """The pinhole camera of a frame, in the axes that OpenCV uses: x to the right, y down, z along the view."""
+    """The camera of a frame, a pinhole behind a lens, in the axes that OpenCV uses: x to the right, y down, z along the view."""
 
     @property
     def width(self) -> int:
@@ -107,6 +107,10 @@ class Camera:
     @property
     def intrinsics(self) -> NDArray[np.float64]:
         """The matrix K, float64 of shape (3, 3), pixels. The middle of the first pixel is at (0.5, 0.5)."""
+
+    @property
+    def distortion(self) -> NDArray[np.float64]:
+        """What its lens does, float64 of shape (5,): k1, k2, p1, p2 and k3 of OpenCV, 0 of an ideal one."""
 
     @property
     def world_from_camera(self) -> NDArray[np.float64]:
@@ -265,6 +269,7 @@ class Recording:
         fps: int = 10,
         size: tuple[int, int] = (256, 128),
         quality: Literal["plain", "standard", "fine"] | None = None,
+        sensor: str | None = None,
         camera: Literal["driver", "chase", "top"] = "driver",
     ) -> Frames:
         """The frames of a window.
@@ -272,7 +277,8 @@ class Recording:
         Those are the last seconds before the takeover (or the collision that nobody prevented, else the end), as `aeye
         rerender` draws them, or, with `from_` or `to` or with `last=None`, those between two times of the run (seconds;
         None: its start, its end), cut to what the file holds: a case begins at `first_tick`. `size` is (width, height)
-        in pixels, `quality` how good they are (None: as usual), `fps` a divisor of 60.
+        in pixels, `quality` how good they are (None: as usual), `sensor` what lens and chip do, as in `noise=4,k1=-0.1` (None:
+        nothing), `fps` a divisor of 60.
 
         Raises InputError where there is nothing in the window, or a value cannot be.
         """
@@ -283,6 +289,7 @@ class Recording:
         *,
         size: tuple[int, int] = (256, 128),
         quality: Literal["plain", "standard", "fine"] | None = None,
+        sensor: str | None = None,
         camera: Literal["driver", "chase", "top"] = "driver",
     ) -> Frame:
         """The picture of a tick.
@@ -399,8 +406,8 @@ class Episodes:
     """So many places for drives that are stepped together, for `aeye.gym`.
 
     `jobs` of them at the same time (None: one a core). An agent has the `seat` and holds its controls for `ticks` of a step, a
-    bot has the other. `masks` and `images` say what is observed; images have a `size`, (width, height) (None: that of masks);
-    `record` is a folder for recordings. `draw` takes pictures of `render_size` from a `camera` (`driver`, `chase` or `top`).
+    bot has the other. `masks` and `images` say what is observed; images have a `size`, (width, height) (None: that of masks).
+    What is seen has the `quality` (None: the usual), and lens and chip do to it what `sensor` says (None: nothing); `record` is a folder for recordings. `draw` takes pictures of `render_size` from a `camera` (`driver`, `chase` or `top`).
 
     Raises FileError where a file is not there, InputError for a value that cannot be.
     """
@@ -419,6 +426,8 @@ class Episodes:
         masks: bool = True,
         images: bool = False,
         size: tuple[int, int] | None = None,
+        quality: str | None = None,
+        sensor: str | None = None,
         record: str | PathLike[str] | None = None,
         camera: str = "chase",
         render_size: tuple[int, int] = (512, 256),
@@ -483,6 +492,7 @@ def campaign(
     hazards: Literal["none", "natural", "raised"] | None = None,
     weather: str | None = None,
     quality: Literal["plain", "standard", "fine"] | None = None,
+    sensor: str | None = None,
     max_time: float = 240.0,
     seed: int = 1,
     jobs: int | None = None,
@@ -495,7 +505,7 @@ def campaign(
 
     `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
     scenario's, or all bundled ones), `weather` is one with a name, `quality` how good the pictures are that networks look
-    at. `vary` are as many runs, each with values drawn for those
+    at, and `sensor` what lens and chip do to them, as in `noise=4,k1=-0.1` (None: nothing). `vary` are as many runs, each with values drawn for those
     parameters of the scenario's story that have ranges. A run takes at most `max_time` simulated seconds.
     `jobs` worlds are simulated at the same time (None: one a core); the results do not depend on it.
 
@@ -563,6 +573,7 @@ def compare(
     no_worse_than: str | None = None,
     size: tuple[int, int] | None = None,
     quality: Literal["plain", "standard", "fine"] | None = None,
+    sensor: str | None = None,
     jobs: int | None = None,
     shard: tuple[int, int] | None = None,
 ) -> dict[str, Any]:
@@ -575,7 +586,8 @@ def compare(
     `early`, `full`, `truth`, ONNX files or `External`. Only those cases count on whose takeover a campaign came to one of the
     verdicts `verdict`, where it is given. `gates` are conditions on all others, as in `ped_iou>=0.5`, and
     `no_worse_than` names a checkpoint than which no other may be worse; `gates` of what is given says which were passed.
-    Pictures have the `size`, (width, height) (None: that of the first network), and the `quality` (None: the usual). `jobs` frames are looked at at the same
+    Pictures have the `size`, (width, height) (None: that of the first network), and the `quality` (None: the usual), and lens
+    and chip do to them what `sensor` says, as in `noise=4,k1=-0.1` (None: nothing). `jobs` frames are looked at at the same
     time (None: one a core); the results do not depend on it.
 
     With `shard`, (i, n), it looks at every n-th file alone and gives what `aeye compare --shard --json` prints; folders of all

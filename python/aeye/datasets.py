@@ -128,7 +128,8 @@ class CornerCases(_Windows):
 
     A sample is `transform(frame)`, or else `(rgb, class_ids)`: uint8 of shape (height, width, 3) and (height, width),
     classes being keys of `aeye.CLASSES` (PyTorch's losses want them as int64). `last` are seconds before the takeover,
-    `size` is (width, height). Workers that are spawned need a `transform` that can be pickled: no lambda.
+    `size` is (width, height), `quality` how good pictures are and `sensor` what lens and chip do to them, as for
+    `Recording.frames`. Workers that are spawned need a `transform` that can be pickled: no lambda.
 
     `keep` pieces of 32 samples stay in memory in each process, those that were asked for last: 100 MB at 256x128.
 
@@ -142,10 +143,13 @@ class CornerCases(_Windows):
         size: tuple[int, int] = (256, 128),
         last: float = 3.0,
         fps: int = 10,
+        quality: Literal["plain", "standard", "fine"] | None = None,
+        sensor: str | None = None,
         transform: Callable[[Frame], Sample] | None = None,
         keep: int = 24,
     ) -> None:
-        super().__init__(folder, "case", {"last": last, "fps": fps, "size": size}, transform, keep)
+        window = {"last": last, "fps": fps, "size": size, "quality": quality, "sensor": sensor}
+        super().__init__(folder, "case", window, transform, keep)
 
 
 class Natural(_Windows):
@@ -153,7 +157,7 @@ class Natural(_Windows):
 
     Cases do not count; forks of `aeye.redrive` and episodes of `aeye.gym` do.
 
-    A sample is what one of `CornerCases` is; `fps` frames a second of simulated time are taken, a divisor of 60.
+    A sample is what one of `CornerCases` is, of the same `quality` and `sensor`; `fps` frames a second of simulated time are taken, a divisor of 60.
 
     Raises FileError where the folder is not there, InputError where it holds no recording, or a file is damaged.
     """
@@ -164,10 +168,13 @@ class Natural(_Windows):
         *,
         size: tuple[int, int] = (256, 128),
         fps: int = 1,
+        quality: Literal["plain", "standard", "fine"] | None = None,
+        sensor: str | None = None,
         transform: Callable[[Frame], Sample] | None = None,
         keep: int = 24,
     ) -> None:
-        super().__init__(folder, "recording", {"last": None, "fps": fps, "size": size}, transform, keep)
+        window = {"last": None, "fps": fps, "size": size, "quality": quality, "sensor": sensor}
+        super().__init__(folder, "recording", window, transform, keep)
 
 
 def _found(places: _Places, kind: str, window: dict[str, Any]) -> list[tuple[Path, int]]:

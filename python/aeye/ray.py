@@ -54,6 +54,7 @@ def campaign(
     hazards: Literal["none", "natural", "raised"] | None = None,
     weather: str | None = None,
     quality: Literal["plain", "standard", "fine"] | None = None,
+    sensor: str | None = None,
     max_time: float = 240.0,
     seed: int = 1,
     cores: int = 1,
@@ -96,6 +97,7 @@ def campaign(
         "hazards": hazards,
         "weather": weather,
         "quality": quality,
+        "sensor": sensor,
         "max_time": max_time,
         "seed": seed,
     }

@@ -2,11 +2,11 @@
 
 use glam::Mat3;
 use kernel::scene::EgoScene;
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use render::camera::OPTICAL;
 
-/// The pinhole camera of a frame, in the axes that OpenCV uses: x to the right, y down, z along the view.
+/// The camera of a frame, a pinhole behind a lens, in the axes that OpenCV uses: x to the right, y down, z along the view.
 #[pyclass(frozen, module = "aeye")]
 pub struct Camera {
     /// Pixels a row.
@@ -16,6 +16,7 @@ pub struct Camera {
     #[pyo3(get)]
     height: u32,
     intrinsics: [f64; 9],
+    distortion: [f64; 5],
     pose: [f64; 16],
 }
 
@@ -28,7 +29,13 @@ impl Camera {
         let rows = [row(0, eye.x), row(1, eye.y), row(2, eye.z), [0.0, 0.0, 0.0, 1.0]];
         let mut pose = [0.0; 16];
         pose.as_chunks_mut::<4>().0.copy_from_slice(&rows);
-        Self { width: camera.width, height: camera.height, intrinsics: camera.intrinsics(), pose }
+        Self {
+            width: camera.width,
+            height: camera.height,
+            intrinsics: camera.intrinsics(),
+            distortion: camera.distortion(),
+            pose,
+        }
     }
 }
 
@@ -38,6 +45,12 @@ impl Camera {
     #[getter]
     fn intrinsics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.intrinsics.to_vec().into_pyarray(py).reshape([3, 3])
+    }
+
+    /// What its lens does, float64 of shape (5,): k1, k2, p1, p2 and k3 of OpenCV, 0 of an ideal one.
+    #[getter]
+    fn distortion<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.distortion.to_vec().into_pyarray(py)
     }
 
     /// From camera to world, float64 of shape (4, 4), metres: x east, y north, z up.

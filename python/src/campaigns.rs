@@ -20,7 +20,8 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 ///
 /// `checkpoint` are `early`, `full`, `truth`, ONNX files or `External`, `maps` names of bundled maps or OpenDRIVE files (None: the
 /// scenario's, or all bundled ones), `hazards` is `none`, `natural` or `raised`, `weather` one with a name. Networks look at
-/// pictures of the `quality` `plain`, `standard` or `fine` (None: the usual). A run takes at most `max_time` simulated seconds. `jobs` worlds are simulated at the same time (None: one a core); the
+/// pictures of the `quality` `plain`, `standard` or `fine` (None: the usual), to which lens and chip do what `sensor` says, as in
+/// `noise=4,k1=-0.1` (None: nothing). A run takes at most `max_time` simulated seconds. `jobs` worlds are simulated at the same time (None: one a core); the
 /// results do not depend on it.
 ///
 /// With `shard`, (i, n), it drives every n-th run alone, up to `runs` or `vary`, into a folder for `collect`, and gives what `aeye
@@ -32,11 +33,12 @@ const GOAL: &str = "expected runs, or one of km, cases and pedestrian_cases, mor
 #[pyo3(
     signature = (
         checkpoint, out, *, runs = None, vary = None, km = None, cases = None, pedestrian_cases = None, maps = None, scenario = None,
-        pedestrians = None, hazards = None, weather = None, quality = None, max_time = Given::of(240.0),
+        pedestrians = None, hazards = None, weather = None, quality = None, sensor = None, max_time = Given::of(240.0),
         seed = Given::of(Whole(1)), jobs = None, shard = None
     ),
     text_signature = "(checkpoint, out, *, runs=None, vary=None, km=None, cases=None, pedestrian_cases=None, maps=None, \
-                      scenario=None, pedestrians=None, hazards=None, weather=None, quality=None, max_time=240.0, seed=1, \
+                      scenario=None, pedestrians=None, hazards=None, weather=None, quality=None, sensor=None, \
+                      max_time=240.0, seed=1, \
                       jobs=None, shard=None)"
 )]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
@@ -55,6 +57,7 @@ pub fn campaign<'py>(
     hazards: Option<Given<String>>,
     weather: Option<Given<String>>,
     quality: Option<Given<String>>,
+    sensor: Option<Given<String>>,
     max_time: Given<f64>,
     seed: Given<Whole>,
     jobs: Option<Given<Whole>>,
@@ -81,7 +84,7 @@ pub fn campaign<'py>(
         pedestrians,
         hazards: level(hazards)?,
         weather: preset(weather)?,
-        imaging: values::quality(quality)?.into(),
+        imaging: values::imaging(quality, sensor)?,
         run_seconds: whole_seconds(max_time, "max_time", 10..=86_400)?,
         seed: seed.within("seed", 0..=u64::MAX)?,
         jobs: jobs_at_once(jobs)?,

@@ -22,7 +22,8 @@ use crate::work::{shared, tabled, work};
 /// `early`, `full`, `truth`, ONNX files or `External`. Only those cases count on whose takeover a campaign came to one of the
 /// verdicts `verdict`, where it is given. `gates` are conditions on all others, as in `ped_iou>=0.5`, and `no_worse_than`
 /// names a checkpoint than which no other may be worse; `gates` of what is given says which were passed. Pictures have the
-/// `size`, (width, height) (None: that of the first network), and the `quality` `plain`, `standard` or `fine` (None: the usual). `jobs` frames are looked at at the same time (None: one a
+/// `size`, (width, height) (None: that of the first network), and the `quality` `plain`, `standard` or `fine` (None: the usual), and lens
+/// and chip do to them what `sensor` says, as in `noise=4,k1=-0.1` (None: nothing). `jobs` frames are looked at at the same time (None: one a
 /// core); the results do not depend on it.
 ///
 /// With `shard`, (i, n), it looks at every n-th file alone and gives what `aeye compare --shard --json` prints; folders of all shards,
@@ -30,7 +31,7 @@ use crate::work::{shared, tabled, work};
 ///
 /// Raises InputError for a value that cannot be, FileError where a file is not there, EngineError where no case can be drawn.
 #[pyfunction]
-#[pyo3(signature = (cases, checkpoints, out, *, verdict = None, gates = None, no_worse_than = None, size = None, quality = None, jobs = None, shard = None))]
+#[pyo3(signature = (cases, checkpoints, out, *, verdict = None, gates = None, no_worse_than = None, size = None, quality = None, sensor = None, jobs = None, shard = None))]
 #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
 pub fn compare<'py>(
     py: Python<'py>,
@@ -42,6 +43,7 @@ pub fn compare<'py>(
     no_worse_than: Option<Given<String>>,
     size: Option<Given<Pair>>,
     quality: Option<Given<String>>,
+    sensor: Option<Given<String>>,
     jobs: Option<Given<Whole>>,
     shard: Option<Given<Pair>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -55,7 +57,7 @@ pub fn compare<'py>(
         gate: gates.iter().map(gate).collect::<PyResult<_>>()?,
         no_worse_than: named(no_worse_than, "no_worse_than")?,
         size: size.map(|size| picture_size(size, "size")).transpose()?,
-        imaging: values::quality(quality)?.into(),
+        imaging: values::imaging(quality, sensor)?,
         jobs: jobs_at_once(jobs)?,
         out,
     };

@@ -182,16 +182,17 @@ impl Recording {
     /// end), as `aeye rerender` draws them, or, with `from_` or `to` or with `last=None`, those between two times of the
     /// run (seconds; None: its start, its end), cut to what the file holds: a case begins at `first_tick`.
     ///
-    /// `size` is (width, height) in pixels, `quality` one of `plain`, `standard` and `fine` (None: the usual), `fps` a divisor of 60, `camera` one of `driver`, `chase` and `top`.
+    /// `size` is (width, height) in pixels, `quality` one of `plain`, `standard` and `fine` (None: the usual), `sensor` what
+    /// lens and chip do, as in `noise=4,k1=-0.1` (None: nothing), `fps` a divisor of 60, `camera` one of `driver`, `chase` and `top`.
     ///
     /// Raises InputError where there is nothing in the window, or a value cannot be.
     #[pyo3(
         signature = (
             *, last = Given::of(Last::Default), from_ = None, to = None, fps = Given::of(Whole(10)), size = DEFAULT_PAIR,
-            quality = None, camera = driver()
+            quality = None, sensor = None, camera = driver()
         ),
         text_signature = "($self, *, last=3.0, from_=None, to=None, fps=10, size=(256, 128), quality=None, \
-                          camera='driver')"
+                          sensor=None, camera='driver')"
     )]
     #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
     fn frames(
@@ -202,6 +203,7 @@ impl Recording {
         fps: Given<Whole>,
         size: Given<Pair>,
         quality: Option<Given<String>>,
+        sensor: Option<Given<String>>,
         camera: Given<String>,
     ) -> PyResult<Frames> {
         let is_between = from_.is_some() || to.is_some();
@@ -216,9 +218,9 @@ impl Recording {
         let time = |given, name| named(given, name)?.map(|seconds| ticks(seconds, name)).transpose();
         let asked = Asked { last, from: time(from_, "from_")?, to: time(to, "to")?, fps: frame_rate(fps)? };
         let (viewpoint, size) = (viewpoint(camera)?, picture_size(size, "size")?);
-        let quality = values::quality(quality)?;
+        let imaging = values::imaging(quality, sensor)?;
         let shots = Shots::of_window(&self.stage, &asked, viewpoint, size);
-        Ok(shots.map_err(|error| raise(&error))?.at(quality).into())
+        Ok(shots.map_err(|error| raise(&error))?.at(imaging).into())
     }
 
     /// The picture of a tick.
@@ -226,8 +228,8 @@ impl Recording {
     /// Raises InputError where the file has no such tick, EngineError where another version of the simulation made it
     /// (of its cases, the ticks with a stored scene can be drawn) or no graphics driver is there.
     #[pyo3(
-        signature = (tick, *, size = DEFAULT_PAIR, quality = None, camera = driver()),
-        text_signature = "($self, tick, *, size=(256, 128), quality=None, camera='driver')"
+        signature = (tick, *, size = DEFAULT_PAIR, quality = None, sensor = None, camera = driver()),
+        text_signature = "($self, tick, *, size=(256, 128), quality=None, sensor=None, camera='driver')"
     )]
     fn frame(
         &self,
@@ -235,13 +237,14 @@ impl Recording {
         tick: Given<Whole>,
         size: Given<Pair>,
         quality: Option<Given<String>>,
+        sensor: Option<Given<String>>,
         camera: Given<String>,
     ) -> PyResult<Frame> {
-        let quality = values::quality(quality)?;
+        let imaging = values::imaging(quality, sensor)?;
         let tick = tick.within("tick", self.first_tick()..=self.log().last_tick())?;
         let (viewpoint, size) = (viewpoint(camera)?, picture_size(size, "size")?);
         let shots = Shots::of_tick(&self.stage, tick, viewpoint, size).map_err(|error| raise(&error))?;
-        Frames::from(shots.at(quality)).draw(py, 0)
+        Frames::from(shots.at(imaging)).draw(py, 0)
     }
 
     fn __repr__(&self) -> String {

@@ -14,7 +14,7 @@ use kernel::weather::WeatherPreset;
 use lab::share::Share;
 use numpy::PyUntypedArray;
 use pyo3::prelude::*;
-use render::Quality;
+use render::{Imaging, Quality, Sensor};
 
 use crate::errors::{file, input, raise};
 use crate::given::{Given, Pair, Whole, named, within};
@@ -76,10 +76,18 @@ pub fn preset(name: Option<Given<String>>) -> PyResult<Option<WeatherPreset>> {
     found.ok_or_else(|| input(format!("weather=\"{name}\"; expected one of {}", names())))
 }
 
-/// The quality of pictures of a name.
-pub fn quality(name: Option<Given<String>>) -> PyResult<Quality> {
-    let Some(name) = named(name, "quality")? else { return Ok(Quality::default()) };
-    name.parse().map_err(|expected| input(format!("quality=\"{name}\"; {expected}")))
+/// How pictures are made: their quality by its name, and what lens and chip do, in the words of the command.
+pub fn imaging(quality: Option<Given<String>>, sensor: Option<Given<String>>) -> PyResult<Imaging> {
+    let refused = |name: &str, text: &str, expected: String| input(format!("{name}=\"{text}\"; {expected}"));
+    let quality =
+        named(quality, "quality")?.map(|name| name.parse::<Quality>().map_err(|why| refused("quality", &name, why)));
+    let sensor =
+        named(sensor, "sensor")?.map(|text| text.parse::<Sensor>().map_err(|why| refused("sensor", &text, why)));
+    Ok(Imaging {
+        quality: quality.transpose()?.unwrap_or_default(),
+        sensor: sensor.transpose()?.unwrap_or_default(),
+        models: None,
+    })
 }
 
 /// A time in whole seconds.

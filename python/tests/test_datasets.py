@@ -38,6 +38,17 @@ def test_samples_are_the_frames_of_the_files(files):
         cases[len(cases)]
 
 
+def test_samples_have_the_quality_and_the_sensor_that_are_asked_for(files):
+    made = {"quality": "standard", "sensor": "noise=6"}
+    case = files / "below" / "a.case.mcap"
+    frames = aeye.open(case).frames(last=0.5, size=(64, 32), **made)
+    samples = CornerCases(case, size=(64, 32), last=0.5, **made)
+    assert np.array_equal(samples[3][0], frames[3].rgb)
+    assert not np.array_equal(samples[3][0], CornerCases(case, size=(64, 32), last=0.5)[3][0])
+    drive = aeye.open(files / "drive.mcap").frames(last=None, fps=1, size=(64, 32), **made)
+    assert np.array_equal(Natural(files, size=(64, 32), **made)[2][0], drive[2].rgb)
+
+
 def test_a_drive_is_taken_from_its_start_to_its_end(files):
     natural = Natural(files, size=(64, 32), fps=2, transform=lambda frame: frame.tick)
     assert [path.name for path in natural.paths] == ["drive.mcap"]

@@ -28,6 +28,24 @@ def test_arrays_are_the_files_of_rerender(which, request, program, tmp_path):
         assert np.array_equal(network.predict(frame.rgb), picture(home / "predictions" / "early" / name))
 
 
+def test_a_sensor_is_that_of_the_command(drive, program, tmp_path):
+    sensor = "noise=6,k1=-0.1"
+    options = ["--size", "96x48", "--quality", "plain", "--sensor", sensor]
+    program("rerender", drive, "--checkpoint", "truth", "--last", "0.5s", *options, "--out", tmp_path)
+    (home,) = (folder.parent for folder in tmp_path.glob("*/rgb"))
+    recording = aeye.open(drive)
+    frames = recording.frames(last=0.5, size=(96, 48), quality="plain", sensor=sensor)
+    for tick, frame in zip(frames.ticks, frames, strict=True):
+        assert np.array_equal(frame.rgb, picture(home / "rgb" / f"{tick:08}.png"))
+        assert np.array_equal(frame.class_ids, picture(home / "labels" / f"{tick:08}.png"))
+    assert np.allclose(frame.camera.distortion, [-0.1, 0, 0, 0, 0]) and frame.camera.distortion.shape == (5,)
+    one = recording.frame(frame.tick, size=(96, 48), quality="plain", sensor=sensor)
+    assert np.array_equal(one.rgb, frame.rgb)
+    assert not recording.frame(60, size=(8, 8)).camera.distortion.any()
+    with pytest.raises(aeye.InputError, match='sensor="noise=99"; .*expected a number from 0 to 32'):
+        recording.frames(sensor="noise=99")
+
+
 def test_every_plane_has_its_shape_and_is_the_renderers_memory(drive):
     frame = aeye.open(drive).frame(60, size=(64, 32))
     planes = {"rgb": (32, 64, 3), "class_ids": (32, 64), "instance_ids": (32, 64), "depth_m": (32, 64)}

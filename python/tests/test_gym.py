@@ -66,6 +66,30 @@ def test_the_controls_of_a_headless_drive_give_that_drive(seat, drive, tmp_path)
     assert said == expected | {seat: "agent"}
 
 
+def test_images_are_those_of_a_sensor_and_masks_of_truth_are_not(tmp_path):
+    made = {"quality": "plain", "sensor": "noise=6"}
+    seen = []
+    for options in ({"quality": "plain"}, made):
+        env = gymnasium.make(ID, observe="both", map="city", record=tmp_path, **options).unwrapped
+        env.reset(seed=3)
+        seen.append(env.step(np.zeros(3, np.float32))[0])
+        info = env.step(np.zeros(3, np.float32))[-1]
+        env.close()
+    assert info["tick"] == 12
+    ideal, noisy = seen
+    assert np.array_equal(ideal["mask"], noisy["mask"]) and not np.array_equal(ideal["rgb"], noisy["rgb"])
+    recording = aeye.open(sorted(tmp_path.glob("*.mcap"))[-1])
+    assert np.array_equal(recording.frame(6, **made).rgb, noisy["rgb"])
+    with pytest.raises(aeye.InputError, match="sensor="):
+        gymnasium.make(ID, sensor="iso=100")
+    env = gymnasium.make(ID, checkpoint="early", map="city", record=tmp_path / "early", **made).unwrapped
+    env.reset(seed=3)
+    env.step(np.zeros(3, np.float32))
+    env.close()
+    (kept,) = (tmp_path / "early").glob("*.mcap")
+    assert aeye.open(kept).inspect()["provenance"]["camera"] == "driver 256x128 plain noise=6"
+
+
 def test_a_takeover_comes_again_in_the_same_tick(case, tmp_path):
     recording = aeye.open(case.with_name(case.name.replace(".case", "")))
     scenario = tmp_path / "scenario.toml"

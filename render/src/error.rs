@@ -1,7 +1,7 @@
 //! Why nothing could be drawn.
 
-use crate::Sensor;
 use crate::models::ModelsId;
+use crate::{Camera, Sensor};
 
 /// Why nothing could be drawn; each says in one sentence what to do about it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -32,6 +32,25 @@ pub enum RenderError {
         width: u32,
         /// Height asked for.
         height: u32,
+        /// Largest side that the adapter draws.
+        limit: u32,
+    },
+    /// The camera's lens shows more than its image, which can be drawn, and that cannot.
+    #[error(
+        "camera asks for an image of {width}x{height} pixels through a lens of {sensor}, for which {drawn_width}x{drawn_height} are \
+         drawn, expected 1x1 to {limit}x{limit} of these: a smaller image or weaker distortion"
+    )]
+    LensSize {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+        /// What the lens does.
+        sensor: Sensor,
+        /// Width that the lens shows.
+        drawn_width: u32,
+        /// Height that the lens shows.
+        drawn_height: u32,
         /// Largest side that the adapter draws.
         limit: u32,
     },
@@ -70,4 +89,17 @@ pub enum RenderError {
         /// The driver's words.
         reason: String,
     },
+}
+
+impl RenderError {
+    /// Why a camera's picture cannot be drawn, of what cannot be drawn for its lens.
+    pub(crate) fn through_lens(self, camera: &Camera) -> Self {
+        let Camera { width, height, sensor, .. } = *camera;
+        match self {
+            Self::ImageSize { width: drawn_width, height: drawn_height, limit } => {
+                Self::LensSize { width, height, sensor, drawn_width, drawn_height, limit }
+            }
+            other => other,
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 mod asphalt;
 mod paving;
-mod plan;
+pub(crate) mod plan;
 
 use crate::tile::Tile;
 

@@ -24,7 +24,7 @@ pub struct Imaging {
 impl Imaging {
     /// That of labels, which are the same whatever the quality, and seen through no lens.
     pub fn of_truth(self) -> Self {
-        Self { models: self.models, ..Self::default() }
+        Self { models: self.models, ..Self::unsaid() }
     }
 
     /// The same scene in another quality, by an ideal sensor.

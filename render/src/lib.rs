@@ -30,6 +30,8 @@ mod rain;
 mod renderer;
 mod scenery;
 mod sensor;
+#[cfg(test)]
+mod shader_constants;
 mod shadows;
 mod sieve;
 mod spray;
@@ -41,6 +43,7 @@ pub mod wind;
 
 pub use adapter::{AdapterChoice, AdapterInfo, adapters};
 pub use camera::{Camera, Mount};
+pub use effects::check_lens;
 pub use error::RenderError;
 pub use frame::Frame;
 pub use identity::identity;

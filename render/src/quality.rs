@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "lowercase")]
 pub enum Quality {
     /// One sample a pixel, shadows within 64 m.
-    #[default]
     Plain,
     /// The same, and colours are smoothed: half of a pixel is the sample in its middle, half those at its corners, which it
     /// shares with its neighbours (quincunx; NVIDIA 2001, "HRAA: High-resolution antialiasing"). Two samples a pixel come close to
     /// what four on a grid show.
+    #[default]
     Standard,
     /// Nine samples a pixel and finer shadows, for GPUs.
     Fine,

@@ -6,7 +6,7 @@ use kernel::weather::Water;
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::actors::{Cast, Moving};
-use crate::effects::{self, Lens};
+use crate::effects::{self, Lenses};
 use crate::glows::{self, Glow};
 use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, Targets};
 use crate::light::{Light, ShadowBox};
@@ -41,6 +41,7 @@ pub struct Renderer {
     glows: Vec<Glow>,
     streaks: Vec<Streak>,
     spray: Vec<Puff>,
+    lenses: Lenses,
     /// Whose models the scenery is made of.
     models: Option<ModelsId>,
 }
@@ -74,6 +75,7 @@ impl Renderer {
             glows: Vec::new(),
             streaks: Vec::new(),
             spray: Vec::new(),
+            lenses: Lenses::default(),
             models: None,
         })
     }
@@ -84,9 +86,9 @@ impl Renderer {
         Self { shadows: ShadowMaps::new(count), ..self }
     }
 
-    /// What people are shown on their screens, which no network sees: the best that a GPU draws in time, the usual on a CPU.
+    /// What people are shown on their screens, which no network sees: the best that a GPU draws in time, the cheapest on a CPU.
     pub fn quality_for_people(&self) -> Quality {
-        if self.gpu.info.is_cpu { Quality::default() } else { Quality::Fine }
+        if self.gpu.info.is_cpu { Quality::Plain } else { Quality::Fine }
     }
 
     /// Draws a snapshot and reads all planes back.
@@ -105,7 +107,9 @@ impl Renderer {
         if camera.sensor.is_ideal() {
             return self.planes(scene, camera, colours);
         }
-        let lens = Lens::of(camera)?;
+        self.check(scene, camera)?;
+        let lens = self.lenses.of(camera)?;
+        self.check(scene, lens.pinhole()).map_err(|error| error.through_lens(camera))?;
         let seen = self.planes(scene, lens.pinhole(), colours)?;
         let seen = if colours { seen } else { Frame { rgb: Vec::new(), ..seen } };
         Ok(effects::take(seen, scene, camera, &lens))

@@ -10,6 +10,7 @@ use kernel::scene::ActorKind;
 use crate::horizon::{Horizon, Occluder};
 use crate::instance_ids::{instance_of_parked, parked_number};
 use crate::light::ShadowBox;
+use crate::mesh::look::look;
 use crate::mesh::model::Detail;
 use crate::mesh::street::surface;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, skirt};
@@ -195,7 +196,7 @@ fn is_parked(object: &Prop) -> bool {
 
 /// What selects the looks of each parked car.
 pub(crate) fn parked_looks(network: &RoadNetwork) -> Vec<u32> {
-    network.props.iter().filter(|object| is_parked(object)).map(prop::look).collect()
+    network.props.iter().filter(|object| is_parked(object)).map(look).collect()
 }
 
 /// The numbers of the parked cars that are somewhere else.

@@ -19,9 +19,6 @@ pub(crate) const LISTS: usize = FINISHES + 1;
 /// That of what moves.
 pub(crate) const MOVING: usize = FINISHES;
 
-/// That of leaves.
-const LEAFY: usize = Finish::Leafy as usize;
-
 /// Of pixels' middles and of their corners.
 const MOST_GRIDS: usize = 2;
 
@@ -145,10 +142,11 @@ impl Sieve {
             return;
         }
         let surface = Surface::of(&outline);
+        // Between leaves one sees what lies behind.
+        let has_holes = Finish::ALL.get(list).is_some_and(|finish| finish.has_holes());
         for ((grid, kept), around) in self.grids.iter_mut().zip(&mut self.kept).zip(&around) {
-            // Between leaves one sees what lies behind.
             let may_show =
-                |samples| if list == LEAFY { grid.may_show(&surface, samples) } else { grid.cover(&surface, samples) };
+                |samples| if has_holes { grid.may_show(&surface, samples) } else { grid.cover(&surface, samples) };
             if around.as_ref().is_some_and(may_show) {
                 kept[list].push((triangle, corners));
             }

@@ -32,7 +32,7 @@ const PUFFS: [(f32, f32); 4] = [(0.02, 1.0), (0.2, 0.85), (0.5, 0.6), (0.95, 0.3
 /// How far a cloud reaches in a second's way of its vehicle.
 const REACH_S: f32 = 0.42;
 /// Discs are so much wider than high, as in `spray.wgsl`.
-const WIDE: f32 = 1.3;
+pub(crate) const WIDE: f32 = 1.3;
 /// Spray farther away is not drawn, metres.
 const FAR_M: f32 = 140.0;
 

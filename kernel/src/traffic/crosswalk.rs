@@ -10,6 +10,7 @@ use crate::time::{TICK_HZ, Tick};
 use super::hazard::Hazard;
 use super::horn::{Horn, PEOPLE_ASIDE_M};
 use super::lists::{Entry, Lists};
+use super::surprise;
 use super::vehicle::Vehicle;
 use super::walker::Walker;
 use super::ways::Ways;
@@ -92,11 +93,20 @@ impl Gaps<'_> {
             return false;
         }
         let careless = unit(self.seed, Stream::Walk, u64::from(walker.id), !u64::from(walker.hops)) < CARELESS;
-        (careless && lights.is_empty() && self.can_stop(crosswalk)) || self.is_clear(crosswalk, position, time_s)
+        (careless && lights.is_empty() && self.can_stop(crosswalk) && self.leaves_time(crosswalk, position, time_s))
+            || self.is_clear(crosswalk, position, time_s)
     }
 
-    /// Whether every vehicle on the lanes of a crosswalk can still stop before it. Of the ego car
-    /// somebody careless does not think.
+    /// Whether the ego car can still stop before somebody careless on a crosswalk, who does not look for more than that.
+    fn leaves_time(&self, crosswalk: u32, from: Vec2, time_s: f32) -> bool {
+        let ends = self.map.crosswalks[crosswalk as usize].ends.map(|end| end.truncate());
+        let to = if from.distance(ends[0]) > from.distance(ends[1]) { ends[0] } else { ends[1] };
+        let pace_mps = (ends[0].distance(ends[1]) / time_s.max(0.1)).max(0.1);
+        let mut ego = self.free.iter().filter(|hazard| hazard.is_ego());
+        ego.all(|ego| surprise::leaves_time(ego, [from, to], pace_mps))
+    }
+
+    /// Whether every vehicle on the lanes of a crosswalk can still stop before it.
     fn can_stop(&self, crosswalk: u32) -> bool {
         let crossed = &self.map.crosswalks[crosswalk as usize];
         crossed.lanes.iter().all(|&(lane, s_m)| !self.overruns(lane, s_m, crossed.half_width_m, 0))

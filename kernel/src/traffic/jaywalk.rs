@@ -10,8 +10,10 @@ use crate::time::TICK_HZ;
 use super::actors::Actors;
 use super::body::{Body, Obstacle, Surroundings};
 use super::cover;
+use super::hazard::Hazard;
 use super::horn::{Horn, PEOPLE_ASIDE_M};
 use super::manoeuvre::Manoeuvre;
+use super::surprise;
 use super::traits::WalkerTraits;
 use super::vehicle::Vehicle;
 use super::walker::{Walker, WalkerMode};
@@ -78,16 +80,20 @@ pub(super) fn starter(actors: &Actors, around: &Surroundings<'_>) -> Option<usiz
     };
     let mut candidates: Vec<usize> = (0..walkers.len()).filter(may).collect();
     candidates.sort_by_cached_key(rank);
+    let ego = Hazard::of(ego);
     candidates.into_iter().take(TRIES).find(|i| {
         let way = way_across(map, ways, &walkers[*i]);
+        let pace_mps = pace(seed, &walkers[*i], &actors.walker_traits[*i]);
         way.is_some_and(|[from, to]| {
-            is_free(map, from, to) && can_stop(&actors.state.vehicles, &actors.bodies, from, to)
+            is_free(map, from, to)
+                && can_stop(&actors.state.vehicles, &actors.bodies, from, to)
+                && surprise::leaves_time(&ego, [from, to], pace_mps)
         })
     })
 }
 
 /// Whether every vehicle in traffic can still stop before a way across the road. Of the ego car a
-/// jaywalker does not think.
+/// jaywalker thinks less ([`surprise`]).
 pub(super) fn can_stop(vehicles: &[Vehicle], bodies: &[Body], from: Vec2, to: Vec2) -> bool {
     let passes = |body: &Body| {
         let (middle, axis) = (body.position.truncate(), (body.rotation * Vec3::X).truncate().normalize_or(Vec2::X));
@@ -133,9 +139,9 @@ fn is_before(ego: &Obstacle, place: Vec3) -> bool {
     let ahead_m = offset.dot(velocity) / speed;
     let aside_m = velocity.perp_dot(offset).abs() / speed;
     let arrives_s = ahead_m / speed;
-    // At about 1.5 m/s: in the lane of the ego car when that is there, or a second before.
+    // At about 1.5 m/s: in the lane of the ego car when that is there, or up to two seconds before.
     let steps_s = aside_m / 1.5;
-    ahead_m > 0.0 && aside_m < 14.0 && arrives_s > steps_s - 0.5 && arrives_s < steps_s + 1.5
+    ahead_m > 0.0 && aside_m < 14.0 && arrives_s > steps_s && arrives_s < steps_s + 2.0
 }
 
 /// From where to where a walker would cross the road.

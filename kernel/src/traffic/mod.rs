@@ -63,6 +63,7 @@ mod spawn;
 mod state;
 mod step;
 mod stop_ways;
+mod surprise;
 mod through_bends;
 mod together;
 mod traits;

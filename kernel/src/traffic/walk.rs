@@ -17,6 +17,7 @@ use super::jaywalk;
 use super::nearby::Nearby;
 use super::outline::{self, Outline};
 use super::slack;
+use super::surprise;
 use super::traits::WalkerTraits;
 use super::turns::{Turns, end_node};
 use super::walker::{Walker, WalkerMode, turns};
@@ -347,7 +348,12 @@ impl Streets<'_> {
         let on_way = next.offset_m * sign < place.half_width_m;
         let here = place.beside(next.offset_m).truncate();
         let there = place.beside(sign * goal.distance_m).truncate();
-        if on_way && !jaywalk::can_stop(self.gaps.vehicles, self.driven, here, there) {
+        let dares = || {
+            let mut ego = self.gaps.free.iter().filter(|hazard| hazard.is_ego());
+            jaywalk::can_stop(self.gaps.vehicles, self.driven, here, there)
+                && ego.all(|ego| surprise::leaves_time(ego, [here, there], pace_mps))
+        };
+        if on_way && !dares() {
             // Who could go when it began may not be able to any more.
             next.mode = WalkerMode::Walk;
             return;

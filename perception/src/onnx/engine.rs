@@ -12,6 +12,7 @@ use tract_onnx::tract_hir::internal::*;
 use super::guard::{guarded, guarded_thread, line, note, note_none};
 use super::typed::{Nodes, typed};
 use super::{bounds, pb};
+use crate::operators;
 
 /// What the network takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,8 +38,13 @@ pub(crate) enum Output {
 pub(crate) struct Engine {
     plan: Arc<dyn Runnable>,
     input_shape: [usize; 4],
+    /// Whether it takes the picture with the channels last, in whatever order the file has it.
+    pub takes_last: bool,
     /// Shape of the first output.
     pub output_shape: Vec<usize>,
+    /// Whether the file's order of the output's dimensions was batch, channels, rows and columns, and the channels are last
+    /// here.
+    pub is_moved: bool,
     /// Whether the first output holds class ids instead of scores.
     pub gives_ids: bool,
 }
@@ -126,13 +132,21 @@ impl Engine {
         runtime: &dyn Runtime,
         model: &pb::ModelProto,
         input: InferenceFact,
-        input_shape: [usize; 4],
+        mut input_shape: [usize; 4],
     ) -> Result<Self, String> {
         let nodes = nodes(model);
         let parsed = parse(model).and_then(|model| model.with_input_fact(0, input)).map_err(reason)?;
         let network = typed(parsed, &nodes).map_err(reason)?;
         note_none();
         bounds::check_work(&network).map_err(reason)?;
+        network.output_fact(0).map_err(reason)?.shape.as_concrete().ok_or("the output has no fixed shape")?;
+        let (mut network, mut takes_last, mut is_moved) = (network, false, false);
+        if runtime.name() == "cpu" {
+            network = operators::prepare(network).map_err(|error| reason_of(error, &nodes))?;
+            let taken = operators::take_channels_last(&mut network).map_err(reason)?;
+            (takes_last, input_shape) = (taken.is_some(), taken.unwrap_or(input_shape));
+            is_moved = operators::give_channels_last(&mut network);
+        }
         let output = network.output_fact(0).map_err(reason)?;
         let shape = output.shape.as_concrete().ok_or("the output has no fixed shape")?;
         let (output_shape, gives_ids) = (shape.to_vec(), !output.datum_type.is_float());
@@ -141,7 +155,7 @@ impl Engine {
         if let Some(model) = plan.typed_model().filter(|_| runtime.name() == "cpu") {
             bounds::check_alive(model).map_err(reason)?;
         }
-        Ok(Self { output_shape, gives_ids, input_shape, plan: plan.into() })
+        Ok(Self { output_shape, gives_ids, input_shape, takes_last, is_moved, plan: plan.into() })
     }
 
     /// Runs the network on one picture.

@@ -1,4 +1,4 @@
-//! The inference engine. This is the only folder that names tract. A model may be anything: it is decoded, looked
+//! The inference engine. Only this folder and [`crate::operators`] name tract. A model may be anything: it is decoded, looked
 //! at, typed and run within stated limits, and whatever goes wrong is an error.
 
 mod bounds;

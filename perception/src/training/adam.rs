@@ -1,7 +1,7 @@
 //! Adam (Kingma and Ba 2015) with a polynomially decaying rate.
 
-use super::kernels::vectorised;
 use super::weights::Weights;
+use crate::simd::vectorised;
 
 const BETA_1: f32 = 0.9;
 const BETA_2: f32 = 0.999;

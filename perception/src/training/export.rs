@@ -36,6 +36,7 @@ fn props(recipe: &str) -> Result<BTreeMap<String, String>, PerceptionError> {
         classes: ClassMap::from_names(&TRAIN_CLASSES.map(|c| c.name))?,
         normalisation: Some(pictures::NORMALISATION),
         layout: Some(Layout::Nchw),
+        scores: None,
         align_corners: false,
     };
     let mut pairs = metadata.to_props();

@@ -35,7 +35,8 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     `checkpoint` is `early`, `full`, `truth`, an ONNX file or an `External`; `map` a bundled map or an OpenDRIVE file, or `scenario` a
     scenario file; `hazards` is `none`, `natural` or `raised`, `weather` one with a name; a run takes at most `max_time`
     seconds, 4 to 86,400 (None: the scenario's, 600 unless it says otherwise). `observe` is `mask`, `rgb` or `both` (None: what the seat's driver sees), `size` (width, height) of
-    images (None: that of masks). With `record`, each episode is kept in that folder as a recording that `aeye verify` and all
+    images (None: that of masks), `quality` how good images are, and the pictures that the checkpoint looks at, and `sensor` what lens
+    and chip do to them, as for `Recording.frames`. With `record`, each episode is kept in that folder as a recording that `aeye verify` and all
     other commands take.
 
     `weights` replace some of `aeye.gym.WEIGHTS[seat]`. `reward` replaces the whole reward: a callable that takes
@@ -59,6 +60,8 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         seat: Literal["semantic", "safety"] = "semantic",
         observe: Literal["mask", "rgb", "both"] | None = None,
         size: tuple[int, int] | None = None,
+        quality: Literal["plain", "standard", "fine"] | None = None,
+        sensor: str | None = None,
         checkpoint: str | PathLike[str] | External = "truth",
         map: str | PathLike[str] | None = None,
         scenario: str | PathLike[str] | None = None,
@@ -83,6 +86,8 @@ class DriveEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
             seat=seat,
             observe=observe,
             size=size,
+            quality=quality,
+            sensor=sensor,
             checkpoint=checkpoint,
             ticks=ticks,
             weights=weights,

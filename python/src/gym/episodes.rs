@@ -17,14 +17,15 @@ use crate::errors::{input, raise};
 use crate::external::{Checkpoint, Raised};
 use crate::forked::{self, Owned};
 use crate::given::{Given, Pair, Whole, named};
-use crate::values::{jobs_at_once, picture_size, viewpoint};
+use crate::values::{self, jobs_at_once, picture_size, viewpoint};
 
 /// Most drives that are stepped together.
 const MOST_PLACES: u16 = 1024;
 
 /// So many places for drives that are stepped together, `jobs` at the same time (None: one a core). An agent has the
 /// `seat` (`semantic` or `safety`) and holds its controls for `ticks` of a step, a bot has the other. `masks` and `images`
-/// say what is observed; images have a `size`, (width, height) (None: that of masks); `record` is a folder for recordings.
+/// say what is observed; images have a `size`, (width, height) (None: that of masks). What is seen
+/// has the `quality` (None: the usual), and lens and chip do to it what `sensor` says (None: nothing); `record` is a folder for recordings.
 /// `draw` takes pictures of `render_size` from a `camera` (`driver`, `chase` or `top`).
 ///
 /// Raises FileError where a file is not there, InputError for a value that cannot be.
@@ -54,11 +55,12 @@ impl Episodes {
     #[pyo3(
         signature = (
             places, *, seat = Given::of("semantic".to_owned()), checkpoint = None,
-            ticks = Given::of(Whole(STEP_TICKS as i128)), masks = true, images = false, size = None, record = None,
+            ticks = Given::of(Whole(STEP_TICKS as i128)), masks = true, images = false, size = None,
+            quality = None, sensor = None, record = None,
             camera = Given::of("chase".to_owned()), render_size = Given::of(Pair(512, 256)), jobs = None
         ),
         text_signature = "(places, *, seat='semantic', checkpoint=None, ticks=6, masks=True, images=False, size=None, \
-                          record=None, camera='chase', render_size=(512, 256), jobs=None)"
+                          quality=None, sensor=None, record=None, camera='chase', render_size=(512, 256), jobs=None)"
     )]
     #[expect(clippy::too_many_arguments, reason = "they are named where it is called")]
     fn new(
@@ -70,6 +72,8 @@ impl Episodes {
         masks: bool,
         images: bool,
         size: Option<Given<Pair>>,
+        quality: Option<Given<String>>,
+        sensor: Option<Given<String>>,
         record: Option<PathBuf>,
         camera: Given<String>,
         render_size: Given<Pair>,
@@ -79,6 +83,7 @@ impl Episodes {
         let ticks = ticks.within("ticks", 1..=MOST_STEP_TICKS)?;
         let size = size.map(|size| picture_size(size, "size")).transpose()?;
         let camera = viewpoint(camera)?.camera(picture_size(render_size, "render_size")?);
+        let imaging = values::imaging(quality, sensor)?;
         let seat = seat_of(&seat.named("seat")?)?;
         let raised = Raised::default();
         let checkpoint = named(checkpoint, "checkpoint")?;
@@ -86,16 +91,21 @@ impl Episodes {
         let jobs = base::spread::jobs(jobs_at_once(jobs)?).min(places);
         let (fleet, images) = py
             .detach(|| {
-                let eye = Eye::open(&choice)?;
-                let images = images.then(|| size.unwrap_or(eye.size()));
+                let eye = Eye::open(&choice)?.at(imaging);
+                let size = size.unwrap_or(eye.size());
+                let images = images.then(|| Camera::driver(size.0, size.1).at(imaging));
                 let archive = record.as_deref().map(Archive::open).transpose()?;
                 let plan = Plan { seat, ticks, masks, images, archive, jobs };
                 anyhow::Ok((Fleet::new(plan, eye, places), images))
             })
             .map_err(|error| raise(&error))?;
         let mask_size = fleet.eye().size();
-        let sizes = Sizes { places, mask: masks.then(|| bytes(mask_size)), image: images.map(|size| 3 * bytes(size)) };
-        let image_size = images.unwrap_or(mask_size);
+        let sizes = Sizes {
+            places,
+            mask: masks.then(|| bytes(mask_size)),
+            image: images.map(|camera| 3 * bytes(size_of(&camera))),
+        };
+        let image_size = images.map_or(mask_size, |camera| size_of(&camera));
         Ok(Self { fleet: Owned::new(Mutex::new(fleet)), sizes, mask_size, image_size, camera, raised })
     }
 
@@ -189,6 +199,10 @@ impl Episodes {
     fn fleet(&self) -> MutexGuard<'_, Fleet> {
         self.fleet.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+fn size_of(camera: &Camera) -> (u32, u32) {
+    (camera.width, camera.height)
 }
 
 fn bytes((width, height): (u32, u32)) -> usize {

@@ -1,9 +1,11 @@
 //! Radial distortion: which place of a pinhole camera's picture each pixel shows.
 
+use std::sync::Arc;
+
 use kernel::ops;
 
 use super::tone::Light;
-use crate::{Camera, Frame, RenderError, Sensor};
+use crate::{Camera, Frame, Sensor};
 
 /// The least slope of a lens's distortion that is drawn: beyond, a pixel of the edge shows more than five of the middle, and a
 /// little further the picture folds.
@@ -16,29 +18,62 @@ const STEPS: usize = 1024;
 /// A camera's lens, and the pinhole camera that sees what it sees.
 pub(crate) struct Lens {
     pinhole: Camera,
-    bend: Option<Bend>,
+    bend: Option<Arc<Bend>>,
+}
+
+/// All that a [`Bend`] follows from.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Glass {
+    size: [u32; 2],
+    fov_x_rad: f32,
+    distortion: [f32; 2],
 }
 
 /// Where the pixels of a picture are in that of the pinhole camera.
-struct Bend {
-    size: [u32; 2],
+pub(super) struct Bend {
+    glass: Glass,
+    /// Width and height of the pinhole camera's picture, pixels.
+    drawn: [u32; 2],
+    drawn_fov_x_rad: f32,
     /// Row by row; the middle of the first pixel is at (0.5, 0.5).
     places_px: Vec<[f32; 2]>,
 }
 
-impl Lens {
-    /// That of a camera; one whose picture a pinhole camera cannot see is refused.
-    pub(crate) fn of(camera: &Camera) -> Result<Self, RenderError> {
-        let pinhole = Camera { sensor: Sensor::default(), ..*camera };
-        if !camera.sensor.distorts() {
-            return Ok(Self { pinhole, bend: None });
-        }
-        let (tan, size) = (ops::tan(0.5 * camera.fov_x_rad), [camera.width, camera.height]);
-        let pitch = 2.0 * tan / camera.width as f32;
+impl Glass {
+    /// That of a camera; none of one that bends nothing.
+    pub(super) fn of(camera: &Camera) -> Option<Self> {
+        let Camera { width, height, fov_x_rad, sensor, .. } = camera;
+        let size = [*width, *height];
+        sensor.distorts().then(|| Self { size, fov_x_rad: *fov_x_rad, distortion: sensor.distortion() })
+    }
+
+    fn tan(&self) -> f32 {
+        ops::tan(0.5 * self.fov_x_rad)
+    }
+
+    /// Of its pixels, focal lengths.
+    fn pitch(&self) -> f32 {
+        2.0 * self.tan() / self.size[0] as f32
+    }
+
+    /// None where the picture folds, or no pinhole camera sees so far.
+    fn inverse(&self) -> Option<Inverse> {
+        let [width, height] = self.size.map(|side| 0.5 * side as f32);
+        Inverse::new(self.distortion, ops::hypot(width, height) * self.pitch())
+    }
+
+    /// Whether a pinhole camera can see its picture.
+    pub(super) fn is_seen(&self) -> bool {
+        self.inverse().is_some()
+    }
+}
+
+impl Bend {
+    /// That of a lens whose picture a pinhole camera can see.
+    pub(super) fn of(glass: Glass) -> Option<Self> {
+        let inverse = glass.inverse()?;
+        let (size, tan, pitch) = (glass.size, glass.tan(), glass.pitch());
         let half = size.map(|side| 0.5 * side as f32);
-        let corner = ops::hypot(half[0], half[1]) * pitch;
-        let inverse = Inverse::new(camera.sensor.distortion(), corner);
-        let inverse = inverse.ok_or(RenderError::Distortion { sensor: camera.sensor })?;
         let aside = |at: u32, axis: usize| (at as f32 + 0.5 - half[axis]) * pitch;
         // Relative to the middle.
         let pixel = |x: u32, y: u32| {
@@ -51,18 +86,44 @@ impl Lens {
         let reach = places_px.iter().fold([0.0f32; 2], |far, at| [0, 1].map(|axis| far[axis].max(at[axis].abs())));
         // Half a pixel more for what lies between pixels. As many on both sides, so that the middle stays where it is.
         let more = [0, 1].map(|axis| ops::floor(reach[axis] + 1.5 - half[axis]) as i32);
-        let [width, height] = [0, 1].map(|axis| (size[axis] as i32 + 2 * more[axis]).max(2) as u32);
+        let drawn = [0, 1].map(|axis| (size[axis] as i32 + 2 * more[axis]).max(2) as u32);
         for place in &mut places_px {
-            *place = [place[0] + 0.5 * width as f32, place[1] + 0.5 * height as f32];
+            *place = [place[0] + 0.5 * drawn[0] as f32, place[1] + 0.5 * drawn[1] as f32];
         }
-        let fov_x_rad = 2.0 * ops::atan2(tan * (width as f32 / camera.width as f32), 1.0);
-        let pinhole = Camera { width, height, fov_x_rad, ..pinhole };
-        Ok(Self { pinhole, bend: Some(Bend { size, places_px }) })
+        let drawn_fov_x_rad = 2.0 * ops::atan2(tan * (drawn[0] as f32 / size[0] as f32), 1.0);
+        Some(Self { glass, drawn, drawn_fov_x_rad, places_px })
+    }
+
+    /// Whether it is that of this lens.
+    pub(super) fn is_of(&self, glass: &Glass) -> bool {
+        self.glass == *glass
+    }
+
+    /// Pixels of the pictures.
+    pub(super) fn pixels(&self) -> usize {
+        self.places_px.len()
+    }
+}
+
+impl Lens {
+    /// That of a camera, which bends its picture so, or not at all.
+    pub(super) fn new(camera: &Camera, bend: Option<Arc<Bend>>) -> Self {
+        let mut pinhole = Camera { sensor: Sensor::default(), ..*camera };
+        if let Some(bend) = &bend {
+            ([pinhole.width, pinhole.height], pinhole.fov_x_rad) = (bend.drawn, bend.drawn_fov_x_rad);
+        }
+        Self { pinhole, bend }
     }
 
     /// The camera that sees all of it.
     pub(crate) fn pinhole(&self) -> &Camera {
         &self.pinhole
+    }
+
+    /// Whether both bend alike, by what was found once.
+    #[cfg(test)]
+    pub(super) fn is_the_glass_of(&self, other: &Self) -> bool {
+        matches!((&self.bend, &other.bend), (Some(one), Some(other)) if Arc::ptr_eq(one, other))
     }
 
     /// Classes, instances and depth of the pixel of the pinhole camera's picture that each pixel's middle shows.
@@ -71,7 +132,7 @@ impl Lens {
         let [last_x, last_y] = [seen.width - 1, seen.height - 1];
         let index = |[x, y]: &[f32; 2]| ((*y as u32).min(last_y) * seen.width + (*x as u32).min(last_x)) as usize;
         let places: Vec<usize> = bend.places_px.iter().map(index).collect();
-        let [width, height] = bend.size;
+        let [width, height] = bend.glass.size;
         Frame {
             tick: seen.tick,
             width,
@@ -182,10 +243,10 @@ mod tests {
         {
             let sensor = text.parse().expect("a sensor");
             let camera = Camera { sensor, ..Camera::driver(size[0], size[1]) };
-            let lens = Lens::of(&camera).expect("does not fold");
+            let bend = Arc::new(Bend::of(Glass::of(&camera).expect("bends")).expect("does not fold"));
+            let lens = Lens::new(&camera, Some(bend.clone()));
             let pinhole = lens.pinhole();
             let [width, height] = [pinhole.width as f32, pinhole.height as f32];
-            let bend = lens.bend.as_ref().expect("is bent");
             let inside = |[x, y]: &[f32; 2]| (0.5..=width - 0.5).contains(x) && (0.5..=height - 0.5).contains(y);
             assert!(bend.places_px.iter().all(inside), "{text}");
             assert!(

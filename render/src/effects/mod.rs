@@ -3,13 +3,16 @@
 
 mod chip;
 mod lens;
+mod lenses;
 mod noise;
 mod shutter;
 mod tone;
 
 use kernel::SceneSnapshot;
 
-pub(crate) use self::lens::Lens;
+use self::lens::Lens;
+pub(crate) use self::lenses::Lenses;
+pub use self::lenses::check_lens;
 use self::tone::Light;
 use crate::{Camera, Frame};
 

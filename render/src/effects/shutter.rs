@@ -260,4 +260,45 @@ mod tests {
         let top = Motion::new(&scene, &Camera::top(64, 64, 50.0));
         assert!(top.of(ray, 5.0, EGO_INSTANCE).length() < 1e-4 && top.of(ray, 5.0, 0).length() > 1.0);
     }
+
+    /// A car that comes to a speed and is steered to one side from there on: in each tick its yaw rate by the shutter, and by how
+    /// far the kernel turned it around that tick, rad/s.
+    fn yaws_radps(speed_mps: f32, steer: f32) -> Vec<(f32, f32)> {
+        let network = kernel::map::bundled("motorway").expect("it is bundled");
+        let mut world = kernel::World::new(&Scenario::default_for("motorway", 7), &network).expect("it fits");
+        let mut scenes = Vec::new();
+        for tick in 0..900 {
+            let ego = world.scene().ego;
+            let steer = if scenes.is_empty() && ego.speed_mps < speed_mps - 0.5 { 0.0 } else { steer };
+            let throttle = (0.3 * (speed_mps - ego.speed_mps)).clamp(0.0, 1.0);
+            let semantic = kernel::Controls::from_fractions(steer, throttle, 0.0);
+            world.step(&kernel::TickInput { semantic, ..Default::default() });
+            if steer != 0.0 && tick > 0 {
+                scenes.push(world.scene());
+            }
+        }
+        // Rotations of snapshots are on a grid of 2^-14: over a fifth of a second that is less than a thousandth of a radian.
+        let yaw_radps = |scenes: &[SceneSnapshot]| {
+            let turned = scenes[0].ego.rotation.inverse() * scenes[12].ego.rotation;
+            2.0 * turned.z * turned.w.signum() * kernel::time::TICK_HZ as f32 / 12.0
+        };
+        let turn = |scene: &SceneSnapshot| Motion::new(scene, &Camera::driver(64, 32)).turn_radps.z;
+        // The middle of an exposure is the tick's.
+        let around = scenes.windows(13).map(|scenes| (turn(&scenes[6]), yaw_radps(scenes)));
+        around.take(60).collect()
+    }
+
+    #[test]
+    fn the_ego_car_turns_as_the_kernel_turns_it() {
+        for (speed_mps, steer) in [(4.0, 0.3), (8.0, -0.1), (12.0, 0.05), (12.0, -0.05)] {
+            let yaws = yaws_radps(speed_mps, steer);
+            assert_eq!(yaws.len(), 60);
+            // Tyres take a moment to turn the car; after a second it may meet the guard rail.
+            for (tick, (shutter, kernel)) in yaws.into_iter().enumerate().skip(30) {
+                let words = format!("{speed_mps} m/s, steered by {steer}, tick {tick}: {shutter} and {kernel}");
+                assert!(kernel.abs() > 0.02 && kernel * steer < 0.0, "{words}");
+                assert!((shutter - kernel).abs() < 0.15 * kernel.abs() + 0.002, "{words}");
+            }
+        }
+    }
 }

@@ -133,7 +133,7 @@ pub(super) fn classes(gpu: &Gpu, layouts: &Layouts) -> [wgpu::RenderPipeline; FI
     };
     let opaque = base.make(gpu);
     let leafy = Recipe { vertex: "vertex_leafy", fragment: Some("fragment_leafy"), ..base }.make(gpu);
-    core::array::from_fn(|finish| if finish == Finish::Leafy as usize { &leafy } else { &opaque }.clone())
+    Finish::ALL.map(|finish| if finish.has_holes() { &leafy } else { &opaque }.clone())
 }
 
 fn module(gpu: &Gpu, name: &str) -> wgpu::ShaderModule {

@@ -29,24 +29,27 @@ pub(super) fn drawn() -> Tile {
     tile
 }
 
-/// Patches where the road was opened, with their sealed edges; some of them trenches along it.
+/// Patches where the road was opened, with their sealed edges; some of them trenches along it. None lies over the edge of the
+/// tile, as not every tile shows them.
 fn patches(tile: &mut Tile) {
-    let patches = [
-        ([2.1, -0.9], [4.9, 0.9], 0.30),
-        ([9.0, 0.35], [15.5, 1.15], 0.36),
-        ([17.3, 2.2], [18.6, 4.6], 0.70),
-        ([6.2, 3.9], [10.8, 5.6], 0.34),
-        ([12.4, 8.6], [13.3, 12.2], 0.28),
-        ([0.5, 7.4], [3.6, 8.6], 0.66),
-        ([15.0, 15.2], [19.0, 17.0], 0.33),
-    ];
-    for (low, high, tone) in patches {
+    for (low, high, tone) in PATCHES {
         let [low, high] = [low, high].map(Vec2::from_array);
         tile.rectangle((TONE, tone), [low, high]);
         let outline = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y), low];
         tile.line((SEALED, 0.55), &outline, 0.04);
     }
 }
+
+/// Corners and tone of each patch.
+const PATCHES: [([f32; 2], [f32; 2], f32); 7] = [
+    ([2.1, 0.2], [4.9, 1.5], 0.30),
+    ([9.0, 0.35], [15.5, 1.15], 0.36),
+    ([17.3, 2.2], [18.6, 4.6], 0.70),
+    ([6.2, 3.9], [10.8, 5.6], 0.34),
+    ([12.4, 8.6], [13.3, 12.2], 0.28),
+    ([0.5, 7.4], [3.6, 8.6], 0.66),
+    ([15.0, 15.2], [19.0, 17.0], 0.33),
+];
 
 /// Across the road they run from one side to the other, along it where two lanes were joined.
 fn cracks(tile: &mut Tile, variety: &mut Variety) {
@@ -65,13 +68,13 @@ fn cracks(tile: &mut Tile, variety: &mut Variety) {
     }
 }
 
-/// A round cover in its frame.
+/// A round cover in its frame. The groove between is part of it: where no cover is shown there is none either.
 fn cover(tile: &mut Tile, middle: Vec2) {
     const FRAME_M: f32 = 0.4;
     tile.disc((SEALED, 0.0), middle, FRAME_M + 0.1);
-    tile.disc((IRON, 1.0), middle, FRAME_M);
-    tile.disc((SEALED, 0.9), middle, 0.34);
-    tile.disc((SEALED, 0.15), middle, 0.29);
+    for (iron, radius_m) in [(1.0, FRAME_M), (0.55, 0.34), (0.95, 0.29)] {
+        tile.disc((IRON, iron), middle, radius_m);
+    }
 }
 
 /// Edges between the cells around places that are strewn on a grid (Worley 1996), where the tile is worn.
@@ -90,4 +93,15 @@ fn hairline(place: Vec2) -> f32 {
     let waves = [2.0 * turn.x + 1.0, 3.0 * turn.y + 1.6, turn.x + 2.0 * turn.y].map(ops::sin);
     let worn = 0.55 * waves.iter().sum::<f32>();
     (1.0 - (nearest[1] - nearest[0]) / 0.16).clamp(0.0, 1.0) * worn.clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patches_lie_within_the_tile() {
+        let is_within = |[x, y]: [f32; 2]| [x, y].into_iter().all(|m| (0.1..ASPHALT_M - 0.1).contains(&m));
+        assert!(PATCHES.iter().all(|(low, high, _)| is_within(*low) && is_within(*high)));
+    }
 }

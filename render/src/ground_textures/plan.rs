@@ -5,8 +5,8 @@ use glam::Vec2;
 use crate::mesh::variety::Variety;
 
 /// Metres across the tile of asphalt and that of paving, as `asphalt.wgsl` and `paving.wgsl` have them.
-pub(super) const ASPHALT_M: f32 = 20.48;
-pub(super) const PAVING_M: f32 = 5.12;
+pub(crate) const ASPHALT_M: f32 = 20.48;
+pub(crate) const PAVING_M: f32 = 5.12;
 
 /// A line of so many straight ones between two places, each of which strays by up to `stray_m`. What goes round a tile closes.
 pub(super) fn wandering([from, to]: [Vec2; 2], (pieces, stray_m): (u32, f32), variety: &mut Variety) -> Vec<Vec2> {

@@ -6,6 +6,7 @@
 pub mod actor;
 pub mod foliage;
 pub mod gait;
+pub mod look;
 pub mod model;
 pub mod motion;
 pub mod people;
@@ -34,7 +35,7 @@ pub enum Finish {
     /// House front; uv are window columns and storeys, [`Vertex::code`] is its style.
     Facade = 2,
     /// Asphalt and the paint on it; [`Vertex::param`] is 0 at one edge of a lane and 255 at the other, uv are metres along a
-    /// road and across it, [`Vertex::code`] is its age or [`CODE_PAINT`].
+    /// road and across it, [`Vertex::code`] is its age, [`CODE_PAINT`] or [`CODE_GRATING`].
     Asphalt = 3,
     /// Laid stones; uv are metres along a road and from its kerb, [`Vertex::code`] is how they are laid.
     Paving = 4,
@@ -47,6 +48,17 @@ pub enum Finish {
 
 /// Number of variants of [`Finish`].
 pub const FINISHES: usize = 7;
+
+impl Finish {
+    /// All, in the order of their numbers.
+    pub const ALL: [Self; FINISHES] =
+        [Self::Plain, Self::Grainy, Self::Facade, Self::Asphalt, Self::Paving, Self::Grass, Self::Leafy];
+
+    /// Whether one sees through its triangles in places: they hide nothing, and are drawn after what does.
+    pub const fn has_holes(self) -> bool {
+        matches!(self, Self::Leafy)
+    }
+}
 
 /// [`Vertex::code`] of a lamp that shines.
 pub const CODE_LIT: u8 = 255;
@@ -68,6 +80,8 @@ pub const CODE_RETRO: u8 = 248;
 pub const CODE_LACQUER: u8 = 247;
 /// [`Vertex::code`] of paint on asphalt.
 pub const CODE_PAINT: u8 = 64;
+/// [`Vertex::code`] of the grating of a drain in the asphalt.
+pub const CODE_GRATING: u8 = 65;
 /// [`Vertex::code`] of asphalt of an age from 0 to 7; with [`CODE_COVERS`] it has manholes.
 pub const CODE_OLDEST: u8 = 7;
 /// See [`CODE_OLDEST`].

@@ -5,9 +5,9 @@ use kernel::map::{FurnitureKind, Prop, PropKind};
 
 use super::Mesh;
 use super::actor::parked_model;
+use super::look::look;
 use super::model::Detail;
 use super::street::{barrier, building, furniture, hedge, lamp, sign, signal, structure, tree};
-use super::variety::Variety;
 use crate::SemanticTag;
 
 /// The mesh of a static object in its own frame: x along its heading, origin in the middle of its
@@ -35,12 +35,6 @@ pub fn mesh(prop: &Prop, detail: Detail) -> Mesh {
     }
 }
 
-/// What selects colour and shape. Maps have few variants; where a thing stands tells it apart from its neighbours.
-pub fn look(prop: &Prop) -> u32 {
-    let place = prop.position.x.to_bits().rotate_left(16) ^ prop.position.y.to_bits();
-    prop.variant ^ Variety::of(place).bits()
-}
-
 /// Moves a mesh from the frame of an object standing at `position` with a heading into the world.
 pub fn place(mesh: &mut Mesh, position: Vec3, heading_rad: f32) {
     let turn = Quat::from_rotation_z(heading_rad);
@@ -48,5 +42,22 @@ pub fn place(mesh: &mut Mesh, position: Vec3, heading_rad: f32) {
         v.position = (position + turn * Vec3::from_array(v.position)).to_array();
         let n = (turn * Vec3::from_array(v.normal.map(f32::from))).round();
         v.normal = [n.x as i8, n.y as i8, n.z as i8];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_of_a_row_share_their_colour_and_differ_in_shape() {
+        let piece = |x: f32| {
+            let (position, size) = (Vec3::new(x, 70.0, 0.0), Vec3::new(5.6, 1.2, 1.5));
+            Prop { kind: PropKind::Hedge, position, heading_rad: 0.0, size, variant: 0 }
+        };
+        let [one, next, beyond] = [3.0, 9.0, 103.0].map(|x| mesh(&piece(x), Detail::Rough));
+        let colours = |mesh: &Mesh| mesh.vertices.iter().map(|v| v.colour).collect::<Vec<_>>();
+        assert!(colours(&one) == colours(&next) && one != next);
+        assert_ne!(colours(&one), colours(&beyond));
     }
 }

@@ -14,10 +14,11 @@ use glam::Vec3;
 use kernel::map::{Prop, PropKind};
 use kernel::scene::ActorKind;
 
+use crate::mesh::look::look;
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::variety::Variety;
 use crate::mesh::vehicles::lacquer;
-use crate::mesh::{CODE_LACQUER, Mesh, prop, simplify};
+use crate::mesh::{CODE_LACQUER, Mesh, simplify};
 
 pub use id::ModelsId;
 pub use subject::Subject;
@@ -142,7 +143,7 @@ impl Models {
 
     /// What stands in the street, if a model of it can be made as large as that is.
     pub(crate) fn object(&self, object: &Prop, detail: Detail) -> Option<Mesh> {
-        let look = prop::look(object);
+        let look = look(object);
         if object.kind == PropKind::ParkedCar {
             let kind = object.parked_kind();
             return Some(self.actor(kind, look, detail, Model::default)?.at_rest());

@@ -39,6 +39,7 @@ const SHOP = 16u;
 const FRENCH = 32u;
 const SHUTTERS = 64u;
 const DOOR = 128u;
+const DOOR_COLUMNS = 3u;
 
 // A strong colour of signs and doors; each hue is one.
 fn accent(hue: f32) -> vec3f {
@@ -98,7 +99,7 @@ fn spot_of(in: Lit) -> Spot {
     it.has_windows = it.cell.y >= 0.0 && it.material != TILES;
     // Their fronts may have one column.
     let narrow = it.material == GARAGE && it.cell.x == 0.0;
-    it.door = it.ground && (it.code & DOOR) != 0u && (narrow || u32(it.cell.x) == (it.look >> 4u) % 3u);
+    it.door = it.ground && (it.code & DOOR) != 0u && (narrow || u32(it.cell.x) == (it.look >> 4u) % DOOR_COLUMNS);
     it.shop = it.ground && (it.code & SHOP) != 0u && !it.door;
     it.garage = it.material == GARAGE;
     it.curtain_wall = it.material == GLASS && !(it.door || it.shop);
@@ -121,9 +122,9 @@ fn opening_of(it: Spot) -> Opening {
     half_width = select(half_width, 0.17, it.door && !it.garage);
     half_width = select(half_width, 0.485, it.curtain_wall);
     low = select(low, 0.16, it.shop);
-    low = select(low, select(0.1, 0.0, it.garage), it.door);
+    low = select(low, select(select(0.1, 0.05, (it.code & SHOP) != 0u), 0.0, it.garage), it.door);
     low = select(low, select(0.2, 0.11, it.ground), it.curtain_wall);
-    high = select(high, 0.7, it.shop || it.door);
+    high = select(high, select(0.77, 0.7, (it.code & SHOP) != 0u), it.shop || it.door);
     high = select(high, 0.985, it.curtain_wall);
     let lower = vec2f(0.5 - half_width, low);
     let upper = vec2f(0.5 + half_width, high);

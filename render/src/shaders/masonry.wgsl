@@ -61,7 +61,8 @@ fn beams(at: vec2f, pixel: vec2f, sill: f32, braced: bool) -> f32 {
     return max(max(post, rail), brace);
 }
 
-// Cover of signs that look like writing from afar: stems with bars, no letters of any script. `at` counts them.
+// Cover of signs that look like writing from afar: stems with one bar and another or a second stem, no letters of any
+// script. `at` counts them.
 fn writing(at: vec2f, pixel: vec2f, seed: f32) -> f32 {
     let sign = floor(at.x);
     let x = at.x - sign;
@@ -70,6 +71,9 @@ fn writing(at: vec2f, pixel: vec2f, seed: f32) -> f32 {
     let stem = box(vec2f(x, at.y), vec2f(0.12, 0.0), vec2f(0.34, top), pixel);
     let high = select(0.44, 0.5 * fract(chance * 3.0), fract(chance * 5.0) > 0.5);
     let bar = box(vec2f(x, at.y), vec2f(0.12, high), vec2f(0.8, high + 0.2), pixel);
-    let drawn = max(stem, bar) * step(0.14, chance);
+    let is_two = fract(chance * 11.0) < 0.5;
+    let first = select(vec2f(0.12, top - 0.2), vec2f(0.62, 0.0), is_two);
+    let second = box(vec2f(x, at.y), first, vec2f(select(0.74, 0.82, is_two), top), pixel);
+    let drawn = max(max(stem, bar), second) * step(0.14, chance);
     return mix(drawn, 0.3 * span(at.y, 0.0, 0.8, pixel.y), clamp(1.6 * pixel.x - 0.6, 0.0, 1.0));
 }

@@ -14,12 +14,15 @@ struct PuffOut {
     @location(3) drops: vec2f,
 }
 
+// Discs are so much wider than high.
+const WIDE = 1.3;
+
 @vertex
 fn vertex(in: PuffIn, @builtin(vertex_index) index: u32) -> PuffOut {
     let rel = in.position - scene.eye;
     let distance = length(rel);
     let corner = vec2f(select(-1.0, 1.0, index == 1u || index >= 4u), select(-1.0, 1.0, index == 2u || index >= 3u && index != 4u));
-    let aside = normalize(scene.right) * (1.3 * corner.x) + normalize(scene.up) * corner.y;
+    let aside = normalize(scene.right) * (WIDE * corner.x) + normalize(scene.up) * corner.y;
     // Nobody looks into it from inside, and fog hides it as all else.
     let seen = smoothstep(2.0, 6.0, distance) * exp(-scene.fog_per_m * max(distance - scene.fog_from_m, 0.0));
     var light = scene.sky_light * 0.72 + scene.sun_light * 0.1;

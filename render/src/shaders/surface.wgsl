@@ -54,7 +54,8 @@ fn vertex(in: VertexIn) -> Lit {
     return lit(in);
 }
 
-// Code of the glass of a street lamp.
+// Code of a lamp that shines, and of the glass of a street lamp.
+const LIT = 255u;
 const STREET_LAMP = 250u;
 // Code of the face of a sign, and how much brighter than dull paint it is in its own headlights, high as it is.
 const RETRO = 248u;
@@ -83,7 +84,7 @@ fn vertex_plain(in: VertexIn) -> Lit {
     let glint = pow(max(dot(bounce, scene.sun), 0.0), 24.0) * gloss;
     out.shade = out.shade * (1.0 - 0.5 * fresnel) + mirrored * fresnel;
     out.sunlit += scene.sun_light * glint * 0.8;
-    if code_of(in.ids) == 255u {
+    if code_of(in.ids) == LIT {
         out.shade = to_linear(in.colour_param.rgb) * 2.2;
         out.sunlit = vec3f(0.0);
         if NIGHT {

@@ -19,7 +19,7 @@ const GROUPS: [(&str, &[&str]); 7] = [
 ];
 
 /// A call of each command.
-const EXAMPLES: [&str; 31] = [
+const EXAMPLES: [&str; 33] = [
     "aeye drive --headless --map city --checkpoint early --max-time 2m --record drive.mcap",
     "aeye campaign --checkpoint early,full --km 5 --out runs",
     "aeye campaign --collect shards --out runs",
@@ -34,8 +34,10 @@ const EXAMPLES: [&str; 31] = [
     "aeye compare runs --checkpoint early,full --gate \"ped_iou>=0.5,fixed>=1\" --out compared",
     "aeye redrive runs --without-intervention --after 10s --out forks",
     "aeye export drive.mcap --checkpoint early --last 3s --out export.mcap",
+    "aeye export drive.mcap --format ros2 --cameras rig.toml --last 3s --out bag",
     "aeye cases runs --label walker --overlooked walker:200 --reviewed no --unique --limit 20",
     "aeye dataset natural --scenes 8 --maps city,rural --out natural",
+    "aeye dataset natural --scenes 8 --cameras rig.toml --size 512x256 --out surround",
     "aeye dataset cases runs --label walker,vehicle --out cases",
     "aeye dataset mix --natural natural --pool pool --corner-cases cases --out sets",
     "aeye dataset rebuild sets/corner-case/dataset.json runs --out again",

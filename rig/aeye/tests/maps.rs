@@ -74,7 +74,7 @@ fn what_is_not_understood_is_told_with_number_and_place() {
         assert_eq!((group["count"].as_u64(), group["first"].as_str()), (Some(count), Some(first)), "{group}");
     }
     assert_eq!((odd["vendor"].as_str(), odd["countries"][0].as_str()), (Some("somebody"), Some("DE")));
-    assert_eq!((odd["version"].as_u64(), odd["opendrive"].as_str()), (Some(2), Some("1.7")));
+    assert_eq!((odd["version"].as_u64(), odd["opendrive"].as_str()), (Some(3), Some("1.7")));
     let gradient = odd["relief"]["gradient_pct"].as_f64().expect("a number");
     assert!((gradient - 5.0).abs() < 0.1 && odd["relief"]["steepest"] == "12/-1", "{}", odd["relief"]);
     assert_eq!((odd["limits"][0]["kmh"].as_f64(), odd["reach"]["dead_ends"].as_u64()), (Some(30.0), Some(1)));

@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// Version of everything that `--json` prints; raised when a field changes its meaning or goes.
-pub const JSON_VERSION: u32 = 2;
+pub const JSON_VERSION: u32 = 3;
 
 /// What is written as JSON, under a name that stays. docs/json.md lists all of them.
 pub trait Typed: Serialize {
@@ -71,13 +71,13 @@ mod tests {
             const TYPE: &'static str = "aeye.ticks";
         }
         let line = json_line(&Ticks { ticks: 3 }).expect("serialises");
-        assert_eq!(line, r#"{"type":"aeye.ticks","version":2,"ticks":3}"#);
+        assert_eq!(line, r#"{"type":"aeye.ticks","version":3,"ticks":3}"#);
         assert_eq!(read_json::<Ticks>(&line).expect("as written"), Ticks { ticks: 3 });
         let refused = |from: &str, to: &str| {
             let said = read_json::<Ticks>(&line.replace(from, to)).expect_err("another").to_string();
             assert!(said.contains("expected"), "{said}");
         };
         refused("aeye.ticks", "aeye.clocks");
-        refused("\"version\":2", "\"version\":99999999999");
+        refused("\"version\":3", "\"version\":99999999999");
     }
 }

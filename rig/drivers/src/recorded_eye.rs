@@ -33,7 +33,7 @@ impl RecordedEye {
         let expected =
             "expected as in \"driver 256x128\", \"driver 256x128 standard\" or \"driver 256x128 plain noise=4\"";
         let camera = match provenance.get("camera") {
-            None => Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1),
+            None => Camera::driver(DEFAULT_SIZE.0, DEFAULT_SIZE.1).at(Imaging::unsaid()),
             Some(text) => camera_of(text).ok_or_else(|| anyhow!("provenance \"camera\" is {text:?}; {expected}"))?,
         };
         let compute = match provenance.get("inference") {
@@ -135,9 +135,10 @@ mod tests {
         }
         let noisy = Camera::driver(64, 32).at("plain noise=4".parse::<Imaging>().expect("an imaging"));
         assert_eq!(camera_text(&noisy), "driver 64x32 plain noise=4");
-        assert_eq!(camera_text(&Camera::driver(64, 32)), "driver 64x32");
-        assert_eq!(camera_text(&Camera::driver(64, 32).at(Quality::Fine)), "driver 64x32 fine");
-        assert_eq!(camera_of("driver 64x32"), Some(Camera::driver(64, 32)), "as it was before there were qualities");
+        let plain = Camera::driver(64, 32).at(Quality::Plain);
+        assert_eq!(camera_text(&plain), "driver 64x32");
+        assert_eq!(camera_text(&Camera::driver(64, 32)), "driver 64x32 standard");
+        assert_eq!(camera_of("driver 64x32"), Some(plain), "as it was before there were qualities");
         let wrong = [
             "",
             "driver",

@@ -8,7 +8,7 @@ use anyhow::Context;
 use base::failure::Usage;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
 use kernel::{SceneSnapshot, World};
-use perception::{BUNDLED, Checkpoint, Compute, Mask, RgbView, Segmenter};
+use perception::{BUNDLED, Certainty, Checkpoint, Compute, Mask, RgbView, Segmenter};
 use render::{AdapterChoice, Camera, Frame, Imaging, ModelsId, RenderError, Renderer};
 use replay::{MaskShown, Provenance};
 
@@ -119,8 +119,8 @@ impl Eye {
     /// How the pictures are made that it looks at.
     pub fn imaging(&self) -> Imaging {
         match self {
-            Self::Truth => Imaging::default(),
-            Self::TruthOf(models) => Imaging { models: Some(*models), ..Imaging::default() },
+            Self::Truth => Imaging::unsaid(),
+            Self::TruthOf(models) => Imaging { models: Some(*models), ..Imaging::unsaid() },
             Self::Network { imaging, .. } => *imaging,
             Self::External(external) => external.imaging(),
         }
@@ -162,13 +162,13 @@ impl Eye {
         }
     }
 
-    /// As [`Eye::see`], and how sure it is of every pixel, (0, 1]; `None` where it gives classes only.
-    pub fn see_with_confidence(&mut self, frame: &Frame) -> anyhow::Result<(Mask, Option<Vec<f32>>)> {
+    /// As [`Eye::see`], and how sure it is of every pixel; `None` where it gives classes only.
+    pub fn see_with_certainty(&mut self, frame: &Frame) -> anyhow::Result<(Mask, Option<Certainty>)> {
         let (width, height) = (frame.width as usize, frame.height as usize);
         match self {
             Self::Truth | Self::TruthOf(_) => Ok((Mask::new(width, height, frame.class_ids.clone())?, None)),
             Self::Network { segmenter, .. } => {
-                Ok(segmenter.run_with_confidence(RgbView::new(width, height, &frame.rgb)?)?)
+                Ok(segmenter.run_with_certainty(RgbView::new(width, height, &frame.rgb)?)?)
             }
             Self::External(external) => Ok((external.see(RgbView::new(width, height, &frame.rgb)?)?, None)),
         }
@@ -210,8 +210,13 @@ pub fn provenance(eye: &Eye, camera: &Camera) -> Provenance {
 /// A driver's camera in words, as in `driver 256x128 standard` or `driver 256x128 plain noise=4`. Nothing is said of pictures that
 /// are plain, of an ideal sensor, and of the renderer's own models.
 pub fn camera_text(camera: &Camera) -> String {
+    named_camera_text("driver", camera)
+}
+
+/// The same of a camera with another name.
+pub fn named_camera_text(name: &str, camera: &Camera) -> String {
     let Camera { width, height, .. } = camera;
-    let (size, imaging) = (format!("driver {width}x{height}"), camera.imaging());
+    let (size, imaging) = (format!("{name} {width}x{height}"), camera.imaging());
     if imaging == Imaging::unsaid() { size } else { format!("{size} {imaging}") }
 }
 

@@ -1,4 +1,4 @@
-//! Cameras on the ego car, as a file in TOML describes them.
+//! Cameras on the ego car, as files in TOML and the recipes of datasets describe them.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -9,7 +9,7 @@ use base::failure::Usage;
 use base::files::{self, check_name, most};
 use glam::{Quat, Vec3};
 use render::{Camera, Imaging, Mount, Quality, Sensor};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::looks::Size;
 
@@ -32,15 +32,19 @@ struct Rig {
     cameras: Vec<Mounted>,
 }
 
-/// A camera as a file describes it: in the car's axes, x forward from the middle of the rear axle, y to the left, z up from
+/// A camera as it is described: in the car's axes, x forward from the middle of the rear axle, y to the left, z up from
 /// the ground.
-#[derive(Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Mounted {
+pub struct Mounted {
+    /// Its name, which is part of those of its files.
     name: String,
+    /// Forward from the middle of the rear axle.
     x_m: f32,
+    /// To the left.
     #[serde(default)]
     y_m: f32,
+    /// Up from the ground.
     z_m: f32,
     /// To the left.
     #[serde(default)]
@@ -48,13 +52,25 @@ struct Mounted {
     /// Upwards.
     #[serde(default)]
     pitch_rad: f32,
+    /// Horizontal field of view.
     #[serde(default = "usual_fov_x_rad")]
     fov_x_rad: f32,
+    /// Pixels a row; where it is left out that of all pictures, as all that follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     width: Option<u32>,
+    /// Rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     height: Option<u32>,
+    /// How good its pictures are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     quality: Option<Quality>,
+    /// What lens and chip do to them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     sensor: Option<Sensor>,
 }
+
+// No value of one that was checked is NaN.
+impl Eq for Mounted {}
 
 fn usual_fov_x_rad() -> f32 {
     core::f32::consts::FRAC_PI_2
@@ -62,21 +78,50 @@ fn usual_fov_x_rad() -> f32 {
 
 /// The cameras of a file. Those that do not say how large their pictures are, and how they are made, make them as is asked.
 pub fn read(path: &Path, size: Size, imaging: Imaging) -> anyhow::Result<Vec<Named>> {
-    let text = files::read_text(path, most::TEXT)?;
-    parse(&text, size, imaging).with_context(|| path.display().to_string())
+    let named = |cameras: Vec<Mounted>| Ok(named(&cameras, size, imaging).map_err(Usage)?);
+    described(path).and_then(named).with_context(|| path.display().to_string())
 }
 
-fn parse(text: &str, size: Size, imaging: Imaging) -> anyhow::Result<Vec<Named>> {
+/// What a file says of its cameras, if there is one, once it is certain that they are [`named`] well.
+pub fn of_file(path: Option<&Path>, (size, imaging): (Size, Imaging)) -> anyhow::Result<Vec<Mounted>> {
+    let Some(path) = path else { return Ok(Vec::new()) };
+    let checked = |cameras: Vec<Mounted>| {
+        named(&cameras, size, imaging).map_err(Usage)?;
+        Ok(cameras)
+    };
+    described(path).and_then(checked).with_context(|| path.display().to_string())
+}
+
+fn described(path: &Path) -> anyhow::Result<Vec<Mounted>> {
+    parse(&files::read_text(path, most::TEXT)?)
+}
+
+fn parse(text: &str) -> anyhow::Result<Vec<Mounted>> {
     let Rig { cameras } =
         toml::from_str(text).map_err(|error| Usage(error.to_string().trim_end().replace('\n', " ")))?;
-    if !(1..=MOST).contains(&cameras.len()) {
-        return Err(Usage(format!("{} cameras; expected 1 to {MOST}", cameras.len())).into());
+    if cameras.is_empty() {
+        return Err(Usage(format!("0 cameras; expected 1 to {MOST}")).into());
     }
+    Ok(cameras)
+}
+
+/// The cameras that are described; see [`read`].
+pub fn named(cameras: &[Mounted], size: Size, imaging: Imaging) -> Result<Vec<Named>, String> {
+    if cameras.len() > MOST {
+        return Err(format!("{} cameras; expected 1 to {MOST}", cameras.len()));
+    }
+    check_apart(cameras, str::to_owned)?;
+    cameras.iter().map(|mounted| mounted.named(size, imaging)).collect()
+}
+
+/// Refuses cameras of which two have the same name in files and messages, as `written` has them.
+pub fn check_apart(cameras: &[Mounted], written: impl Fn(&str) -> String) -> Result<(), String> {
     let mut names = BTreeSet::new();
-    if let Some(twice) = cameras.iter().find(|mounted| !names.insert(&mounted.name)) {
-        return Err(Usage(format!("two cameras are named {:?}; expected different names", twice.name)).into());
+    let twice = cameras.iter().map(|mounted| written(&mounted.name)).find(|name| !names.insert(name.clone()));
+    match twice {
+        Some(name) => Err(format!("two cameras are named {name:?}; expected different names")),
+        None => Ok(()),
     }
-    cameras.iter().map(|mounted| Ok(mounted.named(size, imaging).map_err(Usage)?)).collect()
 }
 
 impl Mounted {
@@ -105,6 +150,7 @@ impl Mounted {
             fov_x_rad: *fov_x_rad,
             ..Camera::driver(width, height).at(imaging)
         };
+        render::check_lens(&camera).map_err(|error| format!("camera {name}: {error}"))?;
         Ok(Named { name: name.clone(), camera })
     }
 }
@@ -113,17 +159,21 @@ impl Mounted {
 mod tests {
     use super::*;
 
+    fn read(text: &str, imaging: Imaging) -> anyhow::Result<Vec<Named>> {
+        Ok(named(&parse(text)?, (64, 32), imaging).map_err(Usage)?)
+    }
+
     fn said(text: &str) -> String {
-        format!("{:#}", parse(text, (64, 32), Imaging::default()).expect_err("refused"))
+        format!("{:#}", read(text, Imaging::default()).expect_err("refused"))
     }
 
     #[test]
     fn a_file_describes_cameras() {
         let text = "[[cameras]]\nname = \"driver\"\nx_m = 2.55\nz_m = 1.5\n\
                     [[cameras]]\nname = \"rear\"\nx_m = -0.8\ny_m = 0.3\nz_m = 1.1\nyaw_rad = 3.14159265\npitch_rad = -0.1\n\
-                    fov_x_rad = 2.0\nwidth = 128\nheight = 96\nquality = \"standard\"\nsensor = \"k1=-0.1\"\n";
+                    fov_x_rad = 1.2\nwidth = 128\nheight = 96\nquality = \"standard\"\nsensor = \"k1=-0.1\"\n";
         let imaging = "plain noise=4".parse().expect("an imaging");
-        let [driver, rear] = &parse(text, (64, 32), imaging).expect("readable")[..] else { panic!("two cameras") };
+        let [driver, rear] = &read(text, imaging).expect("readable")[..] else { panic!("two cameras") };
         let expected = Camera::driver(64, 32).at(imaging);
         assert_eq!((driver.name.as_str(), driver.camera.imaging(), driver.camera.width), ("driver", imaging, 64));
         assert!((driver.camera.position, driver.camera.rotation) == (Vec3::new(2.55, 0.0, 1.5), expected.rotation));
@@ -131,6 +181,15 @@ mod tests {
         assert_eq!(rear.camera.position, Vec3::new(-0.8, 0.3, 1.1));
         let looks = rear.camera.rotation * Vec3::X;
         assert!(looks.x < -0.99 && looks.z < -0.09, "back and down: {looks}");
+    }
+
+    #[test]
+    fn what_is_described_is_kept_in_full() {
+        let text = "[[cameras]]\nname = \"a\"\nx_m = 0.1\nz_m = 1.3\nwidth = 48\nsensor = \"noise=0.3\"\n";
+        let described = parse(text).expect("readable");
+        let json = serde_json::to_string(&described).expect("written");
+        assert_eq!(serde_json::from_str::<Vec<Mounted>>(&json).expect("read"), described);
+        assert!(json.contains("\"x_m\":0.1,") && !json.contains("quality"), "{json}");
     }
 
     #[test]
@@ -142,6 +201,9 @@ mod tests {
         assert_eq!(said(&with("fov_x_rad = inf")), "camera a: fov_x_rad is inf; expected a number from 0.05 to 3");
         assert!(said(&with("width = 4")).starts_with("camera a: pictures of 4x32; expected sides of 8 to 8192"));
         assert!(said(&with("sensor = \"noise=99\"")).contains("noise is \"99\"; expected a number from 0 to 32"));
+        assert!(said(&with("sensor = \"k1=-0.9\"")).starts_with("camera a: a lens of k1=-0.9 folds the picture"));
+        let many: String = (0..33).map(|i| format!("[[cameras]]\nname = \"{i}\"\nx_m = 1\nz_m = 1\n")).collect();
+        assert_eq!(said(&many), "33 cameras; expected 1 to 32");
         assert!(said(&with("tilt = 1")).contains("unknown field `tilt`"));
         assert!(said("[[cameras]]\nname = \"../a\"\nx_m = 1\nz_m = 1\n").contains("cannot be a file's"));
         assert!(said("cameras = 3").contains("invalid type") && !said("[[cameras").contains('\n'));

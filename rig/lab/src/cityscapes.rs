@@ -53,9 +53,12 @@ mod tests {
 
     #[test]
     fn files_have_the_names_and_ids_that_trainers_expect() {
-        let place = Place { split: "val", city: "city", scene: 3, frame: 12 };
+        let place = Place { split: "val", city: "city", scene: 3, frame: 12, camera: None };
         assert_eq!(place.path(Kind::Image), "leftImg8bit/val/city/city_000003_000012_leftImg8bit.png");
         assert_eq!(place.path(Kind::TrainIds), "gtFine/val/city/city_000003_000012_gtFine_labelTrainIds.png");
+        let seen = Place { camera: Some("front_left"), ..place.clone() };
+        let named = "gtFine/val/city-front-left/city-front-left_000003_000012_gtFine_color.png";
+        assert_eq!(seen.path(Kind::Color), named);
         let frame = Frame {
             width: 4,
             height: 1,

@@ -27,4 +27,5 @@ pub mod shots;
 pub mod still;
 pub mod store;
 pub mod train;
+pub mod trust;
 pub mod verify;

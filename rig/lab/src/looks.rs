@@ -51,11 +51,22 @@ impl Studio {
 
     /// The driver's view of a scene; fails where nothing can draw.
     pub fn draw(&mut self, network: &RoadNetwork, scene: &SceneSnapshot) -> anyhow::Result<Frame> {
+        let camera = self.camera;
+        self.draw_through(network, scene, &camera)
+    }
+
+    /// What any camera sees of it.
+    pub fn draw_through(
+        &mut self,
+        network: &RoadNetwork,
+        scene: &SceneSnapshot,
+        camera: &Camera,
+    ) -> anyhow::Result<Frame> {
         let renderer = match self.renderers.entry(network.digest) {
             Entry::Occupied(entry) => entry.into_mut(),
             Entry::Vacant(entry) => entry.insert(Renderer::new(network, &AdapterChoice::default())?),
         };
-        Ok(renderer.draw(scene, &self.camera)?)
+        Ok(renderer.draw(scene, camera)?)
     }
 }
 

@@ -161,11 +161,6 @@ impl Shots {
         Ok(Self { stage: stage.clone(), camera: viewpoint.camera(size), ticks, scenes })
     }
 
-    /// What another camera sees.
-    pub fn through(self, camera: Camera) -> Self {
-        Self { camera, ..self }
-    }
-
     /// The same, made otherwise.
     pub fn at(self, imaging: impl Into<Imaging>) -> Self {
         Self { camera: self.camera.at(imaging), ..self }
@@ -178,10 +173,15 @@ impl Shots {
 
     /// Draws one of them.
     pub fn draw(&self, index: usize) -> anyhow::Result<Shot> {
+        self.draw_through(index, &self.camera)
+    }
+
+    /// What another camera sees at that tick, of the same simulation.
+    pub fn draw_through(&self, index: usize, camera: &Camera) -> anyhow::Result<Shot> {
         let file = || self.stage.path.display().to_string();
         let scene = self.scene(index).with_context(file)?;
-        let frame = self.stage.draw(&scene, &self.camera).with_context(file)?;
-        Ok(Shot { frame, scene, camera: self.camera })
+        let frame = self.stage.draw(&scene, camera).with_context(file)?;
+        Ok(Shot { frame, scene, camera: *camera })
     }
 
     fn scene(&self, index: usize) -> anyhow::Result<SceneSnapshot> {

@@ -29,6 +29,7 @@ fn natural_args(out: PathBuf, jobs: u16) -> natural::Options {
         test_frames: 1,
         size: (64, 32),
         imaging: Imaging::default(),
+        cameras: None,
         maps: vec!["rural".into(), "city".into()],
         pedestrians: Some(20),
         weather: Vec::new(),
@@ -47,6 +48,7 @@ fn cases_args(files: &[&Path], out: PathBuf) -> cases::Options {
         split: "train".into(),
         size: (64, 32),
         imaging: Imaging::default(),
+        cameras: None,
         jobs: None,
         out,
     }

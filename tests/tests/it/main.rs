@@ -21,6 +21,7 @@ mod replay_changes;
 mod replay_damage;
 mod replay_verify;
 mod rig_bots;
+mod rig_cameras;
 mod rig_campaign;
 mod rig_cli;
 mod rig_coco;

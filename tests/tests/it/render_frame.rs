@@ -58,10 +58,10 @@ fn pictures_of_one_quality_leave_nothing_behind_for_another() {
 #[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
 fn half_of_a_standard_pixel_is_its_middle_and_half_its_corners() {
     let (width, height) = (192usize, 96usize);
-    let middles = Camera::driver(width as u32, height as u32);
+    let middles = Camera::driver(width as u32, height as u32).at(Quality::Plain);
     let wider = kernel::ops::tan(0.5 * middles.fov_x_rad) * (width + 1) as f32 / width as f32;
     let fov_x_rad = 2.0 * kernel::ops::atan2(wider, 1.0);
-    let corners = Camera { fov_x_rad, ..Camera::driver(width as u32 + 1, height as u32 + 1) };
+    let corners = Camera { fov_x_rad, ..Camera::driver(width as u32 + 1, height as u32 + 1).at(Quality::Plain) };
     let scene = street::scene(2);
     let mut renderer = renderer();
     let [plain, corners] = [middles, corners].map(|camera| renderer.draw(&scene, &camera).unwrap().rgb);

@@ -120,6 +120,7 @@ fn an_export_that_is_interrupted_leaves_no_empty_folder() {
     case(&busy_city(), &cases.join("below"), "a");
     let out = dir.path().join("new/out");
     let options = export::Options {
+        cameras: None,
         files: vec![cases],
         format: export::Format::Mcap,
         camera: Viewpoint::Driver,

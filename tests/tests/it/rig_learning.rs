@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lab::eval::people;
+use lab::eval::road_users;
 use perception::classes::PEDESTRIAN_TAG;
 use render::{AdapterChoice, Camera, Frame, Renderer};
 use tests::scenes::{busy_city, busy_hamlet};
@@ -43,7 +43,7 @@ fn people_are_about_as_far_away_as_the_renderer_measured() {
             }
             let frame = renderer.draw(&world.scene(), &camera).unwrap();
             let (plane, depths) = instances(&frame);
-            let found = people(&plane, (frame.width, frame.height), &frame.class_ids);
+            let found = road_users(&plane, (frame.width, frame.height), &frame.class_ids);
             assert_eq!(found.len(), depths.len());
             for (person, depths) in found.iter().zip(&depths) {
                 assert_eq!((person.pixels, person.hits), (depths.len() as u64, depths.len() as u64));

@@ -32,14 +32,14 @@ fn a_drive_is_drawn_again_as_its_sensor_saw_it() {
     assert_eq!(run(&[&drive[..], &sensor].concat()), 0);
     let log = replay::Recording::open(&path).unwrap().into_log();
     let said = &log.manifest.provenance["camera"];
-    assert_eq!(said, "driver 256x128 plain noise=6,k1=-0.1,motion_blur_s=0.02");
+    assert_eq!(said, "driver 256x128 standard noise=6,k1=-0.1,motion_blur_s=0.02");
     assert_eq!(run(&["view", "--digests", place]), 0, "the network sees the same again");
 
     // Without the sensor it would not: recordings that say nothing of one have none.
     let ideal = dir.path().join("ideal.mcap");
     assert_eq!(run(&[&drive[..], &["--record", ideal.to_str().unwrap()]].concat()), 0);
     let other = replay::Recording::open(&ideal).unwrap().into_log();
-    assert_eq!(other.manifest.provenance["camera"], "driver 256x128");
+    assert_eq!(other.manifest.provenance["camera"], "driver 256x128 standard");
     assert_eq!(run(&["view", "--digests", ideal.to_str().unwrap()]), 0);
     let seen = |log: &replay::Log| log.masks.iter().map(|mask| mask.digest).take(3).collect::<Vec<_>>();
     assert_ne!(seen(&log), seen(&other));
@@ -58,9 +58,10 @@ fn a_dataset_says_what_its_sensor_does_and_is_made_again() {
     let text = |folder: &Path, file: &str| fs::read_to_string(folder.join(file)).unwrap();
     let recipe: serde_json::Value = serde_json::from_str(&text(&noisy, "dataset.json")).unwrap();
     assert_eq!(recipe["recipe"]["sensor"], sensor);
-    assert!(text(&noisy, "frames.jsonl").contains(&format!("\"driver 64x32 plain {sensor}\"")));
+    assert!(text(&noisy, "frames.jsonl").contains(&format!("\"driver 64x32 standard {sensor}\"")));
     assert!(
-        !text(&ideal, "dataset.json").contains("sensor") && text(&ideal, "frames.jsonl").contains("\"driver 64x32\"")
+        !text(&ideal, "dataset.json").contains("sensor")
+            && text(&ideal, "frames.jsonl").contains("\"driver 64x32 standard\"")
     );
     assert_eq!(aeye("dataset rebuild", &[&noisy], &again), (0, String::new()));
     assert!(contents(&again) == contents(&noisy));

@@ -42,7 +42,7 @@ const NAMED_ONCE: [(&str, &[&str]); 18] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
     ("roxmltree::", &["kernel/src/baking/limits/", "kernel/src/story/reader/"]),
-    ("tract_onnx", &["perception/src/onnx/"]),
+    ("tract_onnx", &["perception/src/onnx/", "perception/src/operators/"]),
     ("tract_cuda", &["perception/src/onnx/"]),
     ("bincode::", &["replay/src/wire.rs"]),
     ("rusqlite::", &["rig/lab/src/cases/"]),

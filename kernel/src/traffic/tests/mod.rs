@@ -44,7 +44,7 @@ fn car_at(position: Vec3, heading_rad: f32) -> Obstacle {
 }
 
 /// The ego car, parked far away.
-fn nowhere() -> Obstacle {
+pub(super) fn nowhere() -> Obstacle {
     car_at(Vec3::new(1e4, 0.0, 0.0), 0.0)
 }
 

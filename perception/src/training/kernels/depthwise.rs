@@ -1,6 +1,6 @@
 //! Depthwise 3x3 convolution: each channel by itself.
 
-use super::vectorised;
+use crate::simd::vectorised;
 use crate::training::network::Size;
 
 /// Which inputs meet which taps: padding equals dilation.

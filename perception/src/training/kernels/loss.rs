@@ -1,7 +1,7 @@
 //! Cross-entropy at the full resolution of the labels, over bilinearly upsampled logits.
 
-use super::vectorised;
 use crate::classes::{IGNORE, TRAIN_CLASSES};
+use crate::simd::vectorised;
 use crate::taps::Taps;
 use crate::training::network::Size;
 

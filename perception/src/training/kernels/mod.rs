@@ -7,12 +7,6 @@ pub(super) mod loss;
 pub(super) mod norm;
 pub(super) mod patches;
 
-/// Runs a loop with the widest vector instructions of this machine. What it calls must be marked
-/// `#[inline(always)]`.
-pub(super) fn vectorised<R>(work: impl FnOnce() -> R) -> R {
-    macerator::AutoArch::new().dispatch(work)
-}
-
 /// Deviation of derivatives from differences, for tests.
 #[cfg(test)]
 pub(super) fn worst_derivative(x: &[f32], derivative: &[f32], mut f: impl FnMut(&[f32]) -> f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Batch normalisation (Ioffe and Szegedy 2015) with an optional rectifier behind it.
 
-use super::vectorised;
+use crate::simd::vectorised;
 use crate::training::weights::{EPSILON, Moments};
 
 /// Rows that are summed in single precision before the sum goes on in double precision.

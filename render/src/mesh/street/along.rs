@@ -126,10 +126,12 @@ impl<'a> Piece<'a> {
         self.lane.at(self.s_m).heading_rad
     }
 
-    /// Metres along the lane and to the left of its middle.
+    /// Metres along the lane and to the left of its middle; beyond its ends they go on straight.
     fn uv(&self, place: Vec3) -> Vec2 {
-        let (s_m, lateral_m, _) = self.lane.project_near(place, self.s_m, REACH_M);
-        Vec2::new(s_m, lateral_m)
+        let (s_m, ..) = self.lane.project_near(place, self.s_m, REACH_M);
+        let nearest = self.lane.at(s_m);
+        let (off, ahead) = ((place - nearest.position).truncate(), Vec2::from_angle(nearest.heading_rad));
+        Vec2::new(s_m + ahead.dot(off), ahead.perp_dot(off))
     }
 }
 
@@ -192,6 +194,27 @@ mod tests {
             }
             // Where lanes begin and end they have no width.
             assert!(driven > 300 && 20 * torn < driven, "{name}: {torn} of {driven}");
+        }
+    }
+
+    /// What is laid is as large everywhere: a triangle covers as much of its pattern as of the ground.
+    #[test]
+    fn no_pattern_is_stretched_where_pavements_end() {
+        for name in ["lakeside", "old_town"] {
+            let network = kernel::map::bundled(name).expect("a bundled map");
+            let roads = Roads::new(&network);
+            let surface = network.surfaces.iter().find(|s| s.kind == SurfaceKind::Sidewalk).expect("pavements");
+            let (mut laid_m2, mut torn_m2) = (0.0, 0.0);
+            for triangle in &surface.triangles {
+                let corners = triangle.map(|i| surface.positions[i as usize]);
+                let Some(pavement) = roads.pavement(corners.iter().sum::<Vec3>() / 3.0) else { continue };
+                let area = |[a, b, c]: [Vec2; 3]| 0.5 * (b - a).perp_dot(c - a).abs();
+                let ground_m2 = area(corners.map(Vec3::truncate));
+                let pattern_m2 = area(corners.map(|at| pavement.uv(at)));
+                laid_m2 += ground_m2;
+                torn_m2 += if (pattern_m2 - ground_m2).abs() > 0.4 * ground_m2 { ground_m2 } else { 0.0 };
+            }
+            assert!(torn_m2 < 0.01 * laid_m2, "{name}: {torn_m2} of {laid_m2} m2");
         }
     }
 

@@ -3,9 +3,10 @@
 use glam::Vec3;
 
 use crate::SemanticTag;
+use crate::mesh::look::row_of;
 use crate::mesh::model::Detail;
 use crate::mesh::variety::Variety;
-use crate::mesh::{Mesh, Paint};
+use crate::mesh::{CODE_SETTS, Finish, Mesh, Paint};
 
 /// Ends of pieces of about `step_m` that fill a length.
 fn pieces(length_m: f32, step_m: f32) -> impl Iterator<Item = [f32; 2]> {
@@ -17,7 +18,7 @@ fn pieces(length_m: f32, step_m: f32) -> impl Iterator<Item = [f32; 2]> {
 /// Boards between posts, of class Fence.
 pub fn fence(variant: u32, size: Vec3, detail: Detail) -> Mesh {
     let mut variety = Variety::of(variant);
-    let colour = variety.colour(&[[134, 100, 68], [206, 202, 192], [96, 104, 88], [112, 84, 62]]);
+    let colour = row_of(variant).colour(&[[134, 100, 68], [206, 202, 192], [96, 104, 88], [112, 84, 62]]);
     let wood = Paint::plain(SemanticTag::Fence, colour);
     let mut mesh = Mesh::default();
     let height = size.z.max(0.6);
@@ -41,24 +42,29 @@ pub fn fence(variant: u32, size: Vec3, detail: Detail) -> Mesh {
     mesh
 }
 
+/// How far walls and rails reach into the next one of their row, metres.
+const BEYOND_M: f32 = 0.1;
+
 /// Masonry under a coping, of class Wall.
 pub fn wall(variant: u32, size: Vec3) -> Mesh {
-    let mut variety = Variety::of(variant);
-    let colour = variety.colour(&[[156, 148, 136], [150, 96, 76], [178, 170, 156], [134, 132, 130]]);
-    let stone = Paint::plain(SemanticTag::Wall, colour).grainy(150);
-    let half = Vec3::new(0.5 * size.x, 0.5 * size.y.max(0.2), 0.0);
+    let colour = row_of(variant).colour(&[[156, 148, 136], [150, 96, 76], [178, 170, 156], [134, 132, 130]]);
+    let coping = Paint::plain(SemanticTag::Wall, colour).grainy(110).shaded(1.12);
+    let stone = Paint { finish: Finish::Paving, param: 0, ..coping.shaded(0.9).coded(CODE_SETTS) };
+    let half = Vec3::new(0.5 * size.x + BEYOND_M, 0.5 * size.y.max(0.2), 0.0);
     let top = size.z - 0.1;
     let mut mesh = Mesh::default();
     mesh.cuboid(stone, -half, half + Vec3::Z * top);
+    // Its stones are larger than those of roads.
+    mesh.vertices.iter_mut().for_each(|v| v.uv = v.uv.map(|m| 0.6 * m));
     let edge = half + Vec3::new(0.0, 0.05, 0.0);
-    mesh.cuboid(stone.shaded(1.15), -edge + Vec3::Z * top, edge + Vec3::Z * size.z);
+    mesh.cuboid(coping, -edge + Vec3::Z * top, edge + Vec3::Z * size.z);
     mesh
 }
 
 /// A steel rail on posts, of class GuardRail.
 pub fn guard_rail(size: Vec3, detail: Detail) -> Mesh {
     let steel = Paint::plain(SemanticTag::GuardRail, [168, 172, 174]).glossy(60);
-    let (top, half) = (size.z.max(0.5), 0.5 * size.x);
+    let (top, half) = (size.z.max(0.5), 0.5 * size.x + BEYOND_M);
     // The profile from below to above: two ridges with a groove between.
     let profile = [(0.03, 0.0), (0.1, 0.06), (0.1, 0.12), (0.05, 0.16), (0.1, 0.2), (0.1, 0.26), (0.03, 0.32)];
     let mut mesh = Mesh::default();

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::SemanticTag;
 use crate::mesh::foliage::Leaf;
+use crate::mesh::look::row_of;
 use crate::mesh::model::Detail;
 use crate::mesh::shape::Lump;
 use crate::mesh::variety::Variety;
@@ -23,7 +24,7 @@ const SPRIG_PITCH_M: f32 = 0.42;
 /// A trimmed hedge or, when short, a bush, filling a box `size` metres.
 pub fn hedge(variant: u32, size: Vec3, detail: Detail) -> Mesh {
     let mut variety = Variety::of(variant);
-    let leaves = Paint::plain(SemanticTag::Vegetation, variety.colour(&LEAVES)).shaded(0.8).grainy(230);
+    let leaves = Paint::plain(SemanticTag::Vegetation, row_of(variant).colour(&LEAVES)).shaded(0.8).grainy(230);
     if size.x < 2.0 * size.y.max(size.z) {
         bush(leaves, size, detail, &mut variety)
     } else {
@@ -45,13 +46,18 @@ fn bush(leaves: Paint, size: Vec3, detail: Detail, variety: &mut Variety) -> Mes
     mesh
 }
 
-/// Cross-sections along x, each from the foot on one side over the top to the other.
+/// A clipped hedge is longer than its box by this share at each end: it grows into the next one of its row.
+const BEYOND: f32 = 0.04;
+
+/// Cross-sections along x, each from the foot on one side over the top to the other; those at both ends are alike in a row.
 fn cuts(size: Vec3, variety: &mut Variety) -> Vec<[Vec3; 4]> {
     let pieces = (size.x / 1.5).ceil().max(1.0) as u32;
-    let step = size.x / pieces as f32;
+    let length = size.x * (1.0 + 2.0 * BEYOND);
     let cut = |i: u32| {
-        let x = -0.5 * size.x + step * i as f32;
-        let (w, h) = (0.5 * size.y * variety.between(0.88, 1.0), size.z * variety.between(0.9, 1.0));
+        let x = length * (i as f32 / pieces as f32 - 0.5);
+        let [wide, high] = [0.88, 0.9].map(|least| variety.between(least, 1.0));
+        let [wide, high] = if i == 0 || i == pieces { [0.94, 0.95] } else { [wide, high] };
+        let (w, h) = (0.5 * size.y * wide, size.z * high);
         [Vec3::new(x, -w, 0.0), Vec3::new(x, -0.85 * w, h), Vec3::new(x, 0.85 * w, h), Vec3::new(x, w, 0.0)]
     };
     (0..=pieces).map(cut).collect()
@@ -130,6 +136,19 @@ mod tests {
             assert!(leafy(&fine) > 20 && leafy(&coarse) + leafy(&rough) == 0);
             let bounds = size * Vec3::new(0.5, 0.5, 1.0) + 0.45;
             assert!(fine.vertices.iter().all(|v| Vec3::from(v.position).abs().cmple(bounds).all()), "{size}");
+        }
+    }
+
+    /// Maps leave up to 0.4 m between pieces of 5.6 m.
+    #[test]
+    fn pieces_of_a_row_meet_in_the_same_cross_section() {
+        let size = Vec3::new(5.6, 1.0, 1.3);
+        for (one, next) in [(0, 1), (2, 9)] {
+            let [one, next] = [one, next].map(|variant| cuts(size, &mut Variety::of(variant)));
+            let ahead = Vec3::X * (size.x + 0.4);
+            let gap = next[0].map(|corner| corner + ahead);
+            let end = one[one.len() - 1];
+            assert!(gap.iter().zip(end).all(|(a, b)| a.x <= b.x && (a.y, a.z) == (b.y, b.z)), "{gap:?} and {end:?}");
         }
     }
 }

@@ -3,6 +3,7 @@
 mod along;
 pub mod barrier;
 pub mod building;
+mod drain;
 pub mod furniture;
 mod glyphs;
 pub mod hedge;

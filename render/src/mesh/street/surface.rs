@@ -6,10 +6,12 @@ use glam::{Vec2, Vec3};
 use kernel::map::{Lane, RoadNetwork, Surface, SurfaceKind};
 
 use super::along::{Pavement, Roads, Stretch, road_of};
-use super::verge;
+use super::{drain, verge};
 use crate::SemanticTag;
 use crate::mesh::variety::Variety;
-use crate::mesh::{CODE_COVERS, CODE_KERB, CODE_KERBED, CODE_OLDEST, CODE_PAINT, CODE_SETTS, Finish, Mesh, Paint};
+use crate::mesh::{
+    CODE_COVERS, CODE_GRATING, CODE_KERB, CODE_KERBED, CODE_OLDEST, CODE_PAINT, CODE_SETTS, Finish, Mesh, Paint,
+};
 
 /// Side of the square cells that surfaces are cut into, metres.
 const CELL_M: f32 = 24.0;
@@ -114,8 +116,8 @@ pub fn cells(network: &RoadNetwork) -> impl Iterator<Item = Cell> + '_ {
         let is_thin = surface.kind.lies_on_ground();
         cut(surface, &roads).into_iter().map(move |mesh| Cell { mesh, is_thin })
     };
-    let worn = verges(network).into_iter().map(|mesh| Cell { mesh, is_thin: true });
-    network.surfaces.iter().flat_map(of).chain(worn)
+    let laid_on = verges(network).into_iter().chain(drains(network)).map(|mesh| Cell { mesh, is_thin: true });
+    network.surfaces.iter().flat_map(of).chain(laid_on)
 }
 
 fn verges(network: &RoadNetwork) -> Vec<Mesh> {
@@ -124,6 +126,15 @@ fn verges(network: &RoadNetwork) -> Vec<Mesh> {
         for piece in verge::pieces(network, surface, paint(SurfaceKind::Terrain)) {
             verge::mesh(&piece, cells.entry(cell_of(piece[0].0)).or_default());
         }
+    }
+    cells.into_values().collect()
+}
+
+fn drains(network: &RoadNetwork) -> Vec<Mesh> {
+    let iron = laid(SemanticTag::Road, [66, 66, 68], Finish::Asphalt, CODE_GRATING);
+    let mut cells: BTreeMap<[i32; 2], Mesh> = BTreeMap::new();
+    for (middle, mesh) in drain::gratings(network, iron) {
+        cells.entry(cell_of(middle)).or_default().append(&mesh, Vec3::ZERO);
     }
     cells.into_values().collect()
 }

@@ -8,6 +8,7 @@ use kernel::scene::ActorKind;
 
 use crate::mesh::Mesh;
 use crate::mesh::actor::{actor_model, ego_model, parked_model};
+use crate::mesh::look::look;
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::prop;
 
@@ -127,7 +128,7 @@ fn what_is_parked_looks_like_what_drives() {
     let cars = city.props.iter().filter(|prop| prop.kind == kernel::map::PropKind::ParkedCar);
     for car in cars.take(5) {
         let parked = prop::mesh(car, Detail::Coarse);
-        assert_eq!(parked, actor_model(car.parked_kind(), prop::look(car), Detail::Coarse).at_rest());
+        assert_eq!(parked, actor_model(car.parked_kind(), look(car), Detail::Coarse).at_rest());
     }
 }
 

@@ -23,7 +23,7 @@ fn labels(frame: &Frame) -> Frame {
 fn labels_are_the_same_whatever_changes_colours_alone() {
     let network = network("suburb");
     let (mut renderer, scene) = (renderer(&network), scene(&network, 15.0));
-    let ideal = renderer.draw(&scene, &Camera::driver(192, 96)).expect("drawn");
+    let ideal = renderer.draw(&scene, &Camera::driver(192, 96).at(Quality::Plain)).expect("drawn");
     for sensor in
         ["exposure_ev=-2", "noise=4", "motion_blur_s=0.03", "vignetting=0.5", "exposure_ev=1,noise=9,motion_blur_s=0.1"]
     {
@@ -85,7 +85,7 @@ fn labels_under_a_lens_are_those_of_the_places_that_it_shows() {
     let (mut renderer, scene) = (renderer(&network), scene(&network, 15.0));
     for (text, k) in [("k1=-0.1", [-0.1, 0.0]), ("k1=-0.3,k2=0.1", [-0.3, 0.1]), ("k1=0.3,noise=4", [0.3, 0.0])] {
         let camera = with(text);
-        let lens = Lens::of(&camera).expect("it does not fold");
+        let lens = Lenses::default().of(&camera).expect("it does not fold");
         let [source, bent] = [lens.pinhole(), &camera].map(|camera| renderer.draw(&scene, camera).expect("drawn"));
         assert!(labels(&renderer.draw_classes(&scene, &camera).expect("drawn")) == labels(&bent), "{text}");
         let mut compared = 0;
@@ -127,6 +127,37 @@ fn a_lens_that_folds_the_picture_is_refused() {
     let refused = renderer.draw(&scene, &with("k1=-0.5")).expect_err("it folds").to_string();
     assert!(refused.starts_with("a lens of k1=-0.5 folds the picture"), "{refused}");
     assert!(renderer.draw_classes(&scene, &with("k1=-0.5")).is_err());
+}
+
+#[test]
+fn a_size_that_is_too_large_for_the_lens_alone_is_blamed_on_both() {
+    let network = network("suburb");
+    let (mut renderer, scene) = (renderer(&network), scene(&network, 0.0));
+    let limit = renderer.gpu.longest_side();
+    let mut said = |width: u32, sensor: &str| {
+        let camera = Camera { width, height: 1, ..with(sensor) };
+        renderer.draw(&scene, &camera).expect_err("too large").to_string()
+    };
+    let own = format!("camera asks for an image of {}x1 pixels, expected 1x1 to {limit}x{limit}", limit + 1);
+    assert_eq!([said(limit + 1, "noise=1"), said(limit + 1, "k1=-0.1")], [own.clone(), own]);
+    let lens = said(limit, "k1=-0.1");
+    let words = format!("camera asks for an image of {limit}x1 pixels through a lens of k1=-0.1, for which ");
+    assert!(lens.starts_with(&words) && lens.contains(&format!("expected 1x1 to {limit}x{limit} of these")), "{lens}");
+    assert!(said(0, "k1=-0.1").starts_with("camera asks for an image of 0x1 pixels, expected"));
+}
+
+#[test]
+fn cameras_that_take_turns_have_the_pictures_of_their_own_lenses() {
+    let network = network("suburb");
+    let (mut used, scene) = (renderer(&network), scene(&network, 15.0));
+    let cameras = ["k1=-0.1", "k1=0.2", "k1=-0.1,noise=4"]
+        .map(with)
+        .into_iter()
+        .chain([Camera::driver(64, 64).at(with("k1=-0.1").imaging())]);
+    for camera in cameras.clone().chain(cameras) {
+        let fresh = Renderer::new(&network, &AdapterChoice::default()).expect("an adapter").draw(&scene, &camera);
+        assert!(used.draw(&scene, &camera) == fresh, "{camera:?}");
+    }
 }
 
 #[test]

@@ -175,6 +175,9 @@ pub struct ExportArgs {
     /// How the pictures are made.
     #[command(flatten)]
     pub imaging: ImagingArgs,
+    /// A file with cameras whose pictures come along (as of `render`), in mcap, ros2, coco and openlabel.
+    #[arg(long, value_name = "FILE.toml")]
+    pub cameras: Option<PathBuf>,
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,

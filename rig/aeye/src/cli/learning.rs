@@ -48,6 +48,10 @@ pub struct CasesArgs {
     /// How the pictures are made.
     #[command(flatten)]
     pub imaging: ImagingArgs,
+    /// A file with cameras that take every frame, instead of the drivers' (as of `render`): their names stand in those
+    /// of its files.
+    #[arg(long, value_name = "FILE.toml")]
+    pub cameras: Option<PathBuf>,
     /// Cases drawn at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
@@ -126,6 +130,10 @@ pub struct NaturalArgs {
     /// How the pictures are made.
     #[command(flatten)]
     pub imaging: ImagingArgs,
+    /// A file with cameras that take every frame, instead of the drivers' (as of `render`): their names stand in those
+    /// of its files.
+    #[arg(long, value_name = "FILE.toml")]
+    pub cameras: Option<PathBuf>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
     #[arg(long, value_delimiter = ',', default_value = "all", value_name = MAPS)]
     pub maps: Vec<String>,

@@ -65,7 +65,7 @@ pub fn hazards() -> impl TypedValueParser<Value = HazardLevel> {
 }
 
 /// The quality of pictures where none is asked for.
-pub const QUALITY: &str = "plain";
+pub const QUALITY: &str = "standard";
 
 /// A quality of pictures by its name.
 pub fn quality() -> impl TypedValueParser<Value = Quality> {

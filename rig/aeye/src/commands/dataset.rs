@@ -17,6 +17,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         test_frames,
         size,
         imaging,
+        cameras,
         maps,
         pedestrians,
         weather,
@@ -33,6 +34,7 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
         test_frames,
         size,
         imaging: imaging.into(),
+        cameras,
         maps,
         pedestrians,
         weather,
@@ -51,8 +53,8 @@ pub fn natural(args: &NaturalArgs, json: bool) -> anyhow::Result<Verdict> {
 
 /// Runs `aeye dataset cases`.
 pub fn cases(args: &CasesArgs, json: bool) -> anyhow::Result<Verdict> {
-    let CasesArgs { files, label, verdict, split, size, imaging, jobs, out } = args.clone();
-    let options = cases::Options { files, label, verdict, split, size, imaging: imaging.into(), jobs, out };
+    let CasesArgs { files, label, verdict, split, size, imaging, cameras, jobs, out } = args.clone();
+    let options = cases::Options { files, label, verdict, split, size, imaging: imaging.into(), cameras, jobs, out };
     let manifest = cases::make(&options, &Interrupt::listen())?;
     print(json, &manifest, || manifest.sentence(&options.out))?;
     Ok(Verdict::Ok)

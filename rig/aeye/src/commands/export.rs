@@ -10,10 +10,11 @@ use crate::print;
 
 /// Runs `aeye export`.
 pub fn run(args: &ExportArgs, json: bool) -> anyhow::Result<Verdict> {
-    let ExportArgs { files, format, camera, checkpoint, last, from, to, fps, size, imaging, jobs, out } = args.clone();
+    let ExportArgs { files, format, camera, checkpoint, last, from, to, fps, size, imaging, cameras, jobs, out } =
+        args.clone();
     let format = format.unwrap_or_else(|| Format::of_file(&out));
-    let options =
-        Options { files, format, camera, checkpoint, last, from, to, fps, size, imaging: imaging.into(), jobs, out };
+    let imaging = imaging.into();
+    let options = Options { files, format, camera, checkpoint, last, from, to, fps, size, imaging, cameras, jobs, out };
     let summary = export(&options, &Interrupt::listen())?;
     print::result(json, &summary)?;
     Failed::check(&summary.failed, summary.exports.len())?;

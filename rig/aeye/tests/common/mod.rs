@@ -68,7 +68,8 @@ pub fn dataset(dir: &Path, train: u32, val: u32) {
                 class_ids,
                 ..Frame::default()
             };
-            cityscapes::write(dir, &Place { split, city: "toy", scene, frame: 0 }, &frame).expect("written");
+            cityscapes::write(dir, &Place { split, city: "toy", scene, frame: 0, camera: None }, &frame)
+                .expect("written");
         }
     }
 }

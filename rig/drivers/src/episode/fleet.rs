@@ -24,8 +24,8 @@ pub struct Plan {
     pub ticks: Tick,
     /// Whether masks are observed.
     pub masks: bool,
-    /// Size of the images that are observed, pixels.
-    pub images: Option<(u32, u32)>,
+    /// What takes the images that are observed.
+    pub images: Option<Camera>,
     /// Where recordings go.
     pub archive: Option<Archive>,
     /// Episodes that are stepped at the same time, each with a graphics device.
@@ -104,7 +104,7 @@ struct Running {
 impl Fleet {
     /// So many places, in which no episode runs yet.
     pub fn new(plan: Plan, eye: Eye, places: usize) -> Self {
-        let with_colours = plan.images == Some(eye.size());
+        let with_colours = plan.images == Some(eye.camera());
         let studio = Studio::new(eye, with_colours, plan.jobs, places);
         Self { plan, studio, places: (0..places).map(|_| None).collect(), begun: 0 }
     }
@@ -184,8 +184,8 @@ impl Plan {
         if let Some(mask) = row.mask {
             mask.copy_from_slice(episode.mask(optics)?.ids);
         }
-        if let (Some(image), Some(size)) = (row.image, self.images) {
-            image.copy_from_slice(&episode.image(optics, size)?);
+        if let (Some(image), Some(camera)) = (row.image, &self.images) {
+            image.copy_from_slice(&episode.image(optics, camera)?);
         }
         let world = episode.world();
         row.hud.copy_from_slice(&hud::row(&Readout::of(&world.hud())));

@@ -112,15 +112,15 @@ impl Episode {
         Ok(self.screen.look(optics, self.drive.world())?.0)
     }
 
-    /// The colours that the safety driver sees, 3 bytes a pixel: of the present, without delay.
-    pub fn image(&mut self, optics: &mut Optics, size: (u32, u32)) -> anyhow::Result<Cow<'_, [u8]>> {
+    /// The colours that the safety driver sees through a camera, 3 bytes a pixel: of the present, without delay.
+    pub fn image(&mut self, optics: &mut Optics, camera: &Camera) -> anyhow::Result<Cow<'_, [u8]>> {
         let (drive, screen) = (&self.drive, &mut self.screen);
         if self.looks {
             screen.look(optics, drive.world())?;
         }
-        match screen.colours_of(drive.world().tick()).filter(|_| optics.eye().size() == size) {
+        match screen.colours_of(drive.world().tick()).filter(|_| optics.eye().camera() == *camera) {
             Some(drawn) => Ok(drawn.into()),
-            None => Ok(optics.draw(drive.world(), &Camera::driver(size.0, size.1))?.rgb.into()),
+            None => Ok(optics.draw(drive.world(), camera)?.rgb.into()),
         }
     }
 

@@ -63,7 +63,7 @@ fn the_length_of_steps_changes_nothing_that_the_controls_do_not() {
         while episode.world().tick() < seconds(2) {
             progress_m += episode.step(&mut optics, controls, ticks).expect("a step").progress_m;
         }
-        let image = episode.image(&mut optics, (64, 32)).expect("drawn").into_owned();
+        let image = episode.image(&mut optics, &Camera::driver(64, 32)).expect("drawn").into_owned();
         (episode.mask(&mut optics).expect("drawn").ids.to_vec(), image, episode.world().hash(), progress_m.round())
     };
     assert_eq!(drive(1), drive(12));

@@ -1,6 +1,8 @@
 //! The simulated semantic driver: a function of the mask, the HUD and the little it remembers of them.
 
 pub mod arc;
+mod aside;
+mod coming;
 mod crossing;
 mod memory;
 mod moved;
@@ -23,6 +25,7 @@ use crate::temper::Temper;
 use crate::vision::FRAME_TICKS;
 use crate::{indicate, single_track};
 use arc::Arc;
+use aside::Course;
 use memory::{Ahead, Dash, Patience, Reading, Room, Trail};
 use moved::{Lag, Moved};
 use pedals::{Foot, Nose};
@@ -109,11 +112,12 @@ impl SemanticBot {
         let stands_still = view.hud.speed_kmh == 0 && self.looked_ticks >= FRAME_TICKS;
         if is_new {
             self.look(sight, view.mask.ids);
-            self.make_room(sight, arc, &dash);
+            self.make_room(sight, self.course(sight, arc), &dash);
         } else if stands_still {
             self.track();
-            self.make_room(sight, arc, &dash);
+            self.make_room(sight, self.course(sight, arc), &dash);
         }
+        let steered = self.course(sight, arc).steered;
         // A light leaves the HUD once its line is passed, but the junction still has it.
         self.has_lights = dash.light.is_some() || (self.has_lights && dash.junction_m < PASSED_LIGHT_M);
         // Lights keep crossing traffic away, but not the oncoming one that a left turn crosses.
@@ -121,11 +125,12 @@ impl SemanticBot {
         let give_way_m = if gives_way { crossing::give_way_m(arc, &dash, &self.tracks) } else { None };
         let give_way_m = self.patience.keep(give_way_m, moved);
         let after_turn_m = speed::after_turn_m(&self.contacts, &self.tracks, arc, &dash);
-        let obstacle_m = self.room.stop_in_m().into_iter().chain(self.beside_m(arc, &dash)).reduce(f32::min);
+        let others_m = [self.room.stop_in_m(), self.beside_m(steered, &dash), self.coming_m(arc, &dash)];
+        let obstacle_m = others_m.into_iter().flatten().reduce(f32::min);
         let scene = Scene { obstacle_m, after_turn_m, give_way_m, has_lights: self.has_lights };
         let vigour = self.temper.vigour();
         match self.squeeze.way() {
-            None => (arc, speed::wish(sight, arc, &dash, scene, vigour)),
+            None => (steered, speed::wish(sight, arc, &dash, scene, vigour)),
             Some(Way { arc, free_m }) => {
                 let slow = Dash { limit_mps: SQUEEZING_MPS, ..dash };
                 let obstacle_m = self.crosses_m(arc, SQUEEZING_MPS).into_iter().fold(free_m, f32::min);
@@ -133,6 +138,16 @@ impl SemanticBot {
                 (arc, Wish { expects_others: true, ..wish })
             }
         }
+    }
+
+    /// Where the car goes by the mask that was looked at last.
+    fn course(&self, sight: &Sight<'_>, arc: Arc) -> Course {
+        Course::aside(sight, arc, &self.contacts, &self.tracks)
+    }
+
+    /// Metres from the front of the car to where it must stand because of those who come towards it.
+    fn coming_m(&self, arc: Arc, dash: &Dash) -> Option<f32> {
+        coming::coming_m(arc, dash.speed_mps, &self.tracks)
     }
 
     /// Metres from the front of the car to where it must stand because of those who will be in its way.
@@ -166,10 +181,11 @@ impl SemanticBot {
     }
 
     /// What stands in the way by the mask that was looked at last.
-    fn make_room(&mut self, sight: &Sight<'_>, arc: Arc, dash: &Dash) {
+    fn make_room(&mut self, sight: &Sight<'_>, course: Course, dash: &Dash) {
         self.looked_ticks = 0;
-        let stands = speed::obstacle(&self.contacts, &self.tracks, arc, dash.speed_mps);
-        let beside_m = self.beside_m(arc, dash);
+        let Course { wanted: arc, steered } = course;
+        let stands = speed::obstacle(&self.contacts, &self.tracks, course, dash.speed_mps);
+        let beside_m = self.beside_m(steered, dash);
         self.is_blocked = stands.map(|ahead| ahead.stop_in_m).into_iter().chain(beside_m).any(|m| m < IN_THE_WAY_M);
         let crosses = self.crosses_m(arc, dash.speed_mps).map(Ahead::standing);
         self.room.look(stands.into_iter().chain(crosses).reduce(Ahead::nearer));

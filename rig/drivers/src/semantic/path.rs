@@ -1,5 +1,6 @@
 //! Where to steer: the arc that follows the arrow, keeps the lane and stays on the asphalt.
 
+use kernel::map::Turn;
 use kernel::{ego, ops};
 
 use super::arc::{Arc, Point, SHARPEST};
@@ -15,6 +16,8 @@ const JUNCTION_M: f32 = 8.0;
 /// and seconds.
 const LOOK_M: f32 = 7.5;
 const LOOK_S: f32 = 0.8;
+/// The least in turns: who aims farther ahead in a tight one unwinds before its end, and comes out of it wide, metres.
+const TURNING_LOOK_M: f32 = 4.5;
 /// Bearing of the arrow from which the car is turning, degrees.
 const TURNING_DEG: i16 = 10;
 /// From the rear axle to the middle of the car, metres.
@@ -77,9 +80,12 @@ pub fn arrow_point(bearing_deg: i16) -> Point {
 /// The arc to steer: along the remembered arrows, outside of junctions moved to the middle of the lane.
 pub fn choose(sight: &Sight<'_>, dash: &Dash, trail: &Trail) -> Arc {
     let look_m = LOOK_M.max(LOOK_S * dash.speed_mps).min(ARROW_M);
-    let (x_m, y_m) = trail.point_at(look_m).unwrap_or_else(|| arrow_point(dash.bearing_deg));
+    let (is_at_junction, bends) = (dash.junction_m < JUNCTION_M, dash.bearing_deg.abs() > TURNING_DEG);
+    let turns = bends || is_at_junction && dash.turn != Turn::Straight;
+    let aim_m = if turns { TURNING_LOOK_M.max(LOOK_S * dash.speed_mps).min(ARROW_M) } else { look_m };
+    let (x_m, y_m) = trail.point_at(aim_m).unwrap_or_else(|| arrow_point(dash.bearing_deg));
     let followed = Arc::to(x_m, y_m);
-    if dash.junction_m < JUNCTION_M || dash.bearing_deg.abs() > TURNING_DEG {
+    if is_at_junction || bends {
         return nearest_on_road(sight, followed, look_m);
     }
     let shifted = lane_shift_m(sight, followed).map(|shift_m| followed.beside(MIDDLE_M + ARROW_M, shift_m));
@@ -117,4 +123,70 @@ fn nearest_on_road(sight: &Sight<'_>, wanted: Arc, look_m: f32) -> Arc {
         .map(|step| (cost(arc_of(step), step), arc_of(step)))
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map_or(wanted, |(_, arc)| arc)
+}
+
+#[cfg(test)]
+mod tests {
+    use render::SemanticTag;
+
+    use super::*;
+    use crate::MaskView;
+    use crate::semantic::moved::Moved;
+
+    /// Right turns at junctions go a quarter round this, metres.
+    const RADIUS_M: f32 = 8.0;
+    const BEFORE_M: f32 = 30.0;
+
+    /// A point of a lane that turns right after [`BEFORE_M`].
+    fn lane(s_m: f32) -> Point {
+        let turns_m = core::f32::consts::FRAC_PI_2 * RADIUS_M;
+        let turned = (s_m - BEFORE_M).clamp(0.0, turns_m) / RADIUS_M;
+        let (sin, cos) = (ops::sin(turned), ops::cos(turned));
+        (s_m.min(BEFORE_M) + RADIUS_M * sin, RADIUS_M * (cos - 1.0) - (s_m - BEFORE_M - turns_m).max(0.0))
+    }
+
+    /// Nothing but asphalt is seen: the arrow leads, in its steps of 5 degrees.
+    #[test]
+    fn a_car_that_turns_right_stays_in_its_lane() {
+        let ids = vec![SemanticTag::Road as u8; 256 * 128];
+        let sight = Sight::new(MaskView { width: 256, height: 128, ids: &ids }, 0.0);
+        let ends_m = BEFORE_M + core::f32::consts::FRAC_PI_2 * RADIUS_M;
+        let (mut trail, mut x, mut y, mut heading, mut s_m) = (Trail::default(), 10.0_f32, 0.0_f32, 0.0_f32, 10.0_f32);
+        let (mut curvature, mut most_m) = (0.0_f32, [0.0_f32; 2]);
+        while s_m < ends_m + 10.0 {
+            let (mx, my) = (x + MIDDLE_M * ops::cos(heading), y + MIDDLE_M * ops::sin(heading));
+            let away_m = |s_m: f32| ops::hypot(lane(s_m).0 - mx, lane(s_m).1 - my);
+            s_m = (0..40)
+                .map(|step| s_m + 0.02 * step as f32)
+                .min_by(|a, b| away_m(*a).total_cmp(&away_m(*b)))
+                .expect("40");
+            let (tx, ty) = lane(s_m + ARROW_M);
+            let bearing = -ops::wrap_angle(ops::atan2(ty - my, tx - mx) - heading).to_degrees();
+            let junction_m = (BEFORE_M - s_m - ego::SIZE_M.x * 0.5).max(0.0);
+            let is_before = s_m < ends_m;
+            let dash = Dash {
+                speed_mps: 4.3,
+                turn: if is_before { Turn::Right } else { Turn::Straight },
+                junction_m: if is_before { junction_m } else { f32::INFINITY },
+                bearing_deg: 5 * (bearing / 5.0).round() as i16,
+                ..Dash::default()
+            };
+            let moved = Moved::along(Arc { curvature }, dash.speed_mps);
+            trail.extend(moved, arrow_point(dash.bearing_deg));
+            let wanted = choose(&sight, &dash, &trail).curvature;
+            curvature += (wanted - curvature).clamp(-0.006, 0.006);
+            heading += moved.turned_rad;
+            (x, y) = (x + moved.forward_m * ops::cos(heading), y + moved.forward_m * ops::sin(heading));
+            let side = ops::hypot(mx - BEFORE_M, my + RADIUS_M) - RADIUS_M;
+            let aside_m = if s_m < BEFORE_M {
+                my
+            } else if s_m < ends_m {
+                side
+            } else {
+                mx - BEFORE_M - RADIUS_M
+            };
+            most_m = [most_m[0].max(aside_m), most_m[1].min(aside_m)];
+        }
+        assert!(most_m[0] < 0.45 && most_m[1] > -0.45, "{most_m:?} m to the outside and to the inside");
+    }
 }

@@ -38,8 +38,14 @@ pub fn on_ray((seen_x_m, seen_y_m): (f32, f32), x_m: f32) -> (f32, f32) {
     (x_m, seen_y_m * (x_m - camera_x_m) / (seen_x_m - camera_x_m))
 }
 
+/// What is lowest of a vehicle where no wheel is seen is its bumper, which hangs so much above the ground, metres: it seems
+/// farther away than it is. That of a vehicle from so high on hangs higher.
+const BUMPER_M: f32 = 0.2;
+const HIGH_BUMPER_M: f32 = 0.35;
+const HIGH_FROM_M: f32 = 2.0;
+
 /// Where something stands whose lowest part hangs so high above the ground and hides a point of it.
-pub fn nearer((x_m, y_m): (f32, f32), hangs_m: f32) -> (f32, f32) {
+fn nearer((x_m, y_m): (f32, f32), hangs_m: f32) -> (f32, f32) {
     let camera = Camera::driver(2, 1).position;
     let share = 1.0 - hangs_m / camera.z;
     (camera.x + (x_m - camera.x) * share, y_m * share)
@@ -75,6 +81,20 @@ pub struct Contact {
     pub is_person: bool,
     /// The pixel below it is asphalt or paint.
     pub on_road: bool,
+}
+
+impl Contact {
+    /// A lorry or a bus.
+    pub fn is_high(&self) -> bool {
+        !self.is_person && self.height_m >= HIGH_FROM_M
+    }
+
+    /// Where its lowest part is: feet on the ground, a bumper above it.
+    pub fn lowest(&self) -> (f32, f32) {
+        let hides = (self.x_m, self.y_m);
+        let bumper_m = if self.is_high() { HIGH_BUMPER_M } else { BUMPER_M };
+        if self.is_person { hides } else { nearer(hides, bumper_m) }
+    }
 }
 
 #[cfg(test)]

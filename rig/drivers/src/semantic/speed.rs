@@ -6,6 +6,7 @@ use kernel::ops;
 use kernel::signals::LightPhase;
 
 use super::arc::{Arc, HALF_WIDTH_M};
+use super::aside::Course;
 use super::memory::{Ahead, Dash};
 use super::sight::{Contact, Sight};
 use super::tracks::Tracks;
@@ -48,6 +49,9 @@ const TURNING_IN_MPS: f32 = 2.5;
 const BESIDE_VEHICLE_M: [f32; 2] = [0.2, 0.5];
 /// Speed from which the greater one is kept, m/s.
 const BESIDE_AT_MPS: f32 = 5.0;
+/// Slower than this the car creeps, m/s, and looks at the bumpers of lorries that are nearer than this, metres.
+const CREEPING_MPS: f32 = 3.0;
+const BUMPERS_TO_M: f32 = 7.0;
 const BESIDE_WALKER_M: f32 = 0.6;
 const BESIDE_CROSSING_M: f32 = 3.6;
 
@@ -122,11 +126,17 @@ fn in_the_way_m(speed_mps: f32) -> f32 {
 
 /// Where the car must stand because of people and vehicles: behind those who stand, and behind where those who drive ahead
 /// would come to a stand.
-pub fn obstacle(contacts: &[Contact], vehicles: &Tracks, arc: Arc, speed_mps: f32) -> Option<Ahead> {
+pub fn obstacle(contacts: &[Contact], vehicles: &Tracks, course: Course, speed_mps: f32) -> Option<Ahead> {
+    let creeps = speed_mps < CREEPING_MPS;
     let in_the_way = contacts.iter().filter_map(|contact| {
+        let arc = course.by(contact.x_m);
         let (s_m, left_m) = arc.project(contact.x_m, contact.y_m);
-        let is_beside = left_m.abs() >= arc.swept_m(left_m) + clearance_m(contact, speed_mps);
-        if s_m >= in_the_way_m(speed_mps) || is_beside {
+        let is_beside = |left_m: f32, room_m: f32| left_m.abs() >= arc.swept_m(left_m) + room_m;
+        // Who creeps by the bumper of a lorry is nearer to it than to the ground that it hides.
+        let is_bumper = creeps && contact.is_high() && contact.x_m < BUMPERS_TO_M;
+        let lowest = contact.lowest();
+        let is_clear = !is_bumper || is_beside(arc.project(lowest.0, lowest.1).1, BESIDE_VEHICLE_M[0]);
+        if s_m >= in_the_way_m(speed_mps) || is_beside(left_m, clearance_m(contact, speed_mps)) && is_clear {
             return None;
         }
         let leads_mps = leads_mps(contact, vehicles, arc);
@@ -217,6 +227,7 @@ mod tests {
             Contact::of_car((6.0, y_m))
         };
         let (nobody, ahead) = (Tracks::default(), Arc { curvature: 0.0 });
+        let ahead = Course::straight_on(ahead);
         let stops = |room_m, speed_mps| obstacle(&[beside(room_m)], &nobody, ahead, speed_mps).is_some();
         assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 0.0)), [true, false, false, false]);
         assert_eq!([0.15, 0.3, 0.45, 0.55].map(|room_m| stops(room_m, 12.0)), [true, true, true, false]);
@@ -227,7 +238,19 @@ mod tests {
         let sharp = Arc { curvature: -0.125 };
         let (x_m, y_m) = sharp.beside(5.0, HALF_WIDTH_M + 0.6);
         let beside = Contact::of_car((x_m, y_m));
-        assert!(obstacle(&[beside], &Tracks::default(), sharp, 2.0).is_some());
+        assert!(obstacle(&[beside], &Tracks::default(), Course::straight_on(sharp), 2.0).is_some());
+    }
+
+    /// The front of a lorry 3 m ahead hides ground that is beside the car's way.
+    #[test]
+    fn a_car_does_not_creep_into_a_bumper_that_hides_the_ground_beside_it() {
+        let bumper = Contact { height_m: 2.5, ..Contact::of_car((6.8, HALF_WIDTH_M + 0.4)) };
+        let ahead = Course::straight_on(Arc { curvature: 0.0 });
+        let stops = |contact, speed_mps| obstacle(&[contact], &Tracks::default(), ahead, speed_mps).is_some();
+        assert!(stops(bumper, 1.0));
+        let others =
+            [Contact { x_m: 9.0, ..bumper }, Contact { y_m: 2.2, ..bumper }, Contact { height_m: 1.4, ..bumper }];
+        assert_eq!(others.map(|contact| stops(contact, 1.0)), [false; 3], "far ahead, well beside, a car");
     }
 
     #[test]

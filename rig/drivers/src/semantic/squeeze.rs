@@ -28,11 +28,6 @@ const FREE_M: f32 = 5.5;
 const MOVING_MPS: f32 = 0.5;
 const LET_PASS_M: f32 = 15.0;
 
-/// What is lowest of a vehicle where no wheel is seen is its bumper, which hangs so much above the ground, metres: it seems
-/// farther away than it is. That of a vehicle from so high on hangs higher.
-const BUMPER_M: f32 = 0.2;
-const HIGH_BUMPER_M: f32 = 0.35;
-const HIGH_FROM_M: f32 = 2.0;
 /// Who was not looked at for so long may have gone, seconds.
 const FORGOTTEN_S: f32 = 45.0;
 /// Who moves is this near to where it was seen, metres.
@@ -50,9 +45,7 @@ struct Spot {
 impl Spot {
     fn of(contact: &Contact) -> Self {
         let hides = (contact.x_m, contact.y_m);
-        let bumper_m = if contact.height_m < HIGH_FROM_M { BUMPER_M } else { HIGH_BUMPER_M };
-        let at = if contact.is_person { hides } else { sight::nearer(hides, bumper_m) };
-        Self { at, hides, is_person: contact.is_person, unseen_s: 0.0 }
+        Self { at: contact.lowest(), hides, is_person: contact.is_person, unseen_s: 0.0 }
     }
 
     /// Metres before the front of the car along an arc until it would touch it; none if it would not.

@@ -53,7 +53,10 @@ impl Work for Looking<'_> {
 
     fn see(&self, file: &OpenFile<Self>, frame: &Frame, eyes: &mut [Eye]) -> anyhow::Result<Vec<CaseScore>> {
         let Notes { facts, eyes: missing } = &file.notes;
-        let look = |eye: &usize| Ok(CaseScore::of_frame(frame, &eyes[*eye].see(frame.clone())?, facts));
+        let look = |eye: &usize| {
+            let (mask, certainty) = eyes[*eye].see_with_certainty(frame)?;
+            Ok(CaseScore::of_frame(frame, &mask, certainty.as_ref(), facts))
+        };
         missing.iter().map(look).collect()
     }
 

@@ -29,6 +29,12 @@ pub enum Metric {
     /// Time from the first frame in which a hazard is seen to the intervention, mean over hazards; 0 if it
     /// never is. Seconds.
     FirstSight,
+    /// Expected calibration error: how far the share of right pixels is from the confidence. Less is better.
+    Ece,
+    /// Share of the pixels that are wrong with a confidence of 0.9 or more. Less is better.
+    SurelyWrong,
+    /// The same of the pixels of pedestrians.
+    PedSurelyWrong,
     /// Number of cases whose hazard this checkpoint sees in time and the baseline does not.
     Fixed,
     /// The other way round.
@@ -37,18 +43,24 @@ pub enum Metric {
 
 impl Metric {
     /// Every one.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::PedIou,
         Self::Miou,
         Self::PedRecallOnPath,
         Self::HazardsSeen,
         Self::FirstSight,
+        Self::Ece,
+        Self::SurelyWrong,
+        Self::PedSurelyWrong,
         Self::Fixed,
         Self::Broken,
     ];
 
     /// Those of a checkpoint alone; greater is better.
     pub const OWN: [Self; 5] = [Self::PedIou, Self::Miou, Self::PedRecallOnPath, Self::HazardsSeen, Self::FirstSight];
+
+    /// Those of how far a checkpoint's certainty can be believed; less is better.
+    pub const OF_TRUST: [Self; 3] = [Self::Ece, Self::SurelyWrong, Self::PedSurelyWrong];
 
     /// As gates and JSON have it.
     pub fn name(self) -> &'static str {
@@ -58,6 +70,9 @@ impl Metric {
             Self::PedRecallOnPath => "ped_recall_on_path",
             Self::HazardsSeen => "hazards_seen",
             Self::FirstSight => "first_sight_s",
+            Self::Ece => "ece",
+            Self::SurelyWrong => "surely_wrong",
+            Self::PedSurelyWrong => "ped_surely_wrong",
             Self::Fixed => "fixed",
             Self::Broken => "broken",
         }
@@ -71,13 +86,16 @@ impl Metric {
             Self::PedRecallOnPath => "pedestrian recall on path",
             Self::HazardsSeen => "hazards seen in time",
             Self::FirstSight => "first sight before, s",
+            Self::Ece => "calibration error",
+            Self::SurelyWrong => "surely wrong",
+            Self::PedSurelyWrong => "pedestrians surely wrong",
             Self::Fixed => "fixed",
             Self::Broken => "broken",
         }
     }
 
     /// The figure over the cases with these numbers, which may repeat; `None` where nothing is to be
-    /// counted, and for figures that need a baseline.
+    /// counted, for figures of trust, and for those that need a baseline.
     pub fn of(self, cases: &[CaseSums], numbers: &[usize]) -> Option<f64> {
         let chosen = || numbers.iter().map(|number| &cases[*number]);
         match self {
@@ -91,7 +109,7 @@ impl Metric {
                 mean(chosen().filter_map(|case| case.sight_s.map(|s| f64::from(u8::from(in_time(s))))))
             }
             Self::FirstSight => mean(chosen().filter_map(|case| case.sight_s)),
-            Self::Fixed | Self::Broken => None,
+            Self::Ece | Self::SurelyWrong | Self::PedSurelyWrong | Self::Fixed | Self::Broken => None,
         }
     }
 }

@@ -96,7 +96,7 @@ pub fn render(
         version: env!("CARGO_PKG_VERSION"),
         summary,
         frames: summary.cases.iter().map(|case| case.frames).sum(),
-        metrics: Metric::OWN.map(|metric| metric_row(summary, metric)).into(),
+        metrics: Metric::OWN.iter().chain(&Metric::OF_TRUST).map(|metric| metric_row(summary, *metric)).collect(),
         classes: TRAIN_CLASSES.iter().map(|class| class_row(summary, class.name)).collect(),
         cases: case_rows(summary),
         moments,
@@ -110,7 +110,8 @@ fn metric_row(summary: &Scoreboard, metric: Metric) -> Row {
     let cells = |checkpoint: &CheckpointLine| {
         let found = |contest: &Contest| contest.differences.iter().find(|each| each.metric == metric).map(difference);
         let own = decimal(checkpoint.own(metric));
-        std::iter::once(own).chain(checkpoint.against_baseline.as_ref().and_then(found)).collect::<Vec<_>>()
+        let against = checkpoint.against_baseline.as_ref();
+        std::iter::once(own).chain(against.map(|contest| found(contest).unwrap_or_default())).collect::<Vec<_>>()
     };
     Row { name: metric.title(), cells: summary.checkpoints.iter().flat_map(cells).collect() }
 }

@@ -1,7 +1,7 @@
 //! What a checkpoint made of a case, in numbers.
 
 use perception::classes::{IGNORE, PEDESTRIAN_TAG, TRAIN_ID_OF_TAG};
-use perception::{ConfusionMatrix, Mask};
+use perception::{Calibration, Certainty, ConfusionMatrix, Mask};
 use render::{Frame, SemanticTag};
 use serde::{Deserialize, Serialize};
 
@@ -63,6 +63,8 @@ pub struct FrameScore {
 pub struct CaseScore {
     /// Pixels of all frames by true and predicted class.
     pub matrix: ConfusionMatrix,
+    /// Pixels by how sure the checkpoint is of them; empty where it gives classes only.
+    pub calibration: Calibration,
     /// Pixels of the people on the ego car's path, in all frames.
     pub people_on_path: Hits,
     /// Each frame.
@@ -73,14 +75,18 @@ impl CaseScore {
     /// Adds the next frame and what the checkpoint made of it.
     pub fn add(&mut self, other: &Self) {
         self.matrix.merge(&other.matrix);
+        self.calibration.merge(&other.calibration);
         self.people_on_path.add(other.people_on_path);
         self.frames.extend(&other.frames);
     }
 
     /// That of a single frame.
-    pub fn of_frame(frame: &Frame, mask: &Mask, facts: &Facts) -> Self {
+    pub fn of_frame(frame: &Frame, mask: &Mask, certainty: Option<&Certainty>, facts: &Facts) -> Self {
         let mut score = Self::default();
         score.matrix.add(&frame.class_ids, &mask.ids);
+        if let Some(certainty) = certainty {
+            score.calibration.add(&frame.class_ids, &mask.ids, certainty);
+        }
         let hazard = facts.hazard.as_ref().map(|hazard| hazard.instance);
         let mut own = FrameScore::default();
         for ((&truth, &predicted), &instance) in frame.class_ids.iter().zip(&mask.ids).zip(&frame.instance_ids) {
@@ -133,7 +139,7 @@ mod tests {
     fn score(predicted: Vec<u8>) -> CaseScore {
         let hazard = Some(Hazard { instance: 9, what: "pedestrian 9".into() });
         let facts = Facts { ticks: vec![0], hazard, people_on_path: vec![5, 9], other_kernel: None };
-        CaseScore::of_frame(&frame(), &Mask::new(16, 1, predicted).expect("16 pixels"), &facts)
+        CaseScore::of_frame(&frame(), &Mask::new(16, 1, predicted).expect("16 pixels"), None, &facts)
     }
 
     #[test]

@@ -5,11 +5,12 @@ use base::json::Typed;
 use base::library::Entry;
 use drivers::vision::{self, Eye};
 use kernel::time::Tick;
-use perception::ConfusionMatrix;
+use perception::{Calibration, ConfusionMatrix};
 use serde::Serialize;
 
 use super::super::figures::Figures;
 use super::super::pipeline::{Alone, Pace};
+use super::super::trust::Trust;
 use super::contest::{Change, Contest};
 use super::gate::Passage;
 use super::looking::Looked;
@@ -54,6 +55,8 @@ pub struct CheckpointLine {
     pub first_sight_s: Option<f64>,
     #[serde(flatten)]
     pub figures: Figures,
+    /// How far its certainty can be believed; null of one that gives classes only.
+    pub trust: Option<Trust>,
     /// Against the baseline; left out for itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_baseline: Option<Contest>,
@@ -114,8 +117,11 @@ impl CheckpointLine {
     fn new(number: usize, eye: &Eye, looked: &[Looked], sums: &[Vec<CaseSums>]) -> Self {
         let all: Vec<usize> = (0..looked.len()).collect();
         let own = |metric: Metric| metric.of(&sums[number], &all);
-        let mut matrix = ConfusionMatrix::default();
-        looked.iter().for_each(|case| matrix.merge(&case.scores[number].matrix));
+        let (mut matrix, mut calibration) = (ConfusionMatrix::default(), Calibration::default());
+        for score in looked.iter().map(|case| &case.scores[number]) {
+            matrix.merge(&score.matrix);
+            calibration.merge(&score.calibration);
+        }
         Self {
             name: eye.name().to_owned(),
             digest: eye.digest(),
@@ -123,18 +129,23 @@ impl CheckpointLine {
             hazards_seen: own(Metric::HazardsSeen),
             first_sight_s: own(Metric::FirstSight),
             figures: (&matrix).into(),
+            trust: Trust::of(&calibration),
             against_baseline: (number > 0).then(|| Contest::of(&sums[0], &sums[number])),
         }
     }
 
-    /// One of [`Metric::OWN`].
+    /// A figure of the checkpoint alone; `None` of those that need a baseline.
     pub fn own(&self, metric: Metric) -> Option<f64> {
+        let trust = self.trust.as_ref();
         match metric {
             Metric::PedIou => self.figures.pedestrian_iou,
             Metric::Miou => self.figures.miou,
             Metric::PedRecallOnPath => self.ped_recall_on_path,
             Metric::HazardsSeen => self.hazards_seen,
             Metric::FirstSight => self.first_sight_s,
+            Metric::Ece => trust?.ece,
+            Metric::SurelyWrong => trust?.surely_wrong,
+            Metric::PedSurelyWrong => trust?.surely_wrong_of_people(),
             Metric::Fixed | Metric::Broken => None,
         }
     }

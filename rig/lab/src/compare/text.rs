@@ -50,17 +50,19 @@ pub fn difference(difference: &Difference) -> String {
 /// A row for each figure.
 fn metrics(summary: &Scoreboard) -> Vec<String> {
     let mut head = format!("{:<26}", "");
-    let mut rows: Vec<String> = Metric::OWN.iter().map(|metric| format!("{:<26}", metric.title())).collect();
+    let rows_of = || Metric::OWN.into_iter().chain(Metric::OF_TRUST);
+    let mut rows: Vec<String> = rows_of().map(|metric| format!("{:<26}", metric.title())).collect();
     for checkpoint in &summary.checkpoints {
         // Writing to a string cannot fail.
         let _ = write!(head, " {:>12}", checkpoint.name);
-        for (row, metric) in rows.iter_mut().zip(Metric::OWN) {
+        for (row, metric) in rows.iter_mut().zip(rows_of()) {
             let _ = write!(row, " {:>12}", decimal(checkpoint.own(metric)));
         }
         let Some(contest) = &checkpoint.against_baseline else { continue };
         let _ = write!(head, "  {:<25}", "difference [95 %]");
-        for (row, each) in rows.iter_mut().zip(&contest.differences) {
-            let _ = write!(row, "  {:<25}", difference(each));
+        let differences = contest.differences.iter().map(difference).chain(std::iter::repeat(String::new()));
+        for (row, each) in rows.iter_mut().zip(differences) {
+            let _ = write!(row, "  {each:<25}");
         }
     }
     std::iter::once(head).chain(rows).map(|line| line.trim_end().to_owned()).collect()

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use base::failure::Failed;
+use base::failure::{Failed, Usage};
 use base::library::{self, Entry, Kind};
 use base::output::PendingFolder;
 use base::progress::{self, Interrupt};
@@ -19,10 +19,11 @@ use replay::{Label, Recording};
 use super::manifest::Manifest;
 use super::provenance::{Drive, FrameLine};
 use super::recipe::{CaseUsed, CasesRecipe, Recipe, city};
-use crate::cityscapes;
+use super::views::{View, say_sizes, views};
 use crate::looks::Studio;
 use crate::pipeline::Studios;
 use crate::redrive::{Need, keep_judged};
+use crate::{cameras, cityscapes};
 
 /// Which corner cases become a dataset.
 #[derive(Clone, Debug)]
@@ -39,6 +40,8 @@ pub struct Options {
     pub size: (u32, u32),
     /// How good the pictures are.
     pub imaging: Imaging,
+    /// A file with cameras that take the frames, each all of them, instead of the drivers' ([`crate::cameras`]).
+    pub cameras: Option<PathBuf>,
     /// Cases drawn at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// Folder of the dataset; must not exist, be empty, or hold this dataset already.
@@ -59,7 +62,9 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     let found = keep_judged(found, |(path, _)| path, &args.verdict)?;
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     let Imaging { quality, sensor, models } = args.imaging;
-    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality, sensor, models, cases };
+    let cameras = cameras::of_file(args.cameras.as_deref(), (args.size, args.imaging))?;
+    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality, sensor, models, cameras, cases };
+    recipe.check().map_err(Usage)?;
     build(&recipe, &files, &args.out, args.jobs, interrupt)
 }
 
@@ -104,10 +109,13 @@ pub(super) fn build(
     }
     let adapter = vision::find_adapter()?;
     let (pending, studios) = (PendingFolder::new(out)?, Studios::new(recipe.imaging()));
+    let views = views(&recipe.cameras, recipe.size, recipe.imaging())?;
+    say_sizes(&views);
     let bar = progress::bar("cases", files.len() as u64);
     let draw = |scene: usize| {
         studios.with(recipe.size, |studio| {
-            let mut shoot = Shoot { recipe, adapter: &adapter, folder: pending.path(), studio, interrupt };
+            let mut shoot =
+                Shoot { recipe, views: &views, adapter: &adapter, folder: pending.path(), studio, interrupt };
             shoot.case(scene, &files[scene])
         })
     };
@@ -126,6 +134,7 @@ pub(super) fn build(
 /// Draws cases, one after the other.
 struct Shoot<'a> {
     recipe: &'a CasesRecipe,
+    views: &'a [View],
     adapter: &'a str,
     folder: &'a Path,
     studio: &'a mut Studio,
@@ -143,17 +152,14 @@ impl Shoot<'_> {
             if self.interrupt.is_raised() {
                 return Ok(None);
             }
-            let frame = self.studio.draw(&footage.network, snapshot)?;
-            let place = Place { split: &self.recipe.split, city: &case.map, scene: scene as u32, frame: number };
-            cityscapes::write(self.folder, &place, &frame)?;
-            let state_hash = footage.log.hash(frame.tick);
-            lines.push(FrameLine::new(
-                &place,
-                (&frame, self.studio.camera()),
-                (snapshot, state_hash),
-                &drive,
-                self.adapter,
-            ));
+            for view in self.views {
+                let frame = self.studio.draw_through(&footage.network, snapshot, &view.camera)?;
+                let (split, city, camera) = (&self.recipe.split, &case.map, view.name.as_deref());
+                let place = Place { split, city, scene: scene as u32, frame: number, camera };
+                cityscapes::write(self.folder, &place, &frame)?;
+                let state = (snapshot, footage.log.hash(frame.tick));
+                lines.push(FrameLine::new(&place, (&frame, view), state, &drive, self.adapter));
+            }
         }
         Ok(Some(lines))
     }

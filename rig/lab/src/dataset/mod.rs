@@ -19,6 +19,7 @@ mod parts;
 mod provenance;
 pub mod rebuild;
 pub(crate) mod recipe;
+mod views;
 
 pub use manifest::{Manifest, check_whole};
 pub use provenance::{FrameLine, Part, WeatherLine};

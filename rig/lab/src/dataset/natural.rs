@@ -21,16 +21,17 @@ use drivers::vision;
 use kernel::World;
 use kernel::weather::WeatherPreset;
 use perception::cityscapes::Place;
-use render::{AdapterChoice, Camera, Imaging, Renderer};
+use render::{AdapterChoice, Imaging, Renderer};
 
 use super::drive::ExpertDrive;
 use super::manifest::{Manifest, PARTS};
 use super::parts::Parts;
 use super::provenance::{Drive, FrameLine};
 use super::recipe::{MapUsed, NaturalRecipe, Recipe};
-use crate::cityscapes;
+use super::views::{View, say_sizes, views};
 use crate::share::{Share, ShareDone};
 use crate::store::remove_folder;
+use crate::{cameras, cityscapes};
 
 /// What natural frames are asked for.
 #[derive(Clone, Debug)]
@@ -49,6 +50,8 @@ pub struct Options {
     pub size: (u32, u32),
     /// How good the pictures are.
     pub imaging: Imaging,
+    /// A file with cameras that take the frames, each all of them, instead of the drivers' ([`crate::cameras`]).
+    pub cameras: Option<PathBuf>,
     /// Bundled maps or OpenDRIVE files, in turn; `all` are the bundled ones.
     pub maps: Vec<String>,
     /// People on foot in each scene, instead of as many as the map's default scenario has.
@@ -119,7 +122,8 @@ fn shoot(
     let mut scenes = recipe.scenes();
     share.keep(&mut scenes);
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
-    let no_room = Mutex::default();
+    let (no_room, views) = (Mutex::default(), views(&recipe.cameras, recipe.size, recipe.imaging())?);
+    say_sizes(&views);
     let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
     on_threads(jobs(threads), scenes.len(), fresh, |renderers, index| {
         let scene = &scenes[index];
@@ -132,7 +136,8 @@ fn shoot(
             Some(renderer) => renderer,
             none => none.insert(Renderer::new(&map.network, &AdapterChoice::default())?),
         };
-        let mut studio = Studio { recipe, out, adapter: &adapter, renderer, interrupt, bar: &bar, no_room: &no_room };
+        let mut studio =
+            Studio { recipe, views: &views, out, adapter: &adapter, renderer, interrupt, bar: &bar, no_room: &no_room };
         parts.keep(scene.split, scene.number, &studio.shoot(scene, map)?)
     })?;
     bar.finish_and_clear();
@@ -183,6 +188,7 @@ impl NaturalRecipe {
             size: args.size,
             quality: args.imaging.quality,
             sensor: args.imaging.sensor,
+            cameras: cameras::of_file(args.cameras.as_deref(), (args.size, args.imaging))?,
             models: args.imaging.models,
             pedestrians: args.pedestrians,
             weather: args.weather.iter().map(|preset| preset.name.to_owned()).collect(),
@@ -220,6 +226,7 @@ impl NaturalRecipe {
 /// Where the frames of a scene are made.
 struct Studio<'a> {
     recipe: &'a NaturalRecipe,
+    views: &'a [View],
     out: &'a Path,
     adapter: &'a str,
     renderer: &'a mut Renderer,
@@ -232,8 +239,8 @@ impl Studio<'_> {
     /// Drives a scene and writes its frames and recordings.
     fn shoot(&mut self, scene: &Scene, map: &Map) -> anyhow::Result<Vec<FrameLine>> {
         let mut lines: Vec<FrameLine> = Vec::new();
-        let mut leg = 0;
-        while lines.len() < scene.frames as usize {
+        let (mut leg, mut frames) = (0, 0);
+        while frames < scene.frames {
             let before = lines.len();
             let mut scenario = map.scenario(scene.seed(self.recipe, leg));
             scenario.traffic.pedestrians = self.recipe.pedestrians.unwrap_or(scenario.traffic.pedestrians);
@@ -242,8 +249,9 @@ impl Studio<'_> {
             }
             let mut drive = ExpertDrive::new(&scenario, map)?;
             self.say_who_is_missing(drive.world());
-            while lines.len() < scene.frames as usize && drive.next_frame()? {
-                lines.push(self.keep(scene, drive.world(), lines.len() as u32)?);
+            while frames < scene.frames && drive.next_frame()? {
+                self.keep(scene, drive.world(), frames, &mut lines)?;
+                frames += 1;
             }
             if lines.len() > before {
                 let recording = self.record(scene, leg, map, &drive.into_recording()?)?;
@@ -262,20 +270,23 @@ impl Studio<'_> {
         self.bar.suspend(|| told.into_iter().for_each(say));
     }
 
-    /// Draws and writes a frame; the digest of its drive's recording is not known yet.
-    fn keep(&mut self, scene: &Scene, world: &World, number: u32) -> anyhow::Result<FrameLine> {
-        if self.interrupt.is_raised() {
-            bail!("{}: interrupted; the same command completes it", self.out.display());
-        }
-        let ((width, height), snapshot) = (self.recipe.size, world.scene());
-        let camera = Camera::driver(width, height).at(self.recipe.imaging());
-        let frame = self.renderer.draw(&snapshot, &camera)?;
-        let map = &self.recipe.maps[scene.map].name;
-        let place = Place { split: scene.split, city: map, scene: scene.number, frame: number };
-        cityscapes::write(self.out, &place, &frame)?;
-        self.bar.inc(1);
+    /// Draws and writes a frame through each camera; the digest of its drive's recording is not known yet.
+    fn keep(&mut self, scene: &Scene, world: &World, frame: u32, lines: &mut Vec<FrameLine>) -> anyhow::Result<()> {
+        let (snapshot, state_hash) = (world.scene(), Some(world.hash().0 as u32));
         let drive = Drive { recording: String::new(), seed: world.scenario().seed, label: None };
-        Ok(FrameLine::new(&place, (&frame, &camera), (&snapshot, Some(world.hash().0 as u32)), &drive, self.adapter))
+        let city = &self.recipe.maps[scene.map].name;
+        for view in self.views {
+            if self.interrupt.is_raised() {
+                bail!("{}: interrupted; the same command completes it", self.out.display());
+            }
+            let drawn = self.renderer.draw(&snapshot, &view.camera)?;
+            let camera = view.name.as_deref();
+            let place = Place { split: scene.split, city, scene: scene.number, frame, camera };
+            cityscapes::write(self.out, &place, &drawn)?;
+            lines.push(FrameLine::new(&place, (&drawn, view), (&snapshot, state_hash), &drive, self.adapter));
+        }
+        self.bar.inc(1);
+        Ok(())
     }
 
     /// Writes the recording of a drive; gives its digest.

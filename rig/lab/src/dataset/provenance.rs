@@ -5,15 +5,16 @@ use std::collections::BTreeMap;
 use anyhow::anyhow;
 use base::files::check_name;
 use base::json::{Typed, json_line};
-use drivers::vision::camera_text;
+use drivers::vision::named_camera_text;
 use kernel::SceneSnapshot;
 use kernel::scene::Weather;
 use kernel::time::Tick;
 use perception::cityscapes::{Kind, Place};
 use perception::classes::{PEDESTRIAN, TRAIN_CLASSES, train_id};
-use render::{Camera, Frame};
+use render::Frame;
 use serde::{Deserialize, Serialize};
 
+use super::views::View;
 use crate::cityscapes;
 
 /// A frame's provenance.
@@ -31,6 +32,9 @@ pub struct FrameLine {
     pub scene: u32,
     /// Number of the frame within its scene.
     pub frame: u32,
+    /// Name of the camera that took it, in datasets of several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera_name: Option<String>,
     /// Where a mix has it from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part: Option<Part>,
@@ -135,7 +139,7 @@ impl FrameLine {
     /// That of a frame drawn just now by an adapter from a scene of a drive.
     pub(super) fn new(
         place: &Place<'_>,
-        (frame, camera): (&Frame, &Camera),
+        (frame, view): (&Frame, &View),
         (scene, state_hash): (&SceneSnapshot, Option<u32>),
         drive: &Drive<'_>,
         adapter: &str,
@@ -147,6 +151,7 @@ impl FrameLine {
             map: place.city.to_owned(),
             scene: place.scene,
             frame: place.frame,
+            camera_name: view.name.clone(),
             part: None,
             recording: drive.recording.clone(),
             seed: drive.seed,
@@ -154,7 +159,7 @@ impl FrameLine {
             state_hash: state_hash.map(|hash| format!("{hash:08x}")),
             weather: scene.weather.into(),
             label: drive.label.map(str::to_owned),
-            camera: camera_text(camera),
+            camera: named_camera_text(view.name.as_deref().unwrap_or("driver"), &view.camera),
             renderer: render::identity(),
             adapter: adapter.to_owned(),
             class_pixels: class_pixels(&frame.class_ids),
@@ -165,13 +170,15 @@ impl FrameLine {
 
     fn parse(text: &str) -> anyhow::Result<Self> {
         let line: Self = serde_json::from_str(text)?;
-        [&line.split, &line.map].into_iter().try_for_each(|name| check_name(name)).map_err(|reason| anyhow!(reason))?;
+        let names = [&line.split, &line.map].into_iter().chain(&line.camera_name);
+        names.into_iter().try_for_each(|name| check_name(name)).map_err(|reason| anyhow!(reason))?;
         Ok(line)
     }
 
     /// Where its files lie.
     pub(super) fn place(&self) -> Place<'_> {
-        Place { split: &self.split, city: &self.map, scene: self.scene, frame: self.frame }
+        let camera = self.camera_name.as_deref();
+        Place { split: &self.split, city: &self.map, scene: self.scene, frame: self.frame, camera }
     }
 
     /// Pixels that show pedestrians.

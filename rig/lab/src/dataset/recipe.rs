@@ -8,6 +8,8 @@ use render::{Imaging, ModelsId, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 
 use super::provenance::Part;
+use super::views;
+use crate::cameras::Mounted;
 
 /// Most scenes of a split, and frames of a scene: mixes number those of their parts apart by as many.
 pub const MOST_IN_A_SPLIT: u32 = 100_000;
@@ -57,6 +59,15 @@ impl Recipe {
         }
     }
 
+    /// The cameras that take each frame; none where it is the drivers' alone.
+    pub fn cameras(&self) -> &[Mounted] {
+        match self {
+            Self::Natural(recipe) => &recipe.cameras,
+            Self::Cases(recipe) => &recipe.cameras,
+            Self::Mix(recipe) => recipe.natural.cameras(),
+        }
+    }
+
     /// How the pictures are made.
     pub fn imaging(&self) -> Imaging {
         match self {
@@ -92,6 +103,9 @@ pub struct NaturalRecipe {
     /// What lens and chip do to them; left out where they are ideal.
     #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
     pub sensor: Sensor,
+    /// The cameras that take each frame, where it is not the drivers' alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<Mounted>,
     /// Digest of models of a user's own; left out where there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub models: Option<ModelsId>,
@@ -113,6 +127,7 @@ impl NaturalRecipe {
     /// Refuses what no drives can be made from.
     pub fn check(&self) -> Result<(), String> {
         check_size(self.size)?;
+        views::check(&self.cameras, self.size, self.imaging())?;
         let splits = [(self.scenes, self.frames), (self.val_scenes, self.frames), (self.test_scenes, self.test_frames)];
         let has_frames = |(scenes, frames): &(u32, u32)| *scenes == 0 || *frames > 0;
         if self.maps.is_empty() || splits.iter().all(|(scenes, _)| *scenes == 0) || !splits.iter().all(has_frames) {
@@ -177,6 +192,9 @@ pub struct CasesRecipe {
     /// What lens and chip do to them; left out where they are ideal.
     #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
     pub sensor: Sensor,
+    /// The cameras that take each frame, where it is not the drivers' alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cameras: Vec<Mounted>,
     /// Digest of models of a user's own; left out where there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub models: Option<ModelsId>,
@@ -190,8 +208,9 @@ impl CasesRecipe {
         Imaging { quality: self.quality, sensor: self.sensor, models: self.models }
     }
 
-    fn check(&self) -> Result<(), String> {
+    pub(super) fn check(&self) -> Result<(), String> {
         check_size(self.size)?;
+        views::check(&self.cameras, self.size, self.imaging())?;
         check_name(&self.split)?;
         if self.cases.len() > MOST_IN_A_SPLIT as usize {
             return Err(format!("a dataset takes at most {MOST_IN_A_SPLIT} cases"));

@@ -3,30 +3,31 @@
 //! Integers are counted over all pixels of all frames before anything is divided, so nothing depends
 //! on the number of threads.
 
-mod people;
+mod road_users;
 mod split;
+mod text;
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Write};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use anyhow::{Context, bail};
 use base::json::Typed;
-use perception::ConfusionMatrix;
-use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
+use perception::classes::TRAIN_CLASSES;
+use perception::{BoundaryCounts, Calibration, ConfusionMatrix};
 use serde::Serialize;
 
-pub use people::{Pedestrians, Person, Range, Recall, people};
+pub use road_users::{Group, Kind, Range, Recall, RoadUser, RoadUsers, road_users};
 
-use super::dataset::check_whole;
-use super::figures::{Confusion, Figures, decimal, pixels_per, table};
+use self::split::Labelled;
+use super::dataset::{Manifest, check_whole};
+use super::figures::{Confusion, Figures, pixels_per};
+use super::trust::Trust;
 use base::output::PendingFolder;
 use base::png;
 use base::progress::{self, Interrupt};
 use base::spread::{jobs, on_threads};
-use base::words::count;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::vision::Eye;
 
@@ -43,8 +44,12 @@ pub struct Evaluation {
     pub matrix: ConfusionMatrix,
     /// Those of that matrix.
     pub figures: Figures,
-    /// The pedestrians of all frames.
-    pub pedestrians: Pedestrians,
+    /// Boundary IoU by class name.
+    pub boundary_iou: BTreeMap<&'static str, Option<f64>>,
+    /// How far its certainty can be believed; `None` of one that gives classes only.
+    pub trust: Option<Trust>,
+    /// The road users of all frames.
+    pub road_users: RoadUsers,
 }
 
 /// A scene of a split.
@@ -86,8 +91,16 @@ pub struct Summary<'a> {
     pixels_per_scene: BTreeMap<&'static str, f64>,
     /// The same a frame.
     pixels_per_frame: BTreeMap<&'static str, f64>,
-    /// How many people were seen.
-    pedestrians: &'a Pedestrians,
+    /// Boundary IoU by class name (Cheng et al. 2021): IoU of the pixels within 2 % of the picture's diagonal from the
+    /// class's outline.
+    boundary_iou: &'a BTreeMap<&'static str, Option<f64>>,
+    /// Mean of those that there are.
+    mean_boundary_iou: Option<f64>,
+    /// How far its certainty can be believed; null of one that gives classes only.
+    trust: Option<&'a Trust>,
+    /// How many road users were seen.
+    #[serde(flatten)]
+    road_users: &'a RoadUsers,
     /// Pixels by labelled and predicted class.
     confusion: Confusion<'a>,
 }
@@ -100,7 +113,8 @@ impl Typed for Summary<'_> {
 impl<'a> Summary<'a> {
     /// That of a split of a dataset.
     pub fn new(evaluation: &'a Evaluation, dataset: &Path, split: &'a str) -> Self {
-        let Evaluation { checkpoint, digest, scenes, matrix, figures, pedestrians } = evaluation;
+        let Evaluation { checkpoint, digest, scenes, matrix, figures, boundary_iou, trust, road_users } = evaluation;
+        let boundaries: Vec<f64> = boundary_iou.values().flatten().copied().collect();
         Self {
             checkpoint,
             digest,
@@ -111,15 +125,13 @@ impl<'a> Summary<'a> {
             figures,
             pixels_per_scene: pixels_per(matrix, scenes.len()),
             pixels_per_frame: pixels_per(matrix, evaluation.frames()),
-            pedestrians,
+            boundary_iou,
+            mean_boundary_iou: (!boundaries.is_empty())
+                .then(|| boundaries.iter().sum::<f64>() / boundaries.len() as f64),
+            trust: trust.as_ref(),
+            road_users,
             confusion: matrix.into(),
         }
-    }
-}
-
-impl fmt::Display for Summary<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&text(self))
     }
 }
 
@@ -152,7 +164,26 @@ pub fn evaluate_and_keep(
 /// What is kept of a frame.
 struct Seen {
     matrix: ConfusionMatrix,
-    people: Vec<Person>,
+    boundaries: BoundaryCounts,
+    /// Empty of a checkpoint that gives classes only.
+    calibration: Calibration,
+    road_users: Vec<RoadUser>,
+}
+
+impl Seen {
+    fn of(eye: &mut Eye, labelled: &Labelled) -> anyhow::Result<(Self, Vec<u8>)> {
+        let Labelled { frame, instances } = labelled;
+        let (mask, certainty) = eye.see_with_certainty(frame)?;
+        let (mut matrix, mut boundaries) = (ConfusionMatrix::default(), BoundaryCounts::default());
+        matrix.add(&frame.class_ids, &mask.ids);
+        boundaries.add((mask.width, mask.height), &frame.class_ids, &mask.ids);
+        let mut calibration = Calibration::default();
+        if let Some(certainty) = certainty {
+            calibration.add(&frame.class_ids, &mask.ids, &certainty);
+        }
+        let road_users = road_users(instances, (frame.width, frame.height), &mask.ids);
+        Ok((Self { matrix, boundaries, calibration, road_users }, mask.ids))
+    }
 }
 
 /// Looks at every frame on so many threads, and writes the masks below a folder if there is one.
@@ -163,6 +194,7 @@ fn look(
     interrupt: &Interrupt,
 ) -> anyhow::Result<Evaluation> {
     check_whole(dataset)?;
+    let is_of_drivers = Manifest::read(dataset).map_or(true, |manifest| manifest.recipe.cameras().is_empty());
     let images = split::images(dataset, split)?;
     let (first, _) = png::read(&images[0], 3)?;
     let eye = Eye::open_at(checkpoint, first)?;
@@ -182,14 +214,14 @@ fn look(
             if !eye.is_truth() && eye.size() != size {
                 *eye = Eye::open_at(checkpoint, size)?;
             }
-            let truth = labelled.frame.class_ids.clone();
-            let mask = eye.see(labelled.frame)?.ids;
-            let mut matrix = ConfusionMatrix::default();
-            matrix.add(&truth, &mask);
+            let (mut found, mask) = Seen::of(eye, &labelled)?;
             if let Some(folder) = predictions {
                 write(&prediction(folder, image), &png::grey(size, &mask)?)?;
             }
-            let _ = seen[index].set(Seen { matrix, people: people(&labelled.instances, size, &mask) });
+            if !is_of_drivers {
+                found.road_users.iter_mut().for_each(|user| user.distance_m = None);
+            }
+            let _ = seen[index].set(found);
             bar.inc(1);
             Ok(())
         },
@@ -201,7 +233,8 @@ fn look(
 
 fn sum(eye: &Eye, images: &[PathBuf], seen: &[Seen]) -> Evaluation {
     let mut scenes: Vec<Scene> = Vec::new();
-    let mut matrix = ConfusionMatrix::default();
+    let (mut matrix, mut boundaries) = (ConfusionMatrix::default(), BoundaryCounts::default());
+    let mut calibration = Calibration::default();
     for (image, seen) in images.iter().zip(seen) {
         let name = split::scene(image);
         if scenes.last().is_none_or(|scene| scene.name != name) {
@@ -212,15 +245,20 @@ fn sum(eye: &Eye, images: &[PathBuf], seen: &[Seen]) -> Evaluation {
             scene.matrix.merge(&seen.matrix);
         }
         matrix.merge(&seen.matrix);
+        boundaries.merge(&seen.boundaries);
+        calibration.merge(&seen.calibration);
     }
-    let people: Vec<Person> = seen.iter().flat_map(|seen| seen.people.iter().copied()).collect();
+    let road_users: Vec<RoadUser> = seen.iter().flat_map(|seen| seen.road_users.iter().copied()).collect();
+    let boundary_iou = TRAIN_CLASSES.iter().zip(boundaries.iou());
     Evaluation {
         checkpoint: eye.name().to_owned(),
         digest: eye.digest(),
         scenes,
         figures: (&matrix).into(),
         matrix,
-        pedestrians: Pedestrians::of(&people),
+        boundary_iou: boundary_iou.map(|(class, iou)| (class.name, Some(iou).filter(|iou| !iou.is_nan()))).collect(),
+        trust: Trust::of(&calibration),
+        road_users: RoadUsers::of(&road_users),
     }
 }
 
@@ -235,36 +273,6 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let folder = path.parent().unwrap_or(path);
     fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     fs::write(path, bytes).with_context(|| path.display().to_string())
-}
-
-fn text(summary: &Summary<'_>) -> String {
-    let Summary { scenes, frames, split, pedestrians, .. } = summary;
-    let a_scene = summary.pixels_per_scene.get(TRAIN_CLASSES[PEDESTRIAN].name).copied();
-    let mut text = format!(
-        "{}\n{} of {} of {split}; {:.1} pixels of pedestrians a scene\n\n{:<14} {:>12} {:>12} {:>12} {:>12}",
-        table(&[(summary.checkpoint.to_owned(), summary.figures.clone())]),
-        count(*frames, "frame"),
-        count(*scenes, "scene"),
-        a_scene.unwrap_or_default(),
-        "pedestrians",
-        "people",
-        "pixels",
-        "recall",
-        "half seen",
-    );
-    // Writing to a string cannot fail.
-    let mut row = |name: &str, Recall { people, pixels, pixel_recall, half_seen, .. }: &Recall| {
-        let (recall, half) = (decimal(*pixel_recall), decimal(*half_seen));
-        let _ = write!(text, "\n{name:<14} {people:>12} {pixels:>12} {recall:>12} {half:>12}");
-    };
-    row("all", &pedestrians.all);
-    for (ranges, unit) in [(&pedestrians.by_height_px, "px high"), (&pedestrians.by_distance_m, "m away")] {
-        for Range { from, to, recall } in ranges {
-            row(&to.map_or_else(|| format!("{from}+ {unit}"), |to| format!("{from}-{to} {unit}")), recall);
-        }
-    }
-    row("feet hidden", &pedestrians.feet_hidden);
-    text
 }
 
 #[cfg(test)]
@@ -293,7 +301,7 @@ mod tests {
                 class_ids,
                 ..Frame::default()
             };
-            cityscapes::write(dir, &Place { split: "val", city: "toy", scene, frame: number }, &frame)
+            cityscapes::write(dir, &Place { split: "val", city: "toy", scene, frame: number, camera: None }, &frame)
                 .expect("written");
         }
     }
@@ -309,9 +317,10 @@ mod tests {
             all.scenes.iter().map(|scene| scene.name.as_str()).collect::<Vec<_>>(),
             ["toy_000000", "toy_000001"]
         );
-        assert_eq!((all.pedestrians.all.people, all.pedestrians.all.half_seen), (4, Some(1.0)));
+        assert_eq!((all.road_users.pedestrians.all.count, all.road_users.pedestrians.all.half_seen), (4, Some(1.0)));
+        assert!(all.boundary_iou.values().flatten().all(|iou| *iou == 1.0) && all.trust.is_none());
         // Feet 10 rows below the horizon are 32 px * 1.5 m / 10 px = 4.8 m away, 8 rows there 1.2 m.
-        assert_eq!(all.pedestrians.by_distance_m[0].recall.people, 4);
+        assert_eq!(all.road_users.pedestrians.by_distance_m[0].recall.count, 4);
     }
 
     #[test]
@@ -329,6 +338,12 @@ mod tests {
             sum.add(&png::read(&labels, 1).expect("labels").1, &mask);
         }
         assert_eq!((sum, 2), (one.matrix, one.scenes.len()));
+        let trust = one.trust.expect("a network with scores");
+        let pixels: u64 = trust.ranges.iter().map(|range| range.pixels).sum();
+        assert_eq!(pixels, one.figures.pixels);
+        // Stripes are nothing that it knows: it is surer than it is right, and says so by its entropy at best.
+        let gap = trust.confidence.unwrap_or_default() - one.figures.accuracy.unwrap_or_default();
+        assert!(gap > 0.0 && trust.ece.is_some_and(|ece| ece >= gap - 1e-6), "{trust:?}");
         assert!(masks.join("toy/toy_000001_000000_pred_labelIds.png").is_file());
     }
 

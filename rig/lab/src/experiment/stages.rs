@@ -153,6 +153,7 @@ impl Stages<'_> {
             test_frames: n.test_frames,
             size: self.recipe.size,
             imaging: self.recipe.imaging(),
+            cameras: None,
             maps: self.recipe.maps.clone(),
             pedestrians: None,
             weather: Vec::new(),
@@ -257,6 +258,7 @@ impl Stages<'_> {
                 split: split.into(),
                 size: self.recipe.size,
                 imaging: self.recipe.imaging(),
+                cameras: None,
                 jobs: self.jobs,
                 out: self.dataset(name),
             };

@@ -8,6 +8,7 @@ use measures::footage::Window;
 use replay::Recording;
 
 use super::options::Options;
+use crate::cameras::Named;
 use crate::looks::Size;
 
 /// Everything that the pictures and messages of a window follow from, by names.
@@ -15,7 +16,7 @@ pub fn about(
     recording: &Recording,
     window: &Window,
     (args, size): (&Options, Size),
-    eyes: &[Eye],
+    (eyes, others): (&[Eye], &[Named]),
 ) -> BTreeMap<String, String> {
     let eyes: Vec<String> = eyes.iter().map(|eye| format!("{} {}", eye.name(), eye.digest())).collect();
     let entries = [
@@ -28,7 +29,9 @@ pub fn about(
         ("adapter", drivers::vision::adapter()),
         ("program", env!("CARGO_PKG_VERSION").to_owned()),
     ];
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    let others: Vec<String> = others.iter().map(|Named { name, camera }| format!("{name} {camera:?}")).collect();
+    let cameras = (!others.is_empty()).then(|| ("cameras", others.join(", ")));
+    entries.into_iter().chain(cameras).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// What to add to coordinates to have those of the map's file, where they differ: metres to the east and to the north.

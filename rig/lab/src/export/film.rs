@@ -15,7 +15,7 @@ use measures::footage::Window;
 use replay::{Log, Replayer, nanoseconds};
 use serde::Serialize;
 use viewers::messages::actors::actors;
-use viewers::messages::camera::{calibration, image};
+use viewers::messages::camera::image;
 use viewers::messages::ground::ground;
 use viewers::messages::poses::{ego_path, ego_pose, transforms};
 use viewers::messages::telemetry::Telemetry;
@@ -24,6 +24,7 @@ use super::criticality::Criticality;
 use super::happenings;
 use super::sink::Sink;
 use super::topics::Topics;
+use crate::cameras::Named;
 use crate::looks::{Studio, look};
 
 /// What is written of a window.
@@ -65,6 +66,8 @@ pub struct Camera<'a> {
     pub studio: &'a mut Studio,
     /// Look at what was drawn.
     pub eyes: &'a mut [Eye],
+    /// Cameras beside the drivers'.
+    pub others: &'a [Named],
 }
 
 /// Writes a window of a log. `go_on` is asked after each picture; when it says no, an error ends the work.
@@ -75,7 +78,7 @@ pub fn shoot<W: Write>(
     sink: &mut Sink<W>,
     mut go_on: impl FnMut() -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
-    let topics = Topics::declare(sink, camera.eyes.iter().map(Eye::name))?;
+    let topics = Topics::declare(sink, camera.eyes.iter().map(Eye::name), camera.others)?;
     let (first, last) = (*window.ticks.start(), *window.ticks.end());
     sink.put(&topics.ground, first, &ground(network, nanoseconds(first)))?;
     sink.put(&topics.path, first, &ego_path(&path(log, network, window)?, nanoseconds(first)))?;
@@ -140,16 +143,20 @@ fn picture<W: Write>(
     topics: &Topics,
     sink: &mut Sink<W>,
 ) -> anyhow::Result<()> {
-    let (tick, time_ns, pinhole) = (scene.tick, nanoseconds(scene.tick), *camera.studio.camera());
+    let (tick, time_ns, driver) = (scene.tick, nanoseconds(scene.tick), *camera.studio.camera());
     let frame = camera.studio.draw(network, scene)?;
     let size = (frame.width, frame.height);
-    sink.put(&topics.transforms, tick, &transforms(scene, &pinhole, time_ns))?;
+    let others = topics.others.iter().zip(camera.others.iter().map(|named| &named.camera));
+    let mounted = [(&topics.driver, &driver)].into_iter().chain(others.clone());
+    let mounted = mounted.map(|(pictures, camera)| (pictures.frame(), camera));
+    sink.put(&topics.transforms, tick, &transforms(scene, mounted, time_ns))?;
     sink.put(&topics.actors, tick, &actors(scene, time_ns))?;
-    sink.put(&topics.calibration, tick, &calibration(&pinhole, time_ns))?;
-    sink.put(&topics.rgb, tick, &image(png::rgb(size, &frame.rgb)?, time_ns))?;
-    sink.put(&topics.truth, tick, &image(png::tags(size, &frame.class_ids)?, time_ns))?;
+    topics.driver.put(sink, &driver, &frame)?;
     for (topic, mask) in topics.predicted.iter().zip(look(camera.eyes, &frame)?) {
-        sink.put(topic, tick, &image(png::tags(size, &mask.ids)?, time_ns))?;
+        sink.put(topic, tick, &image(png::tags(size, &mask.ids)?, topics.driver.frame(), time_ns))?;
+    }
+    for (pictures, other) in others {
+        pictures.put(sink, other, &camera.studio.draw_through(network, scene, other)?)?;
     }
     Ok(())
 }

@@ -50,24 +50,33 @@ struct Traits {
     has_masks: bool,
     /// It can be taken from other places than where the drivers sit.
     has_cameras: bool,
+    /// It can hold what several cameras see.
+    has_several: bool,
 }
 
 /// Every format. Where a file's ending fits several, the first of them is meant; an animated PNG ends as all who show
 /// PNGs expect.
 const TABLE: [Traits; 9] = [
-    traits(Format::Mcap, "mcap", Written::File("mcap"), true, false),
-    traits(Format::Apng, "apng", Written::File("png"), true, true),
-    traits(Format::Gif, "gif", Written::File("gif"), true, true),
-    traits(Format::Mp4, "mp4", Written::File("mp4"), true, true),
-    traits(Format::OpenScenario, "openscenario", Written::File("xosc"), false, false),
-    traits(Format::Osi, "osi", Written::File("mcap"), false, false),
-    traits(Format::Coco, "coco", Written::Folder, false, false),
-    traits(Format::OpenLabel, "openlabel", Written::File("json"), false, false),
-    traits(Format::Ros2, "ros2", Written::Folder, true, false),
+    traits(Format::Mcap, "mcap", Written::File("mcap"), true, false, true),
+    traits(Format::Apng, "apng", Written::File("png"), true, true, false),
+    traits(Format::Gif, "gif", Written::File("gif"), true, true, false),
+    traits(Format::Mp4, "mp4", Written::File("mp4"), true, true, false),
+    traits(Format::OpenScenario, "openscenario", Written::File("xosc"), false, false, false),
+    traits(Format::Osi, "osi", Written::File("mcap"), false, false, false),
+    traits(Format::Coco, "coco", Written::Folder, false, false, true),
+    traits(Format::OpenLabel, "openlabel", Written::File("json"), false, false, true),
+    traits(Format::Ros2, "ros2", Written::Folder, true, false, true),
 ];
 
-const fn traits(format: Format, name: &'static str, written: Written, has_masks: bool, has_cameras: bool) -> Traits {
-    Traits { format, name, written, has_masks, has_cameras }
+const fn traits(
+    format: Format,
+    name: &'static str,
+    written: Written,
+    has_masks: bool,
+    has_cameras: bool,
+    has_several: bool,
+) -> Traits {
+    Traits { format, name, written, has_masks, has_cameras, has_several }
 }
 
 impl Format {
@@ -98,9 +107,14 @@ impl Format {
         TABLE.iter().find(is_it).map(|traits| traits.format)
     }
 
-    /// Refuses what it cannot show.
-    pub fn check(self, camera: Viewpoint, checkpoints: &[CheckpointChoice]) -> Result<(), Usage> {
-        let Traits { name, has_masks, has_cameras, .. } = self.traits();
+    /// Refuses what it cannot show; `cameras` says whether others than the drivers' are asked for.
+    pub fn check(self, camera: Viewpoint, checkpoints: &[CheckpointChoice], cameras: bool) -> Result<(), Usage> {
+        let Traits { name, has_masks, has_cameras, has_several, .. } = self.traits();
+        if !has_several && cameras {
+            let those = TABLE.iter().filter(|traits| traits.has_several).map(|traits| traits.name);
+            let those = those.collect::<Vec<_>>().join(", ");
+            return Err(Usage(format!("{name} holds no pictures of several cameras; --cameras is for {those}")));
+        }
         if !has_masks && !checkpoints.is_empty() {
             return Err(Usage(format!(
                 "{name} holds no masks of networks; expected --checkpoint or --format {name}, not both"
@@ -149,6 +163,14 @@ mod tests {
         }
         let said = "pdf".parse::<Format>().expect_err("none").0;
         assert!(said.starts_with("no such format: \"pdf\"; expected one of mcap, apng, "), "{said}");
+    }
+
+    #[test]
+    fn several_cameras_are_refused_where_there_is_no_room_for_them() {
+        let said = |format: Format| format.check(Viewpoint::Driver, &[], true).map_err(|Usage(said)| said);
+        let refused = "gif holds no pictures of several cameras; --cameras is for mcap, coco, openlabel, ros2";
+        assert_eq!(said(Format::Gif), Err(refused.into()));
+        assert!(said(Format::Osi).is_err() && said(Format::OpenScenario).is_err() && said(Format::Coco).is_ok());
     }
 
     #[test]

@@ -3,15 +3,15 @@
 use serde_json::{Map, Value, json};
 use viewers::boxes::EGO;
 use viewers::messages::topics::{
-    ACTORS, CALIBRATION, CRITICALITY, EVENTS, GROUND, PATH, RGB, TELEMETRY, TRUTH, predicted,
+    ACTORS, CALIBRATION, CRITICALITY, EVENTS, GROUND, PATH, RGB, TELEMETRY, TRUTH, calibration_of, predicted, rgb_of,
 };
 
-/// The layout for exports with masks of these checkpoints.
-pub fn layout<'a>(checkpoints: impl Iterator<Item = &'a str>) -> Value {
+/// The layout for exports with masks of these checkpoints, and pictures of these cameras beside the drivers'.
+pub fn layout<'a>(checkpoints: impl Iterator<Item = &'a str>, cameras: impl Iterator<Item = &'a str>) -> Value {
     let masks: Vec<String> = std::iter::once(TRUTH.to_owned()).chain(checkpoints.map(predicted)).collect();
     let mut panels = Map::new();
     panels.insert("3D!scene".into(), scene());
-    panels.insert("Image!camera".into(), image(RGB));
+    panels.insert("Image!camera".into(), image(RGB, CALIBRATION));
     panels.insert("RosOut!events".into(), json!({ "searchTerms": [], "minLogLevel": 1, "topicToRender": EVENTS }));
     panels.insert("StateTransitions!control".into(), states(&["phase", "steering_by", "pedals_by"]));
     panels.insert("Plot!speed".into(), plot(TELEMETRY, &["speed_mps", "limit_mps"]));
@@ -19,9 +19,11 @@ pub fn layout<'a>(checkpoints: impl Iterator<Item = &'a str>) -> Value {
         .insert("Plot!pedals".into(), plot(TELEMETRY, &["throttle", "brake", "steer", "safety_brake", "safety_steer"]));
     let critical = ["ttc_s", "pret_s", "required_deceleration_mps2"];
     panels.insert("Plot!criticality".into(), plot(CRITICALITY, &critical));
-    let masks = masks.iter().map(|topic| {
+    let masks = masks.into_iter().map(|topic| (topic, CALIBRATION.to_owned()));
+    let others = cameras.map(|camera| (rgb_of(camera), calibration_of(camera)));
+    let masks = masks.chain(others).map(|(topic, calibration)| {
         let id = format!("Image!{}", topic.trim_start_matches('/').replace('/', "."));
-        panels.insert(id.clone(), image(topic));
+        panels.insert(id.clone(), image(&topic, &calibration));
         json!(id)
     });
     let masks = stacked(masks.collect());
@@ -64,8 +66,8 @@ fn scene() -> Value {
     })
 }
 
-fn image(topic: &str) -> Value {
-    json!({ "imageMode": { "imageTopic": topic, "calibrationTopic": CALIBRATION } })
+fn image(topic: &str, calibration: &str) -> Value {
+    json!({ "imageMode": { "imageTopic": topic, "calibrationTopic": calibration } })
 }
 
 fn figure(topic: &str, name: &str) -> Value {
@@ -97,12 +99,14 @@ mod tests {
 
     #[test]
     fn every_panel_has_its_place() {
-        let layout = layout(["early", "full"].into_iter());
+        let layout = layout(["early", "full"].into_iter(), ["left"].into_iter());
         let mut placed = Vec::new();
         leaves(&layout["layout"], &mut placed);
         placed.sort_unstable();
         let panels: Vec<&String> = layout["configById"].as_object().expect("panels").keys().collect();
         assert_eq!(placed, panels);
         assert!(placed.contains(&"Image!camera.predicted.full"));
+        let left = &layout["configById"]["Image!cameras.left.rgb"]["imageMode"];
+        assert_eq!(left["calibrationTopic"], "/cameras/left/calibration");
     }
 }

@@ -37,6 +37,7 @@ use drivers::vision::Eye;
 use replay::Recording;
 use serde::Serialize;
 
+use super::cameras;
 use super::looks::open_eyes;
 use super::pipeline::Studios;
 use super::shots::Workshop;
@@ -82,9 +83,17 @@ impl fmt::Display for Exports {
 
 /// Exports what is asked for; what is whole already is kept.
 pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> {
-    args.format.check(args.camera, &args.checkpoint)?;
+    args.format.check(args.camera, &args.checkpoint, args.cameras.is_some())?;
     let Places { layout, files, mut failed, folder } = places(args)?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
+    let others = match &args.cameras {
+        Some(path) => cameras::read(path, size, args.imaging)?,
+        None => Vec::new(),
+    };
+    if args.format == Format::Ros2 {
+        ros2::check_names(&others)?;
+    }
+    let others = &others;
     let (studios, workshop) = (Studios::new(args.imaging), Arc::new(Workshop::default()));
     let bar = progress::bar("files", files.len() as u64);
     let work = |index: usize| {
@@ -95,16 +104,16 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
         let eyes = &mut eyes.clone();
         match args.format {
             Format::Mcap => studios.with(size, |studio| {
-                let (recording, mut camera) = (Recording::open(file)?, Camera { studio, eyes });
+                let (recording, mut camera) = (Recording::open(file)?, Camera { studio, eyes, others });
                 robot_log::export((args, size), (file, &recording), out.clone(), &mut camera, interrupt)
             }),
             Format::Ros2 => studios.with(size, |studio| {
-                ros2::export((args, size), file, out.clone(), &mut Camera { studio, eyes }, interrupt)
+                ros2::export((args, size), file, out.clone(), &mut Camera { studio, eyes, others }, interrupt)
             }),
             Format::Coco => {
-                studios.with(size, |studio| coco::export((args, size), file, out.clone(), studio, interrupt))
+                studios.with(size, |studio| coco::export((args, size), file, out.clone(), (studio, others), interrupt))
             }
-            Format::OpenLabel => openlabel::export((args, size), file, out.clone(), interrupt),
+            Format::OpenLabel => openlabel::export((args, size), file, out.clone(), others, interrupt),
             Format::OpenScenario => story::export(args, file, out.clone(), interrupt),
             Format::Osi => osi::export(args, file, out.clone(), interrupt),
             Format::Apng | Format::Gif | Format::Mp4 => {
@@ -128,7 +137,7 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
         return Err(Failed::new(failed).into());
     }
     if let Some(layout) = &layout {
-        let panels = layout::layout(eyes.iter().map(Eye::name));
+        let panels = layout::layout(eyes.iter().map(Eye::name), others.iter().map(|named| named.name.as_str()));
         output::write_file(layout, &serde_json::to_vec_pretty(&panels)?)?;
     }
     Ok(Exports { layout, exports, failed })

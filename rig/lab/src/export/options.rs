@@ -54,6 +54,8 @@ pub struct Options {
     pub size: Option<(u32, u32)>,
     /// How good the pictures are.
     pub imaging: Imaging,
+    /// A file with cameras whose pictures come along ([`crate::cameras`]).
+    pub cameras: Option<PathBuf>,
     /// Files exported at the same time (default: one a core); the results do not depend on it.
     pub jobs: Option<u16>,
     /// File of the export, with its layout for viewers beside it; or a folder, for several files.

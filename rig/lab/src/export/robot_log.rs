@@ -28,7 +28,7 @@ pub fn export(
     }
     let (log, network) = (recording.log(), recording.network()?);
     let window = Window::of(log, &args.asked())?;
-    let mut about = about(recording, &window, (args, size), camera.eyes);
+    let mut about = about(recording, &window, (args, size), (&*camera.eyes, camera.others));
     about.extend(origin(&network));
     let counts = Counts::of(log, &window);
     let (from, to) = window.ticks.clone().into_inner();

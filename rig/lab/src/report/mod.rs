@@ -18,6 +18,7 @@ use base::progress;
 use base::say::say;
 use base::spread::{in_order, jobs};
 use drivers::checkpoint::CheckpointChoice;
+use drivers::recorded_eye::RecordedEye;
 use drivers::vision::Eye;
 use kernel::time::{CLIP_FPS, CLIP_TICKS};
 use measures::Tally;
@@ -52,7 +53,7 @@ enum Told {
     Uncounted,
 }
 
-/// The page about the corner cases among files and folders, each drawn at a size (see [`open_eyes`]) and looked at through each
+/// The page about the corner cases among files and folders, each drawn at a size (see [`open_eyes`]) as its drive was, and looked at through each
 /// checkpoint, so many at the same time. Kilometres, and the corner cases that they are divided by, are those of all rides behind the cases (see
 /// [`Library::of`]), of which few may be shown. Drives to get used to the rig do not count.
 pub fn render(
@@ -106,8 +107,11 @@ fn tell(file: &Entry, studio: &mut Studio, eyes: &mut [Eye]) -> anyhow::Result<T
     }
     let footage = Footage::read(&file.path, CLIP_TICKS, CLIP_FPS)?;
     let (mut strip, mut seen) = (Strip::new(eyes, &footage), Seen::nothing());
+    // As it was seen in the drive.
+    let imaging = RecordedEye::of(&footage.log.manifest.provenance)?.camera.imaging();
+    let camera = studio.camera().at(imaging);
     for scene in &footage.scenes {
-        let frame = studio.draw(&footage.network, scene)?;
+        let frame = studio.draw_through(&footage.network, scene, &camera)?;
         let masks = look(eyes, &frame)?;
         strip.add(&frame, &masks, &mut seen)?;
     }

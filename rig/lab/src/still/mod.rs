@@ -147,7 +147,7 @@ impl Moment {
         match self {
             Self::OfFile(stage, tick) => {
                 let size = (camera.width, camera.height);
-                Ok(Shots::of_tick(stage, *tick, Viewpoint::Driver, size)?.through(*camera).draw(0)?.frame)
+                Ok(Shots::of_tick(stage, *tick, Viewpoint::Driver, size)?.draw_through(0, camera)?.frame)
             }
             Self::OfRun(scene, renderer) => Ok(renderer.draw(scene, camera)?),
         }

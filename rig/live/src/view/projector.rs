@@ -110,12 +110,13 @@ impl<'a> Projector<'a> {
             let camera = request.viewpoint.camera(small).at(self.film.eye.camera.imaging());
             let frame = self.small.draw(&moment.scene, &camera)?;
             let eye = &mut self.eyes[request.checkpoint];
-            let (mask, confidence) = if wants(&[Layer::Confidence]) {
-                eye.see_with_confidence(&frame)?
+            let (mask, certainty) = if wants(&[Layer::Confidence]) {
+                eye.see_with_certainty(&frame)?
             } else {
                 (eye.see(frame.clone())?, None)
             };
-            take.predicted = Some(Predicted { frame, mask, confidence });
+            take.predicted =
+                Some(Predicted { frame, mask, confidence: certainty.map(|certainty| certainty.confidence) });
         }
         let (seen, picture) = self.seen.at(request.tick, wants(&[Layer::Seen]), &mut self.small)?;
         take.seen = Some(picture);

@@ -1,4 +1,4 @@
-//! What the drivers' camera is, and the pictures that it took.
+//! What a camera is, and the pictures that it took.
 
 use foxglove::messages::{CameraCalibration, CompressedImage};
 pub use render::camera::OPTICAL;
@@ -7,16 +7,21 @@ use render::Camera;
 
 use super::parts::stamp;
 
-/// Frame of the camera's optical axes: x right, y down, z along the view.
+/// Frame of the optical axes of the drivers' camera: x right, y down, z along the view.
 pub const CAMERA: &str = "camera";
 
-/// What the camera's pixels are: square, and where its lens shows them.
-pub fn calibration(camera: &Camera, time_ns: u64) -> CameraCalibration {
+/// That of another camera.
+pub fn frame_of(name: &str) -> String {
+    format!("cameras/{name}")
+}
+
+/// What the pixels of the camera in a frame are: square, and where its lens shows them.
+pub fn calibration(camera: &Camera, frame: &str, time_ns: u64) -> CameraCalibration {
     let k = camera.intrinsics();
     let [fx, _, cx, _, fy, cy, ..] = k;
     CameraCalibration {
         timestamp: stamp(time_ns),
-        frame_id: CAMERA.into(),
+        frame_id: frame.into(),
         width: camera.width,
         height: camera.height,
         distortion_model: "plumb_bob".into(),
@@ -27,9 +32,9 @@ pub fn calibration(camera: &Camera, time_ns: u64) -> CameraCalibration {
     }
 }
 
-/// A picture that the camera took, a PNG file.
-pub fn image(png: Vec<u8>, time_ns: u64) -> CompressedImage {
-    CompressedImage { timestamp: stamp(time_ns), frame_id: CAMERA.into(), data: png.into(), format: "png".into() }
+/// A picture that the camera in a frame took, a PNG file.
+pub fn image(png: Vec<u8>, frame: &str, time_ns: u64) -> CompressedImage {
+    CompressedImage { timestamp: stamp(time_ns), frame_id: frame.into(), data: png.into(), format: "png".into() }
 }
 
 #[cfg(test)]
@@ -49,7 +54,7 @@ mod tests {
     #[test]
     fn the_calibration_sees_as_wide_as_the_camera() {
         let camera = Camera::driver(512, 256);
-        let k = calibration(&camera, 0).k;
+        let k = calibration(&camera, CAMERA, 0).k;
         let half_width = (k[2] / k[0]).atan();
         assert!((2.0 * half_width - f64::from(camera.fov_x_rad)).abs() < 1e-6);
         assert_eq!((k[0], k[5]), (k[4], 128.0));

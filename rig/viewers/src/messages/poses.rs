@@ -5,12 +5,16 @@ use foxglove::messages::{FrameTransform, FrameTransforms, PoseInFrame, PosesInFr
 use kernel::scene::{EgoScene, SceneSnapshot};
 use render::Camera;
 
-use super::camera::{CAMERA, OPTICAL};
+use super::camera::OPTICAL;
 use super::parts::{pose, quaternion, stamp, vector};
 use crate::boxes::{EGO, MAP};
 
-/// Where the ego car, its camera and every actor are.
-pub fn transforms(scene: &SceneSnapshot, camera: &Camera, time_ns: u64) -> FrameTransforms {
+/// Where the ego car, its cameras, each in its frame, and every actor are.
+pub fn transforms<'a>(
+    scene: &SceneSnapshot,
+    cameras: impl IntoIterator<Item = (&'a str, &'a Camera)>,
+    time_ns: u64,
+) -> FrameTransforms {
     let timestamp = stamp(time_ns);
     let frame = |parent: &str, child: String, position, rotation| FrameTransform {
         timestamp,
@@ -20,9 +24,10 @@ pub fn transforms(scene: &SceneSnapshot, camera: &Camera, time_ns: u64) -> Frame
         rotation: quaternion(rotation),
     };
     let ego = frame(MAP, EGO.into(), scene.ego.position, scene.ego.rotation);
-    let camera = frame(EGO, CAMERA.into(), camera.position, camera.rotation * OPTICAL);
+    let cameras = cameras.into_iter();
+    let cameras = cameras.map(|(name, camera)| frame(EGO, name.into(), camera.position, camera.rotation * OPTICAL));
     let actors = scene.actors.iter().map(|actor| frame(MAP, words::actor(actor), actor.position, actor.rotation));
-    FrameTransforms { transforms: [ego, camera].into_iter().chain(actors).collect() }
+    FrameTransforms { transforms: [ego].into_iter().chain(cameras).chain(actors).collect() }
 }
 
 /// Pose of the ego car's rear axle on the ground.

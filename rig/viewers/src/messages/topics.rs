@@ -31,6 +31,21 @@ pub const RGB: &str = "/camera/rgb";
 /// In files: ground truth of the picture.
 pub const TRUTH: &str = "/camera/truth";
 
+/// In files: what another camera is, a message a picture.
+pub fn calibration_of(camera: &str) -> String {
+    format!("/cameras/{camera}/calibration")
+}
+
+/// In files: its picture.
+pub fn rgb_of(camera: &str) -> String {
+    format!("/cameras/{camera}/rgb")
+}
+
+/// In files: ground truth of that.
+pub fn truth_of(camera: &str) -> String {
+    format!("/cameras/{camera}/truth")
+}
+
 /// In files: what a checkpoint predicts for the picture.
 pub fn predicted(checkpoint: &str) -> String {
     format!("/camera/predicted/{checkpoint}")

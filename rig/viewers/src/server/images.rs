@@ -6,7 +6,7 @@ use base::clock::SessionClock;
 use foxglove::messages::CompressedImage;
 
 use crate::feed::View;
-use crate::messages::camera::image;
+use crate::messages::camera::{CAMERA, image};
 
 /// The last picture that was encoded.
 #[derive(Debug, Default)]
@@ -21,7 +21,7 @@ impl Encoder {
         {
             return Some(message.clone());
         }
-        let message = image(encode(view).ok()?, clock.unix_ns(view.captured_us));
+        let message = image(encode(view).ok()?, CAMERA, clock.unix_ns(view.captured_us));
         *last = Some((view.clone(), message.clone()));
         Some(message)
     }

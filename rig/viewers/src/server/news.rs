@@ -15,6 +15,7 @@ use super::protocol::Subscriptions;
 use crate::feed::{Feed, Look, View};
 use crate::figures::TickFigures;
 use crate::messages::actors::actors;
+use crate::messages::camera::CAMERA;
 use crate::messages::poses::transforms;
 use crate::messages::report;
 use crate::messages::rig::Rig;
@@ -103,7 +104,7 @@ fn scene(Source { feed, clock, .. }: &Source, sent: &mut Sent, news: &mut News<'
     let Some(look) = newer(look, &mut sent.look) else { return };
     let time_ns = clock.unix_ns(look.captured_us);
     // Where the camera is does not depend on the size of its pictures.
-    news.add(Channel::Transforms, || transforms(&look.scene, &Camera::driver(1, 1), time_ns));
+    news.add(Channel::Transforms, || transforms(&look.scene, [(CAMERA, &Camera::driver(1, 1))], time_ns));
     news.add(Channel::Actors, || actors(&look.scene, time_ns));
 }
 

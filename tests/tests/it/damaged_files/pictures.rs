@@ -58,7 +58,7 @@ const NAMES: [&str; 6] =
 fn dataset() -> Vec<(String, Vec<u8>)> {
     let mut files = vec![("dataset.json".to_owned(), described("cases", CASES).into_bytes())];
     for (split, frame) in [("train", 0), ("train", 1), ("val", 0), ("val", 1)] {
-        let place = Place { split, city: "city", scene: 0, frame };
+        let place = Place { split, city: "city", scene: 0, frame, camera: None };
         for kind in Kind::ALL {
             let bytes = match kind {
                 Kind::Image | Kind::Color => rgb(),

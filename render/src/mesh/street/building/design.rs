@@ -37,7 +37,7 @@ pub mod style {
     /// A door on the ground floor, in the column that [`super::Design::door_column`] says.
     pub const DOOR: u8 = 0b1000_0000;
     /// Columns that a front with a door has at least.
-    pub const DOOR_COLUMNS: f32 = 3.0;
+    pub const DOOR_COLUMNS: u8 = 3;
 }
 
 const PLASTERS: [[u8; 3]; 10] = [
@@ -165,7 +165,7 @@ impl Design {
 
     /// Which column of windows the door stands in, counted along the y axis.
     pub(super) fn door_column(&self) -> f32 {
-        f32::from((self.wall.param >> 4) % 3)
+        f32::from((self.wall.param >> 4) % style::DOOR_COLUMNS)
     }
 
     /// A dull paint in the colour of the walls.
@@ -211,7 +211,9 @@ fn material(kind: Kind, size: Vec3, variety: &mut Variety) -> u8 {
         Kind::Garage => GARAGE,
         Kind::Tower => STONE,
         _ if is_hall(size) => STONE,
-        Kind::Narrow => variety.weighted(&[(PLASTER, 6), (TIMBER, 4), (BRICK, 2)]),
+        // On the narrow plots of old towns; what is lower stands in gardens too.
+        Kind::Narrow if size.y < 9.0 && size.z > 9.0 => variety.weighted(&[(PLASTER, 5), (TIMBER, 5), (BRICK, 2)]),
+        Kind::Narrow => variety.weighted(&[(PLASTER, 8), (BRICK, 4)]),
         Kind::Villa => variety.weighted(&[(PLASTER, 7), (BRICK, 3)]),
         Kind::Terrace => variety.weighted(&[(PLASTER, 6), (BRICK, 3), (STONE, 1)]),
         // Old towns have narrow plots.

@@ -9,7 +9,8 @@ use glam::{Vec2, Vec3};
 
 pub use self::design::style;
 use self::design::{Design, Kind};
-use self::outline::{CELL_M, NO_WINDOWS, TAG, corners, rim};
+pub(crate) use self::outline::CELL_M;
+use self::outline::{NO_WINDOWS, TAG, corners, rim};
 use self::street::Front;
 use crate::mesh::model::Detail;
 use crate::mesh::{Mesh, Paint};
@@ -47,7 +48,7 @@ fn walls(mesh: &mut Mesh, design: &Design) -> f32 {
         let (least, code) = match i {
             STREET_FRONT if design.kind == Kind::Garage => (1.0, wall.code | style::DOOR),
             STREET_FRONT if design.kind == Kind::Tower => (1.0, wall.code | style::DOOR),
-            STREET_FRONT => (style::DOOR_COLUMNS, wall.code | style::DOOR),
+            STREET_FRONT => (f32::from(style::DOOR_COLUMNS), wall.code | style::DOOR),
             _ => (1.0, wall.code & !(style::SHOP | style::FRENCH)),
         };
         let columns = (length_m / CELL_M.x).floor().max(least);

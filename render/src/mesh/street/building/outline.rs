@@ -10,7 +10,7 @@ pub(super) const TAG: SemanticTag = SemanticTag::Building;
 /// Height of a storey, metres.
 pub(super) const STOREY_M: f32 = 3.0;
 /// Size of a window's part of a wall, metres: about that of all, and what `facade.wgsl` takes it for.
-pub(super) const CELL_M: Vec2 = Vec2::new(2.7, STOREY_M);
+pub(crate) const CELL_M: Vec2 = Vec2::new(2.7, STOREY_M);
 /// Below 0, where surfaces count their storeys from when they have no windows.
 pub(super) const NO_WINDOWS: f32 = -64.0;
 

@@ -91,28 +91,30 @@ fn balconies(mesh: &mut Mesh, design: &Design, front: Front, detail: Detail) {
     let first = 1.0 + (variety.bits() % (front.columns - wide).max(1.0) as u32) as f32;
     let first = first.min(front.columns - wide);
     let slab = Paint::plain(TAG, [186, 184, 178]);
-    let rail = if variety.one_in(2) { Paint::plain(TAG, [62, 66, 70]) } else { design.plain().shaded(1.12) };
+    // Of steel, or of masonry, which stands on its slab.
+    let (rail, gap_m) =
+        if variety.one_in(2) { (Paint::plain(TAG, [62, 66, 70]), 0.06) } else { (design.plain().shaded(1.12), 0.0) };
     for storey in 1..(front.storeys as u32).min(6) {
         let v = storey as f32;
         let low = front.at(first + 0.04, v, 0.0);
         let high = front.at(first + wide - 0.04, v, BALCONY_M);
         if detail == Detail::Fine {
             front.ledge(mesh, slab, low - Vec3::Z * 0.16, high);
-            railing(mesh, rail, low, high);
+            railing(mesh, (rail, gap_m), low, high);
         } else {
             front.ledge(mesh, rail, low - Vec3::Z * 0.16, high + Vec3::Z);
         }
     }
 }
 
-/// A parapet on three sides of a slab, seen from inside too.
-fn railing(mesh: &mut Mesh, paint: Paint, low: Vec3, high: Vec3) {
+/// A parapet on three sides of a slab, so far above it, seen from inside too.
+fn railing(mesh: &mut Mesh, (paint, gap_m): (Paint, f32), low: Vec3, high: Vec3) {
     let top = high.z + 1.0;
     let corners =
         [Vec2::new(low.x, low.y), Vec2::new(high.x, low.y), Vec2::new(high.x, high.y), Vec2::new(low.x, high.y)];
     for i in 0..3 {
         let (a, b) = (corners[i], corners[i + 1]);
-        let (foot, head) = (high.z + 0.06, top);
+        let (foot, head) = (high.z + gap_m, top);
         mesh.polygon(paint, &[a.extend(foot), b.extend(foot), b.extend(head), a.extend(head)]);
         mesh.polygon(paint.shaded(0.8), &[b.extend(foot), a.extend(foot), a.extend(head), b.extend(head)]);
     }
@@ -165,13 +167,13 @@ fn awning(mesh: &mut Mesh, design: &Design, front: Front) {
     let (from, to) = if front.columns - door - 1.0 >= door { (door + 1.0, front.columns) } else { (0.0, door) };
     let cloth =
         Paint::plain(TAG, design.rest.clone().pick(&[[148, 44, 40], [48, 96, 70], [206, 190, 150], [58, 74, 110]]));
-    let (low, high) = (front.at(from + 0.05, 0.74, 0.0), front.at(to - 0.05, 0.74, AWNING_M));
-    let sag = Vec3::Z * 0.24;
+    let (low, high) = (front.at(from + 0.05, 0.75, 0.0), front.at(to - 0.05, 0.75, AWNING_M));
+    let sag = Vec3::Z * 0.16;
     let p = |x: f32, y: f32| Vec3::new(x, y, low.z);
     let (a, b, c, d) = (p(low.x, low.y), p(high.x, low.y) - sag, p(high.x, high.y) - sag, p(low.x, high.y));
     mesh.polygon(cloth, &[a, b, c, d]);
     mesh.polygon(cloth.shaded(0.7), &[d, c, b, a]);
-    let hem = Vec3::Z * 0.12;
+    let hem = Vec3::Z * 0.1;
     mesh.polygon(cloth, &[b - hem, c - hem, c, b]);
     mesh.polygon(cloth.shaded(0.7), &[c - hem, b - hem, b, c]);
 }
@@ -185,19 +187,23 @@ fn blade_sign(mesh: &mut Mesh, design: &Design, front: Front) {
     front.ledge(mesh, Paint::plain(TAG, colour), low, low + Vec3::new(0.55, 0.1, 0.75));
 }
 
+/// How high canopies hang, as a share of a storey: doors below them reach up to 0.77 (`facade.wgsl`), and who looks down on
+/// them from a little above still sees those.
+const CANOPY: f32 = 0.86;
+
 /// Before the door, and the canopy over it.
 fn entrance(mesh: &mut Mesh, design: &Design, front: Front, detail: Detail) {
     let door = design.door_column() + 0.5;
     let stone = Paint::plain(TAG, [168, 164, 156]);
     if !design.is_shop() && design.wall.code & style::BANDS == 0 {
-        let (low, high) = (front.at(door - 0.32, 0.76, 0.0), front.at(door + 0.32, 0.79, AWNING_M));
+        let (low, high) = (front.at(door - 0.32, CANOPY, 0.0), front.at(door + 0.32, CANOPY + 0.03, AWNING_M));
         front.ledge(mesh, Paint::plain(TAG, [150, 152, 150]), low, high);
     }
     let rise_m = if design.is_shop() { 0.07 } else { 0.16 };
     let low = front.at(door - 0.27, 0.0, 0.0);
     let step = |out_m: f32, rises: f32| front.at(door + 0.27, 0.0, out_m) + Vec3::Z * (rises * rise_m);
     front.ledge(mesh, stone, low, step(0.46, 1.0));
-    if detail == Detail::Fine {
+    if detail != Detail::Rough {
         front.ledge(mesh, stone.shaded(0.94), low, step(0.24, 2.0));
     }
 }

@@ -80,6 +80,42 @@ fn levels_of_detail_reach_equally_far_and_get_lighter() {
     }
 }
 
+/// Gardens of suburbs have houses of 5.6 and 8.6 m, new towns wide ones.
+#[test]
+fn half_timbered_houses_stand_in_old_towns_alone() {
+    let timbered = |size: Vec3| {
+        let of = |variant: u32| Design::new(variant, size).wall.code & style::MATERIAL == style::TIMBER;
+        (0..200).filter(|variant| of(*variant)).count()
+    };
+    for size in [[9.0, 8.6, 8.6], [8.2, 10.2, 5.6], [10.0, 9.6, 10.2], [11.0, 14.0, 13.3]] {
+        assert_eq!(timbered(Vec3::from_array(size)), 0, "{size:?}");
+    }
+    assert!(timbered(Vec3::new(10.0, 7.5, 10.8)) > 50);
+}
+
+/// Who comes along a street sees the door below its canopy.
+#[test]
+fn doors_are_not_covered_by_what_hangs_over_them() {
+    let shader = include_str!("../../../shaders/facade.wgsl");
+    assert!(shader.contains("select(0.77, 0.7, (it.code & SHOP) != 0u), it.shop || it.door"));
+    for (variant, size) in houses() {
+        let design = Design::new(variant, size);
+        let storey_m = design.eaves_m / design.storeys;
+        if matches!(design.kind, Kind::Garage | Kind::Tower) || design.is_shop() {
+            continue;
+        }
+        let mesh = building(variant, size, Detail::Fine);
+        let columns = (size.y / CELL_M.x).floor().max(f32::from(style::DOOR_COLUMNS));
+        let door_y = size.y * ((design.door_column() + 0.5) / columns - 0.5);
+        let hangs = mesh.vertices.iter().filter(|v| {
+            let [x, y, z] = v.position;
+            x > 0.5 * size.x + 0.6 && (y - door_y).abs() < 0.4 * size.y / columns && z < 0.98 * storey_m
+        });
+        let lowest_m = hangs.map(|v| v.position[2]).fold(f32::MAX, f32::min);
+        assert!(lowest_m > 0.84 * storey_m, "{variant} {size}: {lowest_m} m of {storey_m}");
+    }
+}
+
 #[test]
 fn walls_are_as_high_as_the_horizon_takes_for_solid() {
     for (variant, size) in houses() {

@@ -70,6 +70,9 @@ impl Dataset {
         if let Some((what, got, expected)) = alike.into_iter().find(|(_, got, expected)| got != expected) {
             bail!("{place}: holds {what} {got}; expected {expected}, as {other} has");
         }
+        if this.recipe.cameras() != that.recipe.cameras() {
+            bail!("{place}: holds pictures of other cameras than {other}; expected the same file after --cameras");
+        }
         let drives: BTreeSet<&str> = natural.frames.iter().map(|line| &*line.recording).collect();
         if let Some(line) = self.training().find(|line| drives.contains(&*line.recording)) {
             bail!("{place}: {} is of a drive that {other} shows too; expected drives of another seed", line.image);

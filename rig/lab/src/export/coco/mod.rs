@@ -1,4 +1,4 @@
-//! A window of a recording as a folder of pictures annotated as in COCO: `images/TICK.png`; `panoptic.json` with
+//! A window of a recording as a folder of pictures annotated as in COCO, and one for each further camera in `cameras/NAME`: `images/TICK.png`; `panoptic.json` with
 //! `panoptic/TICK.png`, whose colours are the ids of segments; `instances.json` with boxes and masks of what is counted.
 
 mod segments;
@@ -23,8 +23,10 @@ use self::tables::{About, Category, Image, Info, Instance, Panoptic, SegmentInfo
 use super::about::about;
 use super::film::Counts;
 use super::options::{Export, Options};
+use crate::cameras::Named;
 use crate::looks::{Size, Studio};
 
+const CAMERAS: &str = "cameras";
 const IMAGES: &str = "images";
 const PANOPTIC: &str = "panoptic";
 const PANOPTIC_TABLE: &str = "panoptic.json";
@@ -35,7 +37,7 @@ pub fn export(
     (args, size): (&Options, Size),
     file: &Path,
     out: PathBuf,
-    studio: &mut Studio,
+    (studio, others): (&mut Studio, &[Named]),
     interrupt: &Interrupt,
 ) -> anyhow::Result<Export> {
     let recording = Recording::open(file)?;
@@ -45,7 +47,7 @@ pub fn export(
     let (Some(&from), Some(&to)) = (ticks.first(), ticks.last()) else {
         bail!("no picture falls into the window; expected a longer one, or more pictures a second");
     };
-    let about = about(&recording, &window, (args, size), &[]);
+    let about = about(&recording, &window, (args, size), (&[], others));
     let kept = made_from(&out).as_ref() == Some(&about);
     let counts = Counts { frames: ticks.len(), ..Counts::default() };
     let export = Export { file: file.to_owned(), out, from, to, kept, counts };
@@ -53,14 +55,23 @@ pub fn export(
         return Ok(export);
     }
     let folder = PendingFolder::new(&export.out)?;
-    let mut album = Album::new(folder.path(), network.name.as_str(), about)?;
+    let driver = (*studio.camera(), Album::new(folder.path().to_owned(), network.name.as_str(), about.clone())?);
+    let mut albums = vec![driver];
+    for Named { name, camera } in others {
+        let about = about.clone().into_iter().chain([("camera".to_owned(), name.clone())]).collect();
+        let below = folder.path().join(CAMERAS).join(name);
+        albums.push((*camera, Album::new(below, network.name.as_str(), about)?));
+    }
     footage::each_scene(log, &network, &ticks, |_, scene| {
-        if interrupt.is_raised() {
-            bail!("interrupted; nothing of its export is kept");
+        for (camera, album) in &mut albums {
+            if interrupt.is_raised() {
+                bail!("interrupted; nothing of its export is kept");
+            }
+            album.add(&studio.draw_through(&network, &scene, camera)?)?;
         }
-        album.add(&studio.draw(&network, &scene)?)
+        Ok(())
     })?;
-    album.finish()?;
+    albums.iter().try_for_each(|(_, album)| album.finish())?;
     folder.finish()?;
     Ok(export)
 }
@@ -76,19 +87,19 @@ fn made_from(folder: &Path) -> Option<About> {
 }
 
 /// A folder that grows by a picture at a time.
-struct Album<'a> {
-    folder: &'a Path,
+struct Album {
+    folder: PathBuf,
     info: Info,
     images: Vec<Image>,
     panoptic: Vec<Panoptic>,
     instances: Vec<Instance>,
 }
 
-impl<'a> Album<'a> {
-    fn new(folder: &'a Path, map: &str, aeye: About) -> anyhow::Result<Self> {
+impl Album {
+    fn new(folder: PathBuf, map: &str, aeye: About) -> anyhow::Result<Self> {
         for below in [IMAGES, PANOPTIC] {
             let below = folder.join(below);
-            fs::create_dir(&below).with_context(|| below.display().to_string())?;
+            fs::create_dir_all(&below).with_context(|| below.display().to_string())?;
         }
         let description = format!("A simulated drive on map {map}, by A-Eye");
         let info = Info { description, version: env!("CARGO_PKG_VERSION").to_owned(), aeye };

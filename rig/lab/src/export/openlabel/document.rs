@@ -19,8 +19,8 @@ pub struct Document {
 pub struct Labels {
     pub metadata: Metadata,
     pub ontologies: Numbered<Ontology>,
-    pub coordinate_systems: BTreeMap<&'static str, System>,
-    pub streams: BTreeMap<&'static str, Stream>,
+    pub coordinate_systems: BTreeMap<String, System>,
+    pub streams: BTreeMap<String, Stream>,
     pub tags: Numbered<Tag>,
     pub frame_intervals: Vec<Interval>,
     pub objects: Numbered<Element>,
@@ -60,7 +60,7 @@ pub struct Ontology {
 pub struct System {
     pub r#type: &'static str,
     pub parent: &'static str,
-    pub children: Vec<&'static str>,
+    pub children: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pose_wrt_parent: Option<Pose>,
 }
@@ -75,7 +75,7 @@ pub struct Pose {
 #[derive(Serialize)]
 pub struct Stream {
     pub r#type: &'static str,
-    pub description: &'static str,
+    pub description: String,
     pub stream_properties: StreamProperties,
 }
 

@@ -25,6 +25,7 @@ use self::story::Story;
 use self::tracks::{EGO, Tracks, WORLD, pose};
 use super::film::Counts;
 use super::options::{Export, Options};
+use crate::cameras::Named;
 use crate::looks::Size;
 use crate::redrive::Counterfactual;
 
@@ -40,6 +41,7 @@ pub fn export(
     (args, size): (&Options, Size),
     file: &Path,
     out: PathBuf,
+    others: &[Named],
     interrupt: &Interrupt,
 ) -> anyhow::Result<Export> {
     let recording = Recording::open(file)?;
@@ -63,7 +65,8 @@ pub fn export(
     let story = Story::of(log, window.ticks.clone().into_inner(), verdict.as_ref(), &mut tracks);
     let counts = Counts { frames: ticks.len(), poses: tracks.frames.len(), events: story.events.len() };
     let metadata = metadata(file, &recording, &network);
-    let labels = labels(metadata, &weather, Camera::driver(size.0, size.1), tracks, story);
+    let driver = Camera::driver(size.0, size.1).at(args.imaging);
+    let labels = labels(metadata, &weather, &sensors(driver, others), tracks, story);
     let text = serde_json::to_string(&Document { openlabel: labels })?;
     let kept = is_there(&out, &text)?;
     if !kept {
@@ -96,20 +99,41 @@ fn metadata(file: &Path, recording: &Recording, network: &RoadNetwork) -> Metada
     }
 }
 
-fn labels(metadata: Metadata, weather: &Weather, camera: Camera, tracks: Tracks, story: Story) -> Labels {
+/// A camera, what it is called and what is said of it.
+struct Sensor {
+    name: String,
+    description: String,
+    camera: Camera,
+}
+
+/// The drivers' camera, and others.
+fn sensors(driver: Camera, others: &[Named]) -> Vec<Sensor> {
+    let driver = Sensor { name: CAMERA.to_owned(), description: "What both drivers see".to_owned(), camera: driver };
+    let of = |Named { name, camera }: &Named| Sensor {
+        name: format!("cameras/{name}"),
+        description: format!("What the camera {name} sees"),
+        camera: *camera,
+    };
+    std::iter::once(driver).chain(others.iter().map(of)).collect()
+}
+
+fn labels(metadata: Metadata, weather: &Weather, sensors: &[Sensor], tracks: Tracks, story: Story) -> Labels {
     let last = tracks.frames.len().saturating_sub(1) as u32;
-    let mounting = pose(camera.position, camera.rotation * OPTICAL);
     let system = |r#type, parent, children, pose_wrt_parent| System { r#type, parent, children, pose_wrt_parent };
+    let names = sensors.iter().map(|sensor| sensor.name.clone()).collect();
+    let systems = [
+        (WORLD.to_owned(), system("scene_cs", "", vec![EGO.to_owned()], None)),
+        (EGO.to_owned(), system("local_cs", WORLD, names, None)),
+    ];
+    let mounted = |Sensor { name, camera, .. }: &Sensor| {
+        let mounting = pose(camera.position, camera.rotation * OPTICAL);
+        (name.clone(), system("sensor_cs", EGO, Vec::new(), Some(mounting)))
+    };
     Labels {
         metadata,
         ontologies: tags::ontologies(),
-        coordinate_systems: [
-            (WORLD, system("scene_cs", "", vec![EGO], None)),
-            (EGO, system("local_cs", WORLD, vec![CAMERA], None)),
-            (CAMERA, system("sensor_cs", EGO, Vec::new(), Some(mounting))),
-        ]
-        .into(),
-        streams: [(CAMERA, stream(&camera))].into(),
+        coordinate_systems: systems.into_iter().chain(sensors.iter().map(mounted)).collect(),
+        streams: sensors.iter().map(|sensor| (sensor.name.clone(), stream(sensor))).collect(),
         tags: tags::tags(weather, &tracks.classes()),
         frame_intervals: vec![Interval { frame_start: 0, frame_end: last }],
         objects: tracks.objects,
@@ -120,15 +144,14 @@ fn labels(metadata: Metadata, weather: &Weather, camera: Camera, tracks: Tracks,
     }
 }
 
-fn stream(camera: &Camera) -> Stream {
+fn stream(Sensor { description, camera, .. }: &Sensor) -> Stream {
     let [fx, _, cx, _, fy, cy, ..] = camera.intrinsics();
-    let [k1, k2] = camera.sensor.distortion().map(f64::from);
     let intrinsics_pinhole = Pinhole {
         width_px: camera.width,
         height_px: camera.height,
         camera_matrix: [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
-        distortion_coeffs: [k1, k2, 0.0, 0.0, 0.0],
+        distortion_coeffs: camera.distortion(),
     };
     let stream_properties = StreamProperties { intrinsics_pinhole };
-    Stream { r#type: "camera", description: "What both drivers see", stream_properties }
+    Stream { r#type: "camera", description: description.clone(), stream_properties }
 }

@@ -1,12 +1,14 @@
 //! A window of a recording as a bag of ROS 2. Times are simulated time, so that the same export gives the same bytes.
 
 mod bag;
+mod cameras;
 mod definitions;
 mod messages;
 mod motion;
 mod tell;
 #[cfg(test)]
 mod tests;
+mod token;
 
 use std::path::{Path, PathBuf};
 
@@ -22,12 +24,16 @@ use measures::footage::{self, Window};
 use replay::{Exported, Recording, exported, nanoseconds};
 
 use self::bag::{Bag, Durability, MESSAGES, Topic};
-use self::messages::{CameraInfo, Clock, CompressedImage, Log, MarkerArray, Odometry, TFMessage, Time};
+use self::cameras::Pictures;
+pub use self::cameras::check_names;
+use self::messages::{Clock, CompressedImage, Log, MarkerArray, Odometry, TFMessage, Time};
 use self::motion::{Motion, SPAN_TICKS};
+use self::token::token;
 use super::about::{about, origin};
 use super::film::{Camera, Counts};
 use super::happenings;
 use super::options::{Export, Options};
+use crate::cameras::Named;
 use crate::looks::{Size, look};
 
 /// Writes the folder, unless it is there.
@@ -41,7 +47,7 @@ pub fn export(
     let recording = Recording::open(file)?;
     let (log, network) = (recording.log(), recording.network()?);
     let window = Window::of(log, &args.asked())?;
-    let mut about = about(&recording, &window, (args, size), camera.eyes);
+    let mut about = about(&recording, &window, (args, size), (&*camera.eyes, camera.others));
     about.extend(origin(&network));
     let (from, to) = window.ticks.clone().into_inner();
     let kept = exported(&out.join(MESSAGES)) == Some(Exported { about: about.clone(), is_whole: true });
@@ -51,8 +57,11 @@ pub fn export(
     }
     let folder = PendingFolder::new(&export.out)?;
     let mut bag = Bag::new(folder.path(), about)?;
-    let topics = Topics::declare(&mut bag, camera.eyes.iter().map(Eye::name))?;
-    bag.put(&topics.mounting, from, &tell::mounting(camera.studio.camera(), nanoseconds(from)))?;
+    let topics = Topics::declare(&mut bag, camera.eyes.iter().map(Eye::name), camera.others)?;
+    let others = topics.others.iter().zip(camera.others.iter().map(|named| &named.camera));
+    let mounted = [(&topics.driver, camera.studio.camera())].into_iter().chain(others);
+    let mounted = mounted.map(|(pictures, camera)| (pictures.frame.as_str(), camera));
+    bag.put(&topics.mounting, from, &tell::mounting(mounted, nanoseconds(from)))?;
     bag.put(&topics.labels, from, &tell::labels(nanoseconds(from)))?;
     let mut happenings = happenings::lines(log, &window.ticks).into_iter().peekable();
     let mut motion = Motion::default();
@@ -84,20 +93,21 @@ fn picture(
     (network, scene): (&RoadNetwork, &SceneSnapshot),
     camera: &mut Camera<'_>,
 ) -> anyhow::Result<()> {
-    let (tick, time_ns, pinhole) = (scene.tick, nanoseconds(scene.tick), *camera.studio.camera());
+    let (tick, time_ns, driver) = (scene.tick, nanoseconds(scene.tick), *camera.studio.camera());
     let frame = camera.studio.draw(network, scene)?;
     let size = (frame.width, frame.height);
     bag.put(&topics.markers, tick, &tell::markers(scene))?;
-    bag.put(&topics.camera_info, tick, &tell::camera_info(&pinhole, time_ns))?;
-    bag.put(&topics.rgb, tick, &tell::picture(png::rgb(size, &frame.rgb)?, time_ns))?;
-    bag.put(&topics.truth, tick, &tell::mask(png::grey(size, &frame.class_ids)?, time_ns))?;
+    topics.driver.put(bag, &driver, &frame)?;
     for (topic, mask) in topics.predicted.iter().zip(look(camera.eyes, &frame)?) {
-        bag.put(topic, tick, &tell::mask(png::grey(size, &mask.ids)?, time_ns))?;
+        bag.put(topic, tick, &tell::mask(png::grey(size, &mask.ids)?, &topics.driver.frame, time_ns))?;
+    }
+    for (pictures, Named { camera: other, .. }) in topics.others.iter().zip(camera.others) {
+        pictures.put(bag, other, &camera.studio.draw_through(network, scene, other)?)?;
     }
     Ok(())
 }
 
-/// Every topic; images are named as `image_transport` expects.
+/// Every topic.
 struct Topics {
     clock: Topic<Clock>,
     transforms: Topic<TFMessage>,
@@ -105,16 +115,20 @@ struct Topics {
     odometry: Topic<Odometry>,
     markers: Topic<MarkerArray>,
     events: Topic<Log>,
-    camera_info: Topic<CameraInfo>,
+    driver: Pictures,
+    /// One for each camera beside the drivers'.
+    others: Vec<Pictures>,
     labels: Topic<messages::LabelInfo>,
-    rgb: Topic<CompressedImage>,
-    truth: Topic<CompressedImage>,
     /// One for each checkpoint.
     predicted: Vec<Topic<CompressedImage>>,
 }
 
 impl Topics {
-    fn declare<'a>(bag: &mut Bag, checkpoints: impl Iterator<Item = &'a str>) -> anyhow::Result<Self> {
+    fn declare<'a>(
+        bag: &mut Bag,
+        checkpoints: impl Iterator<Item = &'a str>,
+        others: &[Named],
+    ) -> anyhow::Result<Self> {
         use Durability::{TransientLocal, Volatile};
         let mut predicted = Vec::new();
         for name in checkpoints {
@@ -127,17 +141,10 @@ impl Topics {
             odometry: bag.topic("/odom", Volatile)?,
             markers: bag.topic("/actors", Volatile)?,
             events: bag.topic("/events", Volatile)?,
-            camera_info: bag.topic("/camera/camera_info", Volatile)?,
+            driver: Pictures::of_driver(bag)?,
+            others: others.iter().map(|named| Pictures::of(named, bag)).collect::<anyhow::Result<_>>()?,
             labels: bag.topic("/camera/label_info", TransientLocal)?,
-            rgb: bag.topic("/camera/image_raw/compressed", Volatile)?,
-            truth: bag.topic("/camera/truth/compressed", Volatile)?,
             predicted,
         })
     }
-}
-
-/// A name as a part of a topic, which has letters, digits and underscores, and no digit first.
-fn token(name: &str) -> String {
-    let allowed: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    if allowed.starts_with(|c: char| c.is_ascii_digit()) { format!("n{allowed}") } else { allowed }
 }

@@ -1,5 +1,6 @@
 //! What a tick is in messages of ROS 2. Frames are those of REP 105: `map`, in which the map lies, and `base_link`, the ego
-//! car's rear axle on the ground, x ahead, y left, z up; pictures are of `camera_optical_frame`, x right, y down, z ahead.
+//! car's rear axle on the ground, x ahead, y left, z up; pictures of the drivers are of `camera_optical_frame`, x right, y down, z
+//! ahead, those of others of frames of their own.
 
 use foxglove::messages::Log as Line;
 use glam::{Quat, Vec3};
@@ -17,8 +18,8 @@ use super::motion::Twist;
 
 /// Frame of the ego car.
 const BASE: &str = "base_link";
-/// Frame of the pictures.
-const OPTICAL_FRAME: &str = "camera_optical_frame";
+/// Frame of the pictures of the drivers' camera.
+pub const OPTICAL_FRAME: &str = "camera_optical_frame";
 /// Of a picture, its colours and how it is compressed, as `image_transport` writes it.
 const RGB_PNG: &str = "rgb8; png compressed bgr8";
 /// The same of a mask.
@@ -38,19 +39,21 @@ fn pose(position: Vec3, rotation: Quat) -> Pose {
     Pose { position: vector(position), orientation: Quaternion { x: q.x, y: q.y, z: q.z, w: q.w } }
 }
 
-fn transform(parent: &str, child: &str, transform: Pose, time_ns: u64) -> TFMessage {
-    let header = header(parent, time_ns);
-    TFMessage { transforms: vec![TransformStamped { header, child_frame_id: child.into(), transform }] }
+fn transform(parent: &str, child: &str, transform: Pose, time_ns: u64) -> TransformStamped {
+    TransformStamped { header: header(parent, time_ns), child_frame_id: child.into(), transform }
 }
 
 /// Where the ego car is.
 pub fn ego(ego: &EgoScene, time_ns: u64) -> TFMessage {
-    transform(MAP, BASE, pose(ego.position, ego.rotation), time_ns)
+    TFMessage { transforms: vec![transform(MAP, BASE, pose(ego.position, ego.rotation), time_ns)] }
 }
 
-/// Where the camera is on it, for good.
-pub fn mounting(camera: &Camera, time_ns: u64) -> TFMessage {
-    transform(BASE, OPTICAL_FRAME, pose(camera.position, camera.rotation * OPTICAL), time_ns)
+/// Where the cameras are on it, each in its frame, for good.
+pub fn mounting<'a>(cameras: impl IntoIterator<Item = (&'a str, &'a Camera)>, time_ns: u64) -> TFMessage {
+    let of = |(frame, camera): (&str, &Camera)| {
+        transform(BASE, frame, pose(camera.position, camera.rotation * OPTICAL), time_ns)
+    };
+    TFMessage { transforms: cameras.into_iter().map(of).collect() }
 }
 
 /// Where the ego car is, and how it moves.
@@ -66,12 +69,12 @@ pub fn odometry(ego: &EgoScene, twist: &Twist, time_ns: u64) -> Odometry {
     }
 }
 
-/// What the camera's pixels are: square, and where its lens shows them.
-pub fn camera_info(camera: &Camera, time_ns: u64) -> CameraInfo {
+/// What the pixels of the camera in a frame are: square, and where its lens shows them.
+pub fn camera_info(camera: &Camera, frame: &str, time_ns: u64) -> CameraInfo {
     let k = camera.intrinsics();
     let [fx, _, cx, _, fy, cy, ..] = k;
     CameraInfo {
-        header: header(OPTICAL_FRAME, time_ns),
+        header: header(frame, time_ns),
         height: camera.height,
         width: camera.width,
         distortion_model: "plumb_bob".into(),
@@ -85,14 +88,14 @@ pub fn camera_info(camera: &Camera, time_ns: u64) -> CameraInfo {
     }
 }
 
-/// A picture, a PNG file.
-pub fn picture(png: Vec<u8>, time_ns: u64) -> CompressedImage {
-    CompressedImage { header: header(OPTICAL_FRAME, time_ns), format: RGB_PNG.into(), data: Bytes(png) }
+/// A picture of the camera in a frame, a PNG file.
+pub fn picture(png: Vec<u8>, frame: &str, time_ns: u64) -> CompressedImage {
+    CompressedImage { header: header(frame, time_ns), format: RGB_PNG.into(), data: Bytes(png) }
 }
 
 /// A mask, a grey PNG file whose values are classes.
-pub fn mask(png: Vec<u8>, time_ns: u64) -> CompressedImage {
-    CompressedImage { format: GREY_PNG.into(), ..picture(png, time_ns) }
+pub fn mask(png: Vec<u8>, frame: &str, time_ns: u64) -> CompressedImage {
+    CompressedImage { format: GREY_PNG.into(), ..picture(png, frame, time_ns) }
 }
 
 /// What the values of masks are called.

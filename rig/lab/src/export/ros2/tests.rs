@@ -9,7 +9,9 @@ use render::Camera;
 use super::definitions::{self, fields, made_of};
 use super::messages::{Clock, Message, Time};
 use super::motion::Twist;
-use super::{tell, token};
+use super::token::token;
+use super::{check_names, tell};
+use crate::cameras::Named;
 
 /// Reads a message by its definition alone.
 struct Walk<'a> {
@@ -83,19 +85,19 @@ fn every_message_has_the_fields_of_its_definition() {
     let (twist, line) = (Twist::default(), Line { level: 4, message: "collision".into(), ..Line::default() });
     assert_eq!(read(&Clock { clock: Time::of(1_500_000_007) }), ["sec 1", "nanosec 500000007"]);
     assert_eq!(read(&tell::ego(&scene.ego, 7))[1..4], ["nanosec 7", "frame_id map", "child_frame_id base_link"]);
-    assert_eq!(read(&tell::mounting(&camera, 0))[3], "child_frame_id camera_optical_frame");
+    assert_eq!(read(&tell::mounting([(tell::OPTICAL_FRAME, &camera)], 0))[3], "child_frame_id camera_optical_frame");
     let odometry = read(&tell::odometry(&scene.ego, &twist, 0));
     assert_eq!(
         (odometry.len(), odometry[4].as_str()),
         (4 + 7 + 36 + 6 + 36, &*format!("x {}", f64::from(scene.ego.position.x)))
     );
-    let info = read(&tell::camera_info(&camera, 0));
+    let info = read(&tell::camera_info(&camera, tell::OPTICAL_FRAME, 0));
     assert_eq!(
         (info[3..6].join(", "), info[11].as_str()),
         ("height 32, width 64, distortion_model plumb_bob".into(), "k 32")
     );
-    assert_eq!(read(&tell::picture(vec![1, 2, 255], 0))[4..], ["data 1", "data 2", "data 255"]);
-    assert_eq!(read(&tell::mask(vec![], 0))[3], "format mono8; png compressed mono8");
+    assert_eq!(read(&tell::picture(vec![1, 2, 255], "a", 0))[4..], ["data 1", "data 2", "data 255"]);
+    assert_eq!(read(&tell::mask(vec![], "a", 0))[3], "format mono8; png compressed mono8");
     assert_eq!(read(&tell::labels(0))[11..13], ["class_id 4", "class_name Pedestrian"]);
     let markers = read(&tell::markers(&scene));
     let of = |what: &str| markers.iter().filter(|told| *told == what).count();
@@ -116,4 +118,12 @@ fn a_definition_comes_with_all_that_it_is_made_of() {
 #[test]
 fn a_checkpoint_is_a_part_of_a_topic() {
     assert_eq!(["early", "v1.2-b", "3rd"].map(token), ["early", "v1_2_b", "n3rd"]);
+}
+
+#[test]
+fn cameras_of_one_topic_are_refused() {
+    let named = |name: &str| Named { name: name.into(), camera: Camera::driver(64, 32) };
+    assert!(check_names(&["left", "left_2", "camera"].map(named)).is_ok());
+    let said = check_names(&["a-b", "c", "a_b"].map(named)).expect_err("one topic").to_string();
+    assert_eq!(said, "cameras \"a-b\" and \"a_b\" would both have topics of \"a_b\"; expected other names");
 }
