@@ -53,11 +53,6 @@ impl Figure {
         Ok(Self { levels, size_m })
     }
 
-    /// Triangles at its finest.
-    pub fn triangles(&self) -> usize {
-        self.levels[0].parts.iter().map(|part| part.mesh.all_triangles().count()).sum()
-    }
-
     /// That level, in the colours that its file has.
     pub fn at(&self, detail: Detail) -> &Model {
         &self.levels[detail as usize]

@@ -10,6 +10,8 @@ use super::texture::Texture;
 
 /// Values of an accessor at most.
 const MOST_VALUES: usize = 1_000_000;
+/// Pictures of a file at most: what is kept of each takes up to a megabyte.
+const MOST_IMAGES: usize = 256;
 /// Header of a binary file, bytes.
 const HEADER: usize = 12;
 
@@ -79,6 +81,9 @@ fn buffers(files: &mut Folder, name: &str, (root, mut blob): Content<'_>) -> any
 
 fn images(files: &mut Folder, name: &str, document: &Document) -> anyhow::Result<Vec<Option<Texture>>> {
     let root = document.gltf.as_json();
+    if root.images.len() > MOST_IMAGES {
+        bail!("has {} images, expected at most {MOST_IMAGES}", root.images.len());
+    }
     let mut images: Vec<Option<Texture>> = root.images.iter().map(|_| None).collect();
     for material in &root.materials {
         let Some(at) = document.image_of(material) else { continue };

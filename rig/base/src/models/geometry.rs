@@ -13,12 +13,17 @@ use super::document::Document;
 use super::list::{Entry, Model};
 use super::material::Material;
 use super::texture_split::split;
-use super::{MOST_TRIANGLES, MOST_VERTICES};
 
 /// Nodes below one another, and of a file, at most.
 const MOST_DEPTH: usize = 64;
 const MOST_NODES: usize = 100_000;
-/// Triangles that show more of a texture: so many for each, and more.
+/// Triangles of a file at most, as they are read.
+const MOST_TRIANGLES: usize = 100_000;
+/// The same of what stands in the street, of which each one takes memory.
+const MOST_STANDING_TRIANGLES: usize = 5_000;
+/// Vertices of a file at most.
+const MOST_VERTICES: usize = 400_000;
+/// Triangles that show more of a texture: so many for each of a primitive, and more, and as many as a file may have in all.
 const SPLIT_SHARE: usize = 2;
 const SPLIT_ROOM: usize = 2000;
 /// Farther than this from the origin nothing lies, in the file's unit.
@@ -51,9 +56,12 @@ struct Walk<'a> {
     said: &'a Model,
     body: Mesh,
     limbs: Vec<Limb>,
+    subject: Subject,
     nodes: usize,
     triangles: usize,
     vertices: usize,
+    /// Triangles that may still be added to show more of textures.
+    room: usize,
 }
 
 /// The file as a model of a subject, as large as the file has it.
@@ -62,8 +70,8 @@ pub(super) fn model(document: &Document, entry: &Entry, subject: Subject) -> any
     check_names(document, said)?;
     let gltf = &document.gltf;
     let scene = gltf.default_scene().or_else(|| gltf.scenes().next()).ok_or_else(|| anyhow!("has no scene"))?;
-    let (tag, body) = (subject.tag(), Mesh::default());
-    let mut walk = Walk { document, said, body, limbs: Vec::new(), nodes: 0, triangles: 0, vertices: 0 };
+    let (tag, body, limbs, room) = (subject.tag(), Mesh::default(), Vec::new(), most_triangles(subject));
+    let mut walk = Walk { document, said, body, limbs, subject, nodes: 0, triangles: 0, vertices: 0, room };
     let axes = Mat4::from_cols_array_2d(&[
         [0.0, 1.0, 0.0, 0.0],
         [0.0, 0.0, 1.0, 0.0],
@@ -75,6 +83,10 @@ pub(super) fn model(document: &Document, entry: &Entry, subject: Subject) -> any
         walk.node(&node, &frame, Below { limb: None, tag, depth: 0 })?;
     }
     Ok(walk.posed())
+}
+
+fn most_triangles(subject: Subject) -> usize {
+    if subject.stands_still() { MOST_STANDING_TRIANGLES } else { MOST_TRIANGLES }
 }
 
 fn check_names(document: &Document, said: &Model) -> anyhow::Result<()> {
@@ -146,14 +158,15 @@ impl Walk<'_> {
         let surface = Surface::read(self.document, primitive, frame, &material)?;
         self.triangles += surface.triangles.len();
         self.vertices += surface.corners.len();
-        if self.triangles > MOST_TRIANGLES || self.vertices > MOST_VERTICES {
-            bail!("is too much, expected at most {MOST_TRIANGLES} triangles and {MOST_VERTICES} vertices in all");
+        let (most, name) = (most_triangles(self.subject), self.subject.name());
+        if self.triangles > most || self.vertices > MOST_VERTICES {
+            bail!("is too much, expected at most {most} triangles and {MOST_VERTICES} vertices in all as {name}");
         }
         let mesh = match below.limb {
             None => &mut self.body,
             Some(limb) => &mut self.limbs[limb].mesh,
         };
-        surface.append_to(mesh, &material);
+        surface.append_to(mesh, &material, &mut self.room);
         Ok(())
     }
 
@@ -288,11 +301,12 @@ impl Surface {
         flat
     }
 
-    fn append_to(self, mesh: &mut Mesh, material: &Material<'_>) {
+    fn append_to(self, mesh: &mut Mesh, material: &Material<'_>, room: &mut usize) {
         let Self { mut corners, mut triangles } = self;
         if material.is_textured() {
-            let room = SPLIT_SHARE * triangles.len() + SPLIT_ROOM;
-            split(&mut corners, &mut triangles, material, room);
+            let whole = triangles.len();
+            split(&mut corners, &mut triangles, material, (SPLIT_SHARE * whole + SPLIT_ROOM).min(*room));
+            *room -= triangles.len() - whole;
         }
         let colours: Vec<[f32; 4]> =
             corners.iter().map(|corner| material.colour(corner.at.to_array(), corner.own)).collect();

@@ -16,7 +16,7 @@ mod tests;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, anyhow};
 use render::models::{Figure, Models, ModelsId, Subject};
 
 use files::Folder;
@@ -24,13 +24,6 @@ use list::{Entry, List};
 
 /// The list of a folder.
 pub const LIST: &str = "models.toml";
-
-/// Triangles of a file at most, as they are read.
-const MOST_TRIANGLES: usize = 100_000;
-/// Vertices of a file at most.
-const MOST_VERTICES: usize = 400_000;
-/// The same of what stands in the street, of which each one takes memory.
-const MOST_STANDING_TRIANGLES: usize = 5_000;
 
 /// Reads a folder of models and makes them known to the renderer.
 pub fn read(folder: &Path) -> anyhow::Result<ModelsId> {
@@ -59,12 +52,7 @@ fn figures_of(files: &mut Folder, entry: &Entry) -> anyhow::Result<Vec<(Subject,
     let of = |subject: Subject| {
         let model = geometry::model(&document, entry, subject)?;
         let is = |problem: String| anyhow!("as {} it {problem}", subject.name());
-        let figure = Figure::new(subject, model).map_err(is)?;
-        let most = if subject.stands_still() { MOST_STANDING_TRIANGLES } else { MOST_TRIANGLES };
-        if figure.triangles() > most {
-            bail!("has {} triangles, expected at most {most} as {}", figure.triangles(), subject.name());
-        }
-        Ok((subject, figure))
+        Ok((subject, Figure::new(subject, model).map_err(is)?))
     };
     entry.is.iter().map(|subject| of(*subject)).collect()
 }

@@ -64,15 +64,15 @@ pub(crate) fn glb(sketch: &Sketch) -> Vec<u8> {
     packed(root.to_string().into_bytes(), bin)
 }
 
-/// A box whose faces have a picture that is green below and not there above.
-pub(crate) fn textured() -> (Value, Vec<u8>) {
-    let (mut root, mut bin) = parts(&boxed([0.0; 3], [1.8, 1.4, 4.5]));
+/// A box, so many times, whose faces have a picture that is green below and not there above.
+pub(crate) fn textured(repeats: u32) -> (Value, Vec<u8>) {
+    let (mut root, mut bin) = parts(&Sketch { repeats, ..boxed([0.0; 3], [1.8, 1.4, 4.5]) });
     let rgba: Vec<u8> = (0..8 * 8).flat_map(|i| if i < 32 { [9, 9, 200, 0] } else { [0, 200, 0, 255] }).collect();
     let mut picture = Vec::new();
     let mut encoder = png::Encoder::new(&mut picture, 8, 8);
     encoder.set_color(png::ColorType::Rgba);
     encoder.write_header().and_then(|mut writer| writer.write_image_data(&rgba)).expect("a picture");
-    let faces = 6;
+    let faces = 6 * repeats;
     let coordinates: Vec<f32> = (0..faces).flat_map(|_| [0.0, 0.93, 1.0, 0.93, 1.0, 0.07, 0.0, 0.07f32]).collect();
     for bytes in [coordinates.iter().flat_map(|c| c.to_le_bytes()).collect(), picture] {
         bin.resize(bin.len().next_multiple_of(4), 0);
@@ -83,7 +83,7 @@ pub(crate) fn textured() -> (Value, Vec<u8>) {
     root["accessors"]
         .as_array_mut()
         .expect("a list")
-        .push(json!({"bufferView": 2, "componentType": 5126, "count": 24, "type": "VEC2"}));
+        .push(json!({"bufferView": 2, "componentType": 5126, "count": 4 * faces, "type": "VEC2"}));
     root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(3);
     root["images"] = json!([{"bufferView": 3, "mimeType": "image/png"}]);
     root["textures"] = json!([{"source": 0}]);
