@@ -46,7 +46,7 @@ fn a_drive_through_models_says_so_and_is_drawn_again() {
     let models = folder(dir.path(), "models", 1.0);
     let id = base::models::read(&models).unwrap();
     let drive = "drive --headless --map city --seed 3 --max-time 4s";
-    for checkpoint in ["early", "truth"] {
+    for (checkpoint, quality, said) in [("early", "standard", " standard"), ("truth", "plain", "")] {
         let [own, usual] = ["own", "usual"].map(|name| dir.path().join(format!("{name}-{checkpoint}.mcap")));
         let with = format!("{drive} --checkpoint {checkpoint} --models {} --record", models.display());
         let run = |command: &str, record: &Path| {
@@ -56,8 +56,8 @@ fn a_drive_through_models_says_so_and_is_drawn_again() {
         assert_eq!(run(&with, &own), 0);
         assert_eq!(run(&format!("{drive} --checkpoint {checkpoint} --record"), &usual), 0);
         let log = |path: &Path| Recording::open(path).unwrap().into_log();
-        assert_eq!(log(&own).manifest.provenance["camera"], format!("driver 256x128 plain models={id}"));
-        assert_eq!(log(&usual).manifest.provenance["camera"], "driver 256x128");
+        assert_eq!(log(&own).manifest.provenance["camera"], format!("driver 256x128 {quality} models={id}"));
+        assert_eq!(log(&usual).manifest.provenance["camera"], format!("driver 256x128{said}"));
         let seen = |path: &Path| log(path).masks.iter().map(|mask| mask.digest).take(3).collect::<Vec<_>>();
         assert_ne!(seen(&own), seen(&usual), "{checkpoint}");
         assert_eq!(run(&format!("view --digests --models {}", models.display()), &own), 0, "the same again");
@@ -77,7 +77,7 @@ fn a_dataset_says_whose_models_it_has_and_is_made_again() {
     let text = |folder: &Path, file: &str| fs::read_to_string(folder.join(file)).unwrap();
     let recipe: serde_json::Value = serde_json::from_str(&text(&own, "dataset.json")).unwrap();
     assert_eq!(recipe["recipe"]["models"], id);
-    assert!(text(&own, "frames.jsonl").contains(&format!("\"driver 64x32 plain models={id}\"")));
+    assert!(text(&own, "frames.jsonl").contains(&format!("\"driver 64x32 standard models={id}\"")));
     assert!(!text(&usual, "dataset.json").contains("models") && !text(&usual, "frames.jsonl").contains("models"));
     assert_eq!(aeye(&format!("dataset rebuild --models {}", models.display()), &[&own], &again), (0, String::new()));
     assert!(contents(&again) == contents(&own));

@@ -7,6 +7,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use render::ModelsId;
 
+use super::list::LIST;
 use crate::files::{self, most};
 
 /// Bytes of all files together at most.
@@ -22,7 +23,7 @@ pub(super) struct Folder {
 
 impl Folder {
     pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
-        let place = || format!("{}: expected a folder with {}", path.display(), super::LIST);
+        let place = || format!("{}: expected a folder with {}", path.display(), LIST);
         let path = path.canonicalize().with_context(place)?;
         Ok(Self { path, digest: blake3::Hasher::new(), left: MOST_BYTES })
     }

@@ -7,6 +7,9 @@ use serde::Deserialize;
 
 use crate::toml_text;
 
+/// The list of a folder.
+pub(super) const LIST: &str = "models.toml";
+
 /// Files of a list at most.
 const MOST_FILES: usize = 256;
 

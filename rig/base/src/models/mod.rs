@@ -20,10 +20,7 @@ use anyhow::{Context, anyhow};
 use render::models::{Figure, Models, ModelsId, Subject};
 
 use files::Folder;
-use list::{Entry, List};
-
-/// The list of a folder.
-pub const LIST: &str = "models.toml";
+use list::{Entry, LIST, List};
 
 /// Reads a folder of models and makes them known to the renderer.
 pub fn read(folder: &Path) -> anyhow::Result<ModelsId> {
