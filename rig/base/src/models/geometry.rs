@@ -12,7 +12,7 @@ use render::models::Subject;
 use super::document::Document;
 use super::list::{Entry, Model};
 use super::material::Material;
-use super::texture_split::split;
+use super::texture_split::{Corner, split};
 
 /// Nodes below one another, and of a file, at most.
 const MOST_DEPTH: usize = 64;
@@ -209,15 +209,6 @@ fn middle(mesh: &Mesh) -> Vec3 {
     let at = mesh.vertices.iter().map(|v| Vec3::from(v.position));
     let (low, high) = at.fold(start, |(low, high), p| (low.min(p), high.max(p)));
     if mesh.vertices.is_empty() { Vec3::ZERO } else { 0.5 * (low + high) }
-}
-
-/// A corner of a triangle in the model's frame.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
-    pub(super) position: Vec3,
-    pub(super) normal: Vec3,
-    pub(super) at: Vec2,
-    pub(super) own: [f32; 4],
 }
 
 /// Triangles of one material.

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use super::geometry::Corner;
 use super::material::Material;
 
 /// Rounds of halving sides.
@@ -13,6 +12,17 @@ const ROUNDS: usize = 4;
 const DIFFERS: f32 = 0.06;
 /// Shorter sides stay whole, in the file's unit, which is the metre.
 const SHORTEST: f32 = 0.03;
+
+/// A corner of a triangle in the model's frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub(super) position: Vec3,
+    pub(super) normal: Vec3,
+    /// Of a texture.
+    pub(super) at: Vec2,
+    /// Red, green, blue (linear) and alpha of its own.
+    pub(super) own: [f32; 4],
+}
 
 /// Halves sides of triangles along which the colour bends, up to so many triangles more.
 pub(super) fn split(corners: &mut Vec<Corner>, triangles: &mut Vec<[u32; 3]>, material: &Material<'_>, room: usize) {
