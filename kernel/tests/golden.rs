@@ -13,7 +13,7 @@ use std::sync::Arc;
 use common::script;
 use kernel::arbiter::Phase;
 use kernel::events::{EventKind, Hud};
-use kernel::map;
+use kernel::map::{self, SurfaceKind};
 use kernel::scenario::Scenario;
 use kernel::signals::LightPhase;
 use kernel::time::{TICK_HZ, Tick};
@@ -34,8 +34,9 @@ struct Drive {
 }
 
 /// With these seeds the script brings about everything that a map can hold; on one drive others make mistakes, while
-/// rain begins, and on the last they drive round, which they do on no bundled map.
-const DRIVES: [Drive; 4] = [
+/// rain begins, on one people step out before the car again and again, and on the last they drive round, which they do on
+/// no bundled map.
+const DRIVES: [Drive; 5] = [
     Drive { name: "city", map: "city", seed: 101, scenario: "" },
     Drive { name: "rural", map: "rural", seed: 6, scenario: "" },
     Drive {
@@ -45,6 +46,12 @@ const DRIVES: [Drive; 4] = [
         scenario: "[hazards]\nlevel = \"raised\"\nred_light_runners = 1.0\nrolling_stops = 1.0\ncut_ins_per_h = 600.0\n\
                    hard_brakings_per_h = 120.0\npull_outs_per_h = 600.0\n\
                    [weather.later]\npreset = \"HardRainNoon\"\nover_s = 40.0\n",
+    },
+    Drive {
+        name: CROSSED,
+        map: "suburb",
+        seed: 5,
+        scenario: "[traffic]\npedestrians = 300\njaywalks_per_min = 60.0\n",
     },
     Drive { name: ROUND, map: ROUND, seed: 61, scenario: "[traffic]\ncars = 50\nmotorcycles = 4\nbicycles = 6\n" },
 ];
@@ -68,6 +75,11 @@ const LIT: [&str; 1] = ["city"];
 /// The drive on which others make mistakes, and those that it must hold.
 const MISTAKEN: &str = "mistakes";
 const MISTAKES: [EventKind; 3] = [EventKind::HazardRollingStop, EventKind::HazardBraking, EventKind::HazardPullOut];
+/// The drive before which people step out, and how many of its seconds somebody is on the road ahead at least.
+const CROSSED: &str = "crossed";
+const CROSSED_S: u32 = 5;
+/// So far ahead, metres.
+const AHEAD_M: f32 = 40.0;
 /// The drive through a roundabout, and how many of its seconds somebody drives round at least.
 const ROUND: &str = "roundabout";
 const ROUND_S: u32 = 30;
@@ -83,6 +95,8 @@ struct Held {
     waited: bool,
     /// It waited, and drove on at green before anyone intervened.
     light_kept: bool,
+    /// Seconds in which somebody on foot was on the road ahead.
+    crossed_s: u32,
     /// Seconds in which somebody was where a roundabout is.
     round_s: u32,
 }
@@ -105,6 +119,9 @@ impl Held {
         if drive == ROUND {
             return if self.round_s < ROUND_S { vec!["vehicles that drive round".to_owned()] } else { Vec::new() };
         }
+        if drive == CROSSED {
+            return if self.crossed_s < CROSSED_S { vec!["people on the road".to_owned()] } else { Vec::new() };
+        }
         let lit = LIT.contains(&drive);
         // What the watchdog tells is a failure of traffic, and mistakes are rare by themselves.
         let rare = |kind: EventKind| format!("{kind:?}").starts_with("Hazard");
@@ -125,13 +142,21 @@ fn drive(drive: &Drive) -> String {
     let name = drive.name;
     let network = drive.network();
     let mut world = World::new(&drive.scenario(), &network).expect("the scenario fits");
-    let mut held = Held { events: Default::default(), overridden: false, waited: false, light_kept: false, round_s: 0 };
+    let mut held = Held {
+        events: Default::default(),
+        overridden: false,
+        waited: false,
+        light_kept: false,
+        crossed_s: 0,
+        round_s: 0,
+    };
     let mut seconds = String::new();
     for _ in 0..TICKS {
         let output = world.step(&script::input(&world));
         output.events.iter().for_each(|event| held.events[event.kind as usize] += 1);
         held.note(world.arbiter().phase, output.applied.pedals, &world.hud());
         if output.tick.is_multiple_of(Tick::from(TICK_HZ)) {
+            held.crossed_s += u32::from(somebody_crosses(&world, &network));
             held.round_s += u32::from(somebody_drives_round(&world));
             let hashes = world.part_hashes().map(|hash| format!("{:08x}", hash as u32)).join(" ");
             writeln!(seconds, "{name} {} {hashes}", output.tick / Tick::from(TICK_HZ)).expect("writing to a string");
@@ -144,6 +169,18 @@ fn drive(drive: &Drive) -> String {
     let lacks = held.lacks(name);
     assert!(lacks.is_empty(), "the drive lacks {}: {head}", lacks.join(", "));
     format!("{head}\n{seconds}")
+}
+
+/// Whether somebody on foot is on the road within [`AHEAD_M`] before the car.
+fn somebody_crosses(world: &World, network: &RoadNetwork) -> bool {
+    let scene = world.scene();
+    let ahead = scene.ego.rotation * glam::Vec3::X;
+    let is_ahead = |at: glam::Vec3| {
+        let offset = at - scene.ego.position;
+        offset.dot(ahead) > 0.0 && offset.length() < AHEAD_M
+    };
+    let is_road = |at| network.ground(at).is_some_and(|ground| ground.kind == SurfaceKind::Road);
+    scene.actors.iter().any(|a| a.kind.is_on_foot() && is_ahead(a.position) && is_road(a.position))
 }
 
 /// Whether a vehicle is within the outer edge of the roundabout's ring, whose middle is at zero.

@@ -1,6 +1,7 @@
 //! The moving world: actors, the ego car and signal heads, posed and merged for one frame.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
@@ -13,13 +14,13 @@ use crate::camera::EGO_MIDDLE_M;
 use crate::glows::{self, Glow};
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
-use crate::light::ShadowBox;
 use crate::mesh::actor::{EGO_VARIANT, ego_model, has_umbrella_up, parked_model, sheltered_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::motion::Motion;
 use crate::mesh::street::signal;
 use crate::mesh::{CODE_BRAKE, CODE_CENTRE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex};
 use crate::models::Models;
+use crate::shadow_box::ShadowBox;
 use crate::view::View;
 
 /// Actors smaller than this many pixels are left out.
@@ -45,13 +46,20 @@ pub(crate) struct Moving {
     pub(crate) vertices: Vec<Vertex>,
     /// Triangles that are seen.
     pub(crate) indices: Vec<u32>,
-    /// Triangles that cast shadows into the picture, seen or not.
-    pub(crate) casters: Vec<u32>,
+    /// What casts shadows into the picture, seen or not.
+    pub(crate) casters: Vec<Caster>,
     /// How much lamps glow: not at all by day, 1 at night.
     pub(crate) shine: f32,
     /// Glows of lamps that are seen.
     pub(crate) glows: Vec<Glow>,
     eye: Vec3,
+}
+
+/// A mesh that casts a shadow: its vertices and its triangles.
+#[derive(Clone, Debug)]
+pub(crate) struct Caster {
+    pub(crate) vertices: Range<u32>,
+    pub(crate) indices: Vec<u32>,
 }
 
 /// What something that moves is in a picture.
@@ -250,11 +258,12 @@ impl Moving {
         if self.shine > 0.0 && role.is_seen {
             glows::of_lamps(&self.vertices[first as usize..], self.eye, self.shine, &mut self.glows);
         }
-        let plain = &mesh.triangles[Finish::Plain as usize];
-        for (list, _) in
-            [(&mut self.indices, role.is_seen), (&mut self.casters, role.casts)].into_iter().filter(|it| it.1)
-        {
-            list.extend(plain.iter().flatten().map(|i| i + first));
+        let plain = || mesh.triangles[Finish::Plain as usize].iter().flatten().map(|i| i + first);
+        if role.is_seen {
+            self.indices.extend(plain());
+        }
+        if role.casts {
+            self.casters.push(Caster { vertices: first..self.vertices.len() as u32, indices: plain().collect() });
         }
     }
 }

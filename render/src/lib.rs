@@ -7,6 +7,8 @@
 mod actors;
 pub mod adapter;
 pub mod camera;
+mod castings;
+mod corners;
 mod effects;
 mod error;
 mod frame;
@@ -26,12 +28,14 @@ pub mod models;
 mod night;
 mod noise;
 mod quality;
+mod quincunx;
 mod rain;
 mod renderer;
 mod scenery;
 mod sensor;
 #[cfg(test)]
 mod shader_constants;
+mod shadow_box;
 mod shadows;
 mod sieve;
 mod spray;

@@ -6,15 +6,17 @@ use kernel::weather::Water;
 use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::actors::{Cast, Moving};
+use crate::castings;
 use crate::effects::{self, Lenses};
 use crate::glows::{self, Glow};
-use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, Targets};
-use crate::light::{Light, ShadowBox};
+use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, ShadowDraws, Targets};
+use crate::light::Light;
 use crate::light_map::LightMap;
 use crate::mirrors::{self, Feet, Streak};
 use crate::models::{Models, ModelsId};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
+use crate::shadow_box::ShadowBox;
 use crate::shadows::ShadowMaps;
 use crate::sieve::{MOVING, Sieve};
 use crate::spray::{self, Puff};
@@ -28,6 +30,9 @@ pub struct Renderer {
     passes: Passes,
     /// Whether triangles that nobody sees are left out before they are drawn: a GPU does so faster.
     sifts: bool,
+    /// Whether corners are drawn that are known.
+    #[cfg(test)]
+    draws_all_corners: bool,
     sieve: Sieve,
     scenery: Scenery,
     heads: Vec<LightHead>,
@@ -62,6 +67,8 @@ impl Renderer {
             sifts: gpu.info.is_cpu,
             gpu,
             passes,
+            #[cfg(test)]
+            draws_all_corners: false,
             sieve: Sieve::default(),
             scenery,
             heads: network.light_heads.clone(),
@@ -98,8 +105,7 @@ impl Renderer {
 
     /// The same but the colours: [`Frame::rgb`] is empty. On a CPU it takes some half of the time.
     pub fn draw_classes(&mut self, scene: &SceneSnapshot, camera: &Camera) -> Result<Frame, RenderError> {
-        let frame = self.take(scene, camera, false)?;
-        Ok(Frame { rgb: Vec::new(), ..frame })
+        self.take(scene, camera, false)
     }
 
     /// What the camera's sensor makes of what its pinhole sees.
@@ -111,7 +117,6 @@ impl Renderer {
         let lens = self.lenses.of(camera)?;
         self.check(scene, lens.pinhole()).map_err(|error| error.through_lens(camera))?;
         let seen = self.planes(scene, lens.pinhole(), colours)?;
-        let seen = if colours { seen } else { Frame { rgb: Vec::new(), ..seen } };
         Ok(effects::take(seen, scene, camera, &lens))
     }
 
@@ -144,19 +149,17 @@ impl Renderer {
         let moving_triangles = core::iter::once((MOVING, &self.moving.indices[..]));
         self.sieve.sift(&self.moving.vertices, 0, moving_triangles);
         self.scenery.sift(&seen, &gone, &mut self.sieve);
-        let (shadow_map, is_cast) = if shines { self.shadows.find(shadow, gone.clone()) } else { (0, true) };
+        let shadows = if shines { self.cast(&shadow, &gone, means.shadows.side) } else { Default::default() };
         let texel = 1.0 / means.shadows.side as f32;
         let draws = Draws {
             uniforms: [view, corners].map(|view| {
-                let uniform = SceneUniform::new(&view, scene, &light, shadow.matrix(), texel);
+                let uniform = SceneUniform::new(&view, scene, &light).shaded(&shadow, texel);
                 uniform.sampled(means.samples).lit(&light, &self.light_map)
             }),
             moving_vertices: &self.moving.vertices,
-            seen: self.sieve.finish(),
-            moving_casters: &self.moving.casters,
-            casters: (!is_cast).then(|| self.scenery.casters(&shadow, &gone)),
-            shadows: means.shadows,
-            shadow_map,
+            seen: self.sieve.seen(),
+            shadows,
+            shadow_style: means.shadows,
             colours,
             weather: rain::is_drawn(&scene.weather),
             drops: rain::drops(&scene.weather),
@@ -172,7 +175,26 @@ impl Renderer {
             _ => Targets::new(&self.gpu, width, height, means),
         };
         self.passes.submit(&self.gpu, &draws, &targets);
-        self.targets.insert(targets).read(&self.gpu, scene.tick)
+        let targets = &*self.targets.insert(targets);
+        if !takes_corners {
+            return targets.read(&self.gpu, scene.tick, colours);
+        }
+        let (frame, middles) = targets.read_middles(&self.gpu, scene.tick)?;
+        #[cfg(test)]
+        let middles = if self.draws_all_corners { middles.unknown() } else { middles };
+        let seen = self.sieve.seen_by_corners(middles.nearness());
+        self.passes.submit_corners(&self.gpu, &draws, (&seen, &middles.known), targets);
+        Ok(Frame { rgb: targets.read_corners(&self.gpu, scene.tick, &middles)?, ..frame })
+    }
+
+    /// What is to be drawn to a shadow map with so many texels a side.
+    fn cast(&mut self, shadow: &ShadowBox, gone: &[usize], side: u32) -> ShadowDraws {
+        let (map, lacking) = self.shadows.find(shadow, gone, |car| self.scenery.parked_extent(car));
+        let regions = castings::regions(&lacking);
+        let casters = self.scenery.casters(&shadow.grid, &regions, gone);
+        let still = castings::of_still(shadow, &regions, casters, side);
+        let (moving, covered) = castings::of_moving(&self.moving, shadow, side);
+        ShadowDraws { map, still, moving, covered }
     }
 
     /// Takes models of a user's own, or none, for all that is drawn from now on.

@@ -7,14 +7,15 @@ use kernel::SceneSnapshot;
 use kernel::map::{Prop, PropKind, RoadNetwork};
 use kernel::scene::ActorKind;
 
+use crate::castings::Region;
 use crate::horizon::{Horizon, Occluder};
 use crate::instance_ids::{instance_of_parked, parked_number};
-use crate::light::ShadowBox;
 use crate::mesh::look::look;
 use crate::mesh::model::Detail;
 use crate::mesh::street::surface;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, skirt};
 use crate::models::Models;
+use crate::shadow_box::ShadowGrid;
 use crate::sieve::Sieve;
 use crate::view::View;
 use crate::wind;
@@ -164,13 +165,27 @@ impl Scenery {
         }
     }
 
-    /// Indices of all coarse pieces that may cast a shadow on a map, all finishes together, without the parked cars that are
-    /// gone.
-    pub(crate) fn casters(&self, shadow: &ShadowBox, gone: &[usize]) -> Vec<u32> {
-        let near = |p: &&Piece| shadow.reaches(p.centre, p.radius_m);
-        let pieces = self.pieces.iter().filter(|p| p.casts && p.stands(gone)).filter(near);
-        let levels = pieces.map(|p| &p.levels[Detail::Coarse as usize]);
-        levels.flat_map(|level| level.ranges.iter().flat_map(|range| self.indices_of(range))).copied().collect()
+    /// For each of some regions of a shadow map the indices of all coarse pieces that may cast a shadow on it, all finishes
+    /// together, without the parked cars that are gone.
+    pub(crate) fn casters(&self, grid: &ShadowGrid, regions: &[Region], gone: &[usize]) -> Vec<Vec<u32>> {
+        let mut casters = vec![Vec::new(); regions.len()];
+        if regions.is_empty() {
+            return casters;
+        }
+        for piece in self.pieces.iter().filter(|p| p.casts && p.stands(gone)) {
+            let [low, high] = grid.span(piece.extent);
+            let level = &piece.levels[Detail::Coarse as usize];
+            let meets = |[first, last]: &Region| last.cmpge(low).all() && first.cmple(high).all();
+            for (_, list) in regions.iter().zip(&mut casters).filter(|(region, _)| meets(region)) {
+                list.extend(level.ranges.iter().flat_map(|range| self.indices_of(range)));
+            }
+        }
+        casters
+    }
+
+    /// The box around a parked car where the map has it.
+    pub(crate) fn parked_extent(&self, number: usize) -> Option<[Vec3; 2]> {
+        self.pieces.iter().find(|piece| piece.parked == Some(number)).map(|piece| piece.extent)
     }
 
     /// Draws everything at its finest from now on.
@@ -229,14 +244,20 @@ fn extent(mesh: &Mesh, sway_m: f32) -> [Vec3; 2] {
 mod tests {
     use super::*;
     use crate::SemanticTag;
+    use crate::castings::regions;
+    use crate::shadow_box::ShadowBox;
+
+    /// Indices of what casts shadows on a box.
+    fn cast(scenery: &Scenery, shadow: &ShadowBox, gone: &[usize]) -> Vec<u32> {
+        scenery.casters(&shadow.grid, &regions(&shadow.tiles().collect::<Vec<_>>()), gone).concat()
+    }
 
     #[test]
     fn a_parked_car_that_is_gone_is_not_drawn() {
         let city = kernel::map::bundled("city").expect("a bundled map");
         let scenery = Scenery::new(&city);
         let (car, _) = numbered(&city.props).find(|(_, parked)| *parked == Some(5)).expect("the city has parked cars");
-        let shadow = ShadowBox { centre: car.position, sun: Vec3::Z, reach_m: 0.5 };
-        let drawn = |gone: &[usize]| scenery.casters(&shadow, gone).len();
+        let drawn = |gone: &[usize]| cast(&scenery, &ShadowBox::around(car.position, Vec3::Z, 0.5), gone).len();
         assert!(drawn(&[5]) < drawn(&[]));
         assert_eq!(drawn(&[900]), drawn(&[]));
     }
@@ -246,7 +267,7 @@ mod tests {
         let city = kernel::map::bundled("city").expect("a bundled map");
         let scenery = Scenery::new(&city);
         let middle = 0.5 * (city.bounds[0] + city.bounds[1]);
-        let casters = scenery.casters(&ShadowBox { centre: middle, sun: Vec3::Z, reach_m: 1000.0 }, &[]);
+        let casters = cast(&scenery, &ShadowBox::around(middle, Vec3::Z, 1000.0), &[]);
         let plain = scenery.pieces.last().expect("a piece").levels[0].vertices.clone();
         let tags: Vec<u8> = casters.iter().map(|i| scenery.vertices[*i as usize].tag).collect();
         assert!(casters.iter().all(|i| !plain.contains(i)) && !tags.contains(&(SemanticTag::RoadLine as u8)));

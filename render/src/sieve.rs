@@ -107,24 +107,32 @@ impl Sieve {
         }
     }
 
-    /// What is left when everything is known that may hide something: for pixels' middles and for their corners, or the same
-    /// for both.
-    pub(crate) fn finish(&mut self) -> Vec<Lists> {
-        if self.keeps_all {
-            return vec![core::mem::take(&mut self.all)];
+    /// What pixels' middles may see when everything is known that may hide something.
+    pub(crate) fn seen(&self) -> Lists {
+        self.seen_by(0)
+    }
+
+    /// The same of pixels' corners, of what is nearer to them than some places are, row by row, 1 over metres ahead of the eye.
+    pub(crate) fn seen_by_corners(&mut self, known: impl Iterator<Item = f32>) -> Lists {
+        if let Some(grid) = self.grids.get_mut(1) {
+            grid.raise(known);
         }
-        let of_grid = |(grid, kept): (&Grid, &[Vec<Kept>; LISTS])| {
-            let may_show = |corners: [Place; 3]| match Look::at(corners) {
-                Look::Unseen => false,
-                Look::Crossing => true,
-                Look::Facing(outline) => {
-                    grid.around(&outline).is_some_and(|samples| grid.may_show(&Surface::of(&outline), &samples))
-                }
-            };
-            let seen = |list: usize| kept[list].iter().filter(|kept| may_show(kept.1)).flat_map(|kept| kept.0);
-            core::array::from_fn(|list| seen(list).collect())
+        self.seen_by(1)
+    }
+
+    fn seen_by(&self, number: usize) -> Lists {
+        let (Some(grid), Some(kept)) = (self.grids.get(number), self.kept.get(number)) else {
+            return self.all.clone();
         };
-        self.grids.iter().zip(&self.kept).map(of_grid).collect()
+        let may_show = |corners: [Place; 3]| match Look::at(corners) {
+            Look::Unseen => false,
+            Look::Crossing => true,
+            Look::Facing(outline) => {
+                grid.around(&outline).is_some_and(|samples| grid.may_show(&Surface::of(&outline), &samples))
+            }
+        };
+        let seen = |list: usize| kept[list].iter().filter(|kept| may_show(kept.1)).flat_map(|kept| kept.0);
+        core::array::from_fn(|list| seen(list).collect())
     }
 
     #[inline]

@@ -1,7 +1,6 @@
 //! Buffers that are written each frame.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Mat4;
 use kernel::SceneSnapshot;
 use kernel::time::TICK_S;
 use kernel::weather::Water;
@@ -9,6 +8,7 @@ use kernel::weather::Water;
 use super::Gpu;
 use crate::light::Light;
 use crate::light_map::LightMap;
+use crate::shadow_box::ShadowBox;
 use crate::view::View;
 use crate::{rain, wind};
 
@@ -31,9 +31,9 @@ pub(crate) struct SceneUniform {
     sky_light: [f32; 3],
     sky_drift_y: f32,
     ground_light: [f32; 3],
-    pad0: f32,
+    shadow_at_x: f32,
     horizon: [f32; 3],
-    pad1: f32,
+    shadow_at_y: f32,
     zenith: [f32; 3],
     pad2: f32,
     shadow: [[f32; 4]; 4],
@@ -62,7 +62,7 @@ pub(crate) struct SceneUniform {
 const DRIFT_PER_S: f32 = 0.05;
 
 impl SceneUniform {
-    pub(crate) fn new(view: &View, scene: &SceneSnapshot, light: &Light, shadow: Mat4, shadow_texel: f32) -> Self {
+    pub(crate) fn new(view: &View, scene: &SceneSnapshot, light: &Light) -> Self {
         let weather = &scene.weather;
         let water = Water::of(weather);
         // The pattern repeats every 100 units (noise scales 0.05 and 0.21), so it may wrap there.
@@ -78,18 +78,14 @@ impl SceneUniform {
             ahead: view.ahead.to_array(),
             exposure: light.exposure,
             sun: light.sun.to_array(),
-            shadow_texel,
             sun_light: light.sun_light.to_array(),
             sky_drift_x: drift.x,
             sky_light: light.sky_light.to_array(),
             sky_drift_y: drift.y,
             ground_light: light.ground_light.to_array(),
-            pad0: 0.0,
             horizon: light.horizon.to_array(),
-            pad1: 0.0,
             zenith: light.zenith.to_array(),
             pad2: 0.0,
-            shadow: shadow.to_cols_array_2d(),
             fog: light.fog.to_array(),
             fog_per_m: weather.fog_extinction_per_m(),
             rain_drift: rain::drift_m(weather, scene.tick).to_array(),
@@ -102,6 +98,12 @@ impl SceneUniform {
             pad3: 0.0,
             ..Self::zeroed()
         }
+    }
+
+    /// The same with shadows of a box of a map with such texels.
+    pub(crate) fn shaded(self, shadow: &ShadowBox, shadow_texel: f32) -> Self {
+        let [shadow_at_x, shadow_at_y] = shadow.corner().to_array();
+        Self { shadow: shadow.matrix().to_cols_array_2d(), shadow_at_x, shadow_at_y, shadow_texel, ..self }
     }
 
     /// The same for so many samples a pixel along each axis. Labels are those of pixels' middles however many there are, so leaves are

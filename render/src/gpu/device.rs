@@ -9,10 +9,23 @@ pub(crate) struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     pub(crate) info: AdapterInfo,
+    /// Whether depth can be copied to a buffer, which OpenGL cannot.
+    pub(crate) copies_depth: bool,
     failure: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
+    /// A group of resources, in the order of their bindings.
+    pub(super) fn bind(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> =
+            (0..).zip(resources).map(|(binding, r)| wgpu::BindGroupEntry { binding, resource: r.clone() }).collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
     pub(crate) fn open(choice: &AdapterChoice) -> Result<Self, RenderError> {
         let (adapter, info) = choice.open()?;
         // Roads of a hundred kilometres are one buffer.
@@ -32,7 +45,9 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             kept.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error.to_string());
         }));
-        Ok(Self { device, queue, info, failure })
+        let copies = adapter.get_downlevel_capabilities().flags;
+        let copies_depth = copies.contains(wgpu::DownlevelFlags::DEPTH_TEXTURE_AND_BUFFER_COPIES);
+        Ok(Self { device, queue, info, copies_depth, failure })
     }
 
     /// The first error since the last call.

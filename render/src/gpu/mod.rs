@@ -1,5 +1,6 @@
 //! Everything that speaks to the graphics adapter.
 
+mod attachments;
 mod buffers;
 mod device;
 mod passes;
@@ -7,6 +8,7 @@ mod pipelines;
 mod readback;
 mod resolve;
 mod shaders;
+mod shadow_passes;
 mod targets;
 mod textures;
 
@@ -14,4 +16,5 @@ pub(crate) use buffers::{GrowingBuffer, SceneUniform};
 pub(crate) use device::Gpu;
 pub(crate) use passes::{Draws, Passes};
 pub(crate) use pipelines::Lighting;
+pub(crate) use shadow_passes::ShadowDraws;
 pub(crate) use targets::Targets;

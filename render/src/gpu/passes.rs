@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
+use super::attachments::{colour_attachment, depth_attachment};
 use super::pipelines::{self, Layouts, Pipelines};
+use super::shadow_passes::{CasterRanges, Casters, ShadowDraws, ShadowMap, ShadowPasses};
 use super::targets::Samples;
 use super::{Gpu, GrowingBuffer, Lighting, SceneUniform, Targets, readback, textures};
 use crate::SemanticTag;
+use crate::castings::Casting;
 use crate::glows::Glow;
 use crate::mesh::{FINISHES, Finish, Vertex};
 use crate::mirrors::Streak;
@@ -22,15 +25,10 @@ pub(crate) struct Draws<'a> {
     /// As pixels' middles see it, and as their corners do.
     pub(crate) uniforms: [SceneUniform; 2],
     pub(crate) moving_vertices: &'a [Vertex],
-    /// Indices of what is seen by pixels' middles and by their corners, or by both.
-    pub(crate) seen: Vec<Lists>,
-    /// Indices of what moves and casts a shadow into the picture, whether it is seen or not.
-    pub(crate) moving_casters: &'a [u32],
-    /// Indices of the static world to draw the shadow map with; `None` keeps the map as it is.
-    pub(crate) casters: Option<Vec<u32>>,
-    pub(crate) shadows: Shadows,
-    /// Number of the shadow map; a new one is the next in order.
-    pub(crate) shadow_map: usize,
+    /// Indices of what pixels' middles see.
+    pub(crate) seen: Lists,
+    pub(crate) shadows: ShadowDraws,
+    pub(crate) shadow_style: Shadows,
     /// Whether colours are to be drawn, not classes and instances alone.
     pub(crate) colours: bool,
     /// Whether fog, water or rain is to be drawn.
@@ -57,6 +55,7 @@ pub(crate) struct Passes {
     /// For pixels' middles and for their corners.
     scenes: [SceneBinding; 2],
     shadow_sampler: wgpu::Sampler,
+    shadows: ShadowPasses,
     fixed: wgpu::Buffer,
     moving: GrowingBuffer,
     indices: GrowingBuffer,
@@ -77,17 +76,7 @@ struct Style {
     shadows: Shadows,
     /// With what they are for: whether there is fog, water or rain, and which light; made when they are needed first.
     pipelines: Vec<((bool, Lighting), Pipelines)>,
-    /// Shadow maps of what stands still.
-    still: Vec<wgpu::Texture>,
-    /// One of everything, for the picture at hand.
-    all: wgpu::Texture,
-    all_group: wgpu::BindGroup,
-}
-
-fn bind(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
-    let entries: Vec<_> =
-        (0..).zip(resources).map(|(binding, r)| wgpu::BindGroupEntry { binding, resource: r.clone() }).collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    maps: Vec<ShadowMap>,
 }
 
 fn fixed_vertices(gpu: &Gpu, fixed: &[Vertex]) -> wgpu::Buffer {
@@ -123,13 +112,14 @@ impl Passes {
             let uniform = buffer(size_of::<SceneUniform>(), U::UNIFORM);
             let [noise, light_map, ground, leaves] = [&noise, &light_map_view, &ground, &leaves].map(R::TextureView);
             let scene = [uniform.as_entire_binding(), noise, R::Sampler(&noise_sampler), light_map, ground, leaves];
-            SceneBinding { group: bind(gpu, &layouts.scene, &scene), uniform }
+            SceneBinding { group: gpu.bind(&layouts.scene, &scene), uniform }
         });
         Self {
             styles: Vec::new(),
             classes: None,
             scenes,
             shadow_sampler: textures::shadow_sampler(gpu),
+            shadows: ShadowPasses::new(gpu, &layouts),
             fixed: fixed_vertices(gpu, fixed),
             moving: GrowingBuffer::new(gpu, U::VERTEX),
             indices: GrowingBuffer::new(gpu, U::INDEX),
@@ -169,6 +159,38 @@ impl Passes {
         gpu.queue.submit([encoder.finish()]);
     }
 
+    /// Draws the corners of the picture that was submitted last, as far as they are nearer than what is known of them: all that
+    /// is drawn leaves an alpha of 1.
+    pub(crate) fn submit_corners(
+        &mut self,
+        gpu: &Gpu,
+        draws: &Draws<'_>,
+        (seen, known): (&Lists, &[f32]),
+        targets: &Targets,
+    ) {
+        let Some(corners) = &targets.corners else { return };
+        let bytes_per_row = Some(4 * corners.known.width());
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
+        let bytes = bytemuck::cast_slice(known);
+        gpu.queue.write_texture(corners.known.as_image_copy(), bytes, layout, corners.known.size());
+        let mut all = Vec::new();
+        let seen = push_lists(&mut all, seen);
+        self.indices.write(gpu, &all);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        if let Some(style) = self.styles.iter().find(|style| style.shadows == draws.shadow_style) {
+            let known = self.bind_known(gpu, &corners.known);
+            self.main_pass(&mut encoder, style, (&seen, draws), (&corners.samples, &self.scenes[1], Some(&known)));
+        }
+        readback::record_corners(&mut encoder, corners);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Binds a texture of depths that are known.
+    fn bind_known(&self, gpu: &Gpu, known: &wgpu::Texture) -> wgpu::BindGroup {
+        let view = known.create_view(&Default::default());
+        gpu.bind(&self.layouts.known, &[wgpu::BindingResource::TextureView(&view)])
+    }
+
     fn colour_passes(
         &mut self,
         gpu: &Gpu,
@@ -177,66 +199,32 @@ impl Passes {
         draws: &Draws<'_>,
         targets: &Targets,
     ) {
-        let style = self.styles.iter().position(|style| style.shadows == draws.shadows);
+        let style = self.styles.iter().position(|style| style.shadows == draws.shadow_style);
         let style = style.map(|index| self.styles.swap_remove(index));
-        let mut style = style.unwrap_or_else(|| Style::new(gpu, &self.layouts, draws.shadows, &self.shadow_sampler));
-        style.prepare(gpu, &self.layouts, draws);
+        let mut style =
+            style.unwrap_or_else(|| Style { shadows: draws.shadow_style, pipelines: Vec::new(), maps: Vec::new() });
+        style.prepare(gpu, &self.layouts, draws, &self.shadow_sampler);
         if draws.lighting != Lighting::Night {
-            self.shadow_passes(encoder, &style, ranges, draws);
+            let map = &mut style.maps[draws.shadows.map];
+            let casters = Casters { fixed: &self.fixed, moving: &self.moving.buffer, indices: &self.indices.buffer };
+            self.shadows.record(gpu, encoder, map, &draws.shadows, (&ranges.casters, &casters));
         }
-        let grids = [Some(&targets.middles), targets.corners.as_ref()].into_iter().flatten().zip(&self.scenes);
-        for (grid, seen) in grids.zip(ranges.seen.iter().cycle()) {
-            self.main_pass(encoder, &style, seen, draws, grid);
-        }
+        let (seen, middles) = (&ranges.seen, &targets.middles);
+        self.main_pass(encoder, &style, (seen, draws), (middles, &self.scenes[0], None));
         self.styles.push(style);
     }
 
     fn write_indices(&mut self, gpu: &Gpu, draws: &Draws<'_>) -> Ranges {
         let mut all = Vec::new();
-        let mut push = |list: &[u32]| {
-            let start = all.len() as u32;
-            all.extend_from_slice(list);
-            start..all.len() as u32
-        };
-        let seen = draws.seen.iter().map(|lists| lists.each_ref().map(|list| push(list))).collect();
-        let moving_casters = push(draws.moving_casters);
-        let casters = push(draws.casters.as_deref().unwrap_or_default());
+        let seen = push_lists(&mut all, &draws.seen);
+        let mut push_all = |castings: &[Casting]| castings.iter().map(|it| push(&mut all, &it.casters)).collect();
+        let casters = CasterRanges { still: push_all(&draws.shadows.still), moving: push_all(&draws.shadows.moving) };
         self.indices.write(gpu, &all);
-        Ranges { seen, moving_casters, casters }
-    }
-
-    /// What stands still is drawn where it is not known yet; what moves, over a copy of that.
-    fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, style: &Style, ranges: &Ranges, draws: &Draws<'_>) {
-        let still = &style.still[draws.shadow_map];
-        if draws.casters.is_some() {
-            self.shadow_pass(encoder, style, (still, wgpu::LoadOp::Clear(1.0)), (&self.fixed, &ranges.casters));
-        }
-        encoder.copy_texture_to_texture(still.as_image_copy(), style.all.as_image_copy(), still.size());
-        if !ranges.moving_casters.is_empty() {
-            let moving = (&self.moving.buffer, &ranges.moving_casters);
-            self.shadow_pass(encoder, style, (&style.all, wgpu::LoadOp::Load), moving);
-        }
-    }
-
-    fn shadow_pass(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        style: &Style,
-        (map, load): (&wgpu::Texture, wgpu::LoadOp<f32>),
-        (vertices, casters): (&wgpu::Buffer, &Range<u32>),
-    ) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("shadow"),
-            depth_stencil_attachment: Some(depth_attachment(&map.create_view(&Default::default()), load)),
-            ..Default::default()
-        });
-        pass.set_pipeline(&style.pipelines().shadow);
-        pass.set_bind_group(0, &self.scenes[0].group, &[]);
-        self.draw_mesh(&mut pass, vertices, casters);
+        Ranges { seen, casters }
     }
 
     /// Classes, instances and depth: the sky is where nothing is.
-    fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, seen: &[Seen], targets: &Targets) {
+    fn class_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, seen: &Seen, targets: &Targets) {
         let pipelines = self.classes.get_or_insert_with(|| pipelines::classes(gpu, &self.layouts)).clone();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let (ids, depth) = (view(&targets.middles.ids), view(&targets.middles.depth));
@@ -248,13 +236,11 @@ impl Passes {
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scenes[0].group, &[]);
-        for ranges in seen {
-            pass.set_pipeline(&pipelines[Finish::Plain as usize]);
-            self.draw_mesh(&mut pass, &self.moving.buffer, &ranges[MOVING]);
-            for finish in DRAW_ORDER {
-                pass.set_pipeline(&pipelines[finish as usize]);
-                self.draw_mesh(&mut pass, &self.fixed, &ranges[finish as usize]);
-            }
+        pass.set_pipeline(&pipelines[Finish::Plain as usize]);
+        self.draw_mesh(&mut pass, &self.moving.buffer, &seen[MOVING]);
+        for finish in DRAW_ORDER {
+            pass.set_pipeline(&pipelines[finish as usize]);
+            self.draw_mesh(&mut pass, &self.fixed, &seen[finish as usize]);
         }
     }
 
@@ -262,9 +248,8 @@ impl Passes {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         style: &Style,
-        seen: &Seen,
-        draws: &Draws<'_>,
-        (samples, scene): (&Samples, &SceneBinding),
+        (seen, draws): (&Seen, &Draws<'_>),
+        (samples, scene, known): (&Samples, &SceneBinding, Option<&wgpu::BindGroup>),
     ) {
         let pipelines = style.pipelines();
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
@@ -275,8 +260,13 @@ impl Passes {
             depth_stencil_attachment: Some(depth_attachment(&depth, wgpu::LoadOp::Clear(0.0))),
             ..Default::default()
         });
+        if let Some(known) = known {
+            pass.set_pipeline(&pipelines.known);
+            pass.set_bind_group(0, known, &[]);
+            pass.draw(0..3, 0..1);
+        }
         pass.set_bind_group(0, &scene.group, &[]);
-        pass.set_bind_group(1, &style.all_group, &[]);
+        pass.set_bind_group(1, &style.maps[draws.shadows.map].group, &[]);
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &seen[MOVING]);
         for finish in DRAW_ORDER {
@@ -321,23 +311,10 @@ fn draw_quads(
 }
 
 impl Style {
-    fn new(gpu: &Gpu, layouts: &Layouts, shadows: Shadows, sampler: &wgpu::Sampler) -> Self {
-        use wgpu::BindingResource as R;
-        let all = textures::shadow_map(gpu, shadows.side);
-        let view = all.create_view(&Default::default());
-        Self {
-            shadows,
-            pipelines: Vec::new(),
-            still: Vec::new(),
-            all_group: bind(gpu, &layouts.shadow, &[R::TextureView(&view), R::Sampler(sampler)]),
-            all,
-        }
-    }
-
     /// Makes what is lacking for a picture.
-    fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, draws: &Draws<'_>) {
-        while self.still.len() <= draws.shadow_map {
-            self.still.push(textures::shadow_map(gpu, self.shadows.side));
+    fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, draws: &Draws<'_>, sampler: &wgpu::Sampler) {
+        while self.maps.len() <= draws.shadows.map {
+            self.maps.push(ShadowMap::new(gpu, layouts, self.shadows.side, sampler));
         }
         let wanted = (draws.weather, draws.lighting);
         let known = self.pipelines.iter().position(|(made_for, _)| *made_for == wanted);
@@ -361,17 +338,16 @@ type Seen = [Range<u32>; LISTS];
 /// Where each list lies in the index buffer.
 struct Ranges {
     /// As [`Draws::seen`].
-    seen: Vec<Seen>,
-    moving_casters: Range<u32>,
-    casters: Range<u32>,
+    seen: Seen,
+    casters: CasterRanges,
 }
 
-fn colour_attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
-    let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store };
-    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+fn push(all: &mut Vec<u32>, list: &[u32]) -> Range<u32> {
+    let start = all.len() as u32;
+    all.extend_from_slice(list);
+    start..all.len() as u32
 }
 
-fn depth_attachment(view: &wgpu::TextureView, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
-    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
+fn push_lists(all: &mut Vec<u32>, lists: &Lists) -> Seen {
+    lists.each_ref().map(|list| push(all, list))
 }

@@ -14,6 +14,12 @@ pub(super) struct Layouts {
     pub(super) scene: wgpu::BindGroupLayout,
     /// Shadow map and its sampler.
     pub(super) shadow: wgpu::BindGroupLayout,
+    /// From the world to a shadow map, one of several.
+    pub(super) clip: wgpu::BindGroupLayout,
+    /// A shadow map to copy from.
+    pub(super) still: wgpu::BindGroupLayout,
+    /// Depths that are known.
+    pub(super) known: wgpu::BindGroupLayout,
 }
 
 /// Which light there is.
@@ -36,14 +42,23 @@ pub(super) struct Pipelines {
     pub(super) glow: wgpu::RenderPipeline,
     pub(super) mirror: wgpu::RenderPipeline,
     pub(super) spray: wgpu::RenderPipeline,
-    pub(super) shadow: wgpu::RenderPipeline,
+    /// Fills in depths that are known.
+    pub(super) known: wgpu::RenderPipeline,
+}
+
+/// The pipelines of shadow maps.
+pub(super) struct ShadowPipelines {
+    pub(super) cast: wgpu::RenderPipeline,
+    pub(super) clear: wgpu::RenderPipeline,
+    pub(super) copy: wgpu::RenderPipeline,
 }
 
 impl Layouts {
     pub(super) fn new(gpu: &Gpu) -> Self {
         use wgpu::{BindingType as T, SamplerBindingType as S, TextureSampleType as K};
-        let uniform =
-            T::Buffer { ty: wgpu::BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
+        let ty = wgpu::BufferBindingType::Uniform;
+        let [uniform, one_of_several] =
+            [false, true].map(|has_dynamic_offset| T::Buffer { ty, has_dynamic_offset, min_binding_size: None });
         use wgpu::TextureViewDimension::{D2, D2Array};
         let texture = |sample_type, view_dimension| T::Texture { sample_type, view_dimension, multisampled: false };
         let colours = K::Float { filterable: true };
@@ -51,6 +66,9 @@ impl Layouts {
         Self {
             scene: layout(gpu, &[uniform, noise, T::Sampler(S::Filtering), noise, layers, layers]),
             shadow: layout(gpu, &[texture(K::Depth, D2), T::Sampler(S::Comparison)]),
+            clip: layout(gpu, &[one_of_several]),
+            still: layout(gpu, &[texture(K::Depth, D2)]),
+            known: layout(gpu, &[texture(K::Float { filterable: false }, D2)]),
         }
     }
 }
@@ -161,7 +179,7 @@ impl Pipelines {
         let sun = flag("SUN", lighting != Lighting::Night);
         let scene_only = pipeline_layout(gpu, &[Some(&layouts.scene)]);
         let with_shadow = pipeline_layout(gpu, &[Some(&layouts.scene), Some(&layouts.shadow)]);
-        let [world, sky, shadow, rain] = ["world", "sky", "shadow", "rain"].map(|name| module(gpu, name));
+        let [world, sky, rain] = ["world", "sky", "rain"].map(|name| module(gpu, name));
         let [glow, mirror, spray] = ["glow", "mirror", "spray"].map(|name| module(gpu, name));
         let opaque = [Some(COLOUR.into()), Some(IDS.into())];
         let base = Recipe {
@@ -180,13 +198,13 @@ impl Pipelines {
         let shining = Recipe {
             layout: &scene_only,
             fragment: Some("fragment"),
-            targets: &[Some(brightening()), Some(untouched())],
+            targets: &[Some(brightening()), Some(unwritten(IDS))],
             constants: &[],
             cull: false,
             depth_write: false,
             ..base
         };
-        let veil = Recipe { targets: &[Some(covering()), Some(untouched())], constants: &[night], ..shining };
+        let veil = Recipe { targets: &[Some(covering()), Some(unwritten(IDS))], constants: &[night], ..shining };
         let finishes = [
             ("vertex_plain", "fragment_plain"),
             ("vertex", "fragment_grainy"),
@@ -209,23 +227,52 @@ impl Pipelines {
                 ..base
             }
             .make(gpu),
+            known: Recipe {
+                module: &module(gpu, "known"),
+                layout: &pipeline_layout(gpu, &[Some(&layouts.known)]),
+                fragment: Some("fragment"),
+                buffers: &[],
+                targets: &[Some(unwritten(COLOUR)), Some(unwritten(IDS))],
+                constants: &[],
+                depth_compare: wgpu::CompareFunction::Always,
+                ..base
+            }
+            .make(gpu),
             rain: Recipe { module: &rain, buffers: &[], ..veil }.make(gpu),
             spray: Recipe { module: &spray, buffers: &[Some(puff_instances())], ..veil }.make(gpu),
             glow: Recipe { module: &glow, buffers: &[Some(glow_instances())], constants: &[weather], ..shining }
                 .make(gpu),
             mirror: Recipe { module: &mirror, buffers: &[Some(streak_instances())], ..shining }.make(gpu),
-            shadow: Recipe {
-                module: &shadow,
-                layout: &scene_only,
-                targets: &[],
-                constants: &[],
-                cull: false,
-                depth_compare: wgpu::CompareFunction::Less,
-                bias: wgpu::DepthBiasState { constant: 1, slope_scale: 2.0, clamp: 0.0 },
-                ..base
-            }
-            .make(gpu),
         }
+    }
+}
+
+impl ShadowPipelines {
+    pub(super) fn new(gpu: &Gpu, layouts: &Layouts) -> Self {
+        let cast = Recipe {
+            module: &module(gpu, "shadow"),
+            layout: &pipeline_layout(gpu, &[Some(&layouts.clip)]),
+            vertex: "vertex",
+            fragment: None,
+            buffers: &[Some(world_vertices())],
+            targets: &[],
+            constants: &[],
+            cull: false,
+            depth_write: true,
+            depth_compare: wgpu::CompareFunction::Less,
+            bias: wgpu::DepthBiasState { constant: 1, slope_scale: 2.0, clamp: 0.0 },
+        };
+        let copy = Recipe {
+            module: &module(gpu, "shadow_copy"),
+            layout: &pipeline_layout(gpu, &[Some(&layouts.still)]),
+            fragment: Some("copied"),
+            buffers: &[],
+            depth_compare: wgpu::CompareFunction::Always,
+            bias: Default::default(),
+            ..cast
+        };
+        let clear = Recipe { layout: &pipeline_layout(gpu, &[]), fragment: None, ..copy };
+        Self { cast: cast.make(gpu), clear: clear.make(gpu), copy: copy.make(gpu) }
     }
 }
 
@@ -279,6 +326,6 @@ fn covering() -> wgpu::ColorTargetState {
     wgpu::ColorTargetState { format: COLOUR, blend, write_mask: wgpu::ColorWrites::COLOR }
 }
 
-fn untouched() -> wgpu::ColorTargetState {
-    wgpu::ColorTargetState { format: IDS, blend: None, write_mask: wgpu::ColorWrites::empty() }
+fn unwritten(format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
+    wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::empty() }
 }

@@ -1,32 +1,32 @@
-//! From samples to pixels, where they are not the same.
+//! From samples to pixels, where these are means of several or depth cannot be copied.
 
 use super::{Gpu, shaders};
 
-/// A compute pass that reads textures of samples and writes the first planes of a picture.
+/// A compute pass that reads textures of samples and writes the planes of a picture.
 pub(super) struct Resolve {
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
     /// What it writes, as the read-back buffer has it.
     written: wgpu::Buffer,
-    /// How many planes that are: the colours, or all three.
-    pub(super) planes: u32,
 }
 
+const PLANES: u64 = 3;
+
 impl Resolve {
-    /// `shader` binds `inputs` and then so many planes.
+    /// Of colours, ids and depth with so many samples a pixel along each axis.
     pub(super) fn new(
         gpu: &Gpu,
-        shader: &str,
-        inputs: &[&wgpu::Texture],
-        planes: u32,
+        samples: u32,
+        inputs: [&wgpu::Texture; 3],
         [stride_bytes, plane_bytes]: [u32; 2],
     ) -> Self {
+        let shader = "resolve";
         let text = shaders::source(shader).unwrap_or_default();
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(shader),
             source: wgpu::ShaderSource::Wgsl(text.into()),
         });
-        let constants = [("STRIDE", f64::from(stride_bytes / 4))];
+        let constants = [("STRIDE", f64::from(stride_bytes / 4)), ("SIDE", f64::from(samples))];
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(shader),
             layout: None,
@@ -38,14 +38,14 @@ impl Resolve {
         let plane_bytes = u64::from(plane_bytes);
         let written = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("planes"),
-            size: u64::from(planes) * plane_bytes,
+            size: PLANES * plane_bytes,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        let views: Vec<_> = inputs.iter().map(|t| t.create_view(&Default::default())).collect();
+        let views = inputs.map(|t| t.create_view(&Default::default()));
         let inputs = views.iter().map(wgpu::BindingResource::TextureView);
-        let outputs = (0..planes).map(|plane| {
-            let (offset, size) = (u64::from(plane) * plane_bytes, std::num::NonZeroU64::new(plane_bytes));
+        let outputs = (0..PLANES).map(|plane| {
+            let (offset, size) = (plane * plane_bytes, std::num::NonZeroU64::new(plane_bytes));
             wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &written, offset, size })
         });
         let entries: Vec<_> = (0..)
@@ -54,7 +54,7 @@ impl Resolve {
             .collect();
         let layout = &pipeline.get_bind_group_layout(0);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries });
-        Self { pipeline, group, written, planes }
+        Self { pipeline, group, written }
     }
 
     /// Records the way from the samples to the read-back buffer of a picture.

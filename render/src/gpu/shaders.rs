@@ -20,11 +20,10 @@ const WORLD: &str = concat!(
 const CLASSES: &str = concat!(include_str!("../shaders/leaf.wgsl"), include_str!("../shaders/classes.wgsl"));
 
 /// The shaders with their names, without the common start.
-const SOURCES: [(&str, &str); 8] = [
+const SOURCES: [(&str, &str); 7] = [
     ("world", WORLD),
     ("classes", CLASSES),
     ("sky", include_str!("../shaders/sky.wgsl")),
-    ("shadow", include_str!("../shaders/shadow.wgsl")),
     ("rain", include_str!("../shaders/rain.wgsl")),
     ("glow", include_str!("../shaders/glow.wgsl")),
     ("spray", include_str!("../shaders/spray.wgsl")),
@@ -32,13 +31,17 @@ const SOURCES: [(&str, &str); 8] = [
 ];
 
 /// The shaders that do not need the scene.
-const RESOLVES: [(&str, &str); 2] =
-    [("resolve", include_str!("../shaders/resolve.wgsl")), ("quincunx", include_str!("../shaders/quincunx.wgsl"))];
+const APART: [(&str, &str); 4] = [
+    ("known", include_str!("../shaders/known.wgsl")),
+    ("shadow", include_str!("../shaders/shadow.wgsl")),
+    ("shadow_copy", include_str!("../shaders/shadow_copy.wgsl")),
+    ("resolve", include_str!("../shaders/resolve.wgsl")),
+];
 
 /// The whole text of a shader; `None` for a name that is none.
 pub(super) fn source(name: &str) -> Option<String> {
     let find = |list: &[(&str, &'static str)]| list.iter().find(|(n, _)| *n == name).map(|(_, text)| *text);
-    find(&RESOLVES).map(str::to_owned).or_else(|| Some(format!("{SCENE}{}", find(&SOURCES)?)))
+    find(&APART).map(str::to_owned).or_else(|| Some(format!("{SCENE}{}", find(&SOURCES)?)))
 }
 
 #[cfg(test)]
@@ -49,7 +52,7 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        for (name, _) in SOURCES.iter().chain(&RESOLVES) {
+        for (name, _) in SOURCES.iter().chain(&APART) {
             let text = source(name).unwrap();
             let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&text)));
             let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());

@@ -16,16 +16,24 @@ pub(super) struct Samples {
     pub(super) depth: wgpu::Texture,
 }
 
+/// Targets of the corners of pixels: one column and one row more.
+pub(super) struct CornerTargets {
+    pub(super) samples: Samples,
+    /// What is drawn has a depth above this.
+    pub(super) known: wgpu::Texture,
+    /// Colours, that the processor can read.
+    pub(super) readback: wgpu::Buffer,
+}
+
 /// Targets of one image size. All three planes take four bytes a pixel.
 pub(crate) struct Targets {
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(super) middles: Samples,
-    /// One column and one row more.
-    pub(super) corners: Option<Samples>,
+    pub(super) corners: Option<CornerTargets>,
     /// Three planes, one after the other, that the processor can read.
     pub(super) readback: wgpu::Buffer,
-    /// Where pixels are not samples as they are.
+    /// Where pixels are means of samples, or depth cannot be copied.
     pub(super) resolve: Option<Resolve>,
 }
 
@@ -49,23 +57,42 @@ impl Samples {
     }
 }
 
+impl CornerTargets {
+    fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+        let known = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("known depth"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Float,
+            usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let samples = Samples::new(gpu, width, height);
+        Self { samples, known, readback: readback(gpu, plane_bytes(width, height)) }
+    }
+}
+
+fn readback(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
 impl Targets {
     pub(crate) fn new(gpu: &Gpu, width: u32, height: u32, means: Means) -> Self {
         let Means { samples, corners, .. } = means;
-        let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("readback"),
-            size: 3 * plane_bytes(width, height),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let readback = readback(gpu, 3 * plane_bytes(width, height));
         let middles = Samples::new(gpu, width * samples, height * samples);
-        let corners = corners.then(|| Samples::new(gpu, width + 1, height + 1));
+        let corners = corners.then(|| CornerTargets::new(gpu, width + 1, height + 1));
         let bytes = [stride_bytes(width), plane_bytes(width, height) as u32];
         let Samples { colour, ids, depth } = &middles;
-        let resolve = match &corners {
-            Some(corners) => Some(Resolve::new(gpu, "quincunx", &[colour, &corners.colour], 1, bytes)),
-            None => (samples > 1).then(|| Resolve::new(gpu, "resolve", &[colour, ids, depth], 3, bytes)),
-        };
+        let resolve =
+            (samples > 1 || !gpu.copies_depth).then(|| Resolve::new(gpu, samples, [colour, ids, depth], bytes));
         Self { width, height, middles, corners, readback, resolve }
     }
 
@@ -76,18 +103,14 @@ impl Targets {
         fits && (self.width, self.height) == (width, height) && self.corners.is_some() == means.corners
     }
 
-    /// Bytes a row takes in the read-back buffer.
-    pub(super) fn stride_bytes(&self) -> u32 {
-        stride_bytes(self.width)
-    }
-
     /// Bytes a plane takes in the read-back buffer.
     pub(super) fn plane_bytes(&self) -> u64 {
         plane_bytes(self.width, self.height)
     }
 }
 
-fn stride_bytes(width: u32) -> u32 {
+/// Bytes that a row of so many samples takes in the read-back buffer.
+pub(super) fn stride_bytes(width: u32) -> u32 {
     (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 

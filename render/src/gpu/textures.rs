@@ -83,7 +83,7 @@ pub(super) fn write_light_map(gpu: &Gpu, texture: &wgpu::Texture, texels: &[[u8;
     gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, texture.size());
 }
 
-/// A depth texture that can be drawn to, copied and sampled.
+/// A depth texture that can be drawn to and sampled.
 pub(super) fn shadow_map(gpu: &Gpu, side: u32) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shadow"),
@@ -92,10 +92,7 @@ pub(super) fn shadow_map(gpu: &Gpu, side: u32) -> wgpu::Texture {
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: wgpu::TextureFormat::Depth32Float,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     })
 }
@@ -113,10 +110,12 @@ pub(super) fn noise_sampler(gpu: &Gpu) -> wgpu::Sampler {
     })
 }
 
-/// Bilinear over comparisons: soft edges from one sample.
+/// Bilinear over comparisons: soft edges from one sample. Repeating, as a map goes on over its edges.
 pub(super) fn shadow_sampler(gpu: &Gpu) -> wgpu::Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("shadow"),
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         compare: Some(wgpu::CompareFunction::LessEqual),

@@ -68,6 +68,44 @@ fn what_is_left_out_before_it_is_drawn_is_in_no_picture() {
     }
 }
 
+/// Also what is thinner than a pixel: lamp posts, lines on the road.
+#[test]
+fn corners_that_are_known_look_as_if_they_were_drawn() {
+    let mut of_all = [0.0, 0.0];
+    for name in ["city", "rural"] {
+        let network = network(name);
+        let mut renderer = renderer(&network);
+        for scene in places(name, &network, 5) {
+            let camera = Camera::driver(256, 128).at(Quality::Standard);
+            let [seen, plain, drawn] = [(false, Quality::Standard), (true, Quality::Plain), (true, Quality::Standard)]
+                .map(|(all, quality)| {
+                    renderer.draws_all_corners = all;
+                    renderer.draw(&scene, &camera.at(quality)).expect("drawn")
+                });
+            assert!(Frame { rgb: drawn.rgb.clone(), ..seen.clone() } == drawn, "labels");
+            for (sum, frame) in of_all.iter_mut().zip([&seen, &plain]) {
+                let squares = frame.rgb.iter().zip(&drawn.rgb).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
+                *sum += squares.sum::<f64>() / (10 * drawn.rgb.len()) as f64;
+            }
+        }
+    }
+    let [known, unsmoothed] = of_all.map(f64::sqrt);
+    assert!(known < 1.3 && unsmoothed > 5.0 * known, "root mean square {known}, without smoothing {unsmoothed}");
+}
+
+/// As where depth cannot be copied.
+#[test]
+fn planes_that_are_not_copied_are_the_same() {
+    let network = network("city");
+    let [mut copying, mut resolving] = [(); 2].map(|()| renderer(&network));
+    resolving.gpu.copies_depth = false;
+    for (scene, quality) in places("city", &network, 2).iter().zip([Quality::Plain, Quality::Standard]) {
+        let camera = Camera::driver(130, 70).at(quality);
+        let [copied, resolved] = [&mut copying, &mut resolving].map(|it| it.draw(scene, &camera).expect("drawn"));
+        assert!(copied == resolved, "{quality:?}");
+    }
+}
+
 /// Leaves have air between them near the eye, the same in pictures with colours and without.
 #[test]
 fn leaves_are_where_their_labels_are() {

@@ -18,12 +18,12 @@ struct Scene {
     sky_light: vec3f,
     sky_drift_y: f32,
     ground_light: vec3f,
-    pad0: f32,
+    shadow_at_x: f32,
     horizon: vec3f,
-    pad1: f32,
+    shadow_at_y: f32,
     zenith: vec3f,
     pad2: f32,
-    // World to the shadow map's uv and depth.
+    // World to depth and uv from the corner of what the shadow map shows, which lies at `shadow_at` and goes on over its edges.
     shadow: mat4x4f,
     fog: vec3f,
     fog_per_m: f32,

@@ -109,10 +109,11 @@ fn sunshine(at: vec3f) -> f32 {
         return 1.0;
     }
     let reach = (SHADOW_TAPS - 1) / 2;
+    let middle = at.xy + vec2f(scene.shadow_at_x, scene.shadow_at_y);
     var sum = 0.0;
     for (var y = -reach; y <= reach; y++) {
         for (var x = -reach; x <= reach; x++) {
-            let uv = at.xy + vec2f(f32(x), f32(y)) * scene.shadow_texel;
+            let uv = middle + vec2f(f32(x), f32(y)) * scene.shadow_texel;
             sum += textureSampleCompareLevel(shadow_map, shadow_sampler, uv, at.z);
         }
     }

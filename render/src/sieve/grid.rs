@@ -164,6 +164,11 @@ impl Grid {
         self.nearness.resize(columns as usize * rows as usize, 0.0);
     }
 
+    /// Places are known to cover the samples, row by row.
+    pub(super) fn raise(&mut self, known: impl Iterator<Item = f32>) {
+        self.nearness.iter_mut().zip(known).for_each(|(nearness, known)| *nearness = largest(known, *nearness));
+    }
+
     /// Whether any sample may show something of what lies between two places and is nowhere nearer than this.
     pub(super) fn may_show_between(&self, low: Vec2, high: Vec2, nearness: f32) -> bool {
         let [columns, mut rows] = samples_between(low + self.shift, high + self.shift, self.size, known_px(low, high));
