@@ -13,10 +13,10 @@ mkdir -p "$FOUND"
 tests() {
     cargo test --release --workspace --no-run --message-format json --test it --test mutations --lib |
         sed -n 's/.*"manifest_path":"\([^"]*\)\/Cargo.toml".*"executable":"\([^"]*\)".*/\1|\2/p' |
-        grep -E '/(it|mutations|perception)-[0-9a-f]+$' |
+        grep -E '/(it|mutations|perception|base)-[0-9a-f]+$' |
         while IFS='|' read -r folder binary; do
             "$binary" --list --format terse 2>/dev/null | sed -n 's/: test$//p' |
-                grep -E '^(damaged_files::(logs|pictures|texts)::|fuzz::|a_changed_map)' |
+                grep -E '^(damaged_files::(logs|pictures|texts)::|(models::)?fuzz::|a_changed_map)' |
                 sed "s#^#$folder|$binary|#"
         done
 }

@@ -18,6 +18,8 @@ pub mod most {
     pub const PICTURE: u64 = 256 << 20;
     /// The same in pixels: 8192 x 8192.
     pub const PIXELS: u64 = 1 << 26;
+    /// A file of a model.
+    pub const MODEL: u64 = 256 << 20;
     /// A network with its weights.
     pub const NETWORK: u64 = 1 << 30;
     /// A recording: an hour is some megabytes.

@@ -83,7 +83,11 @@ pub fn imaging(quality: Option<Given<String>>, sensor: Option<Given<String>>) ->
         named(quality, "quality")?.map(|name| name.parse::<Quality>().map_err(|why| refused("quality", &name, why)));
     let sensor =
         named(sensor, "sensor")?.map(|text| text.parse::<Sensor>().map_err(|why| refused("sensor", &text, why)));
-    Ok(Imaging { quality: quality.transpose()?.unwrap_or_default(), sensor: sensor.transpose()?.unwrap_or_default() })
+    Ok(Imaging {
+        quality: quality.transpose()?.unwrap_or_default(),
+        sensor: sensor.transpose()?.unwrap_or_default(),
+        models: None,
+    })
 }
 
 /// A time in whole seconds.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use kernel::map::LightHead;
@@ -13,11 +14,12 @@ use crate::camera::EGO_MIDDLE_M;
 use crate::glows::{self, Glow};
 use crate::horizon::Horizon;
 use crate::instance_ids::{EGO_INSTANCE, instance_of_actor, parked_number};
-use crate::mesh::actor::{ego_model, has_umbrella_up, parked_model, sheltered_model};
+use crate::mesh::actor::{EGO_VARIANT, ego_model, has_umbrella_up, parked_model, sheltered_model};
 use crate::mesh::model::{Detail, Model};
 use crate::mesh::motion::Motion;
 use crate::mesh::street::signal;
 use crate::mesh::{CODE_BRAKE, CODE_CENTRE_BRAKE, CODE_HEAD, CODE_LEFT, CODE_LIT, CODE_RIGHT, Finish, Mesh, Vertex};
+use crate::models::Models;
 use crate::shadow_box::ShadowBox;
 use crate::view::View;
 
@@ -70,6 +72,9 @@ struct Role {
 /// Models that are kept at most: people have tens of thousands of looks.
 const MOST_MODELS: usize = 2000;
 
+/// Vertices of a user's models that are kept at most: each colour has its own, 32 bytes each.
+const MOST_OWN_VERTICES: usize = 4_000_000;
+
 /// The models that have been needed so far.
 #[derive(Default)]
 pub(crate) struct Cast {
@@ -80,12 +85,22 @@ pub(crate) struct Cast {
     /// Those without anybody in them.
     parked_models: BTreeMap<(ActorKind, u32, Detail), Model>,
     heads: BTreeMap<(LightPhase, Detail), Mesh>,
+    /// The ego car, where it is not the renderer's own.
+    ego: Option<Model>,
+    /// A user's own.
+    own: Option<Arc<Models>>,
 }
 
 impl Cast {
     /// With the looks of the map's parked cars.
     pub(crate) fn new(parked_looks: Vec<u32>) -> Self {
         Self { parked_looks, ..Self::default() }
+    }
+
+    /// Takes models of a user's own, or none.
+    pub(crate) fn dress(&mut self, own: Option<Arc<Models>>) {
+        let ego = own.as_ref().and_then(|models| models.ego(EGO_VARIANT));
+        *self = Self { own, ego, ..Self::new(core::mem::take(&mut self.parked_looks)) };
     }
 
     /// Poses what a view sees, nearest first, and what casts a shadow into it, if one may be cast.
@@ -102,8 +117,9 @@ impl Cast {
         moving.casters.clear();
         moving.glows.clear();
         moving.eye = view.eye;
-        if self.models.len() > MOST_MODELS {
+        if self.models.len() > MOST_MODELS || self.own_vertices() > MOST_OWN_VERTICES {
             self.models.clear();
+            self.parked_models.clear();
         }
         self.pose_ego(&scene.ego, scene.tick, (view, shadow), moving);
         let around = |actor: &ActorScene| {
@@ -127,6 +143,14 @@ impl Cast {
         }
     }
 
+    /// Vertices that are kept of a user's models.
+    fn own_vertices(&self) -> usize {
+        if self.own.is_none() {
+            return 0;
+        }
+        self.models.values().chain(self.parked_models.values()).map(Model::vertices).sum()
+    }
+
     fn pose_ego(
         &mut self,
         ego: &EgoScene,
@@ -138,7 +162,8 @@ impl Cast {
             Affine3A::from_rotation_translation(ego.rotation, ego.position + ego.rotation * Vec3::X * EGO_MIDDLE_M);
         let size = ActorKind::Car.size_m();
         let role = Role { is_seen: view.sees(frame.translation.into(), size.length()), casts: shadow.is_some() };
-        moving.append(ego_model(), frame, &Motion::of_ego(ego), (EGO_INSTANCE, flashing(ego.lamps, tick)), role);
+        let model = self.ego.as_ref().unwrap_or_else(|| ego_model());
+        moving.append(model, frame, &Motion::of_ego(ego), (EGO_INSTANCE, flashing(ego.lamps, tick)), role);
     }
 
     fn pose_actor(
@@ -163,10 +188,11 @@ impl Cast {
         let variant = parked.copied().unwrap_or(actor.variant);
         let sheltered = has_umbrella_up(actor.kind, variant, weather.precipitation_pct);
         let model = if parked.is_some() {
-            let make = || parked_model(actor.kind, variant, detail);
+            let make = || made(self.own.as_deref(), (actor.kind, variant, detail), parked_model);
             self.parked_models.entry((actor.kind, variant, detail)).or_insert_with(make)
         } else {
-            let make = || sheltered_model(actor.kind, variant, detail, sheltered);
+            let sheltered_model = |kind, variant, detail| sheltered_model(kind, variant, detail, sheltered);
+            let make = || made(self.own.as_deref(), (actor.kind, variant, detail), sheltered_model);
             self.models.entry((actor.kind, variant, detail, sheltered)).or_insert_with(make)
         };
         let frame = Affine3A::from_rotation_translation(actor.rotation, actor.position);
@@ -191,6 +217,16 @@ impl Cast {
         let casts = shadow.is_some_and(|shadow| shadow.reaches(centre, 1.0));
         moving.append_mesh(mesh, frame, (0, 0), Role { is_seen: true, casts });
     }
+}
+
+/// The model of a road user: a user's own, or else what is made in code.
+fn made(
+    own: Option<&Models>,
+    (kind, variant, detail): (ActorKind, u32, Detail),
+    make: impl Fn(ActorKind, u32, Detail) -> Model,
+) -> Model {
+    let make = || make(kind, variant, detail);
+    own.and_then(|models| models.actor(kind, variant, detail, make)).unwrap_or_else(make)
 }
 
 /// A sphere around an actor; limbs and handlebars may reach beyond its box.

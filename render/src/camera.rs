@@ -3,6 +3,7 @@
 use glam::{Quat, Vec3};
 use kernel::scene::EgoScene;
 
+use crate::models::ModelsId;
 use crate::{Imaging, Quality, Sensor};
 
 /// What a camera is fixed to.
@@ -35,6 +36,8 @@ pub struct Camera {
     pub quality: Quality,
     /// What its lens and its chip make of them.
     pub sensor: Sensor,
+    /// Models of a user's own that stand for what it sees.
+    pub models: Option<ModelsId>,
 }
 
 /// From optical axes (x right, y down, z along the view) to those of a [`Camera`].
@@ -82,20 +85,20 @@ impl Camera {
 
     fn level(width: u32, height: u32) -> Self {
         let fov_x_rad = core::f32::consts::FRAC_PI_2;
-        let Imaging { quality, sensor } = Imaging::default();
+        let Imaging { quality, sensor, models } = Imaging::default();
         let (position, rotation) = (Vec3::ZERO, Quat::IDENTITY);
-        Self { mount: Mount::World, position, rotation, fov_x_rad, width, height, quality, sensor }
+        Self { mount: Mount::World, position, rotation, fov_x_rad, width, height, quality, sensor, models }
     }
 
     /// The same with pictures of another kind; of a quality alone, by an ideal sensor.
     pub fn at(self, imaging: impl Into<Imaging>) -> Self {
-        let Imaging { quality, sensor } = imaging.into();
-        Self { quality, sensor, ..self }
+        let Imaging { quality, sensor, models } = imaging.into();
+        Self { quality, sensor, models, ..self }
     }
 
     /// How it makes its pictures.
     pub fn imaging(&self) -> Imaging {
-        Imaging { quality: self.quality, sensor: self.sensor }
+        Imaging { quality: self.quality, sensor: self.sensor, models: self.models }
     }
 
     /// What moves its pixels from where the pinhole has them: k1, k2, p1, p2 and k3 of OpenCV.

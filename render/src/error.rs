@@ -1,5 +1,6 @@
 //! Why nothing could be drawn.
 
+use crate::models::ModelsId;
 use crate::{Camera, Sensor};
 
 /// Why nothing could be drawn; each says in one sentence what to do about it.
@@ -61,6 +62,16 @@ pub enum RenderError {
     Distortion {
         /// What was asked for.
         sensor: Sensor,
+    },
+    /// The models that a picture is to be drawn with were not read.
+    #[error(
+        "the picture is one with models of digest {wanted}, expected their folder with --models DIR; digests given: {given}"
+    )]
+    Models {
+        /// Which ones.
+        wanted: ModelsId,
+        /// Those that were read, or "none".
+        given: String,
     },
     /// The snapshot belongs to another map.
     #[error("snapshot has {got} light groups, the map has {expected}: it belongs to another map")]

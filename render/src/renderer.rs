@@ -13,6 +13,7 @@ use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, ShadowDraws, Target
 use crate::light::Light;
 use crate::light_map::LightMap;
 use crate::mirrors::{self, Feet, Streak};
+use crate::models::{Models, ModelsId};
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadow_box::ShadowBox;
@@ -46,6 +47,8 @@ pub struct Renderer {
     streaks: Vec<Streak>,
     spray: Vec<Puff>,
     lenses: Lenses,
+    /// Whose models the scenery is made of.
+    models: Option<ModelsId>,
 }
 
 /// Street lamps are seen to shine up to this distance, metres.
@@ -82,6 +85,7 @@ impl Renderer {
             streaks: Vec::new(),
             spray: Vec::new(),
             lenses: Lenses::default(),
+            models: None,
         })
     }
 
@@ -120,6 +124,7 @@ impl Renderer {
 
     fn planes(&mut self, scene: &SceneSnapshot, camera: &Camera, colours: bool) -> Result<Frame, RenderError> {
         self.check(scene, camera)?;
+        self.dress(camera.models)?;
         let view = View::new(camera, &scene.ego);
         let (width, height) = (camera.width, camera.height);
         let corners = view.at_corners(width, height);
@@ -193,6 +198,21 @@ impl Renderer {
         let still = castings::of_still(shadow, &regions, casters, side);
         let (moving, covered) = castings::of_moving(&self.moving, shadow, side);
         ShadowDraws { map, still, moving, covered }
+    }
+
+    /// Takes models of a user's own, or none, for all that is drawn from now on.
+    fn dress(&mut self, wanted: Option<ModelsId>) -> Result<(), RenderError> {
+        if wanted == self.models {
+            return Ok(());
+        }
+        let missing = |wanted| RenderError::Models { wanted, given: Models::known_ids() };
+        let models = wanted.map(|wanted| Models::known(wanted).ok_or_else(|| missing(wanted))).transpose()?;
+        self.scenery.dress(models.as_deref());
+        self.passes.replace_fixed(&self.gpu, &self.scenery.vertices);
+        self.shadows.forget();
+        self.cast.dress(models);
+        self.models = wanted;
+        Ok(())
     }
 
     /// Makes the map of lamps' light and their glows, where they shine.

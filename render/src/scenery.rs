@@ -14,6 +14,7 @@ use crate::mesh::look::look;
 use crate::mesh::model::Detail;
 use crate::mesh::street::surface;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, skirt};
+use crate::models::Models;
 use crate::shadow_box::ShadowGrid;
 use crate::sieve::Sieve;
 use crate::view::View;
@@ -70,12 +71,18 @@ pub(crate) struct Scenery {
     /// The last one is the plain, which all others hide.
     pieces: Vec<Piece>,
     houses: Vec<Occluder>,
+    /// What stands on the ground, which models may replace.
+    objects: Vec<Prop>,
+    plain: Mesh,
+    /// Pieces, vertices and indices of the ground.
+    ground: [usize; 3],
 }
 
 impl Scenery {
     pub(crate) fn new(network: &RoadNetwork) -> Self {
         let houses = network.props.iter().filter_map(Occluder::of).collect();
-        let mut scenery = Self { houses, ..Default::default() };
+        let (objects, plain) = (network.props.clone(), surface::plain(network));
+        let mut scenery = Self { houses, objects, plain, ..Default::default() };
         for surface::Cell { mut mesh, is_thin } in surface::cells(network) {
             // Below paint is what it lies on.
             let skirt = if is_thin { 0.0 } else { SKIRT };
@@ -85,12 +92,24 @@ impl Scenery {
             });
             scenery.add(levels, None, !is_thin);
         }
-        for (object, parked) in numbered(network) {
-            scenery.add(Detail::ALL.map(|detail| placed(object, parked, detail)), parked, true);
-        }
-        let plain = surface::plain(network);
-        scenery.add(Detail::ALL.map(|_| plain.clone()), None, false);
+        scenery.ground = [scenery.pieces.len(), scenery.vertices.len(), scenery.indices.len()];
+        scenery.dress(None);
         scenery
+    }
+
+    /// Puts all objects on the ground, with models of a user's own or without.
+    pub(crate) fn dress(&mut self, models: Option<&Models>) {
+        let [pieces, vertices, indices] = self.ground;
+        self.pieces.truncate(pieces);
+        self.vertices.truncate(vertices);
+        self.indices.truncate(indices);
+        let objects = core::mem::take(&mut self.objects);
+        for (object, parked) in numbered(&objects) {
+            self.add(Detail::ALL.map(|detail| placed(object, parked, (models, detail))), parked, true);
+        }
+        self.objects = objects;
+        let plain = self.plain.clone();
+        self.add(Detail::ALL.map(|_| plain.clone()), None, false);
     }
 
     fn add(&mut self, meshes: [Mesh; Detail::ALL.len()], parked: Option<usize>, casts: bool) {
@@ -181,9 +200,9 @@ impl Scenery {
 }
 
 /// The static objects, parked cars with their numbers.
-fn numbered(network: &RoadNetwork) -> impl Iterator<Item = (&Prop, Option<usize>)> {
+fn numbered(objects: &[Prop]) -> impl Iterator<Item = (&Prop, Option<usize>)> {
     let mut numbers = 0..;
-    network.props.iter().map(move |object| (object, if is_parked(object) { numbers.next() } else { None }))
+    objects.iter().map(move |object| (object, if is_parked(object) { numbers.next() } else { None }))
 }
 
 fn is_parked(object: &Prop) -> bool {
@@ -202,9 +221,10 @@ pub(crate) fn gone(scene: &SceneSnapshot) -> Vec<usize> {
 }
 
 /// The mesh of an object in the world's frame.
-fn placed(object: &Prop, parked: Option<usize>, detail: Detail) -> Mesh {
+fn placed(object: &Prop, parked: Option<usize>, (models, detail): (Option<&Models>, Detail)) -> Mesh {
     let instance = parked.map_or(0, instance_of_parked);
-    let mut mesh = prop::mesh(object, detail);
+    let model = models.and_then(|models| models.object(object, detail));
+    let mut mesh = model.unwrap_or_else(|| prop::mesh(object, detail));
     prop::place(&mut mesh, object.position, object.heading_rad);
     mesh.vertices.iter_mut().for_each(|v| v.instance = instance);
     mesh
@@ -236,7 +256,7 @@ mod tests {
     fn a_parked_car_that_is_gone_is_not_drawn() {
         let city = kernel::map::bundled("city").expect("a bundled map");
         let scenery = Scenery::new(&city);
-        let (car, _) = numbered(&city).find(|(_, parked)| *parked == Some(5)).expect("the city has parked cars");
+        let (car, _) = numbered(&city.props).find(|(_, parked)| *parked == Some(5)).expect("the city has parked cars");
         let drawn = |gone: &[usize]| cast(&scenery, &ShadowBox::around(car.position, Vec3::Z, 0.5), gone).len();
         assert!(drawn(&[5]) < drawn(&[]));
         assert_eq!(drawn(&[900]), drawn(&[]));

@@ -67,6 +67,11 @@ impl ShadowMaps {
         Self { most: most.max(1), maps: Vec::new(), draws: 0 }
     }
 
+    /// Casts all of them anew: something else stands there.
+    pub(crate) fn forget(&mut self) {
+        self.maps.clear();
+    }
+
     /// The number of the map for a box, and the tiles to draw before it shows all of that without some parked cars. It is the one
     /// that lacks least or, where all lack much, one that was not used for longest. `extent_of` is the box around a parked car.
     pub(crate) fn find(

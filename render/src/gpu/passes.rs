@@ -79,6 +79,17 @@ struct Style {
     maps: Vec<ShadowMap>,
 }
 
+fn fixed_vertices(gpu: &Gpu, fixed: &[Vertex]) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: size_of_val(fixed).max(size_of::<Vertex>()) as u64,
+        usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(fixed));
+    buffer
+}
+
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, fixed: &[Vertex]) -> Self {
         use wgpu::{BindingResource as R, BufferUsages as U};
@@ -92,8 +103,6 @@ impl Passes {
                 mapped_at_creation: false,
             })
         };
-        let vertices = buffer(size_of_val(fixed).max(size_of::<Vertex>()), U::VERTEX);
-        gpu.queue.write_buffer(&vertices, 0, bytemuck::cast_slice(fixed));
         let (noise, noise_sampler) = (textures::noise_view(gpu), textures::noise_sampler(gpu));
         let ground = textures::ground_view(gpu);
         let light_map = textures::light_map(gpu);
@@ -111,7 +120,7 @@ impl Passes {
             scenes,
             shadow_sampler: textures::shadow_sampler(gpu),
             shadows: ShadowPasses::new(gpu, &layouts),
-            fixed: vertices,
+            fixed: fixed_vertices(gpu, fixed),
             moving: GrowingBuffer::new(gpu, U::VERTEX),
             indices: GrowingBuffer::new(gpu, U::INDEX),
             light_map,
@@ -120,6 +129,11 @@ impl Passes {
             spray: GrowingBuffer::new(gpu, U::VERTEX),
             layouts,
         }
+    }
+
+    /// Replaces what stands still.
+    pub(crate) fn replace_fixed(&mut self, gpu: &Gpu, fixed: &[Vertex]) {
+        self.fixed = fixed_vertices(gpu, fixed);
     }
 
     /// Draws a frame and copies its planes to the read-back buffer.

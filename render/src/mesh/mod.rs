@@ -76,6 +76,8 @@ pub const CODE_STREET: u8 = 250;
 pub const CODE_CENTRE_BRAKE: u8 = 249;
 /// [`Vertex::code`] of the face of a sign, which sends the light of headlights back.
 pub const CODE_RETRO: u8 = 248;
+/// [`Vertex::code`] of what takes its vehicle's colour, in models of users: none is drawn.
+pub const CODE_LACQUER: u8 = 247;
 /// [`Vertex::code`] of paint on asphalt.
 pub const CODE_PAINT: u8 = 64;
 /// [`Vertex::code`] of the grating of a drain in the asphalt.

@@ -168,6 +168,11 @@ impl Model {
         self.parts.len() - 1
     }
 
+    /// How many vertices it has.
+    pub fn vertices(&self) -> usize {
+        self.parts.iter().map(|part| part.mesh.vertices.len()).sum()
+    }
+
     /// The same smaller or larger.
     pub fn scaled(mut self, factor: f32) -> Self {
         for part in &mut self.parts {

@@ -7,14 +7,30 @@ use glam::Vec3;
 
 use super::{Finish, Mesh, Vertex};
 
+/// Triangles around a vertex at most in meshes that may be anything.
+const MOST_AROUND: usize = 32;
+
 /// A mesh whose surface lies within `error_m` of the given one, usually of far fewer triangles.
 /// Triangles of different finishes stay apart; vertices that agree in all but their place on the
 /// surface are joined, and on asphalt and laid stones those that agree in that too.
 pub fn simplified(mesh: &Mesh, error_m: f32) -> Mesh {
+    let is_laid = |finish: usize| [Finish::Asphalt, Finish::Paving].iter().any(|laid| *laid as usize == finish);
+    collapsed(mesh, error_m, is_laid, None)
+}
+
+/// As [`simplified`], of a mesh whose colours are those of its vertices: they stay apart by colour, and are drawn only into those
+/// that differ by at most so much of 255 in red, green and blue.
+pub fn simplified_in_colour(mesh: &Mesh, error_m: f32, differ: u8) -> Mesh {
+    collapsed(mesh, error_m, |_| true, Some(differ))
+}
+
+fn collapsed(mesh: &Mesh, error_m: f32, is_laid: impl Fn(usize) -> bool, differ: Option<u8>) -> Mesh {
     let mut simpler = Mesh::default();
     for (finish, triangles) in mesh.triangles.iter().enumerate() {
-        let is_laid = [Finish::Asphalt, Finish::Paving].iter().any(|laid| *laid as usize == finish);
-        let mut surface = Welded::new(mesh, triangles, is_laid);
+        let mut surface = Welded::new(mesh, triangles, is_laid(finish));
+        if let Some(differ) = differ {
+            (surface.differ, surface.most_around) = (differ, MOST_AROUND);
+        }
         surface.collapse_all(error_m);
         surface.append_to(&mut simpler, finish);
     }
@@ -31,6 +47,10 @@ struct Welded {
     moved_m: Vec<f32>,
     /// Vertices whose surroundings have changed since they were looked at.
     waiting: Vec<bool>,
+    /// By how much colours of vertices that are joined may differ.
+    differ: u8,
+    /// Vertices with more triangles around them stay: each neighbour of each is looked at.
+    most_around: usize,
 }
 
 impl Welded {
@@ -43,6 +63,8 @@ impl Welded {
             around: Vec::new(),
             moved_m: Vec::new(),
             waiting: Vec::new(),
+            differ: u8::MAX,
+            most_around: usize::MAX,
         };
         for triangle in triangles {
             let corners = triangle.map(|i| {
@@ -86,6 +108,9 @@ impl Welded {
     /// Draws a vertex into one of its neighbours, if one will do.
     fn collapse(&mut self, vertex: u32, error_m: f32) -> bool {
         let around = &self.around[vertex as usize];
+        if around.len() > self.most_around {
+            return false;
+        }
         let neighbours: Vec<u32> =
             around.iter().flat_map(|&t| self.triangles[t as usize]).filter(|&n| n != vertex).collect();
         let best = neighbours
@@ -108,6 +133,10 @@ impl Welded {
     /// `neighbours` holds the other two corners of each triangle around the vertex.
     fn cost(&self, vertex: u32, to: u32, neighbours: &[u32]) -> Option<f32> {
         let (from, target) = (self.at(vertex), self.at(to));
+        let [old, new] = [vertex, to].map(|v| self.vertices[v as usize].colour);
+        if (0..3).any(|i| old[i].abs_diff(new[i]) > self.differ) {
+            return None;
+        }
         let mut cost = self.outline_cost(vertex, to, neighbours)?;
         for &t in &self.around[vertex as usize] {
             let corners = self.triangles[t as usize];

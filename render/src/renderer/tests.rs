@@ -11,6 +11,7 @@ use super::*;
 use crate::{EGO_INSTANCE, Imaging, SemanticTag, instance_of_actor};
 
 mod houses;
+mod models;
 mod night;
 mod sensor;
 
@@ -171,7 +172,7 @@ fn a_used_renderer_draws_what_a_new_one_does() {
     }
     let sensors =
         ["noise=0", "noise=3,motion_blur_s=0.03", "k1=-0.1,vignetting=1"].map(|text| text.parse().expect("a sensor"));
-    let imaging = |i: usize| Imaging { quality: Quality::ALL[i % 3], sensor: sensors[i / 2 % 3] };
+    let imaging = |i: usize| Imaging { quality: Quality::ALL[i % 3], sensor: sensors[i / 2 % 3], models: None };
     let camera = |i: usize| Camera::driver(128, 64).at(imaging(i));
     let mut new = renderer(&network);
     let first: Vec<Frame> = (0..scenes.len()).map(|i| new.draw(&scenes[i], &camera(i)).expect("drawn")).collect();

@@ -11,6 +11,7 @@ pub mod image;
 pub mod json;
 pub mod library;
 pub mod maps;
+pub mod models;
 pub mod newest;
 pub mod output;
 pub mod png;

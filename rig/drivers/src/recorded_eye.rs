@@ -127,7 +127,9 @@ mod tests {
         for quality in Quality::ALL {
             for sensor in ["noise=0", "exposure_ev=-1,noise=4", "k1=-0.3,k2=0.1,motion_blur_s=0.01,vignetting=1"] {
                 let sensor = sensor.parse().expect("a sensor");
-                let camera = Camera::driver(256, 128).at(Imaging { quality, sensor });
+                let camera = Camera::driver(256, 128).at(Imaging { quality, sensor, models: None });
+                assert_eq!(camera_of(&camera_text(&camera)), Some(camera));
+                let camera = Camera { models: Some([9; 16].into()), ..camera };
                 assert_eq!(camera_of(&camera_text(&camera)), Some(camera));
             }
         }

@@ -99,7 +99,7 @@ fn explain(world: &World, crew: Crew, keyframes: &[Keyframe]) -> anyhow::Result<
     let (Some(at), Some((label, comment))) = (at, cause) else { return Ok((None, vision)) };
     let eye = vision.eye().clone();
     let (needed, vision) = needed_with_truth(world, keyframes, (at, fork_before_ticks(label)), vision)?;
-    let perception_caused = Some(!matches!(eye, Eye::Truth) && !needed);
+    let perception_caused = Some(!eye.is_truth() && !needed);
     Ok((Some(Annotation { label, comment, perception_caused }), vision.with_eye(eye)))
 }
 
@@ -111,14 +111,15 @@ fn needed_with_truth(
     (at, before): (Tick, Tick),
     vision: Vision,
 ) -> anyhow::Result<(bool, Vision)> {
-    if matches!(vision.eye(), Eye::Truth) {
+    if vision.eye().is_truth() {
         return Ok((true, vision));
     }
     let early = |k: &&Keyframe| k.tick + before <= at;
     let Some(start) = keyframes.iter().rev().find(early) else { return Ok((true, vision)) };
     let end = at + FORK_AFTER_TICKS;
     let mut fork = World::fork(&lasting(world.scenario().clone(), end), world.network(), start)?;
-    let mut crew = Crew::drawn(vision.with_eye(Eye::Truth), world.scenario().seed);
+    let truth = Eye::Truth.at(vision.eye().imaging());
+    let mut crew = Crew::drawn(vision.with_eye(truth), world.scenario().seed);
     while fork.tick() < end && matches!(fork.arbiter().phase, Phase::Arming | Phase::Driving) {
         let (input, _) = crew.act(&fork)?;
         fork.step(&input);

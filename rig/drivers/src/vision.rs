@@ -9,7 +9,7 @@ use base::failure::Usage;
 use kernel::time::{CLIP_STRIDE_TICKS, Tick};
 use kernel::{SceneSnapshot, World};
 use perception::{BUNDLED, Certainty, Checkpoint, Compute, Mask, RgbView, Segmenter};
-use render::{AdapterChoice, Camera, Frame, Imaging, RenderError, Renderer};
+use render::{AdapterChoice, Camera, Frame, Imaging, ModelsId, RenderError, Renderer};
 use replay::{MaskShown, Provenance};
 
 use crate::MaskView;
@@ -29,6 +29,8 @@ pub const DEFAULT_SIZE: (u32, u32) = (256, 128);
 pub enum Eye {
     /// The renderer's class ids.
     Truth,
+    /// The same with models of a user's own.
+    TruthOf(ModelsId),
     /// A network.
     Network {
         /// Its file.
@@ -73,7 +75,7 @@ impl Eye {
     pub fn at(self, imaging: impl Into<Imaging>) -> Self {
         let imaging = imaging.into();
         match self {
-            Self::Truth => Self::Truth,
+            Self::Truth | Self::TruthOf(_) => imaging.models.map_or(Self::Truth, Self::TruthOf),
             Self::Network { checkpoint, segmenter, .. } => Self::Network { checkpoint, segmenter, imaging },
             Self::External(external) => Self::External(external.of_imaging(imaging)),
         }
@@ -82,7 +84,7 @@ impl Eye {
     /// `truth`, or the checkpoint's name: that of its file without the ending, or what its user calls it.
     pub fn name(&self) -> &str {
         match self {
-            Self::Truth => "truth",
+            Self::Truth | Self::TruthOf(_) => "truth",
             Self::Network { checkpoint, .. } => checkpoint.name(),
             Self::External(external) => external.name(),
         }
@@ -91,7 +93,7 @@ impl Eye {
     /// `truth`, or the digest of the checkpoint in hexadecimal digits; `external NAME@VERSION` of what no file holds.
     pub fn digest(&self) -> String {
         match self {
-            Self::Truth => "truth".into(),
+            Self::Truth | Self::TruthOf(_) => "truth".into(),
             Self::Network { checkpoint, .. } => checkpoint.digest().to_hex().to_string(),
             Self::External(external) => external.identity(),
         }
@@ -100,7 +102,7 @@ impl Eye {
     /// What computes it.
     pub fn compute(&self) -> Compute {
         match self {
-            Self::Truth | Self::External(_) => Compute::default(),
+            Self::Truth | Self::TruthOf(_) | Self::External(_) => Compute::default(),
             Self::Network { segmenter, .. } => segmenter.compute(),
         }
     }
@@ -108,7 +110,7 @@ impl Eye {
     /// Width and height of the pictures it looks at, pixels.
     pub fn size(&self) -> (u32, u32) {
         match self {
-            Self::Truth => DEFAULT_SIZE,
+            Self::Truth | Self::TruthOf(_) => DEFAULT_SIZE,
             Self::Network { segmenter, .. } => (segmenter.size().0 as u32, segmenter.size().1 as u32),
             Self::External(external) => external.size(),
         }
@@ -118,6 +120,7 @@ impl Eye {
     pub fn imaging(&self) -> Imaging {
         match self {
             Self::Truth => Imaging::unsaid(),
+            Self::TruthOf(models) => Imaging { models: Some(*models), ..Imaging::unsaid() },
             Self::Network { imaging, .. } => *imaging,
             Self::External(external) => external.imaging(),
         }
@@ -131,7 +134,12 @@ impl Eye {
 
     /// Whether it looks at colours.
     pub fn needs_colours(&self) -> bool {
-        !matches!(self, Self::Truth)
+        !self.is_truth()
+    }
+
+    /// Whether it sees what is there.
+    pub fn is_truth(&self) -> bool {
+        matches!(self, Self::Truth | Self::TruthOf(_))
     }
 
     /// What it needs of a picture.
@@ -148,7 +156,7 @@ impl Eye {
     fn take_in(&mut self, frame: &mut Frame) -> anyhow::Result<Mask> {
         let (width, height) = (frame.width as usize, frame.height as usize);
         match self {
-            Self::Truth => Ok(Mask::new(width, height, mem::take(&mut frame.class_ids))?),
+            Self::Truth | Self::TruthOf(_) => Ok(Mask::new(width, height, mem::take(&mut frame.class_ids))?),
             Self::Network { segmenter, .. } => Ok(segmenter.run(RgbView::new(width, height, &frame.rgb)?)?),
             Self::External(external) => external.see(RgbView::new(width, height, &frame.rgb)?),
         }
@@ -158,7 +166,7 @@ impl Eye {
     pub fn see_with_certainty(&mut self, frame: &Frame) -> anyhow::Result<(Mask, Option<Certainty>)> {
         let (width, height) = (frame.width as usize, frame.height as usize);
         match self {
-            Self::Truth => Ok((Mask::new(width, height, frame.class_ids.clone())?, None)),
+            Self::Truth | Self::TruthOf(_) => Ok((Mask::new(width, height, frame.class_ids.clone())?, None)),
             Self::Network { segmenter, .. } => {
                 Ok(segmenter.run_with_certainty(RgbView::new(width, height, &frame.rgb)?)?)
             }
@@ -200,7 +208,7 @@ pub fn provenance(eye: &Eye, camera: &Camera) -> Provenance {
 }
 
 /// A driver's camera in words, as in `driver 256x128 standard` or `driver 256x128 plain noise=4`. Nothing is said of pictures that
-/// are plain, and of an ideal sensor.
+/// are plain, of an ideal sensor, and of the renderer's own models.
 pub fn camera_text(camera: &Camera) -> String {
     named_camera_text("driver", camera)
 }

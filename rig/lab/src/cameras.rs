@@ -138,8 +138,11 @@ impl Mounted {
         within("fov_x_rad", fov_x_rad, 0.05, 3.0)?;
         let (width, height) = (self.width.unwrap_or(size.0), self.height.unwrap_or(size.1));
         asked::check_size((width, height)).map_err(|Usage(said)| format!("camera {name}: {said}"))?;
-        let imaging =
-            Imaging { quality: self.quality.unwrap_or(imaging.quality), sensor: self.sensor.unwrap_or(imaging.sensor) };
+        let imaging = Imaging {
+            quality: self.quality.unwrap_or(imaging.quality),
+            sensor: self.sensor.unwrap_or(imaging.sensor),
+            ..imaging
+        };
         let camera = Camera {
             mount: Mount::Ego,
             position: Vec3::new(*x_m, *y_m, *z_m),

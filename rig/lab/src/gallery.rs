@@ -17,7 +17,7 @@ use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use kernel::weather::{Weather, WeatherPreset};
 use kernel::{RoadNetwork, Scenario};
-use render::{Imaging, Quality, Sensor};
+use render::{Imaging, ModelsId, Quality, Sensor};
 use serde::Serialize;
 
 use super::looks::Size;
@@ -66,6 +66,9 @@ pub struct Gallery {
     /// What lens and chip do to them; left out where they are ideal.
     #[serde(skip_serializing_if = "Sensor::is_ideal")]
     pub sensor: Sensor,
+    /// Digest of models of a user's own; left out where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsId>,
     /// A picture of each map in each light.
     pub pictures: Vec<Picture>,
 }
@@ -153,6 +156,7 @@ fn of(options: &Options, settings: &[Setting], lights: [&'static str; 5]) -> Gal
         size_px: [width, height],
         quality: options.imaging.quality,
         sensor: options.imaging.sensor,
+        models: options.imaging.models,
         pictures: maps.flat_map(|map| lights.map(|light| picture(map, light))).collect(),
     }
 }

@@ -76,7 +76,7 @@ impl Lineup {
         let eyes = std::iter::once(Ok(first)).chain(others).map(|eye| Ok(eye?.at(imaging)));
         let eyes = eyes.collect::<anyhow::Result<Vec<_>>>()?;
         // Truth is the same however pictures are made.
-        let imaging = if eyes.iter().any(Eye::needs_colours) { imaging } else { Imaging::unsaid() };
+        let imaging = if eyes.iter().any(Eye::needs_colours) { imaging } else { imaging.of_truth() };
         let camera = Camera::driver(size.0, size.1).at(imaging);
         let cast = Cast { seed, public_name: public_name(&eyes), provenances: provenances(&eyes, &camera) };
         Ok(Self { eyes, camera, cast })

@@ -33,6 +33,7 @@ mod rig_export;
 mod rig_files;
 mod rig_gallery;
 mod rig_learning;
+mod rig_models;
 mod rig_openlabel;
 mod rig_osi;
 mod rig_pages;

@@ -47,6 +47,7 @@ fn args(file: PathBuf, checkpoint: Option<CheckpointChoice>, out: PathBuf) -> Re
         vary: 1,
         seconds: 4,
         jobs: None,
+        models: Default::default(),
         shard: None,
         out,
     }

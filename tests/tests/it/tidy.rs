@@ -17,7 +17,7 @@ const IMPORTS: [(&str, &[&str]); 15] = [
     ("perception", &["hunt", "intake"]),
     ("render", &["kernel"]),
     ("replay", &["intake", "kernel"]),
-    ("rig/base", &["intake", "kernel", "render", "replay"]),
+    ("rig/base", &["hunt", "intake", "kernel", "render", "replay"]),
     ("rig/drivers", &["kernel", "perception", "render", "replay", "base"]),
     ("rig/study", &["kernel", "perception", "render", "replay", "base", "drivers"]),
     ("rig/measures", &["kernel", "replay", "base", "drivers", "study"]),
@@ -38,10 +38,11 @@ const ONLOOKERS: [&str; 2] = ["tests", "benches"];
 const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows/", "rig/live/src/view/windows/"];
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str]); 18] = [
+const NAMED_ONCE: [(&str, &[&str]); 19] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
     ("roxmltree::", &["kernel/src/baking/limits/", "kernel/src/story/reader/"]),
+    ("gltf::", &["rig/base/src/models/"]),
     ("tract_onnx", &["perception/src/onnx/", "perception/src/operators/"]),
     ("tract_cuda", &["perception/src/onnx/"]),
     ("bincode::", &["replay/src/wire.rs"]),

@@ -60,8 +60,13 @@ pub fn tree(variant: u32, crown_m: f32, height_m: f32, detail: Detail) -> Mesh {
         Species::Poplar => plant.leafy(&mut variety, species, &POPLAR_LEAVES, Leaf::Small),
         Species::Broad | Species::Young => plant.leafy(&mut variety, species, &LEAVES, Leaf::Broad),
     };
-    mesh.sway_between(0.25 * height_m, height_m);
+    sway(&mut mesh, height_m);
     mesh
+}
+
+/// Lets wind move a tree `height_m` high.
+pub(crate) fn sway(mesh: &mut Mesh, height_m: f32) {
+    mesh.sway_between(0.25 * height_m, height_m);
 }
 
 /// What all species are made from.

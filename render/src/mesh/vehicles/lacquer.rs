@@ -1,5 +1,7 @@
 //! Colours that vehicles are painted in.
 
+use kernel::scene::ActorKind;
+
 use crate::SemanticTag;
 use crate::mesh::Paint;
 use crate::mesh::variety::Variety;
@@ -33,6 +35,14 @@ const GOODS: [([u8; 3], u32); 8] = [
     ([52, 94, 64], 3),
     ([206, 112, 36], 2),
 ];
+
+/// The lacquer of a road user who has one of many colours.
+pub(crate) fn of(kind: ActorKind, variety: &mut Variety) -> Paint {
+    match kind {
+        ActorKind::Truck | ActorKind::Van | ActorKind::Bus => of_goods(variety, SemanticTag::Truck),
+        _ => of_cars(variety),
+    }
+}
 
 /// The lacquer of a passenger car.
 pub(super) fn of_cars(variety: &mut Variety) -> Paint {

@@ -10,7 +10,7 @@ mod fittings;
 #[cfg(test)]
 mod fleet_tests;
 mod heavy;
-mod lacquer;
+pub(crate) mod lacquer;
 mod loft;
 pub mod lorry;
 pub mod motorcycle;

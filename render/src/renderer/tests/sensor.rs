@@ -5,7 +5,7 @@ use crate::Sensor;
 
 fn with(sensor: &str) -> Camera {
     let sensor: Sensor = sensor.parse().expect("a sensor");
-    Camera::driver(192, 96).at(Imaging { quality: Quality::Plain, sensor })
+    Camera::driver(192, 96).at(Imaging { quality: Quality::Plain, sensor, models: None })
 }
 
 /// A place of a map at which the ego car and others move, or nobody does.

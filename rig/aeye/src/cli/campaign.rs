@@ -8,8 +8,9 @@ use kernel::scenario::HazardLevel;
 use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
 use lab::share::Share;
+use render::ModelsId;
 
-use super::values::{CHECKPOINTS, ImagingArgs, MAPS, file, hazards, jobs, people, preset, seconds, weather};
+use super::values::{CHECKPOINTS, ImagingArgs, MAPS, file, hazards, jobs, models, people, preset, seconds, weather};
 
 /// What says when a campaign is over, or that there is none.
 const ENDS: [&str; 7] = ["runs", "vary", "km", "cases", "pedestrian_cases", "print_scenario", "collect"];
@@ -137,6 +138,9 @@ pub struct ExperimentArgs {
     /// A file with other numbers; `--print-recipe` shows what it has to hold.
     #[arg(long, value_name = "FILE.toml")]
     pub recipe: Option<PathBuf>,
+    /// Folder with models of your own for vehicles, people, trees and furniture; the recipe's `models` is its digest.
+    #[arg(long, value_parser = models, value_name = "DIR")]
+    pub models: Option<ModelsId>,
     /// Print the recipe as TOML and do nothing.
     #[arg(long)]
     pub print_recipe: bool,

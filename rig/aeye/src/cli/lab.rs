@@ -13,12 +13,12 @@ use lab::export::Format;
 use lab::redrive::Need;
 use lab::share::Share;
 use lab::still::{LAYERS, Layer};
-use render::{Quality, Sensor};
+use render::{ModelsId, Quality, Sensor};
 
 use super::library::verdict;
 use super::values::{
-    CHECKPOINT, CHECKPOINTS, ImagingArgs, SENSOR, duration, file, frame_rate, jobs, moment, one_checkpoint, people,
-    quality, seconds, size, weather,
+    CHECKPOINT, CHECKPOINTS, ImagingArgs, ModelsArgs, SENSOR, duration, file, frame_rate, jobs, models, moment,
+    one_checkpoint, people, quality, seconds, size, weather,
 };
 
 /// Arguments of `rerender`.
@@ -130,6 +130,9 @@ pub struct GalleryArgs {
     /// What lens and chip do to the pictures, as in `exposure_ev=-1,noise=4` (default: nothing).
     #[arg(long, value_name = SENSOR)]
     pub sensor: Option<Sensor>,
+    /// Folder with models of your own for vehicles, people, trees and furniture (default: none).
+    #[arg(long, value_parser = models, value_name = "DIR")]
+    pub models: Option<ModelsId>,
     /// Folder they go to; a gallery of the same options there is gone on with.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -259,6 +262,9 @@ pub struct RedriveArgs {
     /// Files driven on at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,
+    /// Whose models stand for what it shows.
+    #[command(flatten)]
+    pub models: ModelsArgs,
     /// Do one share of the files: of N, the I-th one. The folders of all shares, copied into one, are completed by the same
     /// command without `--shard`.
     #[arg(long, value_name = "I/N")]

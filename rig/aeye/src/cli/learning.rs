@@ -10,7 +10,9 @@ use lab::share::Share;
 use replay::Label;
 
 use super::library::verdict;
-use super::values::{CHECKPOINT, ImagingArgs, MAPS, file, jobs, one_checkpoint, people, rate, size, weather};
+use super::values::{
+    CHECKPOINT, ImagingArgs, MAPS, ModelsArgs, file, jobs, one_checkpoint, people, rate, size, weather,
+};
 
 /// The datasets that can be made.
 #[derive(Debug, Subcommand)]
@@ -93,6 +95,9 @@ pub struct RebuildArgs {
     /// OpenDRIVE files of maps that are not bundled.
     #[arg(long, value_delimiter = ',', value_name = "FILE.xodr,...")]
     pub maps: Vec<String>,
+    /// Whose models stand for what it shows.
+    #[command(flatten)]
+    pub models: ModelsArgs,
     /// Scenes simulated at the same time (default: one a core); the results do not depend on it.
     #[arg(long, value_parser = jobs, value_name = "N")]
     pub jobs: Option<u16>,

@@ -11,7 +11,7 @@ use lab::cases::review::{ReviewState, Reviewed, Tag};
 use lab::redrive::Need;
 use replay::Label;
 
-use super::values::{file, jobs};
+use super::values::{ModelsArgs, file, jobs};
 
 /// Arguments of `cases`.
 #[derive(Args, Clone, Debug)]
@@ -46,6 +46,9 @@ pub struct LibraryArgs {
     /// Where the checkpoints of the drives may be found, if they do not come with the program.
     #[arg(long = "recorded-checkpoint", value_delimiter = ',', value_name = "FILE.onnx,...")]
     pub recorded: Vec<CheckpointChoice>,
+    /// Whose models the drives showed.
+    #[command(flatten)]
+    pub models: ModelsArgs,
     /// Say of these cases what came of looking at them: accepted, rejected or unclear.
     #[arg(long, value_name = "STATE")]
     pub set_review: Option<ReviewState>,

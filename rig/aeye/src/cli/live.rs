@@ -14,8 +14,8 @@ use study::{Pseudonym, Study};
 use viewers::server::{self, Endpoint};
 
 use super::values::{
-    CHECKPOINT, CHECKPOINTS, ImagingArgs, file, force, hazards, new_recording, one_checkpoint, screens, seconds, size,
-    threshold, weather,
+    CHECKPOINT, CHECKPOINTS, ImagingArgs, ModelsArgs, file, force, hazards, new_recording, one_checkpoint, screens,
+    seconds, size, threshold, weather,
 };
 
 /// Arguments of `drive`.
@@ -222,6 +222,9 @@ pub struct ViewArgs {
     /// one; exit code 3 if any differs. Equal digests are promised on the adapter that made them.
     #[arg(long)]
     pub digests: bool,
+    /// Whose models stand for what it shows.
+    #[command(flatten)]
+    pub models: ModelsArgs,
     /// Show a blind drive all the same, with its checkpoint.
     #[arg(long)]
     pub reveal: bool,

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
+use base::failure::sentence;
 use base::{asked, library};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -12,7 +13,7 @@ use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
-use render::{Imaging, Quality, Sensor};
+use render::{Imaging, ModelsId, Quality, Sensor};
 
 /// What stands for a checkpoint in help.
 pub const CHECKPOINT: &str = "early|full|truth|FILE.onnx";
@@ -84,11 +85,28 @@ pub struct ImagingArgs {
     /// motion_blur_s and vignetting (default: nothing).
     #[arg(long, value_name = SENSOR)]
     pub sensor: Option<Sensor>,
+    /// Folder with models of your own for vehicles, people, trees and furniture: glTF files and a `models.toml` that says what
+    /// stands for what (default: none).
+    #[arg(long, value_parser = models, value_name = "DIR")]
+    pub models: Option<ModelsId>,
+}
+
+/// Models that recordings or recipes were drawn with.
+#[derive(Args, Clone, Debug, Default)]
+pub struct ModelsArgs {
+    /// Folders with the models that it was drawn with, which are told by their digest.
+    #[arg(long, value_parser = models, value_delimiter = ',', value_name = "DIR,...")]
+    pub models: Vec<ModelsId>,
+}
+
+/// A folder of models, which is read.
+pub fn models(folder: &str) -> Result<ModelsId, String> {
+    base::models::read(Path::new(folder)).map_err(|error| sentence(&error))
 }
 
 impl From<ImagingArgs> for Imaging {
     fn from(args: ImagingArgs) -> Self {
-        Self { quality: args.quality, sensor: args.sensor.unwrap_or_default() }
+        Self { quality: args.quality, sensor: args.sensor.unwrap_or_default(), models: args.models }
     }
 }
 

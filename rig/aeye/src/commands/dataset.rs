@@ -70,7 +70,7 @@ pub fn mix(args: &MixArgs, json: bool) -> anyhow::Result<Verdict> {
 
 /// Runs `aeye dataset rebuild`.
 pub fn rebuild(args: &RebuildArgs, json: bool) -> anyhow::Result<Verdict> {
-    let RebuildArgs { recipe, cases, maps, jobs, out } = args.clone();
+    let RebuildArgs { recipe, cases, maps, jobs, out, .. } = args.clone();
     let options = rebuild::Options { recipe, cases, maps, jobs, out };
     let rebuilt = rebuild::make(&options, &Interrupt::listen())?;
     print(json, &rebuilt, || rebuilt.sentence(&options.out))?;

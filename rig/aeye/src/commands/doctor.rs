@@ -125,7 +125,8 @@ fn measure(args: &DoctorArgs, findings: &mut Findings) -> anyhow::Result<()> {
     let seen = args.pictures.mask_size.unwrap_or(DEFAULT_SIZE);
     let ((width, height), image) = (seen, args.pictures.image_size);
     let small = Camera::driver(width, height).at(Imaging::from(args.pictures.imaging));
-    let mut cameras = vec![small, Camera::driver(image.0, image.1).at(renderer.quality_for_people())];
+    let large = small.imaging().in_quality(renderer.quality_for_people());
+    let mut cameras = vec![small, Camera::driver(image.0, image.1).at(large)];
     cameras.dedup();
     for camera in cameras {
         let (width, height) = (camera.width, camera.height);

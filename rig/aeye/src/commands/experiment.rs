@@ -32,6 +32,11 @@ pub fn run(args: &ExperimentArgs, json: bool) -> anyhow::Result<Verdict> {
 }
 
 fn chosen(args: &ExperimentArgs) -> anyhow::Result<Recipe> {
+    let recipe = told(args)?;
+    Ok(Recipe { models: args.models.or(recipe.models), ..recipe })
+}
+
+fn told(args: &ExperimentArgs) -> anyhow::Result<Recipe> {
     match (&args.preset, &args.recipe) {
         (Some(preset), None) => preset.recipe(),
         (None, Some(path)) => {

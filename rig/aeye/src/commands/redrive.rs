@@ -10,8 +10,9 @@ use crate::print;
 
 /// Runs `aeye redrive`.
 pub fn run(args: &RedriveArgs, json: bool) -> anyhow::Result<Verdict> {
-    let RedriveArgs { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, jobs, shard, out } =
-        args.clone();
+    let RedriveArgs {
+        files, without_intervention, checkpoint, recorded, reveal, vary, seconds, jobs, shard, out, ..
+    } = args.clone();
     let options = Options { files, without_intervention, checkpoint, recorded, reveal, vary, seconds, jobs, out };
     let interrupt = Interrupt::listen();
     if let Some(share) = shard {

@@ -124,5 +124,6 @@ fn camera(shot: &Shot, film: &Film, moment: &Moment, at: usize) -> Option<Camera
         height: HEIGHT,
         quality: Quality::Fine,
         sensor: Default::default(),
+        models: None,
     })
 }

@@ -9,7 +9,7 @@ use base::json::{self, Typed};
 use base::maps::Map;
 use base::output;
 use drivers::vision::Eye;
-use render::{Imaging, Quality, Sensor};
+use render::{Imaging, ModelsId, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -49,6 +49,9 @@ pub struct ShardPlan {
     /// What lens and chip do to them; left out where they are ideal.
     #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
     pub sensor: Sensor,
+    /// Digest of models of a user's own; left out where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsId>,
     /// Maps, in turn.
     pub maps: Vec<Named>,
     /// Whether the files of foreign maps stand in the recordings.
@@ -94,13 +97,15 @@ impl ShardPlan {
             Named { name: map.network.name.clone(), digest }
         };
         let scenario = plan.scenario.as_ref().map(|scenario| hex(blake3::hash(scenario.to_toml().as_bytes())));
-        // All of them that look at colours look at the same kind of pictures.
-        let Imaging { quality, sensor } =
-            eyes.iter().find(|eye| eye.needs_colours()).map(Eye::imaging).unwrap_or_default();
+        // All of them that look at colours look at the same kind of pictures, and all of them at the same models.
+        let imaging = |eye: Option<&Eye>| eye.map(Eye::imaging).unwrap_or_default();
+        let Imaging { quality, sensor, .. } = imaging(eyes.iter().find(|eye| eye.needs_colours()));
+        let models = imaging(eyes.first()).models;
         Self {
             checkpoints: eyes.iter().map(checkpoint).collect(),
             quality,
             sensor,
+            models,
             maps: plan.maps.iter().map(map).collect(),
             embed_map: plan.maps.iter().filter_map(|map| map.foreign.as_ref()).any(|map| map.embedded),
             scenario,

@@ -61,9 +61,9 @@ pub fn make(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Manifest> {
     }
     let found = keep_judged(found, |(path, _)| path, &args.verdict)?;
     let (files, cases): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    let Imaging { quality, sensor } = args.imaging;
+    let Imaging { quality, sensor, models } = args.imaging;
     let cameras = cameras::of_file(args.cameras.as_deref(), (args.size, args.imaging))?;
-    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality, sensor, cameras, cases };
+    let recipe = CasesRecipe { split: args.split.clone(), size: args.size, quality, sensor, models, cameras, cases };
     recipe.check().map_err(Usage)?;
     build(&recipe, &files, &args.out, args.jobs, interrupt)
 }

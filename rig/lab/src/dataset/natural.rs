@@ -189,6 +189,7 @@ impl NaturalRecipe {
             quality: args.imaging.quality,
             sensor: args.imaging.sensor,
             cameras: cameras::of_file(args.cameras.as_deref(), (args.size, args.imaging))?,
+            models: args.imaging.models,
             pedestrians: args.pedestrians,
             weather: args.weather.iter().map(|preset| preset.name.to_owned()).collect(),
             maps: maps.iter().map(MapUsed::new).collect(),

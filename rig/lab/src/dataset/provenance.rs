@@ -52,7 +52,7 @@ pub struct FrameLine {
     /// What the corner case was labelled as.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
-    /// Which camera, size and quality of its picture, and what its sensor does.
+    /// Which camera, size and quality of its picture, what its sensor does, and whose models stand in it.
     pub camera: String,
     /// Version of the renderer.
     pub renderer: String,

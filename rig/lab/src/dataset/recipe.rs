@@ -4,7 +4,7 @@ use base::files::{check_name, most};
 use base::maps::Map;
 use kernel::time::Tick;
 use kernel::weather::WeatherPreset;
-use render::{Imaging, Quality, Sensor};
+use render::{Imaging, ModelsId, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 
 use super::provenance::Part;
@@ -106,6 +106,9 @@ pub struct NaturalRecipe {
     /// The cameras that take each frame, where it is not the drivers' alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<Mounted>,
+    /// Digest of models of a user's own; left out where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsId>,
     /// People on foot, where not as many as in the map's default scenario.
     pub pedestrians: Option<u16>,
     /// The scenes' weathers by name, in turn after each round of maps; drawn by each scene's seed where there are none.
@@ -118,7 +121,7 @@ pub struct NaturalRecipe {
 impl NaturalRecipe {
     /// How the pictures are made.
     pub fn imaging(&self) -> Imaging {
-        Imaging { quality: self.quality, sensor: self.sensor }
+        Imaging { quality: self.quality, sensor: self.sensor, models: self.models }
     }
 
     /// Refuses what no drives can be made from.
@@ -192,6 +195,9 @@ pub struct CasesRecipe {
     /// The cameras that take each frame, where it is not the drivers' alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cameras: Vec<Mounted>,
+    /// Digest of models of a user's own; left out where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsId>,
     /// The cases, in the order of their scenes' numbers.
     pub cases: Vec<CaseUsed>,
 }
@@ -199,7 +205,7 @@ pub struct CasesRecipe {
 impl CasesRecipe {
     /// How the pictures are made.
     pub fn imaging(&self) -> Imaging {
-        Imaging { quality: self.quality, sensor: self.sensor }
+        Imaging { quality: self.quality, sensor: self.sensor, models: self.models }
     }
 
     pub(super) fn check(&self) -> Result<(), String> {

@@ -211,7 +211,7 @@ fn look(
             let image = &images[index];
             let labelled = split::read(image)?;
             let size = (labelled.frame.width, labelled.frame.height);
-            if !matches!(eye, Eye::Truth) && eye.size() != size {
+            if !eye.is_truth() && eye.size() != size {
                 *eye = Eye::open_at(checkpoint, size)?;
             }
             let (mut found, mask) = Seen::of(eye, &labelled)?;

@@ -9,7 +9,7 @@ use base::toml_text;
 use kernel::scenario::MOST_OF_A_KIND;
 use kernel::time::CLIP_FRAMES;
 use perception::training::TrainOptions;
-use render::{Imaging, Quality, Sensor};
+use render::{Imaging, ModelsId, Quality, Sensor};
 use serde::{Deserialize, Serialize};
 
 use crate::dataset::recipe::{MOST_IN_A_SPLIT, MOST_MAPS, check_size};
@@ -28,6 +28,9 @@ pub struct Recipe {
     /// What lens and chip do to them, as in `noise=4`; left out where they are ideal.
     #[serde(default, skip_serializing_if = "Sensor::is_ideal")]
     pub sensor: Sensor,
+    /// Digest of models of a user's own; left out where there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub models: Option<ModelsId>,
     /// Maps, in turn.
     pub maps: Vec<String>,
     /// The initial data.
@@ -165,7 +168,7 @@ impl Preset {
 impl Recipe {
     /// How the pictures are made.
     pub fn imaging(&self) -> Imaging {
-        Imaging { quality: self.quality, sensor: self.sensor }
+        Imaging { quality: self.quality, sensor: self.sensor, models: self.models }
     }
 
     /// Reads a recipe's file.

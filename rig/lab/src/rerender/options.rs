@@ -37,5 +37,8 @@ pub fn of_pictures(args: &Options, (width, height): (u32, u32)) -> Vec<String> {
     let quality = format!("--quality {}", args.imaging.quality.name());
     let sensor =
         Some(args.imaging.sensor).filter(|sensor| !sensor.is_ideal()).map(|sensor| format!("--sensor {sensor}"));
-    [format!("--last {last_s}s"), format!("--fps {}", args.fps), size, quality].into_iter().chain(sensor).collect()
+    // A folder may be anywhere: it is told from others by its digest.
+    let models = args.imaging.models.map(|models| format!("--models {models}"));
+    let always = [format!("--last {last_s}s"), format!("--fps {}", args.fps), size, quality];
+    always.into_iter().chain(sensor).chain(models).collect()
 }

@@ -154,8 +154,8 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) ->
         Screens::Three => Camera::driver_row(width, height).to_vec(),
         Screens::One => vec![Camera::driver(width, height)],
     };
-    let quality = safety_renderer.quality_for_people();
-    let cameras: Vec<_> = cameras.into_iter().map(|camera| camera.at(quality)).collect();
+    let imaging = pictures.imaging.in_quality(safety_renderer.quality_for_people());
+    let cameras: Vec<_> = cameras.into_iter().map(|camera| camera.at(imaging)).collect();
     std::thread::scope(|scope| {
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Safety));

@@ -102,7 +102,8 @@ impl<'a> Projector<'a> {
         let (large, small) = (large_size(self.film.eye.size()), self.film.eye.size());
         let mut take = Take::default();
         if wants(&[Layer::Rgb, Layer::Truth]) {
-            let camera = request.viewpoint.camera(large).at(self.large.quality_for_people());
+            let imaging = self.film.eye.camera.imaging().in_quality(self.large.quality_for_people());
+            let camera = request.viewpoint.camera(large).at(imaging);
             take.large = Some(self.large.draw(&moment.scene, &camera)?);
         }
         if wants(&[Layer::Prediction, Layer::Difference, Layer::Confidence]) {
