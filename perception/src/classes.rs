@@ -196,12 +196,14 @@ impl ClassMap {
     /// first one that is known counts, and where none is, as of the furniture in ADE20K, the class is Other. At least one
     /// must be known.
     pub fn from_labels<S: AsRef<str>>(labels: &[S]) -> Result<Self, PerceptionError> {
-        let known =
-            |label: &S| label.as_ref().split([';', ',']).map(str::trim).find(|name| tag_of_name(name).is_some());
-        let names: Vec<&str> = labels.iter().map(|label| known(label).unwrap_or(OTHER)).collect();
-        match labels.first().filter(|_| labels.iter().all(|label| known(label).is_none())) {
+        let known = labels.iter().map(|label| {
+            let mut alternatives = label.as_ref().split([';', ',']).map(str::trim);
+            alternatives.find(|name| tag_of_name(name).is_some())
+        });
+        let known: Vec<Option<&str>> = known.collect();
+        match labels.first().filter(|_| known.iter().all(Option::is_none)) {
             Some(label) => Err(PerceptionError::UnknownClass { name: label.as_ref().chars().take(80).collect() }),
-            None => Self::from_names(&names),
+            None => Self::from_names(&known.iter().map(|name| name.unwrap_or(OTHER)).collect::<Vec<_>>()),
         }
     }
 

@@ -96,11 +96,11 @@ fn which_of_several_heads_is_looked_at_is_said() {
 #[test]
 fn an_output_that_alone_can_be_scores_need_not_be_named() {
     let mut model = fine().model();
-    let graph = graph(&mut model);
-    graph.node.push(node("Frobnicate", &["coarse"], "vector", vec![]));
-    graph.node.push(node("Concat", &["coarse", "coarse"], "features", vec![int("axis", 1)]));
-    graph.output.insert(0, value("vector", DataType::Float, &[1, 3]));
-    graph.output.insert(0, value("features", DataType::Float, &[1, 6, -1, -2]));
+    let open = graph(&mut model);
+    open.node.push(node("Frobnicate", &["coarse"], "vector", vec![]));
+    open.node.push(node("Concat", &["coarse", "coarse"], "features", vec![int("axis", 1)]));
+    open.output.insert(0, value("vector", DataType::Float, &[1, 3]));
+    open.output.insert(0, value("features", DataType::Float, &[1, 6, -1, -2]));
     assert_eq!(look(&model).unwrap(), look(&fine().model()).unwrap(), "what leads to the others is left out");
     graph(&mut model).output.pop();
     assert!(refused(&model).contains("none of its outputs can be of 3 classes: \"features\" (1x6x?x?), \"vector\""));

@@ -20,6 +20,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::PerceptionError;
 use crate::classes::ClassMap;
 
 /// Prefix of the keys in `metadata_props`.
@@ -171,17 +172,14 @@ impl Written {
 
     /// What it says, if that makes sense.
     pub fn checked(self) -> Result<Metadata, String> {
+        let refuse = |e: PerceptionError| format!("key classes: {e}");
         let classes = match (&self.classes, &self.id2label) {
             (Some(_), Some(_)) => return Err("keys classes and id2label: expected one of them".into()),
-            (Some(Classes::Scheme(name)), None) => ClassMap::named(name),
-            (Some(Classes::Names(names)), None) => ClassMap::from_names(names),
-            (None, Some(labels)) => return self.with_classes(of_labels(labels)?),
+            (Some(Classes::Scheme(name)), None) => ClassMap::named(name).map_err(refuse)?,
+            (Some(Classes::Names(names)), None) => ClassMap::from_names(names).map_err(refuse)?,
+            (None, Some(labels)) => of_labels(labels)?,
             (None, None) => return Err("key classes (or id2label) is missing, which names the classes".into()),
         };
-        self.with_classes(classes.map_err(|e| format!("key classes: {e}"))?)
-    }
-
-    fn with_classes(self, classes: ClassMap) -> Result<Metadata, String> {
         Ok(Metadata {
             classes,
             output: self.output,
