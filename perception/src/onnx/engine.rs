@@ -186,3 +186,18 @@ impl Engine {
         Ok(Output::Scores(scores))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_node_that_the_engine_quotes_is_named_with_its_operator() {
+        let said = |step: &'static str| {
+            let error = format_err!("no room").context(step);
+            guarded::<()>(|| Err(reason_of(error, |name| (name == "a").then_some("Gather")))).unwrap_err()
+        };
+        assert_eq!(said("Evaluating #3 \"a.index\" Op"), "node \"a\" (Gather): no room");
+        assert_eq!(said("Evaluating #3 \"b\" Op"), "no room");
+    }
+}
