@@ -206,6 +206,11 @@ fn of_labels(labels: &BTreeMap<String, String>) -> Result<ClassMap, String> {
 }
 
 impl Metadata {
+    /// From the text of a sidecar that names the classes. The error is a sentence without the file's name.
+    pub fn from_toml(text: &str) -> Result<Self, String> {
+        Written::from_toml(text)?.checked()
+    }
+
     /// As pairs for the ONNX model's `metadata_props`.
     pub fn to_props(&self) -> BTreeMap<String, String> {
         let written = Written {
@@ -261,10 +266,6 @@ mod tests {
         }
     }
 
-    fn read(text: &str) -> Result<Metadata, String> {
-        Written::from_toml(text)?.checked()
-    }
-
     #[test]
     fn props_read_back_as_written() {
         let props = example().to_props();
@@ -276,12 +277,12 @@ mod tests {
     #[test]
     fn sidecar_speaks_the_same_keys() {
         let text = "classes = \"aeye\"\noutput = \"scores\"\nchannels = \"bgr\"\nmean = [0.5, 0.25, 0.125]\nstd = [0.2, 0.3, 0.4]\nlayout = \"nchw\"\nscores = \"probabilities\"\n";
-        assert_eq!(read(text), Ok(example()));
+        assert_eq!(Metadata::from_toml(text), Ok(example()));
     }
 
     #[test]
     fn a_table_of_ids_names_the_classes() {
-        let classes = |text: &str| read(text).map(|metadata| metadata.classes.tags().to_vec());
+        let classes = |text: &str| Metadata::from_toml(text).map(|metadata| metadata.classes.tags().to_vec());
         let in_order = |text: &str| format!("[id2label]\n{text}");
         assert_eq!(classes(&in_order("0 = \"road\"\n1 = \"car\"")), Ok(vec![7, 10]));
         let many: String = (0..12).map(|id| format!("{id} = \"{}\"\n", ["tree", "ceiling"][id % 2])).collect();
@@ -300,7 +301,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named() {
-        let said = |text: &str| read(text).unwrap_err();
+        let said = |text: &str| Metadata::from_toml(text).unwrap_err();
         assert!(said("classes = [\"Road\", \"Zebra\"]").contains("Zebra"));
         assert!(said("classes = \"aeye\"\n\nmeen = [0, 0, 0]").starts_with("line 3: unknown field `meen`"));
         assert!(said("classes = \"aeye\"\nmean = [0.0, 0.0, 0.0]").contains("together"));
@@ -308,7 +309,7 @@ mod tests {
         assert!(said("mean = [0.0, 0.0, 0.0]\nstd = [1.0, 1.0, 1.0]").contains("classes"));
         for odd in ["nan", "inf", "-inf", "1e39", "1e-45"] {
             let text = format!("classes = \"aeye\"\nmean = [0.0, 0.0, 0.0]\nstd = [1.0, {odd}, 1.0]");
-            assert!(read(&text).is_err(), "{odd}");
+            assert!(Metadata::from_toml(&text).is_err(), "{odd}");
         }
         assert!(said("classes = \"aeye\"\nmean = [0.0, nan, 0.0]\nstd = [1.0, 1.0, 1.0]").contains("finite"));
         assert!(said("classes = \"aeye\"\nchannels = \"grey\"").starts_with("line 2: unknown variant `grey`"));
