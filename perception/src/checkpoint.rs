@@ -1,12 +1,13 @@
 //! A segmentation network in a file.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::metadata::{Layout, Metadata, ScoreKind};
+use crate::ends::{self, Input};
+use crate::metadata::{Layout, Metadata, ScoreKind, Written};
 use crate::onnx::{self, Element, pb};
 use crate::peel::peel;
+use crate::single::to_single;
 use crate::taps::Enlarge;
 use crate::tensors;
 use crate::{ClassMap, PerceptionError};
@@ -30,16 +31,6 @@ pub struct Checkpoint {
     pub(crate) score_kind: ScoreKind,
 }
 
-/// The network's input.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Input {
-    pub element: Element,
-    pub layout: Layout,
-    /// Pixels, where the model fixes them.
-    pub width: Option<usize>,
-    pub height: Option<usize>,
-}
-
 /// Without the weights.
 impl std::fmt::Debug for Checkpoint {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -48,12 +39,13 @@ impl std::fmt::Debug for Checkpoint {
 }
 
 impl Checkpoint {
-    /// Reads a model with its metadata or sidecar (see [`crate::Metadata`]).
+    /// Reads a model with its metadata or sidecar (see [`crate::Metadata`]), and `config.json` beside it where these name
+    /// no classes.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, PerceptionError> {
         let path = path.as_ref();
         let bytes = intake::read(path, intake::most::NETWORK);
         let bytes = bytes.map_err(|source| PerceptionError::Io { path: path.into(), source })?;
-        Self::new(path, &bytes, read_sidecar(&path.with_extension("toml"))?.as_deref(), path.parent())
+        Self::new(path, &bytes, read_beside(&path.with_extension("toml"))?.as_deref(), path.parent())
     }
 
     /// A model at hand as bytes, with its metadata; errors call it by its name.
@@ -67,10 +59,11 @@ impl Checkpoint {
         let refuse = |reason| PerceptionError::NotSegmentation { path: path.into(), reason };
         let weights_beside = tensors::gather(&mut model, folder).map_err(refuse)?;
         onnx::check(&model).map_err(refuse)?;
-        let (input, output) = ends(&model).map_err(refuse)?;
-        let metadata = metadata_of(path, &model, sidecar)?;
-        check_classes(output, metadata.classes.count()).map_err(refuse)?;
-        let input = input_of(input, metadata.layout).map_err(refuse)?;
+        ends::check(&model).map_err(refuse)?;
+        let (metadata, config) = metadata_of(path, &model, sidecar, folder)?;
+        ends::choose(&mut model, metadata.output.as_deref(), metadata.classes.count()).map_err(refuse)?;
+        to_single(&mut model);
+        let input = ends::take(&mut model, metadata.layout).map_err(refuse)?;
         if input.element == Element::Float && metadata.normalisation.is_none() {
             let reason = "mean and std are missing, which a network with a float input needs".into();
             return Err(PerceptionError::Metadata { path: path.into(), reason });
@@ -84,6 +77,7 @@ impl Checkpoint {
         intake::check_name(name.trim_start_matches('.')).map_err(refuse)?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(bytes).update(sidecar.unwrap_or_default().as_bytes());
+        hasher.update(config.unwrap_or_default().as_bytes());
         weights_beside.iter().for_each(|weights| _ = hasher.update(weights.as_bytes()));
         let digest = hasher.finalize();
         let model = Arc::new(model);
@@ -100,7 +94,7 @@ impl Checkpoint {
         &self.name
     }
 
-    /// BLAKE3 over the model, its sidecar and its weights in other files.
+    /// BLAKE3 over the model, its sidecar, its `config.json` if its classes are named there, and its weights in other files.
     pub fn digest(&self) -> blake3::Hash {
         self.digest
     }
@@ -144,7 +138,8 @@ fn kind_of_scores(model: &pb::ModelProto) -> ScoreKind {
     ScoreKind::Logits
 }
 
-fn read_sidecar(path: &Path) -> Result<Option<String>, PerceptionError> {
+/// The text of a file, if there is one.
+fn read_beside(path: &Path) -> Result<Option<String>, PerceptionError> {
     match intake::read_text(path, intake::most::TEXT) {
         Ok(text) => Ok(Some(text)),
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -152,109 +147,38 @@ fn read_sidecar(path: &Path) -> Result<Option<String>, PerceptionError> {
     }
 }
 
-/// The sidecar's word, or else the model's own.
-fn metadata_of(path: &Path, model: &pb::ModelProto, sidecar: Option<&str>) -> Result<Metadata, PerceptionError> {
+/// The sidecar's word, or else the model's own; the names of the classes may stand in a `config.json` beside them, of
+/// which the text is given if they do.
+fn metadata_of(
+    path: &Path,
+    model: &pb::ModelProto,
+    sidecar: Option<&str>,
+    folder: Option<&Path>,
+) -> Result<(Metadata, Option<String>), PerceptionError> {
     let beside = path.with_extension("toml");
-    if let Some(text) = sidecar {
-        return Metadata::from_toml(text).map_err(|reason| PerceptionError::Metadata { path: beside, reason });
-    }
     let props = model.metadata_props.iter().map(|p| (p.key.as_str(), p.value.as_str()));
-    let absent = || {
-        let beside = beside.file_name().unwrap_or_default().to_string_lossy();
-        Err(format!("no class names: expected aeye.classes in the model's metadata, or {beside} beside it"))
+    let (at, written) = match sidecar {
+        Some(text) => (beside.as_path(), Written::from_toml(text)),
+        None => (path, Written::from_props(props)),
     };
-    Metadata::from_props(props)
-        .unwrap_or_else(absent)
-        .map_err(|reason| PerceptionError::Metadata { path: path.into(), reason })
-}
-
-/// The model's one input and its first output, if they can be a picture and a segmentation.
-fn ends(model: &pb::ModelProto) -> Result<(&pb::ValueInfoProto, &pb::ValueInfoProto), String> {
-    let graph = model.graph.as_ref().ok_or("it holds no graph")?;
-    let weights: HashSet<&str> = graph.initializer.iter().map(|t| t.name.as_str()).collect();
-    let inputs: Vec<_> = graph.input.iter().filter(|i| !weights.contains(i.name.as_str())).collect();
-    let [input] = inputs[..] else {
-        return Err(format!("it has {} inputs, expected one image", inputs.len()));
-    };
-    let output = graph.output.first().ok_or("it has no output")?;
-    let (taken, given) = (shape_of(input), shape_of(output));
-    if taken.len() != 4 {
-        return Err(format!("its input has the shape {}, expected 1x3xHxW or 1xHxWx3", shape_text(&taken)));
-    }
-    // Exporters may leave the output's shape out; the engine finds it later.
-    if !matches!(given.len(), 0 | 3 | 4) {
-        let text = shape_text(&given);
-        return Err(format!(
-            "its output has the shape {text}, expected scores 1xCxHxW or 1xHxWxC, or a class map 1xHxW"
-        ));
-    }
-    Ok((input, output))
-}
-
-/// Whether the scores can be those of so many classes.
-fn check_classes(output: &pb::ValueInfoProto, classes: usize) -> Result<(), String> {
-    let shape = shape_of(output);
-    let fits = |n: Option<usize>| n.is_some_and(|n| n == classes || n == 1);
-    match shape[..] {
-        [_, second, _, fourth] if second.is_some() && !fits(second) && !fits(fourth) => {
-            Err(format!("its output has the shape {}, but the metadata names {classes} classes", shape_text(&shape)))
+    let refuse = |at: &Path, reason| PerceptionError::Metadata { path: at.into(), reason };
+    let mut written = written.map_err(|reason| refuse(at, reason))?;
+    let config = match folder.filter(|_| !written.names_classes()) {
+        Some(folder) => {
+            read_beside(&folder.join("config.json")).map_err(|e| refuse(path, format!("no class names, and {e}")))?
         }
-        _ => Ok(()),
-    }
-}
-
-/// What the model declares of its input.
-fn input_of(input: &pb::ValueInfoProto, declared: Option<Layout>) -> Result<Input, String> {
-    let tensor = tensor_of(input).ok_or("its input has no type")?;
-    let element = match tensor.elem_type {
-        t if t == pb::tensor_proto::DataType::Float as i32 => Element::Float,
-        t if t == pb::tensor_proto::DataType::Uint8 as i32 => Element::Byte,
-        _ => return Err("its input is neither float nor uint8".into()),
+        None => None,
     };
-    let shape = shape_of(input);
-    let layout = layout_of(&shape, declared)
-        .ok_or_else(|| format!("its input has the shape {}, expected 1x3xHxW or 1xHxWx3", shape_text(&shape)))?;
-    let (height, width) = match layout {
-        Layout::Nchw => (shape[2], shape[3]),
-        Layout::Nhwc => (shape[1], shape[2]),
-    };
-    let pixels = width.unwrap_or(1).checked_mul(height.unwrap_or(1));
-    if pixels.is_none_or(|pixels| pixels as u64 > intake::most::PIXELS) {
-        let most = intake::most::PIXELS;
-        return Err(format!("its input has the shape {}, expected at most {most} pixels", shape_text(&shape)));
-    }
-    Ok(Input { element, layout, width, height })
-}
-
-fn tensor_of(value: &pb::ValueInfoProto) -> Option<&pb::type_proto::Tensor> {
-    let pb::type_proto::Value::TensorType(tensor) = value.r#type.as_ref()?.value.as_ref()?;
-    Some(tensor)
-}
-
-/// The declared dimensions; `None` for those that are open.
-fn shape_of(value: &pb::ValueInfoProto) -> Vec<Option<usize>> {
-    use pb::tensor_shape_proto::dimension::Value;
-    let dims = tensor_of(value).and_then(|t| t.shape.as_ref()).map_or(&[][..], |s| &s.dim);
-    let fixed = |value: &Option<Value>| match value {
-        Some(Value::DimValue(n)) => usize::try_from(*n).ok().filter(|n| *n > 0),
+    let config = match config {
+        Some(text) if written.take_labels(&text).map_err(|reason| refuse(path, reason))? => Some(text),
         _ => None,
     };
-    dims.iter().map(|d| fixed(&d.value)).collect()
-}
-
-fn shape_text(shape: &[Option<usize>]) -> String {
-    let dims: Vec<String> = shape.iter().map(|d| d.map_or("?".into(), |n| n.to_string())).collect();
-    if dims.is_empty() { "()".into() } else { dims.join("x") }
-}
-
-/// The order of the dimensions, if the shape can be that of one picture.
-fn layout_of(shape: &[Option<usize>], declared: Option<Layout>) -> Option<Layout> {
-    let &[batch, second, _, fourth] = shape else { return None };
-    let colours = |n: Option<usize>| n.is_none_or(|n| n == 3);
-    let guess = if second != Some(3) && fourth == Some(3) { Layout::Nhwc } else { Layout::Nchw };
-    let layout = declared.unwrap_or(guess);
-    let channels = if layout == Layout::Nchw { second } else { fourth };
-    (batch.is_none_or(|n| n == 1) && colours(channels)).then_some(layout)
+    if sidecar.is_none() && !written.names_classes() {
+        let beside = beside.file_name().unwrap_or_default().to_string_lossy();
+        let reason = format!("no class names: expected aeye.classes in the model's metadata, or {beside} beside it");
+        return Err(refuse(path, reason));
+    }
+    written.checked().map(|metadata| (metadata, config)).map_err(|reason| refuse(at, reason))
 }
 
 #[cfg(test)]

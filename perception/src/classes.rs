@@ -55,6 +55,8 @@ pub const TAGS: usize = TRAIN_CLASSES.len() + UNTRAINED_TAGS.len();
 pub const PEDESTRIAN_TAG: u8 = 4;
 /// Tag id of what no class describes.
 pub const UNLABELED_TAG: u8 = 0;
+/// Name of the tag of what the other classes do not describe.
+const OTHER: &str = "Other";
 /// Train id of pixels that count nowhere.
 pub const IGNORE: u8 = 255;
 
@@ -89,27 +91,56 @@ pub fn tag_name(tag: u8) -> Option<&'static str> {
     TRAIN_CLASSES.iter().chain(&UNTRAINED_TAGS).find(|c| c.tag == tag).map(|c| c.name)
 }
 
-/// Classes of other naming schemes, as the tag they are in CARLA 0.9.10, where riders count as
-/// Pedestrian and two-wheelers as Vehicles.
-const SYNONYMS: [(&str, &str); 9] = [
-    ("Person", "Pedestrian"),
-    ("Rider", "Pedestrian"),
-    ("Car", "Vehicles"),
-    ("Truck", "Vehicles"),
-    ("Bus", "Vehicles"),
-    ("Train", "Vehicles"),
-    ("Motorcycle", "Vehicles"),
-    ("Bicycle", "Vehicles"),
-    ("Roads", "Road"),
+/// Names of other schemes that mean one class and no other, as the tag that it is in CARLA 0.9.10, where riders count
+/// as Pedestrian and two-wheelers as Vehicles. The later ones are from ADE20K and Mapillary Vistas.
+const SYNONYMS: [(&str, &str); 34] = [
+    ("person", "Pedestrian"),
+    ("rider", "Pedestrian"),
+    ("bicyclist", "Pedestrian"),
+    ("motorcyclist", "Pedestrian"),
+    ("vehicle", "Vehicles"),
+    ("car", "Vehicles"),
+    ("truck", "Vehicles"),
+    ("bus", "Vehicles"),
+    ("van", "Vehicles"),
+    ("caravan", "Vehicles"),
+    ("trailer", "Vehicles"),
+    ("train", "Vehicles"),
+    ("motorcycle", "Vehicles"),
+    ("motorbike", "Vehicles"),
+    ("minibike", "Vehicles"),
+    ("bicycle", "Vehicles"),
+    ("bike", "Vehicles"),
+    ("house", "Building"),
+    ("skyscraper", "Building"),
+    ("tree", "Vegetation"),
+    ("palm", "Vegetation"),
+    ("plant", "Vegetation"),
+    ("grass", "Terrain"),
+    ("earth", "Terrain"),
+    ("field", "Terrain"),
+    ("street light", "Pole"),
+    ("utility pole", "Pole"),
+    ("pole group", "Pole"),
+    ("pavement", "SideWalk"),
+    ("lane marking", "RoadLine"),
+    ("sea", "Water"),
+    ("river", "Water"),
+    ("lake", "Water"),
+    ("void", "Unlabeled"),
 ];
 
-/// Tag id of a class name; case, spaces, hyphens and underscores do not matter, and the names of
-/// Cityscapes and of CARLA 0.9.14 are understood.
+/// Tag id of a class name; case, spaces, hyphens, underscores and a plural's s do not matter, and the names of Cityscapes
+/// and of CARLA 0.9.14 are understood.
 pub fn tag_of_name(name: &str) -> Option<u8> {
     let plain = |s: &str| s.replace([' ', '_', '-'], "").to_ascii_lowercase();
+    let tag = |wanted: &str| {
+        let synonym = SYNONYMS.iter().find(|(from, _)| plain(from) == wanted).map(|(_, to)| plain(to));
+        let wanted = synonym.as_deref().unwrap_or(wanted);
+        TRAIN_CLASSES.iter().chain(&UNTRAINED_TAGS).find(|c| plain(c.name) == wanted).map(|c| c.tag)
+    };
     let wanted = plain(name);
-    let wanted = SYNONYMS.iter().find(|(from, _)| plain(from) == wanted).map_or(wanted, |(_, to)| plain(to));
-    TRAIN_CLASSES.iter().chain(&UNTRAINED_TAGS).find(|c| plain(c.name) == wanted).map(|c| c.tag)
+    tag(&wanted).or_else(|| tag(wanted.strip_suffix('s')?))
 }
 
 /// The 19 train ids of Cityscapes, in order.
@@ -159,6 +190,21 @@ impl ClassMap {
             tags: names.iter().map(tag).collect::<Result<_, _>>()?,
             names: names.iter().map(|n| n.as_ref().to_owned()).collect(),
         })
+    }
+
+    /// From the labels of a network of any other origin, in the order of the outputs: of alternatives (`car; auto`) the
+    /// first one that is known counts, and where none is, as of the furniture in ADE20K, the class is Other. At least one
+    /// must be known.
+    pub fn from_labels<S: AsRef<str>>(labels: &[S]) -> Result<Self, PerceptionError> {
+        let known = labels.iter().map(|label| {
+            let mut alternatives = label.as_ref().split([';', ',']).map(str::trim);
+            alternatives.find(|name| tag_of_name(name).is_some())
+        });
+        let known: Vec<Option<&str>> = known.collect();
+        match labels.first().filter(|_| known.iter().all(Option::is_none)) {
+            Some(label) => Err(PerceptionError::UnknownClass { name: label.as_ref().chars().take(80).collect() }),
+            None => Self::from_names(&known.iter().map(|name| name.unwrap_or(OTHER)).collect::<Vec<_>>()),
+        }
     }
 
     /// From the name of a scheme: `aeye` (train ids of [`TRAIN_CLASSES`]), `cityscapes` (its 19
@@ -230,5 +276,17 @@ mod tests {
     fn unknown_names_are_refused_by_name() {
         let error = ClassMap::from_names(&["Road", "Zebra"]).unwrap_err().to_string();
         assert!(error.contains("Zebra"), "{error}");
+    }
+
+    #[test]
+    fn labels_of_other_origin_are_understood_and_the_rest_is_other() {
+        let labels = ["Trees", "car;auto;automobile", "chest of drawers", "double house, house", "lane-marking"];
+        let classes = ClassMap::from_labels(&labels).unwrap();
+        assert_eq!(classes.tags(), [9, 10, 3, 1, 6]);
+        assert_eq!(ClassMap::from_names(classes.names()).unwrap(), classes, "they read back as they are written");
+        let error = ClassMap::from_labels(&["LABEL_0", "LABEL_1"]).unwrap_err().to_string();
+        assert!(error.contains("unknown class name \"LABEL_0\""), "{error}");
+        assert!(ClassMap::from_labels(&[""; 0]).is_err());
+        assert!(ClassMap::from_labels(&["road"; 257]).is_err());
     }
 }

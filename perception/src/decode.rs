@@ -38,6 +38,11 @@ impl Grid {
         if self.interleaved { 1 } else { self.width * self.height }
     }
 
+    /// One no finer than a picture.
+    pub fn within(self, width: usize, height: usize) -> Self {
+        Self { width: self.width.min(width), height: self.height.min(height), ..self }
+    }
+
     fn pixel_stride(&self) -> usize {
         if self.interleaved { self.channels } else { 1 }
     }

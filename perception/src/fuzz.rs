@@ -12,6 +12,7 @@ use prost::Message;
 use crate::onnx::pb::{self, tensor_proto::DataType};
 use crate::parts::{int, ints};
 use crate::tests::with_weights_beside;
+use crate::toy;
 use crate::zoo::networks;
 use crate::{Checkpoint, RgbView, Segmenter};
 
@@ -107,6 +108,20 @@ const ATTRIBUTES: [&str; 16] = [
     "to",
 ];
 
+/// What metadata may say.
+const SAID: [&str; 10] = [
+    "null",
+    "0",
+    "\"coarse\"",
+    "\"nobody's\"",
+    "\"bgr\"",
+    "\"nhwc\"",
+    "[1e-30, 1e30, 0.5]",
+    "{\"0\": \"road\"}",
+    "{\"0\": \"tree\", \"1\": \"chair\", \"2\": \"car; auto\"}",
+    "[\"road\", \"sky\", \"car\", \"pole\"]",
+];
+
 /// A change of a model; the numbers choose what and how.
 #[derive(Clone, Copy, Debug)]
 struct Change {
@@ -138,7 +153,7 @@ impl Change {
         let Self { kind, at, other, number } = self;
         let names = values(model);
         let graph = model.graph.as_mut()?;
-        match kind % 20 {
+        match kind % 24 {
             0 | 1 => pick(&mut pick(&mut attributes(graph), at)?.ints, other).map(|n| *n = number)?,
             2 => pick(&mut attributes(graph), at)?.i = number,
             3 => pick(&mut attributes(graph), at)?.ints.push(number),
@@ -162,7 +177,14 @@ impl Change {
                 .map(|v| *v = f32::from_bits(number as u32))?,
             17 => pick(&mut graph.initializer, at)?.data_type = i32::from(other % 24),
             18 => graph.output[0].name.clone_from(&names[usize::from(other) % names.len()]),
-            _ => model.opset_import[0].version = number.clamp(-1, 25),
+            19 => model.opset_import[0].version = number.clamp(-1, 25),
+            20 => pick(&mut model.metadata_props, at)?.value = SAID[usize::from(other) % SAID.len()].into(),
+            21 => toy::set_dim(pick(&mut graph.input, at)?, usize::from(other) % 4, number),
+            22 => toy::retype(pick(&mut graph.input, at)?, i32::from(other % 24)),
+            _ => graph.output.push(pb::ValueInfoProto {
+                name: names[usize::from(other) % names.len()].clone(),
+                ..graph.output[0].clone()
+            }),
         }
         Some(())
     }
@@ -189,7 +211,7 @@ fn check(files: &[(&str, &[u8])]) -> TestCaseResult {
     let dir = hunt::trying(files);
     let tried = Checkpoint::load(dir.join("case.onnx")).and_then(|checkpoint| {
         let mut segmenter = Segmenter::new(&checkpoint, 32, 16)?;
-        let rgb = crate::toy::picture(32, 16);
+        let rgb = toy::picture(32, 16);
         segmenter.run_with_certainty(RgbView::new(32, 16, &rgb).expect("a picture")).map(drop)
     });
     if let Err(error) = tried {
@@ -249,6 +271,18 @@ fn weights_beside_a_network_are_read_or_refused() {
         }
         let model = changed(&model, &changes);
         check(&[("case.onnx", &model.encode_to_vec()), ("weights.bin", &0.25f32.to_le_bytes().repeat(bytes / 4))])
+    });
+}
+
+#[test]
+fn names_beside_a_network_are_taken_or_refused() {
+    let model = toy::Toy { metadata: None, element: DataType::Uint8, ..toy::Toy::default() }.model().encode_to_vec();
+    let labels = vec(("[0-9x-]{0,3}", "(car|sky|tree|.{0,9})"), 0..5);
+    hunt::hunt("network-names", CASES, (labels, 0.5..1.5), |(labels, keep)| {
+        let pairs: std::collections::BTreeMap<String, String> = labels.into_iter().collect();
+        let mut text = serde_json::json!({ "id2label": pairs }).to_string().into_bytes();
+        text.truncate((text.len() as f64 * keep) as usize);
+        check(&[("case.onnx", &model), ("config.json", &text)])
     });
 }
 

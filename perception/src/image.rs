@@ -2,7 +2,6 @@
 
 use crate::PerceptionError;
 use crate::classes;
-use crate::taps::Taps;
 
 /// A borrowed picture: rows from top to bottom, three bytes (red, green, blue) a pixel, no padding.
 #[derive(Clone, Copy, Debug)]
@@ -63,30 +62,6 @@ impl Mask {
     }
 }
 
-/// Resamples a picture bilinearly (half-pixel centres).
-pub(crate) fn resample(image: RgbView<'_>, width: usize, height: usize) -> Vec<u8> {
-    let columns = Taps::new(image.width, width, false);
-    let rows = Taps::new(image.height, height, false);
-    let pixels = image.bytes.as_chunks::<3>().0;
-    let line = |y: usize| &pixels[y * image.width..][..image.width];
-    let mut out = Vec::with_capacity(3 * width * height);
-    for y in 0..height {
-        let (upper, lower, down) = (line(rows.left[y]), line(rows.right(y, image.height)), rows.weight[y]);
-        for x in 0..width {
-            let (left, right, along) = (columns.left[x], columns.right(x, image.width), columns.weight[x]);
-            for c in 0..3 {
-                let mix = |line: &[[u8; 3]]| {
-                    let (a, b) = (f32::from(line[left][c]), f32::from(line[right][c]));
-                    a + (b - a) * along
-                };
-                let (a, b) = (mix(upper), mix(lower));
-                out.push((a + (b - a) * down + 0.5) as u8);
-            }
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,13 +71,6 @@ mod tests {
         assert!(RgbView::new(2, 2, &[0; 11]).is_err());
         assert!(RgbView::new(0, 2, &[]).is_err());
         assert!(Mask::new(2, 2, vec![0; 5]).is_err());
-    }
-
-    #[test]
-    fn halving_a_picture_takes_means() {
-        let bytes: Vec<u8> = [0, 100, 200, 100, 40, 60, 0, 0].iter().flat_map(|&v| [v, v, v]).collect();
-        let small = resample(RgbView::new(4, 2, &bytes).unwrap(), 2, 1);
-        assert_eq!(small, [50, 50, 50, 75, 75, 75]);
     }
 
     #[test]

@@ -12,7 +12,10 @@ pub mod cityscapes;
 pub mod classes;
 mod compute;
 mod decode;
+mod ends;
 mod error;
+#[cfg(test)]
+mod forms;
 #[cfg(test)]
 mod fuzz;
 mod image;
@@ -22,8 +25,10 @@ mod onnx;
 mod operators;
 mod parts;
 mod peel;
+mod scale;
 mod segmenter;
 mod simd;
+mod single;
 mod taps;
 mod tensors;
 #[cfg(test)]
@@ -43,6 +48,6 @@ pub use compute::Compute;
 pub use decode::Certainty;
 pub use error::PerceptionError;
 pub use image::{Mask, RgbView};
-pub use metadata::{Layout, Metadata, Normalisation, ScoreKind};
+pub use metadata::{Channels, Layout, Metadata, Normalisation, ScoreKind};
 pub use metrics::{ConfusionMatrix, Scores};
 pub use segmenter::Segmenter;

@@ -19,6 +19,25 @@ pub fn model(graph: pb::GraphProto, props: BTreeMap<String, String>) -> pb::Mode
     }
 }
 
+/// A node with one output, after which it is called.
+pub fn node(op: &str, inputs: &[&str], output: &str, attribute: Vec<pb::AttributeProto>) -> pb::NodeProto {
+    pb::NodeProto {
+        op_type: op.into(),
+        name: format!("{op}_{output}"),
+        input: inputs.iter().map(|s| s.to_string()).collect(),
+        output: vec![output.into()],
+        attribute,
+        ..Default::default()
+    }
+}
+
+/// A list of whole numbers as a constant.
+pub fn numbers(name: &str, values: &[i64]) -> pb::TensorProto {
+    let dims = vec![values.len() as i64];
+    let data_type = DataType::Int64 as i32;
+    pb::TensorProto { name: name.into(), dims, data_type, int64_data: values.to_vec(), ..Default::default() }
+}
+
 /// Whole numbers of an operator.
 pub fn ints(name: &str, values: &[i64]) -> pb::AttributeProto {
     let kind = pb::attribute_proto::AttributeType::Ints as i32;

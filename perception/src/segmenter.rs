@@ -7,9 +7,10 @@ use std::sync::Arc;
 use crate::classes::UNLABELED_TAG;
 use crate::compute::agree;
 use crate::decode::{Decoder, Grid};
-use crate::image::resample;
+use crate::ends;
 use crate::metadata::{Layout, ScoreKind};
-use crate::onnx::{self, Element, Engine, Output, Pixels};
+use crate::onnx::{self, Element, Engine, Output, Pixels, pb};
+use crate::scale::Scale;
 use crate::{Certainty, Checkpoint, Compute, Mask, PerceptionError, RgbView};
 
 /// A network made ready for pictures of one size. On the CPU single-threaded and deterministic; a
@@ -20,12 +21,19 @@ pub struct Segmenter {
     compute: Compute,
     width: usize,
     height: usize,
-    network: (usize, usize),
+    /// From the picture's size to the network's, unless they are the same.
+    scale: Option<Scale>,
     layout: Layout,
     element: Element,
     /// Input value of each byte for red, green and blue.
     table: Arc<[[f32; 256]; 3]>,
+    /// Which of red, green and blue each channel is.
+    channels: [usize; 3],
     engine: Engine,
+    /// Whether the output is a class map, be it one of floats.
+    is_map: bool,
+    /// From scores finer than the picture to its pixels.
+    coarsen: Option<(Scale, Grid)>,
     decoder: Decoder,
     score_kind: ScoreKind,
     tags: Vec<u8>,
@@ -80,18 +88,32 @@ impl Segmenter {
         let refuse = |reason| PerceptionError::NotSegmentation { path: path.clone(), reason };
         let lacks = |reason| PerceptionError::Compute { name: compute.name(), reason };
         let runtime = onnx::runtime(compute.name()).map_err(lacks)?;
-        let engine = Engine::new(runtime, &checkpoint.model, input.element, shape).map_err(refuse)?;
-        let grid = grid(&engine, checkpoint.classes().count(), checkpoint.scores).map_err(refuse)?;
-        let decoder = Decoder::new(grid, width, height, checkpoint.enlarge);
+        let make = |model: &pb::ModelProto| {
+            let engine = Engine::new(runtime, model, input.element, shape)?;
+            let form = form(&engine, checkpoint.classes().count(), checkpoint.scores)?;
+            Ok::<_, String>((engine, form))
+        };
+        // Most networks for several pictures take one as well.
+        let (engine, (grid, is_map)) = match make(&checkpoint.model) {
+            Err(_) if input.pictures > 1 => make(&ends::repeated(&checkpoint.model, input.pictures)),
+            made => made,
+        }
+        .map_err(refuse)?;
+        let coarse = if is_map { grid } else { grid.within(width, height) };
+        let decoder = Decoder::new(coarse, width, height, checkpoint.enlarge);
         Ok(Self {
             path,
             compute,
             width,
             height,
-            network,
+            scale: Scale::between((width, height), network),
             layout: if engine.takes_last { Layout::Nhwc } else { input.layout },
             element: input.element,
             table: Arc::new(checkpoint.metadata().normalisation.map_or([[0.0; 256]; 3], |n| n.table())),
+            channels: checkpoint.metadata().channels.order(),
+            is_map,
+            coarsen: Scale::between((grid.width, grid.height), (coarse.width, coarse.height))
+                .map(|scale| (scale, grid)),
             engine,
             decoder,
             score_kind: checkpoint.score_kind,
@@ -133,20 +155,20 @@ impl Segmenter {
             let (width, height) = (self.width, self.height);
             return Err(PerceptionError::ImageSize { bytes: image.bytes().len(), width, height, channels: 3 });
         }
-        let resampled;
-        let rgb = if (self.width, self.height) == self.network {
-            image.bytes()
-        } else {
-            resampled = resample(image, self.network.0, self.network.1);
-            &resampled
-        };
-        self.fill(rgb);
+        let resampled = self.scale.as_ref().map(|scale| scale.picture(image.bytes()));
+        self.fill(resampled.as_deref().unwrap_or(image.bytes()));
         let pixels = match self.element {
             Element::Float => Pixels::Float(&self.floats),
             Element::Byte => Pixels::Byte(&self.bytes),
         };
         let fail = |reason| PerceptionError::Inference { path: self.path.clone(), reason };
-        self.engine.run(pixels).map_err(fail)
+        match self.engine.run(pixels).map_err(fail)? {
+            Output::Scores(ids) if self.is_map => whole(&ids).map(Output::Ids).map_err(fail),
+            Output::Scores(scores) if let Some((scale, grid)) = &self.coarsen => {
+                Ok(Output::Scores(scale.scores(&scores, *grid)))
+            }
+            output => Ok(output),
+        }
     }
 
     fn mask(&self, output: &Output) -> Result<Mask, PerceptionError> {
@@ -167,48 +189,66 @@ impl Segmenter {
     /// Writes the picture in the network's own form.
     fn fill(&mut self, rgb: &[u8]) {
         match self.element {
-            Element::Float => fill(&mut self.floats, rgb, self.layout, |c, byte| self.table[c][usize::from(byte)]),
-            Element::Byte => fill(&mut self.bytes, rgb, self.layout, |_, byte| byte),
+            Element::Float => {
+                let value = |colour: usize, byte| self.table[colour][usize::from(byte)];
+                fill(&mut self.floats, rgb, self.layout, self.channels, value);
+            }
+            Element::Byte => fill(&mut self.bytes, rgb, self.layout, self.channels, |_, byte| byte),
         }
     }
 }
 
-fn fill<T: Copy + Default>(out: &mut Vec<T>, rgb: &[u8], layout: Layout, value: impl Fn(usize, u8) -> T) {
+fn fill<T: Copy + Default>(
+    out: &mut Vec<T>,
+    rgb: &[u8],
+    layout: Layout,
+    channels: [usize; 3],
+    value: impl Fn(usize, u8) -> T,
+) {
     out.resize(rgb.len(), T::default());
     let pixels = rgb.as_chunks::<3>().0;
     match layout {
         Layout::Nhwc => {
             for (out, pixel) in out.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
-                *out = std::array::from_fn(|c| value(c, pixel[c]));
+                *out = channels.map(|colour| value(colour, pixel[colour]));
             }
         }
         Layout::Nchw => {
-            for (c, plane) in out.chunks_exact_mut(pixels.len()).enumerate() {
+            for (colour, plane) in channels.into_iter().zip(out.chunks_exact_mut(pixels.len())) {
                 for (out, pixel) in plane.iter_mut().zip(pixels) {
-                    *out = value(c, pixel[c]);
+                    *out = value(colour, pixel[colour]);
                 }
             }
         }
     }
 }
 
-/// How the network's output is to be read.
-fn grid(engine: &Engine, classes: usize, likely: Layout) -> Result<Grid, String> {
+/// The ids of a class map of floats.
+fn whole(ids: &[f32]) -> Result<Vec<i64>, String> {
+    match ids.iter().find(|id| id.fract() != 0.0) {
+        Some(odd) => Err(format!("its class map holds {odd}, which is no whole number")),
+        None => Ok(ids.iter().map(|id| *id as i64).collect()),
+    }
+}
+
+/// How the network's output is to be read, and whether it is a class map.
+fn form(engine: &Engine, classes: usize, likely: Layout) -> Result<(Grid, bool), String> {
     let shape = &engine.output_shape;
     let text = || shape.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
     if shape.contains(&0) {
         return Err(format!("its output has the shape {}, which holds nothing", text()));
     }
-    let ids = |height, width| Ok(Grid { channels: 1, width, height, interleaved: false });
+    let scores = |width, height, interleaved| Ok((Grid { channels: classes, width, height, interleaved }, false));
+    let planes = |channels, width| channels == classes && (likely == Layout::Nchw || width != classes);
     match (engine.gives_ids, shape.as_slice()) {
-        (false, &[1, h, w, c]) if engine.is_moved && c == classes => {
-            Ok(Grid { channels: c, width: w, height: h, interleaved: true })
+        (false, &[1, h, w, c]) if engine.is_moved && c == classes => scores(w, h, true),
+        (false, &[1, c, h, w] | &[c, h, w]) if planes(c, w) => scores(w, h, false),
+        (false, &[1, h, w, c]) if c == classes => scores(w, h, true),
+        (false, &[h, w, c]) if c == classes && h > 1 => scores(w, h, true),
+        (_, &[1, h, w] | &[1, 1, h, w] | &[1, h, w, 1]) => {
+            Ok((Grid { channels: 1, width: w, height: h, interleaved: false }, true))
         }
-        (true, &[1, h, w] | &[1, 1, h, w] | &[1, h, w, 1]) => ids(h, w),
-        (false, &[1, c, h, w]) if c == classes && (likely == Layout::Nchw || w != classes) => {
-            Ok(Grid { channels: c, width: w, height: h, interleaved: false })
-        }
-        (false, &[1, h, w, c]) if c == classes => Ok(Grid { channels: c, width: w, height: h, interleaved: true }),
+        (_, &[h, w]) if h > 1 && w > 1 => Ok((Grid { channels: 1, width: w, height: h, interleaved: false }, true)),
         _ => Err(format!(
             "its output has the shape {}, expected scores of {classes} classes (1xCxHxW or 1xHxWxC) or a class map",
             text()

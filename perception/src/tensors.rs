@@ -35,7 +35,7 @@ fn of(tensor: &pb::TensorProto, reason: &str) -> String {
 type Visit<'a> = dyn FnMut(&mut pb::TensorProto) -> Result<(), String> + 'a;
 
 /// Visits every tensor of a model in its order. Graphs are nested as deeply as messages can be, which is not far.
-fn for_each(model: &mut pb::ModelProto, visit: &mut Visit<'_>) -> Result<(), String> {
+pub(crate) fn for_each(model: &mut pb::ModelProto, visit: &mut Visit<'_>) -> Result<(), String> {
     model.graph.as_mut().map_or(Ok(()), |graph| for_each_in(graph, visit))
 }
 

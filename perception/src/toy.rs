@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use prost::Message;
 
-use crate::metadata::{Layout, Metadata, Normalisation};
+use crate::metadata::{Channels, Layout, Metadata, Normalisation};
 use crate::onnx::pb::{self, tensor_proto::DataType};
+pub use crate::parts::node;
 use crate::parts::{self, int, ints, text, value};
 use crate::{ClassMap, Mask};
 
@@ -51,21 +52,12 @@ impl Default for Toy {
 pub fn metadata() -> Metadata {
     Metadata {
         classes: ClassMap::from_names(&CLASSES).unwrap(),
+        output: None,
+        channels: Channels::Rgb,
         normalisation: Some(Normalisation { mean: [0.25, 0.5, 0.75], std: [0.5, 0.25, 0.125] }),
         layout: None,
         scores: None,
         align_corners: false,
-    }
-}
-
-pub fn node(op: &str, inputs: &[&str], output: &str, attribute: Vec<pb::AttributeProto>) -> pb::NodeProto {
-    pb::NodeProto {
-        op_type: op.into(),
-        name: format!("{op}_{output}"),
-        input: inputs.iter().map(|s| s.to_string()).collect(),
-        output: vec![output.into()],
-        attribute,
-        ..Default::default()
     }
 }
 
@@ -83,7 +75,7 @@ impl Toy {
         let weights = (0..9 * square).map(|i| if (i / square).is_multiple_of(4) { share } else { 0.0 }).collect();
         let mut nodes = Vec::new();
         let mut image = "image";
-        if self.element == DataType::Uint8 {
+        if self.element != DataType::Float {
             nodes.push(node("Cast", &[image], "float", vec![int("to", DataType::Float as i64)]));
             image = "float";
         }
@@ -136,6 +128,24 @@ impl Toy {
     pub fn write(&self, dir: &Path) -> PathBuf {
         write(dir, "toy.onnx", &self.model())
     }
+}
+
+fn tensor_mut(value: &mut pb::ValueInfoProto) -> Option<&mut pb::type_proto::Tensor> {
+    let pb::type_proto::Value::TensorType(tensor) = value.r#type.as_mut()?.value.as_mut()?;
+    Some(tensor)
+}
+
+/// Fixes a dimension of a value, if it has it.
+pub fn set_dim(value: &mut pb::ValueInfoProto, at: usize, size: i64) {
+    let dims = tensor_mut(value).and_then(|tensor| tensor.shape.as_mut());
+    if let Some(dim) = dims.and_then(|shape| shape.dim.get_mut(at)) {
+        dim.value = Some(pb::tensor_shape_proto::dimension::Value::DimValue(size));
+    }
+}
+
+/// Changes the type of a value.
+pub fn retype(value: &mut pb::ValueInfoProto, kind: i32) {
+    tensor_mut(value).into_iter().for_each(|tensor| tensor.elem_type = kind);
 }
 
 pub fn finish(graph: pb::GraphProto, metadata: Option<&Metadata>) -> pb::ModelProto {

@@ -1,8 +1,10 @@
 //! Small networks with many kinds of operators, for tests that damage them.
 
 use crate::Metadata;
+use crate::forms;
 use crate::metadata::Normalisation;
 use crate::onnx::pb::{self, tensor_proto::DataType};
+pub use crate::parts::numbers;
 use crate::parts::{int, ints, text, value};
 use crate::toy::{self, Tail, Toy, finish, floats, node};
 
@@ -11,17 +13,17 @@ pub fn networks() -> Vec<pb::ModelProto> {
     let tails = [Tail::None, Tail::Upsample, Tail::Argmax, Tail::CoarseArgmax];
     let mut all: Vec<_> = tails.into_iter().map(|tail| Toy { tail, ..Toy::default() }.model()).collect();
     all.extend([encoder(), shapes(), products(), pads()]);
+    all.extend([DataType::Float16, DataType::Int32].map(|element| Toy { element, ..Toy::default() }.model()));
+    all.extend([
+        forms::heads(Metadata { output: Some("coarse".into()), ..metadata() }),
+        forms::baked(4),
+        forms::squeezed(),
+    ]);
     all
 }
 
 fn metadata() -> Metadata {
     Metadata { normalisation: Some(Normalisation { mean: [0.5; 3], std: [0.25; 3] }), ..toy::metadata() }
-}
-
-pub fn numbers(name: &str, values: &[i64]) -> pb::TensorProto {
-    let dims = vec![values.len() as i64];
-    let data_type = DataType::Int64 as i32;
-    pb::TensorProto { name: name.into(), dims, data_type, int64_data: values.to_vec(), ..Default::default() }
 }
 
 /// Weights without any order.

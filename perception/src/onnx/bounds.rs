@@ -6,6 +6,8 @@ use std::collections::HashMap;
 use tract_onnx::tract_core::ops::cnn::{MaxPool, SumPool};
 use tract_onnx::tract_hir::internal::*;
 
+use super::guard::{note, note_none};
+
 /// Most bytes of values that are alive at once while a picture is computed, weights aside.
 const MOST_ALIVE: u64 = 1 << 30;
 /// Most dimensions of a value.
@@ -116,12 +118,7 @@ fn pooling(node: &TypedNode) -> TractResult<u64> {
     let spec = node.op_as::<MaxPool>().map(|pool| &pool.pool_spec);
     let Some(spec) = spec.or_else(|| node.op_as::<SumPool>().map(|pool| &pool.pool_spec)) else { return Ok(0) };
     let window = spec.kernel_shape.iter().fold(1u64, |area, side| area.saturating_mul(*side as u64));
-    ensure!(
-        window <= MOST_WINDOW,
-        "the window of node {:?} is {:?}; at most {MOST_WINDOW} places",
-        node.name,
-        spec.kernel_shape
-    );
+    ensure!(window <= MOST_WINDOW, "its window is {:?}; at most {MOST_WINDOW} places", spec.kernel_shape);
     let outputs = node.outputs[0].fact.shape.as_concrete().map_or(0, |dims| dims.iter().product::<usize>());
     Ok(LOOK_WORK.saturating_mul(window).saturating_mul(outputs as u64))
 }
@@ -130,8 +127,10 @@ fn pooling(node: &TypedNode) -> TractResult<u64> {
 pub fn check_work(model: &TypedModel) -> TractResult<()> {
     let mut sum = 0u64;
     for node in model.nodes() {
+        note(&node.name, &node.op.name());
         sum = sum.saturating_add(work(node, &model.node_input_facts(node.id)?)?);
     }
+    note_none();
     ensure!(sum <= MOST_WORK, "it takes {sum} multiplications a picture; at most {MOST_WORK}");
     Ok(())
 }

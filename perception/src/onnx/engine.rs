@@ -1,5 +1,6 @@
 //! A network made ready for one input shape, and run.
 
+use std::collections::HashMap;
 use std::panic::catch_unwind;
 use std::sync::{Arc, OnceLock};
 
@@ -37,6 +38,8 @@ pub(crate) enum Output {
 #[derive(Clone)]
 pub(crate) struct Engine {
     plan: Arc<dyn Runnable>,
+    /// The operator of every node of the file by its name.
+    operators: Arc<HashMap<String, String>>,
     input_shape: [usize; 4],
     /// Whether it takes the picture with the channels last, in whatever order the file has it.
     pub takes_last: bool,
@@ -61,15 +64,14 @@ fn reason(error: TractError) -> String {
     line(&error.root_cause().to_string())
 }
 
-/// The same of a step that names no node by itself: the engine may have quoted one.
-fn reason_of(error: TractError, nodes: &Nodes<'_>) -> String {
+/// The same of a step that names no node by itself: the engine may have quoted one, of which the operator is looked up.
+fn reason_of<'a>(error: TractError, operator: impl Fn(&str) -> Option<&'a str>) -> String {
     let texts: Vec<String> = error.chain().map(ToString::to_string).collect();
     let quoted = texts.iter().flat_map(|text| text.split('"').skip(1).step_by(2));
     // What the engine adds to a node is called after it.
     let known = quoted.flat_map(|name| [name, name.rsplit_once('.').map_or(name, |(node, _)| node)]);
-    let node = known.into_iter().find_map(|name| nodes.get_key_value(name));
-    if let Some((name, node)) = node {
-        note(name, &node.op_type);
+    if let Some((name, operator)) = known.into_iter().find_map(|name| Some((name, operator(name)?))) {
+        note(name, operator);
     }
     reason(error)
 }
@@ -135,6 +137,7 @@ impl Engine {
         mut input_shape: [usize; 4],
     ) -> Result<Self, String> {
         let nodes = nodes(model);
+        let operator = |name: &str| nodes.get(name).map(|node| node.op_type.as_str());
         let parsed = parse(model).and_then(|model| model.with_input_fact(0, input)).map_err(reason)?;
         let network = typed(parsed, &nodes).map_err(reason)?;
         note_none();
@@ -142,7 +145,7 @@ impl Engine {
         network.output_fact(0).map_err(reason)?.shape.as_concrete().ok_or("the output has no fixed shape")?;
         let (mut network, mut takes_last, mut is_moved) = (network, false, false);
         if runtime.name() == "cpu" {
-            network = operators::prepare(network).map_err(|error| reason_of(error, &nodes))?;
+            network = operators::prepare(network).map_err(|error| reason_of(error, operator))?;
             let taken = operators::take_channels_last(&mut network).map_err(reason)?;
             (takes_last, input_shape) = (taken.is_some(), taken.unwrap_or(input_shape));
             is_moved = operators::give_channels_last(&mut network);
@@ -150,17 +153,20 @@ impl Engine {
         let output = network.output_fact(0).map_err(reason)?;
         let shape = output.shape.as_concrete().ok_or("the output has no fixed shape")?;
         let (output_shape, gives_ids) = (shape.to_vec(), !output.datum_type.is_float());
-        let plan = runtime.prepare(network).map_err(|error| reason_of(error, &nodes))?;
+        let plan = runtime.prepare(network).map_err(|error| reason_of(error, operator))?;
         // A GPU has memory of its own, and what runs there has run here before.
         if let Some(model) = plan.typed_model().filter(|_| runtime.name() == "cpu") {
-            bounds::check_alive(model).map_err(reason)?;
+            bounds::check_alive(model).map_err(|error| reason_of(error, operator))?;
         }
-        Ok(Self { output_shape, gives_ids, input_shape, takes_last, is_moved, plan: plan.into() })
+        let operators = nodes.iter().map(|(name, node)| ((*name).to_owned(), node.op_type.clone())).collect();
+        let operators = Arc::new(operators);
+        Ok(Self { output_shape, gives_ids, input_shape, takes_last, is_moved, operators, plan: plan.into() })
     }
 
     /// Runs the network on one picture.
     pub fn run(&self, pixels: Pixels<'_>) -> Result<Output, String> {
-        guarded(|| self.evaluate(pixels).map_err(reason))
+        let operator = |name: &str| self.operators.get(name).map(String::as_str);
+        guarded(|| self.evaluate(pixels).map_err(|error| reason_of(error, operator)))
     }
 
     fn evaluate(&self, pixels: Pixels<'_>) -> TractResult<Output> {
@@ -178,5 +184,20 @@ impl Engine {
         let odd = scores.iter().filter(|score| !score.is_finite()).count();
         ensure!(odd == 0, "{odd} of its {} scores are no finite numbers", scores.len());
         Ok(Output::Scores(scores))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_node_that_the_engine_quotes_is_named_with_its_operator() {
+        let said = |step: &'static str| {
+            let error = format_err!("no room").context(step);
+            guarded::<()>(|| Err(reason_of(error, |name| (name == "a").then_some("Gather")))).unwrap_err()
+        };
+        assert_eq!(said("Evaluating #3 \"a.index\" Op"), "node \"a\" (Gather): no room");
+        assert_eq!(said("Evaluating #3 \"b\" Op"), "no room");
     }
 }

@@ -15,3 +15,4 @@ pub(crate) use tract_onnx::pb;
 pub(crate) use check::check;
 pub(crate) use decode::decode;
 pub(crate) use engine::{Element, Engine, Output, Pixels, runtime};
+pub(crate) use guard::shown;

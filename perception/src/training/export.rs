@@ -13,7 +13,7 @@ use super::weights::{Parameter, Weights};
 use super::{kernels::norm, pictures};
 use crate::checkpoint::RECIPE_KEY;
 use crate::classes::TRAIN_CLASSES;
-use crate::metadata::{Layout, Metadata};
+use crate::metadata::{Channels, Layout, Metadata};
 use crate::onnx::pb::{self, tensor_proto::DataType};
 use crate::parts::{self, int, ints};
 use crate::{ClassMap, PerceptionError};
@@ -34,6 +34,8 @@ pub(super) fn onnx(weights: &Weights, width: usize, height: usize, recipe: &str)
 fn props(recipe: &str) -> Result<BTreeMap<String, String>, PerceptionError> {
     let metadata = Metadata {
         classes: ClassMap::from_names(&TRAIN_CLASSES.map(|c| c.name))?,
+        output: None,
+        channels: Channels::Rgb,
         normalisation: Some(pictures::NORMALISATION),
         layout: Some(Layout::Nchw),
         scores: None,
