@@ -2,9 +2,10 @@
 //! double precision, which exporters leave in constants and casts, the engine has few operators. A number beyond the
 //! range of f32 becomes the last one within it.
 
-use tract_onnx::prelude::f16;
-
-use crate::onnx::pb::{self, tensor_proto::DataType};
+use crate::onnx::{
+    f16,
+    pb::{self, tensor_proto::DataType},
+};
 use crate::tensors;
 
 /// Widths of fractions other than f32.

@@ -12,6 +12,9 @@ mod typed;
 /// ONNX as protobuf messages.
 pub(crate) use tract_onnx::pb;
 
+/// Half precision.
+pub(crate) use tract_onnx::prelude::f16;
+
 pub(crate) use check::check;
 pub(crate) use decode::decode;
 pub(crate) use engine::{Element, Engine, Output, Pixels, runtime};

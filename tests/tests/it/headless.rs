@@ -9,9 +9,9 @@ use std::process::Command;
 const OUTSIDE: [&str; 11] =
     ["libudev", "gilrs", "evdev", "x11", "xkbcommon", "winit", "egui", "wayland", "cudarc", "tract-cuda", "tract-gpu"];
 
-/// Bindings, as `-sys` at the end of a name says, that need nothing installed: system calls, types alone, and libraries
-/// that are compiled along.
-const SELF_CONTAINED: [&str; 4] = ["libsqlite3-sys", "linux-raw-sys", "renderdoc-sys", "zstd-sys"];
+/// Bindings, as `-sys` at the end of a name says, that need nothing installed: system calls, types alone, libraries
+/// that are compiled along, and what OpenGL looks for when it starts.
+const SELF_CONTAINED: [&str; 5] = ["libsqlite3-sys", "linux-raw-sys", "renderdoc-sys", "wayland-sys", "zstd-sys"];
 
 /// Packages that are compiled for one of the workspace on this machine, by name.
 fn packages(package: &str, features: &[&str]) -> BTreeSet<String> {
@@ -25,8 +25,8 @@ fn packages(package: &str, features: &[&str]) -> BTreeSet<String> {
 }
 
 fn from_outside(packages: &BTreeSet<String>) -> Vec<&str> {
-    let links = |name: &str| name.ends_with("-sys") && !SELF_CONTAINED.contains(&name);
-    let is_outside = |name: &&str| links(name) || OUTSIDE.iter().any(|word| name.starts_with(word));
+    let links = |name: &str| name.ends_with("-sys") || OUTSIDE.iter().any(|word| name.starts_with(word));
+    let is_outside = |name: &&str| links(name) && !SELF_CONTAINED.contains(name);
     packages.iter().map(String::as_str).filter(is_outside).collect()
 }
 
