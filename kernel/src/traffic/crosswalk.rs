@@ -93,17 +93,22 @@ impl Gaps<'_> {
             return false;
         }
         let careless = unit(self.seed, Stream::Walk, u64::from(walker.id), !u64::from(walker.hops)) < CARELESS;
-        (careless && lights.is_empty() && self.can_stop(crosswalk) && self.leaves_time(crosswalk, position, time_s))
-            || self.is_clear(crosswalk, position, time_s)
+        let dares = || self.can_stop(crosswalk) && self.leaves_time_on(crosswalk, position, time_s);
+        (careless && lights.is_empty() && dares()) || self.is_clear(crosswalk, position, time_s)
     }
 
-    /// Whether the ego car can still stop before somebody careless on a crosswalk, who does not look for more than that.
-    fn leaves_time(&self, crosswalk: u32, from: Vec2, time_s: f32) -> bool {
+    /// Whether the ego car can still stop before a way that somebody goes from now on, metres, m/s ([`surprise`]).
+    pub fn leaves_time(&self, way: [Vec2; 2], pace_mps: f32) -> bool {
+        let mut ego = self.free.iter().filter(|hazard| hazard.is_ego());
+        ego.all(|ego| surprise::leaves_time(ego, way, pace_mps))
+    }
+
+    /// The same of somebody careless on a crosswalk, who does not look for more than that.
+    fn leaves_time_on(&self, crosswalk: u32, from: Vec2, time_s: f32) -> bool {
         let ends = self.map.crosswalks[crosswalk as usize].ends.map(|end| end.truncate());
         let to = if from.distance(ends[0]) > from.distance(ends[1]) { ends[0] } else { ends[1] };
         let pace_mps = (ends[0].distance(ends[1]) / time_s.max(0.1)).max(0.1);
-        let mut ego = self.free.iter().filter(|hazard| hazard.is_ego());
-        ego.all(|ego| surprise::leaves_time(ego, [from, to], pace_mps))
+        self.leaves_time([from, to], pace_mps)
     }
 
     /// Whether every vehicle on the lanes of a crosswalk can still stop before it.

@@ -17,7 +17,6 @@ use super::jaywalk;
 use super::nearby::Nearby;
 use super::outline::{self, Outline};
 use super::slack;
-use super::surprise;
 use super::traits::WalkerTraits;
 use super::turns::{Turns, end_node};
 use super::walker::{Walker, WalkerMode, turns};
@@ -349,9 +348,8 @@ impl Streets<'_> {
         let here = place.beside(next.offset_m).truncate();
         let there = place.beside(sign * goal.distance_m).truncate();
         let dares = || {
-            let mut ego = self.gaps.free.iter().filter(|hazard| hazard.is_ego());
             jaywalk::can_stop(self.gaps.vehicles, self.driven, here, there)
-                && ego.all(|ego| surprise::leaves_time(ego, [here, there], pace_mps))
+                && self.gaps.leaves_time([here, there], pace_mps)
         };
         if on_way && !dares() {
             // Who could go when it began may not be able to any more.
