@@ -19,6 +19,12 @@ const ROOM_M: [f32; 3] = [0.12, 0.04, 0.0];
 /// Who leaves vehicles less than the most of that creeps by them, m/s, and takes up that speed in such a time, s.
 const CREEP_MPS: f32 = 1.5;
 const ADAPT_S: f32 = 0.5;
+/// The same beside the ego car and loose actors that are slower than this, m/s, for who leaves them less than so many metres
+/// and so many more for each m/s of their own.
+const CREEP_BESIDE_MPS: f32 = 0.7;
+const WAITS_MPS: f32 = 2.0;
+const BESIDE_M: f32 = 0.1;
+const BESIDE_S: f32 = 0.08;
 /// Who starts looks so far ahead, metres.
 const START_M: f32 = 0.12;
 /// Longer vehicles sweep over pavements, metres.
@@ -62,6 +68,7 @@ impl View<'_> {
         if brink.all().next().is_none() {
             return accel_mps2;
         }
+        let accel_mps2 = accel_mps2.min(self.beside_mps2(index, next, &brink));
         let turns = next.drift != 0 || next.drift_aim != 0;
         let free = |aim: i8, room_m: &[f32]| !self.touches(index, next, &brink, aim, room_m);
         if mps > SLOW_MPS {
@@ -81,12 +88,28 @@ impl View<'_> {
         }
     }
 
+    /// Acceleration by which a vehicle slows down beside whom it leaves little room; infinite where it need not, m/s².
+    fn beside_mps2(&self, index: usize, next: &Vehicle, brink: &Brink<'_>) -> f32 {
+        let mps = next.speed_mps;
+        let waits = |other: &&&Hazard| other.vehicle.is_none() && !other.walker && other.is_slower(WAITS_MPS);
+        let mut waiting = brink.others.iter().filter(waits).peekable();
+        if mps <= CREEP_BESIDE_MPS || waiting.peek().is_none() {
+            return f32::INFINITY;
+        }
+        let then = self.rolled(index, next, brink.ahead_m, next.drift_aim);
+        if waiting.any(|other| then.is_within(other, BESIDE_M + BESIDE_S * mps)) {
+            ((CREEP_BESIDE_MPS - mps) / ADAPT_S).max(-self.drivers[index].hardest_mps2)
+        } else {
+            f32::INFINITY
+        }
+    }
+
     fn brink(&self, index: usize, next: &Vehicle, heeds_ego: bool) -> Brink<'_> {
         let look_s = f32::from(DECIDE_TICKS) * TICK_S;
         let stop_s = next.speed_mps / self.drivers[index].hardest_mps2 + look_s;
         let ahead_m = START_M + next.speed_mps * 0.5 * (stop_s + look_s);
         let now = Hazard::of_body(&self.bodies[index]);
-        let reach_m = now.half.length() + ahead_m + ROOM_M[0];
+        let reach_m = now.half.length() + ahead_m + ROOM_M[0].max(BESIDE_M + BESIDE_S * next.speed_mps);
         let around = self.hazards.reaching(now.position, reach_m);
         let is_heeded = |h: &Hazard| heeds_ego || !h.is_ego();
         let other = |h: &&Hazard| h.vehicle != Some(index as u32) && h.is_level_with(now.position.z) && is_heeded(h);

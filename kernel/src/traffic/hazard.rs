@@ -90,7 +90,12 @@ impl Hazard {
 
     /// Whether it is a vehicle that stands.
     pub fn stands(&self) -> bool {
-        !self.walker && self.velocity.length_squared() < STANDS_MPS * STANDS_MPS
+        !self.walker && self.is_slower(STANDS_MPS)
+    }
+
+    /// Whether it is slower than so many m/s.
+    pub fn is_slower(&self, mps: f32) -> bool {
+        self.velocity.length_squared() < mps * mps
     }
 
     /// The same where it will be after so many seconds.

@@ -115,6 +115,46 @@ fn the_tail_of_a_bus_that_turns_stays_off_what_is_beside_it() {
     assert!(goes(near) < goes(far) && goes(far) > 0, "{moved_m:?}");
 }
 
+/// Cars that stand beside the inner side of a lorry's turn, ever nearer to it.
+#[test]
+fn who_leaves_a_standing_car_little_room_creeps_by() {
+    let network = bundled("city").expect("it is bundled");
+    let lanes = &network.lanes;
+    let turning = || (0..lanes.len() as u32).filter(|id| lanes[*id as usize].turn == Turn::Right);
+    let mut fastest_mps = [0.0_f32; 2];
+    for lane in turning().take(6) {
+        for step in 0..12 {
+            for (narrow_m, mps) in turn_beside_a_car(&network, lane, 0.2 * step as f32) {
+                let fastest = &mut fastest_mps[usize::from(narrow_m > 0.8)];
+                *fastest = fastest.max(mps);
+            }
+        }
+    }
+    let [narrow, wide] = fastest_mps;
+    assert!(narrow > 0.0 && narrow < 1.5 && wide > 4.0, "{fastest_mps:?} m/s");
+}
+
+/// The room that a lorry leaves to a car beside the end of its turn, tick by tick, and how fast it is then.
+fn turn_beside_a_car(network: &Arc<RoadNetwork>, lane: u32, aside_m: f32) -> Vec<(f32, f32)> {
+    let (inside, before) = (&network.lanes[lane as usize], network.lanes[lane as usize].predecessors[0]);
+    let flags = Vehicle::CROSSING;
+    let lorry = Vehicle { id: 1, kind: ActorKind::Truck, flags, lane, before, speed_mps: 4.0, ..Vehicle::standing() };
+    let mut traffic = with_vehicles(network, vec![lorry]);
+    let place = inside.straight_on(inside.length_m);
+    let ego = car_at(place.beside(2.4 + aside_m), inside.at(inside.length_m).heading_rad + core::f32::consts::PI);
+    let car = crate::traffic::hazard::Hazard::of(&ego);
+    let look = |tick| {
+        traffic.step(&Surroundings::calm(tick, ego));
+        let lorry = crate::traffic::hazard::Hazard::of_body(&traffic.bodies()[0]);
+        let room_m = (0..=20).map(|step| 0.05 * step as f32).find(|m| lorry.is_within(&car, *m));
+        (room_m.unwrap_or(f32::MAX), lorry.velocity.length())
+    };
+    let looks: Vec<_> = (1..=360).map(look).collect();
+    // Where the turn is too short it begins beside the car.
+    let comes = looks[0].0 > 1.0;
+    looks.into_iter().filter(|(room_m, _)| comes && (*room_m < 0.2 || (0.8..=1.0).contains(room_m))).collect()
+}
+
 /// Whether a bus touches the post within ten seconds, and how far it comes.
 fn turn_beside_a_post(network: &Arc<RoadNetwork>, lane: u32, before: u32, outer: f32, gap_m: f32) -> (bool, f32) {
     let flags = Vehicle::CROSSING;

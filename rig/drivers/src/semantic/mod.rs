@@ -130,7 +130,10 @@ impl SemanticBot {
         let scene = Scene { obstacle_m, after_turn_m, give_way_m, has_lights: self.has_lights };
         let vigour = self.temper.vigour();
         match self.squeeze.way() {
-            None => (steered, speed::wish(sight, arc, &dash, scene, vigour)),
+            None => {
+                let limit_mps = dash.limit_mps.min(self.squeeze.narrow_mps(steered));
+                (steered, speed::wish(sight, arc, &Dash { limit_mps, ..dash }, scene, vigour))
+            }
             Some(Way { arc, free_m }) => {
                 let slow = Dash { limit_mps: SQUEEZING_MPS, ..dash };
                 let obstacle_m = self.crosses_m(arc, SQUEEZING_MPS).into_iter().fold(free_m, f32::min);

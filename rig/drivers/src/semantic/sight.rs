@@ -43,6 +43,8 @@ pub fn on_ray((seen_x_m, seen_y_m): (f32, f32), x_m: f32) -> (f32, f32) {
 const BUMPER_M: f32 = 0.2;
 const HIGH_BUMPER_M: f32 = 0.35;
 const HIGH_FROM_M: f32 = 2.0;
+/// What is seen of a vehicle that the picture's lower edge cuts is its flank, at most so high above the ground, metres.
+const FLANK_M: f32 = 0.9;
 
 /// Where something stands whose lowest part hangs so high above the ground and hides a point of it.
 fn nearer((x_m, y_m): (f32, f32), hangs_m: f32) -> (f32, f32) {
@@ -77,6 +79,8 @@ pub struct Contact {
     pub y_m: f32,
     /// So high it is seen to be, metres: less than it is where the picture cuts it.
     pub height_m: f32,
+    /// The picture's lower edge cuts it: it may come nearer than it is seen.
+    pub is_cut: bool,
     /// A person, not a vehicle.
     pub is_person: bool,
     /// The pixel below it is asphalt or paint.
@@ -95,13 +99,18 @@ impl Contact {
         let bumper_m = if self.is_high() { HIGH_BUMPER_M } else { BUMPER_M };
         if self.is_person { hides } else { nearer(hides, bumper_m) }
     }
+
+    /// The nearest place where a vehicle may be that the picture cuts.
+    pub fn nearest(&self) -> Option<(f32, f32)> {
+        (self.is_cut && !self.is_person).then(|| nearer((self.x_m, self.y_m), FLANK_M))
+    }
 }
 
 #[cfg(test)]
 impl Contact {
     /// A car's, on the road, at a distance that is known.
     pub fn of_car((x_m, y_m): (f32, f32)) -> Self {
-        Self { x_m, y_m, depth_error_m: 0.0, height_m: 1.4, is_person: false, on_road: true }
+        Self { x_m, y_m, depth_error_m: 0.0, height_m: 1.4, is_cut: false, is_person: false, on_road: true }
     }
 }
 
@@ -256,7 +265,8 @@ impl<'a> Sight<'a> {
         let below = (row < self.mask.height).then(|| ground_of(self.tag(column, row)));
         let on_road = below.is_none_or(|ground| ground != Ground::Other);
         let y_m = self.column_y_m(column, x_m);
-        let contact = Contact { x_m, depth_error_m, y_m, height_m: seen_m, is_person, on_road };
+        let is_cut = row == self.mask.height;
+        let contact = Contact { x_m, depth_error_m, y_m, height_m: seen_m, is_cut, is_person, on_road };
         (is_tall_enough && x_m < FARTHEST_M).then_some(contact)
     }
 

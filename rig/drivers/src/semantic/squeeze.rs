@@ -22,6 +22,14 @@ const STEADY: f32 = 0.5;
 const BESIDE_VEHICLE_M: f32 = 0.3;
 const BESIDE_WALKER_M: f32 = 0.6;
 const NEXT_TO_M: f32 = 0.1;
+/// Beside what is nearer than this to the car's flanks, and to the way of its front so far ahead, metres, it drives the slower,
+/// the less room there is: so fast, m/s, where there is none, and so much faster for each metre, m/s.
+const NARROW_M: f32 = 0.5;
+const NARROW_AHEAD_M: f32 = 2.0;
+const NARROW_MPS: f32 = 0.8;
+const NARROW_PER_S: f32 = 4.0;
+/// Arcs sharper than this turn to a side, 1/m.
+const TURNS_TO: f32 = 0.01;
 /// Room before the car that makes an arc a way by, metres.
 const FREE_M: f32 = 5.5;
 /// Who moves faster than this, within this distance, is let pass first, m/s and metres.
@@ -33,10 +41,12 @@ const FORGOTTEN_S: f32 = 45.0;
 /// Who moves is this near to where it was seen, metres.
 const ONE_BODY_M: f32 = 3.0;
 
-/// Where somebody's lowest part is, the ground that it hides, and how long ago that was seen.
+/// Where somebody's lowest part is, the nearest place where what the picture cuts may be, the ground that is hidden, and how
+/// long ago that was seen.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
     at: Point,
+    nearest: Option<Point>,
     hides: Point,
     is_person: bool,
     unseen_s: f32,
@@ -45,17 +55,40 @@ struct Spot {
 impl Spot {
     fn of(contact: &Contact) -> Self {
         let hides = (contact.x_m, contact.y_m);
-        Self { at: contact.lowest(), hides, is_person: contact.is_person, unseen_s: 0.0 }
+        Self { at: contact.lowest(), nearest: contact.nearest(), hides, is_person: contact.is_person, unseen_s: 0.0 }
     }
 
-    /// Metres before the front of the car along an arc until it would touch it; none if it would not.
-    fn touches_m(&self, arc: Arc) -> Option<f32> {
-        let (s_m, left_m) = arc.project(self.at.0, self.at.1);
-        let beside_m = if self.is_person { BESIDE_WALKER_M } else { BESIDE_VEHICLE_M };
-        let room_m = left_m.abs() - if s_m < FRONT_M { HALF_WIDTH_M } else { arc.swept_m(left_m) };
-        let least_m = if s_m < FRONT_M { NEXT_TO_M } else { beside_m };
-        (self.at.0 > 0.0 && room_m < least_m).then_some((s_m - FRONT_M).max(0.0))
+    /// Carries it along while the car moves.
+    fn carry(&mut self, moved: Moved) {
+        (self.at, self.hides) = (moved.shift(self.at), moved.shift(self.hides));
+        self.nearest = self.nearest.map(|at| moved.shift(at));
     }
+
+    /// Metres before the front of the car along an arc until it would touch it; none if it would not. A turn towards what
+    /// the picture cuts has to clear all of that.
+    fn touches_m(&self, arc: Arc) -> Option<f32> {
+        let beside_m = if self.is_person { BESIDE_WALKER_M } else { BESIDE_VEHICLE_M };
+        let touches = |at: Point| {
+            let (s_m, room_m) = room_m(arc, at);
+            let least_m = if s_m < FRONT_M { NEXT_TO_M } else { beside_m };
+            (at.0 > 0.0 && room_m < least_m).then_some((s_m - FRONT_M).max(0.0))
+        };
+        let turned_to = self.nearest.filter(|at| arc.curvature * at.1.signum() > TURNS_TO);
+        touches(self.at).into_iter().chain(turned_to.and_then(touches)).reduce(f32::min)
+    }
+
+    /// How fast the car drives by on an arc, m/s.
+    fn narrow_mps(&self, arc: Arc) -> f32 {
+        let (s_m, room_m) = room_m(arc, self.at);
+        let is_beside = !self.is_person && self.at.0 > 0.0 && s_m < FRONT_M + NARROW_AHEAD_M && room_m < NARROW_M;
+        if is_beside { NARROW_MPS + NARROW_PER_S * room_m.max(0.0) } else { f32::INFINITY }
+    }
+}
+
+/// Metres along an arc to a place, and of room between that and the car.
+fn room_m(arc: Arc, at: Point) -> (f32, f32) {
+    let (s_m, left_m) = arc.project(at.0, at.1);
+    (s_m, left_m.abs() - if s_m < FRONT_M { HALF_WIDTH_M } else { arc.swept_m(left_m) })
 }
 
 /// A way beside what stands there.
@@ -87,9 +120,7 @@ impl Squeeze {
 
     /// Carries what is known along while the car moves; `waits` for something that stands in its way.
     pub fn carry(&mut self, moved: Moved, waits: bool) {
-        for spot in self.seen.iter_mut().chain(&mut self.gone) {
-            (spot.at, spot.hides) = (moved.shift(spot.at), moved.shift(spot.hides));
-        }
+        self.seen.iter_mut().chain(&mut self.gone).for_each(|spot| spot.carry(moved));
         self.gone.iter_mut().for_each(|spot| spot.unseen_s += TICK_S);
         self.gone.retain(|spot| spot.at.0 > 0.0 && spot.unseen_s < FORGOTTEN_S);
         self.since_look_m += moved.forward_m;
@@ -129,6 +160,11 @@ impl Squeeze {
     /// Metres before the front of the car along an arc until it would touch what left the picture; none if it would not.
     pub fn beside_m(&self, arc: Arc) -> Option<f32> {
         self.gone.iter().filter_map(|spot| spot.touches_m(arc)).reduce(f32::min)
+    }
+
+    /// How fast the car drives along an arc beside what stands next to it, seen or no more, m/s.
+    pub fn narrow_mps(&self, arc: Arc) -> f32 {
+        self.seen.iter().chain(&self.gone).map(|spot| spot.narrow_mps(arc)).fold(f32::INFINITY, f32::min)
     }
 
     fn best(&self, sight: &Sight<'_>, wanted: Arc) -> Option<Way> {
@@ -291,6 +327,27 @@ mod tests {
         assert_eq!([STRAIGHT, Arc { curvature: -0.15 }].map(|arc| squeeze.beside_m(arc)), [None; 2]);
         (0..(FORGOTTEN_S / TICK_S) as usize + 2).for_each(|_| squeeze.carry(STILL, true));
         assert_eq!(squeeze.beside_m(left), None);
+    }
+
+    #[test]
+    fn it_creeps_by_what_is_next_to_it_in_sight_or_not() {
+        let beside = |room_m: f32| left_behind(Contact::of_car((6.2, HALF_WIDTH_M + room_m)), &[]).narrow_mps(STRAIGHT);
+        let [none, near, some, wide] = [0.0, 0.6, 0.9, 1.4].map(beside);
+        // The bumper is nearer than the ground that it hides.
+        assert!(none == NARROW_MPS && (1.0..2.5).contains(&near) && near < some, "{none} {near} {some}");
+        assert_eq!(wide, f32::INFINITY);
+        let mut squeeze = Squeeze::default();
+        on_asphalt(|sight| squeeze.look(sight, &[Contact::of_car((FRONT_M + 5.0, 1.2))], &[], STRAIGHT));
+        assert_eq!(squeeze.narrow_mps(STRAIGHT), f32::INFINITY, "not there yet");
+    }
+
+    /// The flank of a vehicle beside the car hides the ground beyond it.
+    #[test]
+    fn what_the_picture_cuts_may_come_nearer() {
+        let at = |is_cut: bool| Contact { is_cut, ..Contact::of_car((4.2, 2.6)) };
+        let left = Arc { curvature: 0.1 };
+        let touches = |is_cut: bool| Spot::of(&at(is_cut)).touches_m(left);
+        assert!(touches(true).is_some() && touches(false).is_none(), "{:?} {:?}", touches(true), touches(false));
     }
 
     #[test]
