@@ -62,10 +62,11 @@ fn lacking(path: &Path, error: &LoadDynamicError) -> String {
         }
         _ => format!("{path} is no library of onnxruntime"),
     };
-    line(&format!(
-        "{what}; get it with `pip install onnxruntime` and set {LIBRARY} to the {DLL_PREFIX}onnxruntime{DLL_SUFFIX}* in the \
-         package's folder capi"
-    ))
+    let named = format!("{DLL_PREFIX}onnxruntime{DLL_SUFFIX}");
+    let what = line(&what);
+    format!(
+        "{what}; get it with `pip install onnxruntime` and set {LIBRARY} to the {named}* in the package's folder capi"
+    )
 }
 
 fn reason<T>(error: ort::Error<T>) -> String {
