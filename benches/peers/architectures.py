@@ -1,4 +1,4 @@
-"""Exports networks of many architectures with random weights to ONNX, to be timed and compared (`engines.py`).
+"""Exports networks of many architectures with random weights to ONNX, to be timed and compared (`engines.sh`).
 
 Usage: architectures.py FOLDER [WIDTH HEIGHT]
 
@@ -342,13 +342,14 @@ def calibrate(body, width, height):
     for module in body.modules():
         if isinstance(module, (nn.Conv2d, nn.ConvTranspose2d, nn.Linear)):
             nn.init.kaiming_normal_(module.weight, nonlinearity="relu")
-    pictures = [picture(width, height, seed) for seed in range(3)]
+    pictures = [picture(width, height, seed) for seed in range(6)]
     body.train()
     for module in body.modules():
         if isinstance(module, nn.BatchNorm2d):
             module.momentum = None
-    for image in pictures:
-        body(image.repeat(2, 1, 1, 1) if not isinstance(body, SegFormer) else image)
+    # Together where the network takes several: what is a mean of a picture differs between them only.
+    for images in pictures if isinstance(body, SegFormer) else [torch.cat(pictures)]:
+        body(images)
     body.eval()
     scores = torch.cat([body(image).transpose(0, 1).reshape(CLASSES, -1) for image in pictures], 1)
     mean, std = scores.mean(1), scores.std(1).clamp(min=1e-6)

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::onnx::Output;
+use crate::onnx::{ONNX_RUNTIME, Output};
 
 /// What computes a network.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -13,17 +13,21 @@ pub enum Compute {
     /// An NVIDIA GPU, through the driver (API 13.0 or later) and the libraries of CUDA and cuDNN, which
     /// are looked for when it is asked for. Operators without a kernel there are computed on the CPU.
     Cuda,
+    /// The library of onnxruntime, which is looked for when it is asked for: on one core, or on an NVIDIA GPU where both the
+    /// library and the machine have what that takes.
+    OnnxRuntime,
 }
 
 impl Compute {
     /// Every one.
-    pub const ALL: [Self; 2] = [Self::Cpu, Self::Cuda];
+    pub const ALL: [Self; 3] = [Self::Cpu, Self::Cuda, Self::OnnxRuntime];
 
     /// Its name on the command line and in recordings.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cpu => "cpu",
             Self::Cuda => "cuda",
+            Self::OnnxRuntime => ONNX_RUNTIME,
         }
     }
 }
@@ -33,7 +37,7 @@ impl FromStr for Compute {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let known = Self::ALL.into_iter().find(|compute| compute.name() == name);
-        known.ok_or_else(|| "expected cpu or cuda".into())
+        known.ok_or_else(|| "expected cpu, cuda or ort".into())
     }
 }
 
@@ -75,7 +79,7 @@ mod tests {
         for compute in Compute::ALL {
             assert_eq!(compute.name().parse(), Ok(compute));
         }
-        assert!("gpu".parse::<Compute>().unwrap_err().contains("expected cpu or cuda"));
+        assert!("gpu".parse::<Compute>().unwrap_err().contains("expected cpu, cuda or ort"));
     }
 
     #[test]

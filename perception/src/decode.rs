@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use crate::metadata::ScoreKind;
+use crate::onnx::Output;
 use crate::simd::vectorised;
 use crate::taps::{Enlarge, Taps};
 
@@ -97,6 +98,17 @@ impl Decoder {
         let columns = spans(grid.width, width, how);
         let rows = spans(grid.height, height, how);
         Self { grid, width, height, columns, rows }
+    }
+
+    /// An output whose scores lie as this one's in planes, the order in which devices are compared.
+    pub fn in_planes(&self, output: Output) -> Output {
+        match output {
+            Output::Scores(scores) if self.grid.interleaved => {
+                let plane = |channel| scores.iter().skip(channel).step_by(self.grid.channels).copied();
+                Output::Scores((0..self.grid.channels).flat_map(plane).collect())
+            }
+            other => other,
+        }
     }
 
     /// The index of the highest score at every pixel; the lowest index where several are equal.
@@ -294,6 +306,21 @@ mod tests {
             }
         }
         sums
+    }
+
+    #[test]
+    fn scores_are_compared_in_one_order() {
+        let grid = |interleaved| Grid { channels: 3, width: 5, height: 2, interleaved };
+        let ordered = |interleaved| {
+            let grid = grid(interleaved);
+            let decoder = Decoder::new(grid, 10, 4, Enlarge::HalfPixel);
+            match decoder.in_planes(Output::Scores(scores(&grid, 7))) {
+                Output::Scores(scores) => scores,
+                Output::Ids(ids) => panic!("{ids:?} are no scores"),
+            }
+        };
+        assert_eq!(ordered(true), ordered(false));
+        assert_eq!(ordered(false), scores(&grid(false), 7));
     }
 
     #[test]

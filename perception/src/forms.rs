@@ -48,7 +48,7 @@ fn ending(toy: &Toy, nodes: Vec<pb::NodeProto>) -> pb::ModelProto {
 }
 
 /// A network for several pictures at a time; whether one also does is up to `baked`, a node behind its scores.
-fn several(toy: &Toy, pictures: i64, baked: bool) -> pb::ModelProto {
+pub fn several(toy: &Toy, pictures: i64, baked: bool) -> pb::ModelProto {
     let reshape = node("Reshape", &["coarse", "shape"], "scores", vec![]);
     let mut model = if baked { ending(toy, vec![reshape]) } else { toy.model() };
     toy::set_dim(&mut graph(&mut model).input[0], 0, pictures);

@@ -12,6 +12,8 @@ pub mod cityscapes;
 pub mod classes;
 mod compute;
 mod decode;
+#[cfg(test)]
+mod devices;
 mod ends;
 mod error;
 #[cfg(test)]
@@ -50,4 +52,5 @@ pub use error::PerceptionError;
 pub use image::{Mask, RgbView};
 pub use metadata::{Channels, Layout, Metadata, Normalisation, ScoreKind};
 pub use metrics::{ConfusionMatrix, Scores};
+pub use onnx::environment as onnxruntime;
 pub use segmenter::Segmenter;

@@ -161,8 +161,9 @@ mod tests {
         };
         assert_eq!(of(None).unwrap(), Compute::Cpu);
         assert_eq!(of(Some("cuda")).unwrap(), Compute::Cuda);
+        assert_eq!(of(Some("ort")).unwrap(), Compute::OnnxRuntime);
         let said = of(Some("abacus")).unwrap_err().to_string();
-        assert_eq!(said, "provenance \"inference\" is \"abacus\"; expected cpu or cuda");
+        assert_eq!(said, "provenance \"inference\" is \"abacus\"; expected cpu, cuda or ort");
     }
 
     #[test]

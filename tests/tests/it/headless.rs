@@ -10,8 +10,9 @@ const OUTSIDE: [&str; 11] =
     ["libudev", "gilrs", "evdev", "x11", "xkbcommon", "winit", "egui", "wayland", "cudarc", "tract-cuda", "tract-gpu"];
 
 /// Bindings, as `-sys` at the end of a name says, that need nothing installed: system calls, types alone, libraries
-/// that are compiled along, and what OpenGL looks for when it starts.
-const SELF_CONTAINED: [&str; 5] = ["libsqlite3-sys", "linux-raw-sys", "renderdoc-sys", "wayland-sys", "zstd-sys"];
+/// that are compiled along, and what OpenGL and onnxruntime look for when they are asked for.
+const SELF_CONTAINED: [&str; 6] =
+    ["libsqlite3-sys", "linux-raw-sys", "ort-sys", "renderdoc-sys", "wayland-sys", "zstd-sys"];
 
 /// Packages that are compiled for one of the workspace on this machine, by name.
 fn packages(package: &str, features: &[&str]) -> BTreeSet<String> {

@@ -38,13 +38,14 @@ const ONLOOKERS: [&str; 2] = ["tests", "benches"];
 const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows/", "rig/live/src/view/windows/"];
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str]); 19] = [
+const NAMED_ONCE: [(&str, &[&str]); 20] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
     ("roxmltree::", &["kernel/src/baking/limits/", "kernel/src/story/reader/"]),
     ("gltf::", &["rig/base/src/models/"]),
     ("tract_onnx", &["perception/src/onnx/", "perception/src/operators/"]),
     ("tract_cuda", &["perception/src/onnx/"]),
+    ("use ort::", &["perception/src/onnx/onnxruntime.rs"]),
     ("bincode::", &["replay/src/wire.rs"]),
     ("rusqlite::", &["rig/lab/src/cases/"]),
     ("cdr_encoding::", &["rig/lab/src/export/ros2/"]),

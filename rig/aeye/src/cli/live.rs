@@ -120,9 +120,9 @@ pub struct PictureArgs {
     /// How the pictures are made.
     #[command(flatten)]
     pub imaging: ImagingArgs,
-    /// What computes the networks: one core of the CPU, or an NVIDIA GPU with the libraries of CUDA 13 and
-    /// cuDNN, if it sees in a picture what the CPU sees.
-    #[arg(long, default_value = "cpu", value_name = "cpu|cuda")]
+    /// What computes the networks: one core of the CPU; an NVIDIA GPU with the libraries of CUDA 13 and
+    /// cuDNN; or the library of onnxruntime (`ORT_DYLIB_PATH`). The latter two must see in a picture what the CPU sees.
+    #[arg(long, default_value = "cpu", value_name = "cpu|cuda|ort")]
     pub inference: Compute,
     /// Monitors that the safety driver's view is spread over: 3 show 60 degrees each, every one of
     /// `--image-size`.

@@ -138,7 +138,7 @@ fn measure(args: &DoctorArgs, findings: &mut Findings) -> anyhow::Result<()> {
     for compute in Compute::ALL {
         let opened = Eye::open_on(compute, &args.checkpoint, args.pictures.mask_size);
         let mut eye = match opened {
-            // Drives can do without a GPU.
+            // Drives can do without a GPU and onnxruntime.
             Err(error) if compute != Compute::Cpu => {
                 findings.notes.push(sentence(&error));
                 continue;
