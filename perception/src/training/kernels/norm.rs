@@ -57,9 +57,8 @@ pub(in crate::training) fn backward(
 ) -> Derivatives {
     let channels = scale.len();
     let (factor, summand) = affine(moments, scale, shift);
-    let masked = relu.then(|| mask(x, &factor, &summand, dy));
-    let dy = masked.as_deref().unwrap_or(dy);
-    let (sum_dy, sum_dy_x) = pair_sums(dy, x, channels);
+    let floor = if relu { 0.0 } else { f32::NEG_INFINITY };
+    let (sum_dy, sum_dy_x) = passed_sums(dy, x, &factor, &summand, floor);
 
     // With n = (x - mean) / deviation: dx = factor * (dy - mean(dy) - n * mean(dy * n)).
     let rows = (x.len() / channels) as f64;
@@ -80,9 +79,9 @@ pub(in crate::training) fn backward(
         || {
             let rows = x.chunks_exact(channels).zip(dy.chunks_exact(channels));
             for ((x, dy), dx) in rows.zip(derivatives.x.chunks_exact_mut(channels)) {
-                let constants = factor.iter().zip(&slope).zip(&offset);
-                for (((dx, x), dy), ((f, s), o)) in dx.iter_mut().zip(x).zip(dy).zip(constants) {
-                    *dx = f * (dy - o - x * s);
+                let constants = factor.iter().zip(&summand).zip(&slope).zip(&offset);
+                for (((dx, x), dy), (((f, b), s), o)) in dx.iter_mut().zip(x).zip(dy).zip(constants) {
+                    *dx = f * (passed(*dy, *x, (*f, *b), floor) - o - x * s);
                 }
             }
         },
@@ -90,26 +89,53 @@ pub(in crate::training) fn backward(
     derivatives
 }
 
-/// `dy` where the rectifier let through.
-fn mask(x: &[f32], factor: &[f32], summand: &[f32], dy: &[f32]) -> Vec<f32> {
-    let mut masked = vec![0.0; dy.len()];
-    vectorised(
+/// The derivative of what a rectifier let through. Without one the floor is so low that all goes through.
+#[inline(always)]
+fn passed(dy: f32, x: f32, (factor, summand): (f32, f32), floor: f32) -> f32 {
+    if x * factor + summand > floor { dy } else { 0.0 }
+}
+
+/// For every channel the sum of the derivatives that a rectifier let through, and of their products with `x`.
+fn passed_sums(dy: &[f32], x: &[f32], factor: &[f32], summand: &[f32], floor: f32) -> (Vec<f64>, Vec<f64>) {
+    block_sums(
+        dy,
+        x,
+        factor.len(),
         #[inline(always)]
-        || {
-            let channels = factor.len();
-            let rows = x.chunks_exact(channels).zip(dy.chunks_exact(channels));
-            for ((x, dy), out) in rows.zip(masked.chunks_exact_mut(channels)) {
-                for ((((out, x), dy), f), s) in out.iter_mut().zip(x).zip(dy).zip(factor).zip(summand) {
-                    *out = if x * f + s > 0.0 { *dy } else { 0.0 };
-                }
+        |dy, x, sum, product| {
+            let constants = factor.iter().zip(summand);
+            for ((((sum, product), dy), x), (f, s)) in sum.iter_mut().zip(product).zip(dy).zip(x).zip(constants) {
+                let dy = passed(*dy, *x, (*f, *s), floor);
+                *sum += dy;
+                *product += dy * x;
             }
         },
-    );
-    masked
+    )
 }
 
 /// For every channel the sum of `a` and the sum of `a * b`.
 fn pair_sums(a: &[f32], b: &[f32], channels: usize) -> (Vec<f64>, Vec<f64>) {
+    block_sums(
+        a,
+        b,
+        channels,
+        #[inline(always)]
+        |a, b, sum, product| {
+            for (((sum, product), a), b) in sum.iter_mut().zip(product).zip(a).zip(b) {
+                *sum += a;
+                *product += a * b;
+            }
+        },
+    )
+}
+
+/// Two sums for every channel of what `add` makes of each pair of rows.
+fn block_sums(
+    a: &[f32],
+    b: &[f32],
+    channels: usize,
+    add: impl Fn(&[f32], &[f32], &mut [f32], &mut [f32]),
+) -> (Vec<f64>, Vec<f64>) {
     let (mut sums, mut products) = (vec![0.0; channels], vec![0.0; channels]);
     let (mut sum, mut product) = (vec![0.0; channels], vec![0.0; channels]);
     for (a, b) in a.chunks(BLOCK * channels).zip(b.chunks(BLOCK * channels)) {
@@ -119,10 +145,7 @@ fn pair_sums(a: &[f32], b: &[f32], channels: usize) -> (Vec<f64>, Vec<f64>) {
             #[inline(always)]
             || {
                 for (a, b) in a.chunks_exact(channels).zip(b.chunks_exact(channels)) {
-                    for (((sum, product), a), b) in sum.iter_mut().zip(&mut product).zip(a).zip(b) {
-                        *sum += a;
-                        *product += a * b;
-                    }
+                    add(a, b, &mut sum, &mut product);
                 }
             },
         );
