@@ -201,7 +201,7 @@ fn lesson(random: &mut Random) -> (Vec<f32>, Vec<u8>) {
         let squares: Vec<u64> = (0..SIDE * SIDE / 64).map(|_| random.next_u64()).collect();
         for (y, x) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (y, x))) {
             let square = squares[y / 8 * (SIDE / 8) + x / 8];
-            let label = if square % 10 == 0 { IGNORE } else { (square >> 8) as u8 % CLASSES as u8 };
+            let label = if square.is_multiple_of(10) { IGNORE } else { (square >> 8) as u8 % CLASSES as u8 };
             let colour = |c: usize| whole[c] + (square >> (16 + 8 * c) & 0xff) as f32 / 64.0 - 2.0;
             pictures.extend((0..3).map(|c| colour(c) + 0.3 * random.normal()));
             labels.push(label);

@@ -43,7 +43,7 @@ pub(super) fn tall(users: &[RoadUser], matrix: &ConfusionMatrix) -> Vec<Tall> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::eval::road_users;
+    use super::super::road_users::road_users;
 
     const ROAD: u8 = 7;
     const PERSON: u8 = 4;
