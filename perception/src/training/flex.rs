@@ -70,7 +70,7 @@ impl Kernels for Flex {
         let is_plain = dy.as_slice::<f32>().is_some_and(|values| values.len() == dy.storage::<f32>().len());
         let mut dx = if is_plain { dy } else { tensor(Self::read(&dy), cols) };
         let dy = dx.storage_mut::<f32>();
-        let run = |x: &[f32], scale: &[f32], shift: &[f32]| norm::backward(x, moments, scale, shift, dy, n.relu);
+        let mut run = |x: &[f32], scale: &[f32], shift: &[f32]| norm::backward(x, moments, scale, shift, dy, n.relu);
         let d = with(&n.x, |x| with(&n.scale, |scale| with(&n.shift, |shift| run(x, scale, shift))));
         [dx, tensor(d.scale, cols), tensor(d.shift, cols)]
     }
