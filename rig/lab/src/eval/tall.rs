@@ -42,8 +42,8 @@ pub(super) fn tall(users: &[RoadUser], matrix: &ConfusionMatrix) -> Vec<Tall> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use super::super::road_users::road_users;
+    use super::*;
 
     const ROAD: u8 = 7;
     const PERSON: u8 = 4;
