@@ -10,7 +10,7 @@ use prost::Message;
 use super::network::{Graph, Kernel, Resample, Size, fast_scnn};
 use super::resample;
 use super::weights::{Parameter, Weights};
-use super::{kernels::norm, pictures};
+use super::{kernels::norm, light};
 use crate::checkpoint::RECIPE_KEY;
 use crate::classes::TRAIN_CLASSES;
 use crate::metadata::{Channels, Layout, Metadata};
@@ -36,7 +36,7 @@ fn props(recipe: &str) -> Result<BTreeMap<String, String>, PerceptionError> {
         classes: ClassMap::from_names(&TRAIN_CLASSES.map(|c| c.name))?,
         output: None,
         channels: Channels::Rgb,
-        normalisation: Some(pictures::NORMALISATION),
+        normalisation: Some(light::NORMALISATION),
         layout: Some(Layout::Nchw),
         scores: None,
         align_corners: false,

@@ -64,12 +64,15 @@ impl Kernels for Flex {
         })
     }
 
-    fn norm_backward(n: &Norm<Self>, moments: &Moments, dy: &FloatTensor<Self>) -> [FloatTensor<Self>; 3] {
+    fn norm_backward(n: &Norm<Self>, moments: &Moments, dy: FloatTensor<Self>) -> [FloatTensor<Self>; 3] {
         let cols = cols(&n.x);
-        let run =
-            |x: &[f32], scale: &[f32], shift: &[f32], dy: &[f32]| norm::backward(x, moments, scale, shift, dy, n.relu);
-        let d = with(&n.x, |x| with(&n.scale, |scale| with(&n.shift, |shift| with(dy, |dy| run(x, scale, shift, dy)))));
-        [d.x, d.scale, d.shift].map(|values| tensor(values, cols))
+        // Storage may be more than the tensor, or in another order.
+        let is_plain = dy.as_slice::<f32>().is_some_and(|values| values.len() == dy.storage::<f32>().len());
+        let mut dx = if is_plain { dy } else { tensor(Self::read(&dy), cols) };
+        let dy = dx.storage_mut::<f32>();
+        let mut run = |x: &[f32], scale: &[f32], shift: &[f32]| norm::backward(x, moments, scale, shift, dy, n.relu);
+        let d = with(&n.x, |x| with(&n.scale, |scale| with(&n.shift, |shift| run(x, scale, shift))));
+        [dx, tensor(d.scale, cols), tensor(d.shift, cols)]
     }
 
     fn cross_entropy(logits: &FloatTensor<Self>, size: Size, target: Target<'_>) -> (f64, FloatTensor<Self>) {

@@ -9,26 +9,35 @@ mod adam;
 mod dataset;
 mod export;
 mod flex;
+#[cfg(test)]
+mod gradient;
 mod kernels;
+mod light;
 mod network;
 mod options;
+mod people;
 mod pictures;
 mod progress;
 mod random;
 mod resample;
 mod run;
+mod sampling;
 mod state;
 mod tape;
+mod view;
 mod weights;
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
 pub use dataset::{Frame, Split, check_train_ids, image_paths};
+pub use light::Looks;
 pub use network::LOGIT_STRIDE;
-pub use options::TrainOptions;
+pub use options::{Preset, TrainOptions};
+pub use people::{Person, people};
 pub use pictures::CLASS_WEIGHT_OFFSET;
 pub use progress::{EpochReport, Progress, Trained};
+pub use sampling::Sampling;
 
 use crate::{Checkpoint, PerceptionError};
 

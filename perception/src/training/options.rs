@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::light::Looks;
+use super::sampling::Sampling;
 use super::{adam, network};
 use crate::PerceptionError;
 
@@ -26,11 +28,60 @@ pub struct TrainOptions {
     /// epoch. Without it all epochs are done, and the last one's network is kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patience: Option<u32>,
+    /// How pictures are changed beyond what every training does.
+    #[serde(default, skip_serializing_if = "Looks::is_none")]
+    pub looks: Looks,
+    /// How what is rare is shown more often.
+    #[serde(default, skip_serializing_if = "Sampling::is_none")]
+    pub sampling: Sampling,
+}
+
+/// Looks and sampling under a name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Preset {
+    /// Neither, as the bundled networks were trained.
+    #[default]
+    Plain,
+    /// People and what else is rare more often, under many looks.
+    People,
+}
+
+impl Preset {
+    /// Every one.
+    pub const ALL: [Self; 2] = [Self::Plain, Self::People];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::People => "people",
+        }
+    }
+
+    /// What it stands for.
+    pub fn choice(self) -> (Looks, Sampling) {
+        match self {
+            Self::Plain => (Looks::default(), Sampling::default()),
+            Self::People => (Looks::WIDE, Sampling::PEOPLE),
+        }
+    }
 }
 
 impl Default for TrainOptions {
     fn default() -> Self {
-        Self { horizon: 30, seed: 1, width: 256, height: 128, batch: 12, replicas: 2, rate: 2e-3, patience: None }
+        let (looks, sampling) = Preset::default().choice();
+        Self {
+            horizon: 30,
+            seed: 1,
+            width: 256,
+            height: 128,
+            batch: 12,
+            replicas: 2,
+            rate: 2e-3,
+            patience: None,
+            looks,
+            sampling,
+        }
     }
 }
 
@@ -57,6 +108,26 @@ impl TrainOptions {
         if patience == Some(0) {
             return refuse("a patience of 0 epochs; expected at least 1".into());
         }
-        Ok(())
+        match self.looks.refused().or_else(|| self.sampling.refused()) {
+            Some(reason) => refuse(reason),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_of_before_there_were_looks_and_sampling_are_read_and_written_as_they_were() {
+        let text = r#"{"horizon":30,"seed":1,"width":256,"height":128,"batch":12,"replicas":2,"rate":0.002}"#;
+        let read: TrainOptions = serde_json::from_str(text).unwrap();
+        assert_eq!(read, TrainOptions::default());
+        assert_eq!(serde_json::to_string(&read).unwrap(), text);
+        let (looks, sampling) = Preset::People.choice();
+        let people = TrainOptions { looks, sampling, ..read };
+        let again: TrainOptions = serde_json::from_str(&serde_json::to_string(&people).unwrap()).unwrap();
+        assert_eq!(again, people);
     }
 }

@@ -1,13 +1,13 @@
 //! Batches: which frames, seen how.
 
-use super::dataset::Frame;
+use super::dataset::{Frame, Split};
+use super::light::Look;
+use super::options::TrainOptions;
+use super::people::without_small;
 use super::random::Random;
+use super::sampling::Rarity;
+use super::view::{Place, View, window};
 use crate::classes::IGNORE;
-use crate::metadata::Normalisation;
-
-/// How bytes become the network's input: the usual means and deviations of photographs.
-pub(super) const NORMALISATION: Normalisation =
-    Normalisation { mean: [0.485, 0.456, 0.406], std: [0.229, 0.224, 0.225] };
 
 /// Bounds the weights of rare classes: they count four times as much as one with a third of all
 /// pixels. IoU is highest where a class is predicted from a probability of `IoU / (1 + IoU)` on,
@@ -15,12 +15,8 @@ pub(super) const NORMALISATION: Normalisation =
 /// whose 1.02 makes it 15 times.
 pub const CLASS_WEIGHT_OFFSET: f64 = 1.1;
 
-/// Largest change of contrast, and of each colour's share, as a fraction.
-const CONTRAST: f32 = 0.2;
 /// Half of the pictures are windows enlarged up to so many times.
 const LARGEST_ZOOM: f32 = 2.0;
-/// Largest change of brightness, as a fraction of the range.
-const BRIGHTNESS: f32 = 0.1;
 
 /// Pictures as the network takes them, with their labels.
 pub(super) struct Pictures {
@@ -30,74 +26,49 @@ pub(super) struct Pictures {
     pub(super) labels: Vec<u8>,
 }
 
-/// Frames flipped, enlarged and recoloured at random.
-pub(super) fn augmented<'a>(
-    frames: impl Iterator<Item = &'a Frame>,
-    (width, height): (usize, usize),
+/// Frames of a split, given by their numbers, flipped, enlarged, recoloured and worsened at random.
+pub(super) fn augmented(
+    split: &Split,
+    share: &[usize],
+    (options, rarity): (&TrainOptions, &Rarity),
     random: &mut Random,
 ) -> Pictures {
     let mut pictures = Pictures { values: Vec::new(), labels: Vec::new() };
-    for frame in frames {
-        let zoom = if random.unit() < 0.5 { 1.0 } else { 1.0 + (LARGEST_ZOOM - 1.0) * random.unit() };
-        let mut columns = window(width, zoom, random);
-        let rows = window(height, zoom, random);
-        if random.unit() < 0.5 {
-            columns.reverse();
-        }
-        let table = recoloured(random);
-        for (row, column) in rows.iter().flat_map(|row| columns.iter().map(move |column| (row, column))) {
-            pictures.values.extend((0..3).map(|c| {
-                let value = |y: usize, x: usize| table[c][usize::from(frame.rgb[(y * width + x) * 3 + c])];
-                row.mix(|y| column.mix(|x| value(y, x)))
-            }));
-            pictures.labels.push(frame.labels[row.nearest() * width + column.nearest()]);
-        }
+    for frame in share {
+        pictures.add(&split.frames[*frame], (split.width, split.height), (options, rarity), random);
     }
     pictures
 }
 
-/// Where a line of an enlarged picture comes from: a line, the next one's share, and the next one.
-#[derive(Clone, Copy)]
-struct Source {
-    low: usize,
-    high: usize,
-    share: f32,
-}
-
-impl Source {
-    fn mix(self, value: impl Fn(usize) -> f32) -> f32 {
-        let low = value(self.low);
-        if self.share == 0.0 { low } else { low + self.share * (value(self.high) - low) }
+impl Pictures {
+    fn add(
+        &mut self,
+        frame: &Frame,
+        (from_width, from_height): (usize, usize),
+        (options, rarity): (&TrainOptions, &Rarity),
+        random: &mut Random,
+    ) {
+        let TrainOptions { width, height, looks, sampling, .. } = options;
+        // Pixels of a picture that shows the whole frame over those of the frame.
+        let whole = *width as f32 / from_width as f32;
+        let is_round = sampling.round_rare > 0.0 && random.unit() < sampling.round_rare;
+        let zoom = if !is_round && random.unit() < 0.5 { 1.0 } else { 1.0 + (LARGEST_ZOOM - 1.0) * random.unit() };
+        let scale = zoom * whole;
+        let middle = is_round.then(|| rarity.middle(frame, from_width, scale, sampling.tall_px, random)).flatten();
+        let [across, down] = middle.map_or([Place::Random; 2], |(x, y)| [Place::Round(x), Place::Round(y)]);
+        let mut columns = window((from_width, *width), zoom, across, random);
+        let rows = window((from_height, *height), zoom, down, random);
+        if random.unit() < 0.5 {
+            columns.reverse();
+        }
+        let look = Look::draw(looks, random);
+        let view = View { rows: &rows, columns: &columns, width: from_width };
+        let start = self.values.len();
+        view.picture(&frame.rgb, &look.table(random), &mut self.values);
+        look.apply(&mut self.values[start..], *width, random);
+        let labels = without_small(&frame.labels, &frame.people, scale, sampling.least_px);
+        view.labels(labels.as_deref().unwrap_or(&frame.labels), &mut self.labels);
     }
-
-    fn nearest(self) -> usize {
-        if self.share < 0.5 { self.low } else { self.high }
-    }
-}
-
-/// A random window of a `zoom`th of an axis of `n` pixels, stretched over the whole.
-fn window(n: usize, zoom: f32, random: &mut Random) -> Vec<Source> {
-    let start = random.unit() * n as f32 * (1.0 - 1.0 / zoom);
-    let source = |i: usize| {
-        let place = (start + (i as f32 + 0.5) / zoom - 0.5).clamp(0.0, (n - 1) as f32);
-        let low = place as usize;
-        Source { low, high: (low + 1).min(n - 1), share: place - low as f32 }
-    };
-    (0..n).map(source).collect()
-}
-
-/// The input value of every byte of red, green and blue under a random light.
-fn recoloured(random: &mut Random) -> [[f32; 256]; 3] {
-    let contrast = 1.0 + CONTRAST * random.signed();
-    let brightness = BRIGHTNESS * random.signed();
-    let tint: [f32; 3] = std::array::from_fn(|_| 1.0 + CONTRAST / 2.0 * random.signed());
-    let plain = NORMALISATION.table();
-    std::array::from_fn(|c| {
-        std::array::from_fn(|byte| {
-            let fraction = (byte as f32 / 255.0 - 0.5) * contrast * tint[c] + 0.5 + brightness;
-            plain[c][(fraction.clamp(0.0, 1.0) * 255.0).round() as usize]
-        })
-    })
 }
 
 /// How much a pixel of each class counts in the loss: `1 / ln(CLASS_WEIGHT_OFFSET + f)` with `f` the
@@ -113,6 +84,8 @@ pub(super) fn class_weights<const N: usize>(frames: &[Frame]) -> [f32; N] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::light::Looks;
+    use super::super::sampling::Sampling;
     use super::*;
 
     #[test]
@@ -121,10 +94,14 @@ mod tests {
         let (width, height) = (32, 16);
         let side = |i: usize| u8::from(i % width >= 11) + 2 * u8::from(i / width >= 5);
         let labels: Vec<u8> = (0..width * height).map(side).collect();
-        let frame = Frame { rgb: labels.iter().flat_map(|l| [40 + 60 * l; 3]).collect(), labels };
+        let rgb = labels.iter().flat_map(|l| [40 + 60 * l; 3]).collect();
+        let frames = vec![Frame { rgb, labels, people: Vec::new() }];
+        let split = Split { frames, width, height, digest: blake3::hash(b"") };
+        let options = TrainOptions { width, height, ..TrainOptions::default() };
+        let rarity = Rarity::of(&split.frames, 1.0, &options.sampling);
         let mut starts = [0; 4];
         for seed in 0..40 {
-            let pictures = augmented([&frame].into_iter(), (width, height), &mut Random::new(&[seed]));
+            let pictures = augmented(&split, &[0], (&options, &rarity), &mut Random::new(&[seed]));
             assert_eq!((pictures.values.len(), pictures.labels.len()), (3 * width * height, width * height));
             starts[usize::from(pictures.labels[0])] += 1;
             let mut reds = [(0.0, 0.0); 4];
@@ -138,22 +115,118 @@ mod tests {
         assert!(starts[0] > 5 && starts[1] > 5, "{starts:?}");
     }
 
-    #[test]
-    fn a_window_covers_its_part_of_the_axis() {
-        let mut random = Random::new(&[4]);
-        let whole = window(8, 1.0, &mut random);
-        assert!(whole.iter().enumerate().all(|(i, s)| s.low == i && s.share == 0.0));
-        for _ in 0..50 {
-            let half = window(8, 2.0, &mut random);
-            let place = |s: &Source| s.low as f32 + s.share;
-            assert!(half.windows(2).all(|w| place(&w[1]) - place(&w[0]) <= 0.5 + 1e-5));
-            assert!(place(&half[7]) - place(&half[0]) > 2.9);
+    /// Pictures of the options of before there were looks, sampling and larger frames, as they were made then.
+    fn before(frame: &Frame, (width, height): (usize, usize), random: &mut Random) -> Pictures {
+        let zoom = if random.unit() < 0.5 { 1.0 } else { 1.0 + (LARGEST_ZOOM - 1.0) * random.unit() };
+        let mut window = |n: usize| -> Vec<(usize, usize, f32)> {
+            let start = random.unit() * n as f32 * (1.0 - 1.0 / zoom);
+            let source = |i: usize| {
+                let place = (start + (i as f32 + 0.5) / zoom - 0.5).clamp(0.0, (n - 1) as f32);
+                let low = place as usize;
+                (low, (low + 1).min(n - 1), place - low as f32)
+            };
+            (0..n).map(source).collect()
+        };
+        let (mut columns, rows) = (window(width), window(height));
+        if random.unit() < 0.5 {
+            columns.reverse();
         }
+        let table = Look::draw(&Default::default(), random).table(random);
+        let mix = |(low, high, share): (usize, usize, f32), value: &dyn Fn(usize) -> f32| {
+            if share == 0.0 { value(low) } else { value(low) + share * (value(high) - value(low)) }
+        };
+        let nearest = |(low, high, share): (usize, usize, f32)| if share < 0.5 { low } else { high };
+        let mut pictures = Pictures { values: Vec::new(), labels: Vec::new() };
+        for (row, column) in rows.iter().flat_map(|row| columns.iter().map(move |column| (*row, *column))) {
+            pictures.values.extend((0..3).map(|c| {
+                let value = |y: usize, x: usize| table[c][usize::from(frame.rgb[(y * width + x) * 3 + c])];
+                mix(row, &|y| mix(column, &|x| value(y, x)))
+            }));
+            pictures.labels.push(frame.labels[nearest(row) * width + nearest(column)]);
+        }
+        pictures
+    }
+
+    #[test]
+    fn options_of_before_give_the_pictures_of_before() {
+        let (width, height) = (64, 32);
+        let mut random = Random::new(&[1]);
+        let mut bytes =
+            |n: usize, below: u64| -> Vec<u8> { (0..n).map(|_| (random.next_u64() % below) as u8).collect() };
+        let (rgb, labels) = (bytes(3 * width * height, 256), bytes(width * height, 16));
+        let split =
+            Split { frames: vec![Frame { rgb, labels, people: Vec::new() }], width, height, digest: blake3::hash(b"") };
+        let options = TrainOptions { width, height, ..TrainOptions::default() };
+        let rarity = Rarity::of(&split.frames, 1.0, &options.sampling);
+        for seed in 0..20 {
+            let (mut now, mut then) = (Random::new(&[seed]), Random::new(&[seed]));
+            let pictures = augmented(&split, &[0, 0], (&options, &rarity), &mut now);
+            let [first, second] = [0, 1].map(|_| before(&split.frames[0], (width, height), &mut then));
+            let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&pictures.values), bits(&[first.values, second.values].concat()), "seed {seed}");
+            assert_eq!(pictures.labels, [first.labels, second.labels].concat());
+            assert_eq!(now.next_u64(), then.next_u64());
+        }
+    }
+
+    /// A frame twice as large as the network's input with somebody of 40 rows and somebody of 10.
+    fn crowd() -> Split {
+        let (width, height) = (128, 64);
+        let instance = |i: usize| match (i % width, i / width) {
+            (100..108, 10..50) => 4000,
+            (20..23, 30..40) => 4001,
+            _ => 7,
+        };
+        let instances: Vec<u16> = (0..width * height).map(instance).collect();
+        let labels: Vec<u8> = instances.iter().map(|id| if *id >= 4000 { 2 } else { 5 }).collect();
+        let rgb = labels.iter().flat_map(|label| [if *label == 2 { 250 } else { 10 }; 3]).collect();
+        let people = super::super::people::people(&instances, width);
+        Split { frames: vec![Frame { rgb, labels, people }], width, height, digest: blake3::hash(b"") }
+    }
+
+    #[test]
+    fn windows_are_laid_round_people_and_the_small_count_nowhere_in_them() {
+        let split = crowd();
+        let sampling = Sampling { rare_below: 0.0, round_rare: 1.0, tall_px: 16, least_px: 6 };
+        let options = TrainOptions { width: 64, height: 32, sampling, ..TrainOptions::default() };
+        let rarity = Rarity::of(&split.frames, 2.0, &sampling);
+        let (mut seen, mut ignored) = (0, 0);
+        for seed in 0..40 {
+            let Pictures { values, labels } = augmented(&split, &[0], (&options, &rarity), &mut Random::new(&[seed]));
+            assert_eq!((values.len(), labels.len()), (3 * 64 * 32, 64 * 32));
+            seen += usize::from(labels.contains(&2));
+            ignored += usize::from(labels.contains(&IGNORE));
+            // Who counts is bright, and so is who does not.
+            for (pixel, label) in values.as_chunks::<3>().0.iter().zip(&labels) {
+                assert!(*label == 5 || pixel[0] > -1.5, "seed {seed}: {label} at {pixel:?}");
+            }
+        }
+        // Ten rows are five in the whole, ten in the closest window, six from 1.2 times on.
+        assert_eq!(seen, 40);
+        assert!((1..20).contains(&ignored), "{ignored}");
+    }
+
+    #[test]
+    fn looks_change_the_picture_and_leave_the_labels() {
+        let split = crowd();
+        let rarity = Rarity::of(&split.frames, 2.0, &Sampling::default());
+        let of = |looks: Looks, seed: u64| {
+            let options = TrainOptions { width: 64, height: 32, looks, ..TrainOptions::default() };
+            augmented(&split, &[0], (&options, &rarity), &mut Random::new(&[seed]))
+        };
+        let mut differ = 0;
+        for seed in 0..20 {
+            let [plain, wide, again] = [Looks::default(), Looks::WIDE, Looks::WIDE].map(|looks| of(looks, seed));
+            assert_eq!((&plain.labels, &wide.values), (&wide.labels, &again.values));
+            differ += usize::from(plain.values != wide.values);
+        }
+        assert!(differ > 15, "{differ}");
     }
 
     #[test]
     fn rare_classes_count_more() {
-        let frame = Frame { rgb: Vec::new(), labels: [vec![0; 99], vec![1], vec![IGNORE; 50]].concat() };
+        let frame =
+            Frame { rgb: Vec::new(), labels: [vec![0; 99], vec![1], vec![IGNORE; 50]].concat(), people: Vec::new() };
         let [common, rare, absent] = class_weights(&[frame]);
         assert!((common - 1.0 / 2.09f32.ln()).abs() < 1e-5);
         assert!(rare > 6.0 * common && absent > rare);

@@ -12,9 +12,11 @@ use super::adam;
 use super::dataset::{Frame, Split};
 use super::kernels::loss::Target;
 use super::options::TrainOptions;
+use super::people::without_small;
 use super::pictures::{augmented, class_weights};
 use super::progress::{EpochReport, Progress, Trained};
 use super::random::Random;
+use super::sampling::Rarity;
 use super::state::State;
 use super::tape::{Lesson, learn};
 use super::weights::Weights;
@@ -32,6 +34,7 @@ pub(super) struct Run {
     val: Split,
     dataset: blake3::Hash,
     class_weights: [f32; TRAIN_CLASSES.len()],
+    rarity: Rarity,
     /// One thread for each replica: burn's operations stay on it, whatever the machine has.
     replicas: Vec<ThreadPool>,
     state: State,
@@ -39,7 +42,8 @@ pub(super) struct Run {
 
 /// The splits of a dataset, in the order of [`SPLITS`].
 pub(super) fn read(dataset: &Path, options: &TrainOptions) -> Result<[Split; 2], PerceptionError> {
-    let [train, val] = SPLITS.map(|split| Split::read(dataset, split, options.width, options.height));
+    let input = (options.width, options.height);
+    let [train, val] = SPLITS.map(|split| Split::read_for(dataset, split, input, options.sampling.knows_people()));
     Ok([train?, val?])
 }
 
@@ -71,7 +75,8 @@ impl Run {
     pub(super) fn open(dataset: &Path, unfinished: &Path, options: &TrainOptions) -> Result<Self, PerceptionError> {
         let splits = read(dataset, options)?;
         let digest = digest(&splits);
-        let [train, val] = splits;
+        let [train, mut val] = splits;
+        count_nobody_small(&mut val, options);
         if train.frames.len() < options.batch {
             let reason =
                 format!("{} frames to learn from; expected at least a batch of {}", train.frames.len(), options.batch);
@@ -81,6 +86,7 @@ impl Run {
         let replicas = (0..options.replicas).map(thread).collect::<Result<_, _>>();
         Ok(Self {
             class_weights: class_weights(&train.frames),
+            rarity: Rarity::of(&train.frames, train.width as f32 / options.width as f32, &options.sampling),
             train,
             val,
             dataset: digest,
@@ -108,10 +114,10 @@ impl Run {
         })
     }
 
-    /// One pass over the training split, in an order of its own, and its measure.
+    /// As many pictures as the training split has, in an order of their own, and what they came to.
     pub(super) fn epoch(&mut self, watch: &mut Watch<'_>) -> Result<ControlFlow<()>, PerceptionError> {
         let epoch = self.epochs() + 1;
-        let order = Random::new(&[self.options.seed, 1, u64::from(epoch)]).permutation(self.train.frames.len());
+        let order = self.rarity.epoch(&mut Random::new(&[self.options.seed, 1, u64::from(epoch)]));
         let mut sum = 0.0;
         for (i, batch) in order.chunks_exact(self.options.batch).enumerate() {
             let loss = self.step(batch);
@@ -152,8 +158,7 @@ impl Run {
     /// What one replica learns from its share.
     fn lesson(&self, share: &[usize], replica: u64) -> Lesson {
         let mut random = Random::new(&[self.options.seed, 2, self.state.adam.steps, replica]);
-        let frames = share.iter().map(|i| &self.train.frames[*i]);
-        let pictures = augmented(frames, (self.options.width, self.options.height), &mut random);
+        let pictures = augmented(&self.train, share, (&self.options, &self.rarity), &mut random);
         let target = Target {
             labels: &pictures.labels,
             width: self.options.width,
@@ -166,10 +171,10 @@ impl Run {
     /// Runs the network as it will be shipped over the validation split.
     fn measure(&self) -> Result<ConfusionMatrix, PerceptionError> {
         let checkpoint = Checkpoint::from_bytes("trained", &self.onnx(&self.state.weights, "")?)?;
-        let segmenter = Segmenter::new(&checkpoint, self.options.width, self.options.height)?;
+        let size = (self.val.width, self.val.height);
+        let segmenter = Segmenter::new(&checkpoint, size.0, size.1)?;
         let share = self.val.frames.len().div_ceil(rayon::current_num_threads());
-        let matrices =
-            self.val.frames.par_chunks(share).map(|frames| confusion(segmenter.clone(), frames, &self.options));
+        let matrices = self.val.frames.par_chunks(share).map(|frames| confusion(segmenter.clone(), frames, size));
         let matrices = matrices.collect::<Result<Vec<_>, _>>()?;
         let mut sum = ConfusionMatrix::default();
         matrices.iter().for_each(|matrix| sum.merge(matrix));
@@ -210,14 +215,24 @@ impl Run {
     }
 }
 
+/// Takes people who are too small to count out of the labels.
+fn count_nobody_small(split: &mut Split, options: &TrainOptions) {
+    let (scale, least_px) = (options.width as f32 / split.width as f32, options.sampling.least_px);
+    for frame in &mut split.frames {
+        if let Some(labels) = without_small(&frame.labels, &frame.people, scale, least_px) {
+            frame.labels = labels;
+        }
+    }
+}
+
 fn confusion(
     mut segmenter: Segmenter,
     frames: &[Frame],
-    options: &TrainOptions,
+    (width, height): (usize, usize),
 ) -> Result<ConfusionMatrix, PerceptionError> {
     let mut matrix = ConfusionMatrix::default();
     for frame in frames {
-        let mask = segmenter.run(RgbView::new(options.width, options.height, &frame.rgb)?)?;
+        let mask = segmenter.run(RgbView::new(width, height, &frame.rgb)?)?;
         let truth: Vec<u8> = frame.labels.iter().map(|id| tag_of_train_id(*id)).collect();
         matrix.add(&truth, &mask.ids);
     }

@@ -37,7 +37,7 @@ pub(super) trait Kernels: Backend {
     /// Batch normalisation with its parameters.
     fn norm(norm: &Norm<Self>) -> (FloatTensor<Self>, Moments);
     /// Derivatives by the input, the scale and the shift.
-    fn norm_backward(norm: &Norm<Self>, moments: &Moments, dy: &FloatTensor<Self>) -> [FloatTensor<Self>; 3];
+    fn norm_backward(norm: &Norm<Self>, moments: &Moments, dy: FloatTensor<Self>) -> [FloatTensor<Self>; 3];
     /// The loss and its derivative by the logits.
     fn cross_entropy(logits: &FloatTensor<Self>, size: Size, target: Target<'_>) -> (f64, FloatTensor<Self>);
 }
@@ -288,7 +288,7 @@ impl<B: Kernels> Backward<B, 3> for Normalise {
     fn backward(self, ops: Ops<Self::State, 3>, gradients: &mut Gradients, _: &mut Checkpointer) {
         let (norm, moments) = ops.state;
         let dy = gradients.consume::<B>(&ops.node);
-        let derivatives = B::norm_backward(&norm, &moments, &dy);
+        let derivatives = B::norm_backward(&norm, &moments, dy);
         for (parent, derivative) in ops.parents.into_iter().zip(derivatives) {
             if let Some(parent) = parent {
                 gradients.register::<B>(parent.id, derivative);

@@ -77,15 +77,20 @@ fn dataset(dir: &Path, train: usize, val: usize) {
             }
             let name = format!("scene/scene_{i:06}_000000");
             let [image, truth] = ["leftImg8bit", "gtFine"].map(|part| dir.join(part).join(split));
-            let write = |path: PathBuf, colour, bytes: &[u8]| {
+            let write = |path: PathBuf, colour, depth, bytes: &[u8]| {
                 fs::create_dir_all(path.parent().unwrap()).unwrap();
                 let file = File::create(path).unwrap();
                 let mut encoder = png::Encoder::new(file, WIDTH as u32, HEIGHT as u32);
                 encoder.set_color(colour);
+                encoder.set_depth(depth);
                 encoder.write_header().unwrap().write_image_data(bytes).unwrap();
             };
-            write(image.join(format!("{name}_leftImg8bit.png")), png::ColorType::Rgb, &rgb);
-            write(truth.join(format!("{name}_gtFine_labelTrainIds.png")), png::ColorType::Grayscale, &labels);
+            let (grey, eight) = (png::ColorType::Grayscale, png::BitDepth::Eight);
+            write(image.join(format!("{name}_leftImg8bit.png")), png::ColorType::Rgb, eight, &rgb);
+            write(truth.join(format!("{name}_gtFine_labelTrainIds.png")), grey, eight, &labels);
+            let instances: Vec<u8> =
+                labels.iter().flat_map(|id| (if *id == 2 { 4000u16 } else { 7 }).to_be_bytes()).collect();
+            write(truth.join(format!("{name}_gtFine_instanceIds.png")), grey, png::BitDepth::Sixteen, &instances);
         }
     }
 }
@@ -158,6 +163,33 @@ fn out_of_patience_the_best_epoch_is_kept_also_when_it_was_interrupted() {
 }
 
 #[test]
+fn people_are_learned_from_larger_frames_to_the_same_bytes() {
+    let dir = tempfile::tempdir().unwrap();
+    dataset(dir.path(), 8, 2);
+    let (looks, sampling) = Preset::People.choice();
+    let people = TrainOptions { width: WIDTH / 2, height: HEIGHT / 2, looks, sampling, ..options() };
+    let trained = |name: &str, options: &TrainOptions| {
+        let trained = train(dir.path(), &dir.path().join(name), options, 2, &mut go_on).unwrap().unwrap();
+        assert!(trained.history.iter().all(|report| report.loss.is_finite() && report.miou.is_some()));
+        trained
+    };
+    let [first, again] = ["a", "b"].map(|name| trained(name, &people));
+    assert!(first.onnx == again.onnx);
+    let plain =
+        trained("c", &TrainOptions { looks: Looks::default(), sampling: Sampling::default(), ..people.clone() });
+    assert!(
+        first.onnx != plain.onnx && first.dataset != plain.dataset,
+        "instance ids are part of what is learned from"
+    );
+
+    // The walker is 32 rows high, 16 in the network's input.
+    let nobody = TrainOptions { sampling: Sampling { least_px: 40, ..sampling }, ..people };
+    let iou = |trained: &Trained| trained.history[1].iou[crate::classes::PEDESTRIAN];
+    let without = trained("d", &nobody);
+    assert!(iou(&first).is_some() && iou(&without).unwrap_or(0.0) == 0.0, "who is too small is not measured");
+}
+
+#[test]
 fn what_was_never_measured_ends_with_patience() {
     let dir = tempfile::tempdir().unwrap();
     dataset(dir.path(), 4, 1);
@@ -210,6 +242,13 @@ fn what_cannot_be_trained_is_refused_in_one_sentence() {
     assert!(said(options()).contains("2 frames to learn from"));
     assert!(said(TrainOptions { width: 64, ..options() }).contains("expected 64x64"));
     let label = "gtFine/train/scene/scene_000000_000000_gtFine_labelTrainIds.png";
+    let (looks, sampling) = Preset::People.choice();
+    let with = |looks, sampling| said(TrainOptions { looks, sampling, ..options() });
+    assert!(with(Looks { noise: 2.0, ..looks }, sampling).contains("look noise of 2; expected 0 to 1"));
+    assert!(with(looks, Sampling { round_rare: -1.0, ..sampling }).contains("round_rare of -1; expected 0 to 1"));
+    let instances = "gtFine/train/scene/scene_000000_000000_gtFine_instanceIds.png";
+    fs::remove_file(dir.path().join(instances)).unwrap();
+    assert!(with(looks, sampling).contains(&format!("{instances}: is missing")));
     fs::remove_file(dir.path().join(label)).unwrap();
     assert!(said(options()).contains(&format!("{label}: is missing")));
 }

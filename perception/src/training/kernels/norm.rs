@@ -39,31 +39,30 @@ pub(in crate::training) fn apply(x: &[f32], factor: &[f32], summand: &[f32], rel
     y
 }
 
-/// Derivatives by input, scale and shift.
+/// Derivatives by scale and shift.
 pub(in crate::training) struct Derivatives {
-    pub(in crate::training) x: Vec<f32>,
     pub(in crate::training) scale: Vec<f32>,
     pub(in crate::training) shift: Vec<f32>,
 }
 
-/// Derivatives through normalisation and rectifier, the moments included.
+/// Derivatives through normalisation and rectifier, the moments included: that by the output becomes that by the input
+/// where it stands, as fresh memory for every map would take a tenth of a step.
 pub(in crate::training) fn backward(
     x: &[f32],
     moments: &Moments,
     scale: &[f32],
     shift: &[f32],
-    dy: &[f32],
+    dy: &mut [f32],
     relu: bool,
 ) -> Derivatives {
     let channels = scale.len();
     let (factor, summand) = affine(moments, scale, shift);
-    let masked = relu.then(|| mask(x, &factor, &summand, dy));
-    let dy = masked.as_deref().unwrap_or(dy);
-    let (sum_dy, sum_dy_x) = pair_sums(dy, x, channels);
+    let floor = if relu { 0.0 } else { f32::NEG_INFINITY };
+    let (sum_dy, sum_dy_x) = passed_sums(dy, x, &factor, &summand, floor);
 
     // With n = (x - mean) / deviation: dx = factor * (dy - mean(dy) - n * mean(dy * n)).
     let rows = (x.len() / channels) as f64;
-    let mut derivatives = Derivatives { x: vec![0.0; x.len()], scale: Vec::new(), shift: Vec::new() };
+    let mut derivatives = Derivatives { scale: Vec::new(), shift: Vec::new() };
     let (mut slope, mut offset) = (Vec::new(), Vec::new());
     for c in 0..channels {
         let mean = f64::from(moments.mean[c]);
@@ -78,11 +77,10 @@ pub(in crate::training) fn backward(
     vectorised(
         #[inline(always)]
         || {
-            let rows = x.chunks_exact(channels).zip(dy.chunks_exact(channels));
-            for ((x, dy), dx) in rows.zip(derivatives.x.chunks_exact_mut(channels)) {
-                let constants = factor.iter().zip(&slope).zip(&offset);
-                for (((dx, x), dy), ((f, s), o)) in dx.iter_mut().zip(x).zip(dy).zip(constants) {
-                    *dx = f * (dy - o - x * s);
+            for (x, dy) in x.chunks_exact(channels).zip(dy.chunks_exact_mut(channels)) {
+                let constants = factor.iter().zip(&summand).zip(&slope).zip(&offset);
+                for ((dy, x), (((f, b), s), o)) in dy.iter_mut().zip(x).zip(constants) {
+                    *dy = f * (passed(*dy, *x, (*f, *b), floor) - o - x * s);
                 }
             }
         },
@@ -90,26 +88,53 @@ pub(in crate::training) fn backward(
     derivatives
 }
 
-/// `dy` where the rectifier let through.
-fn mask(x: &[f32], factor: &[f32], summand: &[f32], dy: &[f32]) -> Vec<f32> {
-    let mut masked = vec![0.0; dy.len()];
-    vectorised(
+/// The derivative of what a rectifier let through. Without one the floor is so low that all goes through.
+#[inline(always)]
+fn passed(dy: f32, x: f32, (factor, summand): (f32, f32), floor: f32) -> f32 {
+    if x * factor + summand > floor { dy } else { 0.0 }
+}
+
+/// For every channel the sum of the derivatives that a rectifier let through, and of their products with `x`.
+fn passed_sums(dy: &[f32], x: &[f32], factor: &[f32], summand: &[f32], floor: f32) -> (Vec<f64>, Vec<f64>) {
+    block_sums(
+        dy,
+        x,
+        factor.len(),
         #[inline(always)]
-        || {
-            let channels = factor.len();
-            let rows = x.chunks_exact(channels).zip(dy.chunks_exact(channels));
-            for ((x, dy), out) in rows.zip(masked.chunks_exact_mut(channels)) {
-                for ((((out, x), dy), f), s) in out.iter_mut().zip(x).zip(dy).zip(factor).zip(summand) {
-                    *out = if x * f + s > 0.0 { *dy } else { 0.0 };
-                }
+        |dy, x, sum, product| {
+            let constants = factor.iter().zip(summand);
+            for ((((sum, product), dy), x), (f, s)) in sum.iter_mut().zip(product).zip(dy).zip(x).zip(constants) {
+                let dy = passed(*dy, *x, (*f, *s), floor);
+                *sum += dy;
+                *product += dy * x;
             }
         },
-    );
-    masked
+    )
 }
 
 /// For every channel the sum of `a` and the sum of `a * b`.
 fn pair_sums(a: &[f32], b: &[f32], channels: usize) -> (Vec<f64>, Vec<f64>) {
+    block_sums(
+        a,
+        b,
+        channels,
+        #[inline(always)]
+        |a, b, sum, product| {
+            for (((sum, product), a), b) in sum.iter_mut().zip(product).zip(a).zip(b) {
+                *sum += a;
+                *product += a * b;
+            }
+        },
+    )
+}
+
+/// Two sums for every channel of what `add` makes of each pair of rows.
+fn block_sums(
+    a: &[f32],
+    b: &[f32],
+    channels: usize,
+    add: impl Fn(&[f32], &[f32], &mut [f32], &mut [f32]),
+) -> (Vec<f64>, Vec<f64>) {
     let (mut sums, mut products) = (vec![0.0; channels], vec![0.0; channels]);
     let (mut sum, mut product) = (vec![0.0; channels], vec![0.0; channels]);
     for (a, b) in a.chunks(BLOCK * channels).zip(b.chunks(BLOCK * channels)) {
@@ -119,10 +144,7 @@ fn pair_sums(a: &[f32], b: &[f32], channels: usize) -> (Vec<f64>, Vec<f64>) {
             #[inline(always)]
             || {
                 for (a, b) in a.chunks_exact(channels).zip(b.chunks_exact(channels)) {
-                    for (((sum, product), a), b) in sum.iter_mut().zip(&mut product).zip(a).zip(b) {
-                        *sum += a;
-                        *product += a * b;
-                    }
+                    add(a, b, &mut sum, &mut product);
                 }
             },
         );
@@ -169,8 +191,9 @@ mod tests {
             let y = apply(&x, &factor, &summand, relu);
             let value: f64 = y.iter().zip(&dy).map(|(y, dy)| f64::from(y * dy)).sum();
             assert!((value - oracle(&x, &scale, &shift, &dy, relu)).abs() < 1e-3);
-            let d = backward(&x, &moments, &scale, &shift, &dy, relu);
-            assert!(worst_derivative(&x, &d.x, |x| oracle(x, &scale, &shift, &dy, relu)) < 1e-3);
+            let mut dx = dy.clone();
+            let d = backward(&x, &moments, &scale, &shift, &mut dx, relu);
+            assert!(worst_derivative(&x, &dx, |x| oracle(x, &scale, &shift, &dy, relu)) < 1e-3);
             assert!(worst_derivative(&scale, &d.scale, |s| oracle(&x, s, &shift, &dy, relu)) < 1e-3);
             assert!(worst_derivative(&shift, &d.shift, |s| oracle(&x, &scale, s, &dy, relu)) < 1e-3);
         }

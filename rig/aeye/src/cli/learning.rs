@@ -7,11 +7,12 @@ use drivers::checkpoint::CheckpointChoice;
 use kernel::weather::WeatherPreset;
 use lab::redrive::Need;
 use lab::share::Share;
+use perception::training;
 use replay::Label;
 
 use super::library::verdict;
 use super::values::{
-    CHECKPOINT, ImagingArgs, MAPS, ModelsArgs, file, jobs, one_checkpoint, people, rate, size, weather,
+    CHECKPOINT, ImagingArgs, MAPS, ModelsArgs, file, jobs, one_checkpoint, people, rate, size, training_preset, weather,
 };
 
 /// The datasets that can be made.
@@ -194,6 +195,14 @@ pub struct TrainArgs {
     /// First learning rate.
     #[arg(long, default_value_t = 2e-3, value_parser = rate)]
     pub rate: f32,
+    /// What pictures look like and how often what is rare is shown: `plain`, as the bundled networks were trained, or
+    /// `people`, which shows people and other rare things more often, also from nearby, under more lights, colours and
+    /// faults of cameras.
+    #[arg(long, default_value = "plain", value_parser = training_preset())]
+    pub preset: training::Preset,
+    /// People less high than this in a picture count nowhere, pixels of `--size` (default: as the preset has it).
+    #[arg(long, value_name = "PX")]
+    pub min_height: Option<u32>,
 }
 
 /// Arguments of `eval`.

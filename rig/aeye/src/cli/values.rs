@@ -13,6 +13,7 @@ use kernel::scenario::{HazardLevel, MOST_OF_A_KIND};
 use kernel::time::{TICK_HZ, Tick};
 use kernel::weather::WeatherPreset;
 use lab::experiment::Preset;
+use perception::training;
 use render::{Imaging, ModelsId, Quality, Sensor};
 
 /// What stands for a checkpoint in help.
@@ -50,6 +51,14 @@ pub fn new_recording() -> impl TypedValueParser<Value = PathBuf> {
     let expected = "expected the name of a recording, as in drive.mcap, not of a case, of a fork, or of a hidden file";
     clap::builder::PathBufValueParser::new()
         .try_map(move |path| if library::is_drive_name(&path) { Ok(path) } else { Err(expected) })
+}
+
+/// Looks and sampling of a training with a name.
+pub fn training_preset() -> impl TypedValueParser<Value = training::Preset> {
+    let all = training::Preset::ALL;
+    let named = move |name: String| all.into_iter().find(|preset| preset.name() == name);
+    let names = all.map(training::Preset::name);
+    PossibleValuesParser::new(names).try_map(move |name| named(name).ok_or("no such preset"))
 }
 
 /// An experiment with a name.

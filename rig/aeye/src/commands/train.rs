@@ -10,8 +10,22 @@ use crate::print;
 
 /// Runs `aeye train`. Ctrl-C stops it; the same command goes on from the last finished epoch.
 pub fn run(args: &TrainArgs, json: bool) -> anyhow::Result<Verdict> {
-    let TrainArgs { dataset, out, epochs, seed, size, horizon, patience, batch, replicas, rate } = args.clone();
-    let options = Options { dataset, out, epochs, seed, size, horizon, patience, batch, replicas, rate };
+    let TrainArgs { dataset, out, epochs, seed, size, horizon, patience, batch, replicas, rate, preset, min_height } =
+        args.clone();
+    let options = Options {
+        dataset,
+        out,
+        epochs,
+        seed,
+        size,
+        horizon,
+        patience,
+        batch,
+        replicas,
+        rate,
+        preset,
+        min_height_px: min_height,
+    };
     let show = &mut |epoch: &Epoch| print::result(json, epoch);
     let summary = train(&options, &Interrupt::listen(), show)?;
     if summary.was_there {

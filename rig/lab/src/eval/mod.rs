@@ -5,6 +5,7 @@
 
 mod road_users;
 mod split;
+mod tall;
 mod text;
 
 use std::collections::BTreeMap;
@@ -19,6 +20,7 @@ use perception::{BoundaryCounts, Calibration, ConfusionMatrix};
 use serde::Serialize;
 
 pub use road_users::{Group, Kind, Range, Recall, RoadUser, RoadUsers, road_users};
+pub use tall::Tall;
 
 use self::split::Labelled;
 use super::dataset::{Manifest, check_whole};
@@ -50,6 +52,8 @@ pub struct Evaluation {
     pub trust: Option<Trust>,
     /// The road users of all frames.
     pub road_users: RoadUsers,
+    /// How well people are seen who are not small.
+    pub tall_people: Vec<Tall>,
 }
 
 /// A scene of a split.
@@ -101,6 +105,8 @@ pub struct Summary<'a> {
     /// How many road users were seen.
     #[serde(flatten)]
     road_users: &'a RoadUsers,
+    /// How well people of at least 8, 16 and 32 pixels of height are seen, where smaller ones count nowhere.
+    tall_people: &'a [Tall],
     /// Pixels by labelled and predicted class.
     confusion: Confusion<'a>,
 }
@@ -113,7 +119,8 @@ impl Typed for Summary<'_> {
 impl<'a> Summary<'a> {
     /// That of a split of a dataset.
     pub fn new(evaluation: &'a Evaluation, dataset: &Path, split: &'a str) -> Self {
-        let Evaluation { checkpoint, digest, scenes, matrix, figures, boundary_iou, trust, road_users } = evaluation;
+        let Evaluation { checkpoint, digest, scenes, matrix, figures, boundary_iou, trust, road_users, tall_people } =
+            evaluation;
         let boundaries: Vec<f64> = boundary_iou.values().flatten().copied().collect();
         Self {
             checkpoint,
@@ -130,6 +137,7 @@ impl<'a> Summary<'a> {
                 .then(|| boundaries.iter().sum::<f64>() / boundaries.len() as f64),
             trust: trust.as_ref(),
             road_users,
+            tall_people,
             confusion: matrix.into(),
         }
     }
@@ -255,6 +263,7 @@ fn sum(eye: &Eye, images: &[PathBuf], seen: &[Seen]) -> Evaluation {
         digest: eye.digest(),
         scenes,
         figures: (&matrix).into(),
+        tall_people: tall::tall(&road_users, &matrix),
         matrix,
         boundary_iou: boundary_iou.map(|(class, iou)| (class.name, Some(iou).filter(|iou| !iou.is_nan()))).collect(),
         trust: Trust::of(&calibration),
@@ -316,6 +325,10 @@ mod tests {
         assert_eq!(
             all.scenes.iter().map(|scene| scene.name.as_str()).collect::<Vec<_>>(),
             ["toy_000000", "toy_000001"]
+        );
+        assert_eq!(
+            all.tall_people.iter().map(|tall| (tall.count, tall.iou)).collect::<Vec<_>>()[..2],
+            [(4, Some(1.0)), (0, None)]
         );
         assert_eq!((all.road_users.pedestrians.all.count, all.road_users.pedestrians.all.half_seen), (4, Some(1.0)));
         assert!(all.boundary_iou.values().flatten().all(|iou| *iou == 1.0) && all.trust.is_none());

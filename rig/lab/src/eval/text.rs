@@ -7,7 +7,7 @@ use perception::classes::{PEDESTRIAN, TRAIN_CLASSES};
 
 use super::super::figures::decimal;
 use super::super::trust::Trust;
-use super::{Group, Range, Recall, Summary};
+use super::{Group, Range, Recall, Summary, Tall};
 
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -23,11 +23,21 @@ impl fmt::Display for Summary<'_> {
         {
             recall(f, name, group)?;
         }
-        Ok(())
+        self.tall(f)
     }
 }
 
 impl Summary<'_> {
+    /// A row for each least height.
+    fn tall(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "\n{:<14} {:>12} {:>12} {:>12} {:>12}", "not small", "count", "pixels", "recall", "IoU")?;
+        for Tall { least_px, count, pixels, iou, recall } in self.tall_people {
+            let (name, recall, iou) = (format!("{least_px}+ px high"), decimal(*recall), decimal(*iou));
+            write!(f, "\n{name:<14} {count:>12} {pixels:>12} {recall:>12} {iou:>12}")?;
+        }
+        f.write_str("\n")
+    }
+
     /// IoU and boundary IoU of each class.
     fn classes(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let mut row = |name: &str, iou: &str, boundary: &str| writeln!(f, "{name:<14} {iou:>12} {boundary:>12}");

@@ -9,7 +9,7 @@ use base::progress::Interrupt;
 use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
 use measures::statistics;
-use perception::training::TrainOptions;
+use perception::training::{Preset, TrainOptions};
 
 use super::recipe::Recipe;
 use super::set::Set;
@@ -189,6 +189,8 @@ impl Stages<'_> {
             batch: standard.batch as u32,
             replicas: standard.replicas as u32,
             rate: standard.rate,
+            preset: Preset::Plain,
+            min_height_px: None,
         };
         train::train(&args, &self.interrupt, &mut |epoch| {
             say(format_args!("{name}: {epoch}"));

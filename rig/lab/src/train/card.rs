@@ -4,7 +4,7 @@ use std::path::Path;
 
 use base::files::{self, most};
 use perception::classes::TRAIN_CLASSES;
-use perception::training::{CLASS_WEIGHT_OFFSET, EpochReport, LOGIT_STRIDE, TrainOptions, Trained};
+use perception::training::{CLASS_WEIGHT_OFFSET, EpochReport, LOGIT_STRIDE, Looks, Sampling, TrainOptions, Trained};
 
 use super::curves::number;
 use super::options::Options;
@@ -25,7 +25,8 @@ pub(super) fn card(args: &Options, options: &TrainOptions, trained: &Trained) ->
          | optimiser | Adam, rate {rate}, polynomial decay of power 0.9 |\n\
          | batch | {batch} in {replicas} replicas |\n\
          | loss | cross-entropy at full resolution, a class weighs 1 / ln({CLASS_WEIGHT_OFFSET} + its share of the pixels) |\n\
-         | augmentation | horizontal flip; windows enlarged up to twice; contrast, brightness and tint |\n\
+         | augmentation | {} |\n\
+         {}\
          | digest | BLAKE3 `{}` |\n\n",
         trained.parameters,
         epochs(options, trained),
@@ -33,6 +34,8 @@ pub(super) fn card(args: &Options, options: &TrainOptions, trained: &Trained) ->
         trained.val_frames,
         dataset_recipe(&args.dataset),
         trained.dataset,
+        augmentation(&options.looks),
+        sampling(&options.sampling),
         blake3::hash(&trained.onnx).to_hex(),
     );
     if let Some(kept) = trained.history.iter().find(|report| report.epoch == trained.epoch) {
@@ -46,6 +49,32 @@ pub(super) fn card(args: &Options, options: &TrainOptions, trained: &Trained) ->
         card += &format!("| {epoch} | {loss:.4} | {} |\n", number(*miou));
     }
     card
+}
+
+/// What is done to pictures.
+fn augmentation(looks: &Looks) -> String {
+    let mut text = "horizontal flip; windows enlarged up to twice; contrast, brightness and tint".to_owned();
+    let Looks { gamma, saturation, hue_deg, blur_px, noise } = *looks;
+    if *looks != Looks::default() {
+        text += &format!(
+            "; to half of the pictures each: gamma up to e^{gamma}, saturation up to {saturation}, hue up to {hue_deg} \
+             degrees, blur up to {blur_px} px, noise up to {noise}"
+        );
+    }
+    text
+}
+
+/// A row on what is rare, where anything is done about it.
+fn sampling(sampling: &Sampling) -> String {
+    let Sampling { rare_below, round_rare, tall_px, least_px } = *sampling;
+    if *sampling == Sampling::default() {
+        return String::new();
+    }
+    format!(
+        "| sampling | frames with what is in less than {rare_below} of them more often (Gupta et al. 2019); {round_rare} \
+         of the pictures laid round people of {tall_px} px and more, or else what is rare; people of less than {least_px} \
+         px count nowhere |\n"
+    )
 }
 
 /// How many there were, and why no more.

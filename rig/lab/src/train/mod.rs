@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use base::json::Typed;
 use perception::Checkpoint;
-use perception::training::{self, Origin, Progress, TrainOptions, Trained};
+use perception::training::{self, Origin, Progress, Sampling, TrainOptions, Trained};
 use serde::Serialize;
 
 pub use curves::Epoch;
@@ -142,6 +142,8 @@ fn summary(args: &Options, checkpoint: &Checkpoint, was_there: bool) -> Summary 
 }
 
 fn options(args: &Options) -> TrainOptions {
+    let (looks, sampling) = args.preset.choice();
+    let least_px = args.min_height_px.unwrap_or(sampling.least_px);
     TrainOptions {
         horizon: args.horizon.unwrap_or(args.epochs),
         seed: args.seed,
@@ -151,6 +153,8 @@ fn options(args: &Options) -> TrainOptions {
         replicas: args.replicas as usize,
         rate: args.rate,
         patience: args.patience,
+        looks,
+        sampling: Sampling { least_px, ..sampling },
     }
 }
 

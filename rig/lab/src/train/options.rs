@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use perception::training::Preset;
+
 /// What is learned from, and how.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -27,4 +29,8 @@ pub struct Options {
     pub replicas: u32,
     /// First learning rate.
     pub rate: f32,
+    /// Looks of the pictures, and how often what is rare is shown.
+    pub preset: Preset,
+    /// People less high than this, pixels of the network's input, count nowhere, instead of what the preset has.
+    pub min_height_px: Option<u32>,
 }
