@@ -124,8 +124,8 @@ fn who_leaves_a_standing_car_little_room_creeps_by() {
     let mut fastest_mps = [0.0_f32; 2];
     for lane in turning().take(6) {
         for step in 0..12 {
-            for (narrow_m, mps) in turn_beside_a_car(&network, lane, 0.2 * step as f32) {
-                let fastest = &mut fastest_mps[usize::from(narrow_m > 0.8)];
+            for (room_m, mps) in turn_beside_a_car(&network, lane, 0.2 * step as f32) {
+                let fastest = &mut fastest_mps[usize::from(room_m > 0.5)];
                 *fastest = fastest.max(mps);
             }
         }
