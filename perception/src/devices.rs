@@ -1,6 +1,7 @@
 //! What computes networks besides the CPU: the same masks, or one sentence that says what is missing. Where the library of
 //! onnxruntime is named in `ORT_DYLIB_PATH` it must work.
 
+use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
@@ -18,7 +19,7 @@ const LIBRARY: &str = "ORT_DYLIB_PATH";
 fn has_onnxruntime() -> bool {
     let named = std::env::var_os(LIBRARY).is_some_and(|path| !path.is_empty());
     if !named {
-        eprintln!("not run: {LIBRARY} names no library of onnxruntime");
+        writeln!(std::io::stderr(), "not run: {LIBRARY} names no library of onnxruntime").expect("it can be said");
     }
     named
 }
