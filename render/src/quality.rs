@@ -37,6 +37,11 @@ impl Quality {
         }
     }
 
+    /// Longest side of a picture, pixels, on adapters that have textures of 16384 texels, as most do.
+    pub fn longest_side(self) -> u32 {
+        longest_side(16_384, self)
+    }
+
     pub(crate) fn means(self) -> Means {
         match self {
             Self::Plain => Means { samples: 1, corners: false, shadows: COARSE },
@@ -53,6 +58,12 @@ impl FromStr for Quality {
         let known = Self::ALL.into_iter().find(|quality| quality.name() == name);
         known.ok_or_else(|| "expected plain, standard or fine".into())
     }
+}
+
+/// The same on adapters whose textures have other sides.
+pub(crate) fn longest_side(texels: u32, quality: Quality) -> u32 {
+    let Means { samples, corners, .. } = quality.means();
+    texels / samples - u32::from(corners)
 }
 
 /// What a quality stands for.
@@ -85,6 +96,7 @@ mod tests {
     #[test]
     fn every_quality_is_found_by_its_name() {
         assert!(Quality::ALL.iter().all(|quality| quality.name().parse() == Ok(*quality)));
+        assert_eq!(Quality::ALL.map(Quality::longest_side), [16_384, 16_383, 5_461]);
         assert_eq!("best".parse::<Quality>(), Err("expected plain, standard or fine".into()));
     }
 }

@@ -14,6 +14,7 @@ use crate::light::Light;
 use crate::light_map::LightMap;
 use crate::mirrors::{self, Feet, Streak};
 use crate::models::{Models, ModelsId};
+use crate::quality::longest_side;
 use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadow_box::ShadowBox;
@@ -234,7 +235,7 @@ impl Renderer {
 
     fn check(&self, scene: &SceneSnapshot, camera: &Camera) -> Result<(), RenderError> {
         let Camera { width, height, quality, .. } = *camera;
-        let limit = self.gpu.longest_side() / quality.means().samples - u32::from(quality.means().corners);
+        let limit = longest_side(self.gpu.longest_side(), quality);
         if width == 0 || height == 0 || width.max(height) > limit {
             return Err(RenderError::ImageSize { width, height, limit });
         }

@@ -32,7 +32,7 @@ pub(super) fn fitted(subject: Subject, model: Model) -> Result<(Model, Vec3), St
     let own = high - low;
     if !(own.min_element() > 1e-6 && own.max_element() < 1e6) {
         let [x, y, z] = own.to_array();
-        return Err(format!("is {x} long, {y} wide and {z} high; expected a solid of up to 1e6"));
+        return Err(format!("is {x} long, {y} wide and {z} high; expected a solid with sides of 1e-6 to 1e6"));
     }
     let middle = (0.5 * (low + high)).truncate().extend(low.z);
     let moved = moved(model, -middle);

@@ -117,11 +117,25 @@ pub fn named(cameras: &[Mounted], size: Size, imaging: Imaging) -> Result<Vec<Na
 /// Refuses cameras of which two have the same name in files and messages, as `written` has them.
 pub fn check_apart(cameras: &[Mounted], written: impl Fn(&str) -> String) -> Result<(), String> {
     let mut names = BTreeSet::new();
-    let twice = cameras.iter().map(|mounted| written(&mounted.name)).find(|name| !names.insert(name.clone()));
+    let mut written = cameras.iter().map(|mounted| written(&mounted.name));
+    // Some file systems know no capital letters.
+    let twice = written.find(|name| !names.insert(name.to_lowercase()));
     match twice {
         Some(name) => Err(format!("two cameras are named {name:?}; expected different names")),
         None => Ok(()),
     }
+}
+
+/// Refuses a camera whose pictures cannot be drawn, before anything else is done.
+pub fn check(camera: &Camera) -> Result<(), Usage> {
+    let Camera { width, height, quality, .. } = *camera;
+    asked::check_size((width, height))?;
+    let longest = quality.longest_side();
+    if width.max(height) > longest {
+        let name = quality.name();
+        return Err(Usage(format!("{name} pictures of {width}x{height}; expected sides of at most {longest}")));
+    }
+    render::check_lens(camera).map_err(|error| Usage(error.to_string()))
 }
 
 impl Mounted {
@@ -137,7 +151,6 @@ impl Mounted {
         within("pitch_rad", pitch_rad, -1.6, 1.6)?;
         within("fov_x_rad", fov_x_rad, 0.05, 3.0)?;
         let (width, height) = (self.width.unwrap_or(size.0), self.height.unwrap_or(size.1));
-        asked::check_size((width, height)).map_err(|Usage(said)| format!("camera {name}: {said}"))?;
         let imaging = Imaging {
             quality: self.quality.unwrap_or(imaging.quality),
             sensor: self.sensor.unwrap_or(imaging.sensor),
@@ -150,7 +163,7 @@ impl Mounted {
             fov_x_rad: *fov_x_rad,
             ..Camera::driver(width, height).at(imaging)
         };
-        render::check_lens(&camera).map_err(|error| format!("camera {name}: {error}"))?;
+        check(&camera).map_err(|Usage(said)| format!("camera {name}: {said}"))?;
         Ok(Named { name: name.clone(), camera })
     }
 }

@@ -35,8 +35,12 @@ fn drive(out: &Path, jobs: usize) -> Vec<RunLine> {
 }
 
 fn drive_as(plan: &Plan, jobs: usize) -> anyhow::Result<Vec<RunLine>> {
+    drive_through(plan, jobs, &[Eye::Truth]).map(|mut lines| lines.remove(0))
+}
+
+fn drive_through(plan: &Plan, jobs: usize, eyes: &[Eye]) -> anyhow::Result<Vec<Vec<RunLine>>> {
     let interrupt = &Interrupt::default();
-    drive_all(&Task { plan, share: Share::WHOLE, adapters: &[], jobs, interrupt }, &Eye::Truth)
+    drive_all(&Task { plan, share: Share::WHOLE, adapters: &[], jobs, interrupt }, eyes)
 }
 
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -51,14 +55,16 @@ fn jobs_and_interruptions_do_not_change_a_campaign() {
     let (one, two) = (dir.path().join("one"), dir.path().join("two"));
     fs::create_dir_all(&one).expect("writable");
     fs::create_dir_all(&two).expect("writable");
+    let eyes = [Eye::Truth, Eye::open(&"early".parse().expect("a name")).expect("it is bundled")];
+    let drive = |out: &Path, jobs| drive_through(&plan(out), jobs, &eyes).expect("a campaign");
     let lines = drive(&one, 1);
-    assert_eq!(lines.len(), 2);
-    assert_eq!(lines, drive(&two, 2));
+    assert_eq!(lines.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2]);
+    assert_eq!(lines, drive(&two, 3), "who has no run left goes on with the next checkpoint");
     let whole = contents(&one);
-    assert!(whole.len() >= 2 && whole == contents(&two));
+    assert!(whole.len() >= 4 && whole == contents(&two));
 
-    fs::remove_file(one.join(&lines[1].file)).expect("it was there");
-    assert_eq!(lines, drive(&one, 1));
+    lines.iter().for_each(|lines| fs::remove_file(one.join(&lines[1].file)).expect("it was there"));
+    assert_eq!(lines, drive(&one, 2));
     assert_eq!(whole, contents(&one));
 }
 

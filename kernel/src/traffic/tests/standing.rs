@@ -134,6 +134,20 @@ fn who_leaves_a_standing_car_little_room_creeps_by() {
     assert!(narrow > 0.0 && narrow < 1.5 && wide > 4.0, "{fastest_mps:?} m/s");
 }
 
+/// Nearer, physics takes it for about to be hit, and it stands for ever.
+#[test]
+fn who_creeps_by_a_standing_car_keeps_clear_of_it() {
+    let network = bundled("city").expect("it is bundled");
+    let turning = (0..network.lanes.len() as u32).filter(|id| network.lanes[*id as usize].turn == Turn::Right);
+    for lane in turning.take(6) {
+        for step in 0..24 {
+            for (room_m, mps) in turn_beside_a_car(&network, lane, 0.1 * step as f32) {
+                assert!(room_m > 0.06 || mps == 0.0, "lane {lane}: {room_m} m beside it at {mps} m/s");
+            }
+        }
+    }
+}
+
 /// The room that a lorry leaves to a car beside the end of its turn, tick by tick, and how fast it is then.
 fn turn_beside_a_car(network: &Arc<RoadNetwork>, lane: u32, aside_m: f32) -> Vec<(f32, f32)> {
     let (inside, before) = (&network.lanes[lane as usize], network.lanes[lane as usize].predecessors[0]);
@@ -146,13 +160,13 @@ fn turn_beside_a_car(network: &Arc<RoadNetwork>, lane: u32, aside_m: f32) -> Vec
     let look = |tick| {
         traffic.step(&Surroundings::calm(tick, ego));
         let lorry = crate::traffic::hazard::Hazard::of_body(&traffic.bodies()[0]);
-        let room_m = (0..=20).map(|step| 0.05 * step as f32).find(|m| lorry.is_within(&car, *m));
+        let room_m = (0..=100).map(|step| 0.01 * step as f32).find(|m| lorry.is_within(&car, *m));
         (room_m.unwrap_or(f32::MAX), lorry.velocity.length())
     };
     let looks: Vec<_> = (1..=360).map(look).collect();
     // Where the turn is too short it begins beside the car.
     let comes = looks[0].0 > 1.0;
-    looks.into_iter().filter(|(room_m, _)| comes && (*room_m < 0.2 || (0.8..=1.0).contains(room_m))).collect()
+    looks.into_iter().filter(|(room_m, _)| comes && (*room_m <= 0.15 || (0.8..=1.0).contains(room_m))).collect()
 }
 
 /// Whether a bus touches the post within ten seconds, and how far it comes.

@@ -26,19 +26,36 @@ pub(super) struct Document {
 /// Reads a file and those that it names.
 pub(super) fn read(files: &mut Folder, name: &str) -> anyhow::Result<Document> {
     let bytes = files.bytes(name)?;
-    let is_binary = bytes.starts_with(b"glTF");
-    let told = bytes.get(8..HEADER).and_then(|told| told.try_into().ok()).map_or(0, u32::from_le_bytes) as usize;
-    if is_binary && !(HEADER..=bytes.len()).contains(&told) {
-        bail!("is cut off: has {} bytes, expected {told}", bytes.len());
+    if bytes.starts_with(b"glTF") {
+        check_length(&bytes)?;
+    } else if !bytes.trim_ascii_start().starts_with(b"{") {
+        bail!("is no glTF 2.0 file, binary (.glb) or JSON (.gltf)");
     }
     let refused = |error: gltf::Error| anyhow!(sentence(&error));
     let Gltf { document, blob } = Gltf::from_slice_without_validation(&bytes).map_err(refused)?;
     drop(bytes);
+    check_version(document.as_json())?;
     check_attributes(document.as_json())?;
     let gltf = gltf::Document::from_json(document.into_json()).map_err(refused)?;
     let mut document = Document { buffers: buffers(files, name, (gltf.as_json(), blob))?, gltf, images: Vec::new() };
     document.images = images(files, name, &document)?;
     Ok(document)
+}
+
+/// Refuses a binary file that is not as long as its header says.
+fn check_length(bytes: &[u8]) -> anyhow::Result<()> {
+    let told = bytes.get(8..HEADER).and_then(|told| told.try_into().ok()).map(u32::from_le_bytes);
+    match told.map(|told| told as usize) {
+        None => bail!("is cut off: has {} bytes, expected a header of {HEADER} and more", bytes.len()),
+        Some(told) if told > bytes.len() => bail!("is cut off: has {} bytes, expected {told}", bytes.len()),
+        Some(told) if told < bytes.len() => bail!("has {} bytes, and its header says {told}", bytes.len()),
+        Some(_) => Ok(()),
+    }
+}
+
+fn check_version(root: &json::Root) -> anyhow::Result<()> {
+    let json::Asset { version, .. } = &root.asset;
+    if version.starts_with("2.") { Ok(()) } else { bail!("is glTF {version}, expected 2.0") }
 }
 
 /// Refuses attributes that are nowhere, which the validation of the `gltf` crate (1.4.1) takes to be there.

@@ -46,7 +46,7 @@ impl Folder {
     pub(super) fn bytes(&mut self, name: &str) -> anyhow::Result<Vec<u8>> {
         let is_plain = |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
         if name.is_empty() || name.contains(['\\', ':']) || !is_plain(name) {
-            bail!("{name:?} is no path below the folder of models, expected one such as \"car.bin\"");
+            bail!("{name:?} is no path below the folder of models, expected one such as \"cars/saloon.glb\"");
         }
         let path = self.path.join(name).canonicalize().with_context(|| format!("{name:?}"))?;
         if !path.starts_with(&self.path) {

@@ -69,7 +69,10 @@ pub(super) fn model(document: &Document, entry: &Entry, subject: Subject) -> any
     let said = &entry.said;
     check_names(document, said)?;
     let gltf = &document.gltf;
-    let scene = gltf.default_scene().or_else(|| gltf.scenes().next()).ok_or_else(|| anyhow!("has no scene"))?;
+    let scene = gltf
+        .default_scene()
+        .or_else(|| gltf.scenes().next())
+        .ok_or_else(|| anyhow!("has no scene, expected one with the model's nodes"))?;
     let (tag, body, limbs, room) = (subject.tag(), Mesh::default(), Vec::new(), most_triangles(subject));
     let mut walk = Walk { document, said, body, limbs, subject, nodes: 0, triangles: 0, vertices: 0, room };
     let axes = Mat4::from_cols_array_2d(&[
@@ -116,7 +119,10 @@ impl Walk<'_> {
     fn node(&mut self, node: &Node<'_>, parent: &Mat4, below: Below) -> anyhow::Result<()> {
         self.nodes += 1;
         if below.depth >= MOST_DEPTH || self.nodes > MOST_NODES {
-            bail!("node {} is one of more than {MOST_NODES}, or more than {MOST_DEPTH} deep", node.index());
+            bail!(
+                "node {} is one of more than {MOST_NODES}, more than {MOST_DEPTH} deep, or below itself",
+                node.index()
+            );
         }
         if node.skin().is_some() {
             bail!("node {} has a skin, expected a figure of rigid nodes", node.index());

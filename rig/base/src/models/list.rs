@@ -78,6 +78,24 @@ impl List {
     }
 }
 
+impl Model {
+    /// All lists of names, and what they are called.
+    fn names(&self) -> impl Iterator<Item = (&'static str, &[String])> {
+        let Self { is, wheels, steered, legs, arms, rider, lacquer, lamps, .. } = self;
+        let Lamps { head, brake, left, right, street } = lamps;
+        let parts = [("is", is), ("wheels", wheels), ("steered", steered), ("legs", legs), ("arms", arms)];
+        let rest = [("rider", rider), ("lacquer", lacquer), ("lamps.head", head), ("lamps.brake", brake)];
+        let lamps = [("lamps.left", left), ("lamps.right", right), ("lamps.street", street)];
+        parts.into_iter().chain(rest).chain(lamps).map(|(what, names)| (what, names.as_slice()))
+    }
+}
+
+/// A name that is there more than once.
+fn repeated(names: &[String]) -> Option<&String> {
+    let mut known = BTreeSet::new();
+    names.iter().find(|name| !known.insert(*name))
+}
+
 impl Entry {
     fn of(said: Model) -> Result<Self, String> {
         let Model { file, is, .. } = &said;
@@ -85,6 +103,10 @@ impl Entry {
             let known = || Subject::names().collect::<Vec<_>>().join(", ");
             Subject::named(name).ok_or_else(|| format!("{file} is {name:?}, expected one of {}", known()))
         };
+        let twice = said.names().find_map(|(what, names)| Some((what, repeated(names)?)));
+        if let Some((what, name)) = twice {
+            return Err(format!("{file} has {name:?} twice in {what}, expected different names"));
+        }
         let is: BTreeSet<Subject> = is.iter().map(subject).collect::<Result<_, _>>()?;
         if is.is_empty() {
             return Err(format!("{file} is nothing, expected a name such as is = [\"car\"]"));

@@ -89,6 +89,7 @@ fn lists_are_refused_in_a_sentence() {
         ("file = \"car.glb\"", "file = \"none.glb\"", "\"none.glb\""),
         ("lacquer", "lacker", "unknown field `lacker`"),
         ("steered = [\"fl\", ", "steered = [\"wheel\", ", "steers \"wheel\""),
+        ("steered = [\"fl\", ", "steered = [\"fl\", \"fl\", ", "has \"fl\" twice in steered"),
         ("wheels = [", "wheels = [\"fifth\", ", "has no node \"fifth\""),
         ("lamps.brake = [\"tail\"]", "lamps.brake = [\"stop\"]", "has no material \"stop\""),
         ("is = [", "yaw_deg = 90.0\nis = [", "would be stretched 6.04 times in length"),
@@ -117,8 +118,11 @@ fn files_are_refused_in_a_sentence() {
     let positions = "/meshes/0/primitives/0/attributes/POSITION";
     for (file, said) in [
         (whole[..whole.len() - 9].to_vec(), "is cut off"),
-        (b"glTF".to_vec(), "is cut off"),
-        (b"solid cube".to_vec(), "is no glTF 2.0"),
+        (b"glTF".to_vec(), "is cut off: has 4 bytes, expected a header of 12"),
+        ([&whole[..], b"more"].concat(), "and its header says"),
+        (b"solid cube".to_vec(), "is no glTF 2.0 file, binary (.glb) or JSON"),
+        (Vec::new(), "is no glTF 2.0 file, binary (.glb) or JSON"),
+        (changed("/asset/version", json!("1.0")), "is glTF 1.0, expected 2.0"),
         (changed("/accessors/0/count", json!(4_000_000_000u64)), "has 4000000000 values"),
         (changed("/accessors/0/count", json!(900)), "reaches beyond its buffer view"),
         (changed("/bufferViews/0/byteLength", json!(1u64 << 40)), "reaches beyond its buffer"),

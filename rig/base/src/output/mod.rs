@@ -53,7 +53,7 @@ fn temporary(path: &Path, bytes: &[u8]) -> anyhow::Result<tempfile::NamedTempFil
 /// Refuses a place where no file can be written, before the work whose result it is for.
 pub fn check_file(path: &Path) -> anyhow::Result<()> {
     let folder = folder_of(path);
-    if path.is_dir() {
+    if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         bail!("{}: is a folder; expected a file", path.display());
     }
     if !folder.is_dir() {

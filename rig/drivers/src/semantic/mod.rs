@@ -2,6 +2,7 @@
 
 pub mod arc;
 mod aside;
+mod backing;
 mod coming;
 mod crossing;
 mod memory;
@@ -26,6 +27,7 @@ use crate::vision::FRAME_TICKS;
 use crate::{indicate, single_track};
 use arc::Arc;
 use aside::Course;
+use backing::Backing;
 use memory::{Ahead, Dash, Patience, Reading, Room, Trail};
 use moved::{Lag, Moved};
 use pedals::{Foot, Nose};
@@ -61,6 +63,7 @@ pub struct SemanticBot {
     patience: Patience,
     room: Room,
     squeeze: Squeeze,
+    backing: Backing,
     /// Somebody or something stood in the way of the car when it looked last.
     is_blocked: bool,
     has_lights: bool,
@@ -78,6 +81,11 @@ impl Driver<SemanticView<'_>> for SemanticBot {
         }
         let sight = Sight::new(view.mask, self.down_rad);
         let (arc, wish) = self.decide(&sight, view, is_new);
+        if self.backing.is_on() {
+            self.steer = follow(self.steer, 0.0);
+            self.nose.dip(0.0, 0.0, view.hud.speed_mps());
+            return Backing::controls(self.steer, view.hud.speed_mps());
+        }
         self.steer = follow(self.steer, single_track::steering(arc.curvature));
         let (throttle, brake) = self.foot.press(view.hud.speed_mps(), &wish, self.temper.reaction_factor());
         self.nose.dip(throttle, brake, view.hud.speed_mps());
@@ -98,14 +106,17 @@ impl SemanticBot {
 
     /// Takes in the view: where to steer, and how fast to go.
     fn decide(&mut self, sight: &Sight<'_>, view: &SemanticView<'_>, is_new: bool) -> (Arc, Wish) {
-        let moved = Moved::along(Arc { curvature: single_track::curvature(self.steer) }, view.hud.speed_mps());
+        let forward_mps = if self.backing.is_on() { -view.hud.speed_mps() } else { view.hud.speed_mps() };
+        let moved = Moved::along(Arc { curvature: single_track::curvature(self.steer) }, forward_mps);
         self.lag.push(moved);
         let dash = self.reading.read(&view.hud, moved);
         self.trail.extend(moved, path::arrow_point(dash.bearing_deg));
         self.tracks.carry(moved);
         self.people.carry(moved);
         self.room.carry(moved);
-        self.squeeze.carry(moved, self.is_blocked && dash.light.is_none_or(|light| light == LightPhase::Green));
+        let waits = self.is_blocked && dash.light.is_none_or(|light| light == LightPhase::Green);
+        self.squeeze.carry(moved, waits);
+        self.backing.carry(moved, waits && self.squeeze.way().is_none() && backing::is_close(&self.contacts));
         let arc = path::choose(sight, &dash, &self.trail);
         self.looked_ticks += 1;
         // Nothing moves in the picture of a car that stands before a parked one, and yet it is a new picture.

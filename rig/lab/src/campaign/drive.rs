@@ -59,8 +59,8 @@ pub(super) fn open(options: &Options) -> anyhow::Result<(Plan, Vec<Eye>)> {
 fn drive_share(task: &Task<'_>, eyes: &[Eye]) -> anyhow::Result<Vec<Driven>> {
     let mut no_room = NoRoom::default();
     say_of_first_runs(task, &mut no_room)?;
-    let drive = |eye: &Eye| Ok(Driven { checkpoint: eye.name().to_owned(), runs: drive_all(task, eye)? });
-    let driven = eyes.iter().map(drive).collect::<anyhow::Result<Vec<_>>>()?;
+    let driven = eyes.iter().zip(drive_all(task, eyes)?);
+    let driven: Vec<_> = driven.map(|(eye, runs)| Driven { checkpoint: eye.name().to_owned(), runs }).collect();
     say_of_runs(driven.iter().flat_map(|driven| &driven.runs), &mut no_room);
     Ok(driven)
 }

@@ -14,12 +14,18 @@ use super::runner::{Driven, Runner};
 use super::task::Task;
 use super::until::STALLED_RUNS;
 
-/// What the threads share.
+/// What the threads share: who has nothing left to do for a checkpoint goes on with the next one, while others end their runs.
 struct Pool<'a> {
     task: &'a Task<'a>,
-    eye: &'a Eye,
-    aside: &'a Aside,
+    lanes: Vec<Lane<'a>>,
     bar: Bar,
+    failure: Mutex<Option<anyhow::Error>>,
+}
+
+/// The runs of one checkpoint.
+struct Lane<'a> {
+    eye: &'a Eye,
+    aside: Aside,
     state: Mutex<State>,
 }
 
@@ -32,56 +38,49 @@ struct State {
     /// Runs that were done before their turn. Only in their turn it is known whether they count, so that
     /// no others come among the results, however a campaign ends.
     waiting: BTreeMap<usize, Driven>,
-    failure: Option<anyhow::Error>,
 }
 
-/// Drives a task's runs of one checkpoint until there are enough, and gives them in order.
-pub fn drive_all(task: &Task<'_>, eye: &Eye) -> anyhow::Result<Vec<RunLine>> {
-    let bar = progress::bar(eye.name(), task.progress(&[]).1);
-    let aside = &Aside::new(&task.plan.out, eye.name());
-    let pool = Pool { task, eye, aside, bar, state: Mutex::default() };
+/// Drives a task's runs of each checkpoint until there are enough, and gives them in order.
+pub fn drive_all(task: &Task<'_>, eyes: &[Eye]) -> anyhow::Result<Vec<Vec<RunLine>>> {
+    let lane = |eye| Lane { eye, aside: Aside::new(&task.plan.out, Eye::name(eye)), state: Mutex::default() };
+    let bar = progress::bar("campaign", task.progress(&[]).1 * eyes.len() as u64);
+    let pool = Pool { task, lanes: eyes.iter().map(lane).collect(), bar, failure: Mutex::default() };
     std::thread::scope(|scope| {
         for _ in 0..task.jobs {
             scope.spawn(|| pool.work());
         }
     });
     pool.bar.finish_and_clear();
-    let State { runs, failure, .. } = pool.state.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-    if let Some(failure) = failure {
-        return Err(failure);
+    match owned(pool.failure) {
+        Some(failure) => Err(failure),
+        None => pool.lanes.into_iter().map(|lane| lane.runs(task)).collect(),
     }
-    if !task.is_done(&runs) {
-        bail!("interrupted after {}; the same command goes on from there", words::count(runs.len(), "run"));
-    }
-    aside.clear()?;
-    Ok(runs)
 }
 
 impl Pool<'_> {
-    fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-    }
-
-    /// Takes one run after the other until there are enough.
+    /// Drives until there are enough runs of all checkpoints.
     fn work(&self) {
-        let mut runner = Runner::new(self.task, self.eye, self.aside);
-        while let Some((turn, run)) = self.take() {
-            let put = runner.drive(run).and_then(|driven| driven.map(|driven| self.put(turn, driven)).transpose());
-            match put {
-                Ok(Some(())) => {}
-                Ok(None) => return,
-                Err(error) => {
-                    self.state().failure.get_or_insert(error);
-                    return;
-                }
-            }
+        let each = self.lanes.iter().try_for_each(|lane| self.work_on(lane));
+        if let Err(error) = each {
+            locked(&self.failure).get_or_insert(error);
         }
     }
 
+    /// Takes one run of a checkpoint after the other until there are enough.
+    fn work_on(&self, lane: &Lane<'_>) -> anyhow::Result<()> {
+        let mut runner = Runner::new(self.task, lane.eye, &lane.aside);
+        while let Some((turn, run)) = self.take(lane) {
+            let Some(driven) = runner.drive(run)? else { return Ok(()) };
+            lane.put(self.task, turn, driven)?;
+            self.show(lane);
+        }
+        Ok(())
+    }
+
     /// The next turn, and the number of its run.
-    fn take(&self) -> Option<(usize, u32)> {
-        let mut state = self.state();
-        if state.failure.is_some() || self.task.interrupt.is_raised() || self.task.is_done(&state.runs) {
+    fn take(&self, lane: &Lane<'_>) -> Option<(usize, u32)> {
+        let mut state = locked(&lane.state);
+        if locked(&self.failure).is_some() || self.task.interrupt.is_raised() || self.task.is_done(&state.runs) {
             return None;
         }
         let turn = state.next;
@@ -90,15 +89,23 @@ impl Pool<'_> {
         Some((turn, run))
     }
 
+    fn show(&self, lane: &Lane<'_>) {
+        let done = self.lanes.iter().map(|lane| self.task.progress(&locked(&lane.state).runs).0);
+        self.bar.set_message(lane.eye.name().to_owned());
+        self.bar.set_position(done.sum());
+    }
+}
+
+impl Lane<'_> {
     /// Counts a run in its turn, and those that waited for it.
-    fn put(&self, turn: usize, driven: Driven) -> anyhow::Result<()> {
-        let mut state = self.state();
+    fn put(&self, task: &Task<'_>, turn: usize, driven: Driven) -> anyhow::Result<()> {
+        let mut state = locked(&self.state);
         state.waiting.insert(turn, driven);
-        while !self.task.is_done(&state.runs) {
+        while !task.is_done(&state.runs) {
             let turn = state.runs.len();
             let Some(driven) = state.waiting.remove(&turn) else { break };
-            state.runs.push(driven.keep(self.aside)?);
-            let goal = self.task.plan.goal;
+            state.runs.push(driven.keep(&self.aside)?);
+            let goal = task.plan.goal;
             if goal.end().is_none() && goal.until.is_out_of_reach(&state.runs) {
                 bail!(
                     "{}: {STALLED_RUNS} runs in a row brought the campaign no further; expected a checkpoint that drives, \
@@ -107,7 +114,24 @@ impl Pool<'_> {
                 );
             }
         }
-        self.bar.set_position(self.task.progress(&state.runs).0);
         Ok(())
     }
+
+    /// All runs that count.
+    fn runs(self, task: &Task<'_>) -> anyhow::Result<Vec<RunLine>> {
+        let runs = owned(self.state).runs;
+        if !task.is_done(&runs) {
+            bail!("interrupted after {}; the same command goes on from there", words::count(runs.len(), "run"));
+        }
+        self.aside.clear()?;
+        Ok(runs)
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+fn owned<T>(mutex: Mutex<T>) -> T {
+    mutex.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
 }

@@ -10,9 +10,9 @@ use anyhow::{Context, bail};
 use base::failure::Usage;
 use base::json::Typed;
 use base::maps::Map;
+use base::output;
 use base::output::PendingFolder;
 use base::progress::{self, Interrupt};
-use base::{asked, output};
 use drivers::crew::Crew;
 use drivers::film::Viewpoint;
 use drivers::session::SessionState;
@@ -95,15 +95,19 @@ impl fmt::Display for Still {
 /// Makes a picture, in a file that there is not yet, or one of each camera of a file, in a folder that there is not yet.
 pub fn render(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Vec<Still>> {
     let Options { camera, size, imaging, out, .. } = options;
-    asked::check_size(*size)?;
     if let Some(path) = &options.cameras {
         return render_all(options, &cameras::read(path, *size, *imaging)?, interrupt);
+    }
+    if out.extension().is_none_or(|ending| ending != "png") {
+        return Err(Usage(format!("{}: expected the name of a PNG file, as in still.png", out.display())).into());
     }
     if out.exists() {
         bail!("{}: exists already; expected a new file", out.display());
     }
     output::check_file(out)?;
-    let (bytes, still) = Moment::of(options, interrupt)?.still(&camera.camera(*size).at(*imaging), options, out)?;
+    let camera = camera.camera(*size).at(*imaging);
+    cameras::check(&camera)?;
+    let (bytes, still) = Moment::of(options, interrupt)?.still(&camera, options, out)?;
     output::write_file(out, &bytes)?;
     Ok(vec![still])
 }
