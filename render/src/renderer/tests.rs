@@ -221,6 +221,28 @@ fn a_quality_has_no_shadow_maps_of_others() {
     assert_eq!(sides.map(|side| renderer.passes.shadow_maps(side)), [2, 1]);
 }
 
+/// After an hour and a half: what had always gone with the wind of its tick would be metres away.
+#[test]
+fn neither_clouds_nor_rain_leap_where_the_wind_changes() {
+    let network = network("rural");
+    let mut renderer = renderer(&network);
+    let scene = places("rural", &network, 2).remove(0);
+    let camera = Camera::driver(256, 128);
+    let mut draw = |wind_pct: f32, precipitation_pct: f32| {
+        let weather = Weather { precipitation_pct, ..Weather::dry(50.0, wind_pct, 40.0, 0.0) };
+        renderer.draw(&SceneSnapshot { tick: 300_000, weather, ..scene.clone() }, &camera).expect("drawn")
+    };
+    let differing = |a: &Frame, b: &Frame| {
+        let pixels = a.rgb.chunks(3).zip(b.rgb.chunks(3));
+        pixels.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 8)).count()
+    };
+    for rain_pct in [0.0, 80.0] {
+        let [now, then, storm] = [40.0, 40.01, 90.0].map(|wind_pct| draw(wind_pct, rain_pct));
+        assert!(differing(&now, &then) < 100, "{rain_pct}: {}", differing(&now, &then));
+        assert!(rain_pct == 0.0 || differing(&now, &storm) > 400, "{}", differing(&now, &storm));
+    }
+}
+
 #[test]
 fn labels_take_no_spray() {
     let network = network("rural");
