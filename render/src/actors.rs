@@ -208,14 +208,19 @@ impl Cast {
         moving: &mut Moving,
     ) {
         let centre = head.position + Vec3::Z * head.height_m;
-        if !view.sees(centre, 1.0) || view.pixels(1.0, centre, 0.0) < SMALLEST_PX {
+        if view.pixels(1.0, centre, 0.0) < SMALLEST_PX {
+            return;
+        }
+        let role =
+            Role { is_seen: view.sees(centre, 1.0), casts: shadow.is_some_and(|shadow| casts(head, view, shadow)) };
+        if !(role.is_seen || role.casts) {
             return;
         }
         let detail = view.detail(centre, 1.0);
+        let detail = if role.is_seen { detail } else { detail.max(Detail::Coarse) };
         let mesh = self.heads.entry((phase, detail)).or_insert_with(|| signal::head(phase, detail));
         let frame = Affine3A::from_rotation_translation(glam::Quat::from_rotation_z(head.facing_rad), centre);
-        let casts = shadow.is_some_and(|shadow| shadow.reaches(centre, 1.0));
-        moving.append_mesh(mesh, frame, (0, 0), Role { is_seen: true, casts });
+        moving.append_mesh(mesh, frame, (0, 0), role);
     }
 }
 
@@ -233,6 +238,14 @@ fn made(
 fn sphere(actor: &ActorScene) -> (Vec3, f32) {
     let size = actor.kind.size_m();
     (actor.position + Vec3::Z * 0.5 * size.z, 0.5 * size.length() + 0.4)
+}
+
+/// Whether a signal head casts a shadow that a view may see.
+fn casts(head: &LightHead, view: &View, shadow: &ShadowBox) -> bool {
+    // What stands on the ground is as high as a sphere around it.
+    let half = 0.5 * head.height_m;
+    let (centre, radius) = shadow.around_shadow(head.position + Vec3::Z * half, half + 1.0);
+    view.sees(centre, radius) && shadow.reaches(head.position + Vec3::Z * head.height_m, 1.0)
 }
 
 /// Whether an eye looks out of an actor, or from right above its roof: a chase camera does, when somebody follows closely.
@@ -293,8 +306,10 @@ mod tests {
     use glam::Quat;
 
     use super::*;
-    use crate::Camera;
-    use crate::mesh::CODE_HEAD;
+    use crate::light::Light;
+    use crate::mesh::{CODE_HEAD, Paint};
+    use crate::models::{Figure, Subject};
+    use crate::{Camera, SemanticTag};
 
     /// What is drawn of the ego car and others, seen from behind and above.
     fn drawn(lamps: u8, tick: Tick, actors: Vec<ActorScene>) -> Vec<Vertex> {
@@ -378,6 +393,62 @@ mod tests {
             glow.colour[0] > 5.0 * glow.colour[2] && x < 0.0 && y.abs() > 0.4
         };
         assert!(moving.glows.len() >= 2 && moving.glows.iter().all(is_tail), "{:?}", moving.glows);
+    }
+
+    /// A model of a box, with or without lamps of its own, under the renderer's rider.
+    #[test]
+    fn lamps_that_are_not_drawn_do_not_glow() {
+        let ego =
+            EgoScene { position: Vec3::ZERO, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0, lamps: 0 };
+        let actors = vec![actor(ActorKind::Motorcycle, 14.0, lamps::HEADLIGHTS | lamps::BRAKE)];
+        let weather = Weather::dry(0.0, 0.0, -20.0, 0.0);
+        let scene = SceneSnapshot { tick: 0, ego, actors, lights: Vec::new(), weather };
+        let view = View::new(&Camera::chase(320, 200), &scene.ego);
+        let glows = |code: Option<u8>| {
+            let own = code.map(|code| {
+                let (subject, mut mesh) = (Subject::Actor(ActorKind::Motorcycle), Mesh::default());
+                let paint = Paint::plain(subject.tag(), [90; 3]).coded(code);
+                mesh.cuboid(paint, Vec3::ZERO, Vec3::new(2.2, 0.6, 1.1));
+                let figure = Figure::new(subject, Model::rigid(mesh)).expect("it fits");
+                Arc::new(Models::new([1; 16].into(), BTreeMap::from([(subject, vec![figure])])))
+            });
+            let (mut cast, mut moving) = (Cast::default(), Moving { shine: 1.0, ..Default::default() });
+            cast.dress(own);
+            cast.pose(&scene, &[], (&view, Horizon::new(view.eye, &[], 100.0)), None, &mut moving);
+            assert!(moving.vertices.iter().any(|v| v.tag == SemanticTag::Rider as u8));
+            moving.glows.len()
+        };
+        assert!(glows(None) > 0 && glows(Some(CODE_BRAKE)) > 0);
+        assert_eq!(glows(Some(0)), 0);
+    }
+
+    /// A head beside and one before the camera, and what casts shadows of them.
+    #[test]
+    fn signals_cast_shadows_into_the_picture_from_beside_it() {
+        let ego =
+            EgoScene { position: Vec3::ZERO, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0, lamps: 0 };
+        let weather = Weather::dry(0.0, 0.0, 25.0, 90.0);
+        let lights = vec![LightPhase::Red];
+        let scene = SceneSnapshot { tick: 0, ego, actors: Vec::new(), lights, weather };
+        let view = View::new(&Camera::driver(256, 128), &scene.ego);
+        let sun = Light::new(&scene.weather).sun;
+        let shadow = ShadowBox::ahead_of(view.eye, view.ahead, Vec3::ZERO, sun, 64.0);
+        // How many are drawn, and how many cast a shadow, but for the ego car.
+        let counts = |x: f32, y: f32, shadow: Option<&ShadowBox>| {
+            let head = LightHead { group: 0, position: Vec3::new(x, y, 0.0), facing_rad: 3.0, height_m: 4.0 };
+            let mut moving = Moving::default();
+            let horizon = Horizon::new(view.eye, &[], 100.0);
+            Cast::default().pose(&scene, &[head], (&view, horizon), shadow, &mut moving);
+            let casters =
+                moving.casters.iter().filter(|it| moving.vertices[it.vertices.start as usize].instance != EGO_INSTANCE);
+            let is_drawn = moving.indices.iter().any(|i| moving.vertices[*i as usize].instance != EGO_INSTANCE);
+            (usize::from(is_drawn), casters.count())
+        };
+        // The sun stands on the left.
+        assert_eq!(counts(12.0, 0.0, Some(&shadow)), (1, 1));
+        assert_eq!(counts(8.0, 13.0, Some(&shadow)), (0, 1), "its shadow falls before the camera");
+        assert_eq!(counts(8.0, -18.0, Some(&shadow)), (0, 0), "its shadow falls farther aside");
+        assert_eq!((counts(12.0, 0.0, None), counts(8.0, 13.0, None)), ((1, 0), (0, 0)));
     }
 
     #[test]

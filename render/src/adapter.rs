@@ -62,8 +62,8 @@ fn look(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
 
 /// The adapter to make a device from. Mesa's CPU driver (22.3) walks through the scenes of all devices of an instance, while
 /// others draw them: one that reads a picture back then ends the process by SIGSEGV. So CPU devices have an instance each; and
-/// so have those of OpenGL, which would wait for each other's turn at one context.
-fn to_itself(shared: &wgpu::Adapter) -> wgpu::Adapter {
+/// so have those of OpenGL, which would wait for each other's turn at one context. It makes a context there, too.
+pub(crate) fn to_itself(shared: &wgpu::Adapter) -> wgpu::Adapter {
     let info = shared.get_info();
     let is_same = |adapter: &wgpu::Adapter| adapter.get_info() == info;
     let is_alone = info.device_type == wgpu::DeviceType::Cpu || info.backend == wgpu::Backend::Gl;
@@ -126,13 +126,8 @@ impl AdapterChoice {
         self.best().map(|(_, info)| info)
     }
 
-    /// The best adapter of the wanted kind, for one device.
-    pub(crate) fn open(&self) -> Result<(wgpu::Adapter, AdapterInfo), RenderError> {
-        self.best().map(|(adapter, info)| (to_itself(adapter), info))
-    }
-
-    /// The best adapter of the wanted kind and its description.
-    fn best(&self) -> Result<(&'static wgpu::Adapter, AdapterInfo), RenderError> {
+    /// The best adapter of the wanted kind and its description; devices take theirs by [`to_itself`].
+    pub(crate) fn best(&self) -> Result<(&'static wgpu::Adapter, AdapterInfo), RenderError> {
         let (asked, mut names) = (self.asked(), Vec::new());
         for adapter in APIS.into_iter().flat_map(found) {
             let info = describe(&adapter.get_info());

@@ -73,6 +73,16 @@ pub enum RenderError {
         /// Those that were read, or "none".
         given: String,
     },
+    /// What stands still could not be brought to the adapter.
+    #[error(
+        "the map did not come to adapter '{adapter}': {reason}; where memory is short, models of fewer triangles take less"
+    )]
+    Scenery {
+        /// Its name.
+        adapter: String,
+        /// The driver's words.
+        reason: String,
+    },
     /// The snapshot belongs to another map.
     #[error("snapshot has {got} light groups, the map has {expected}: it belongs to another map")]
     OtherMap {

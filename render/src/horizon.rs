@@ -32,7 +32,8 @@ impl Occluder {
     }
 }
 
-/// The skyline as far as it has been raised.
+/// The skyline as far as it has been raised. Whoever asks raises one of his own.
+#[derive(Clone)]
 pub(crate) struct Horizon {
     eye: Vec3,
     /// Slope (rise over distance) below which everything farther is hidden, by direction.

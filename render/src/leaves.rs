@@ -11,7 +11,7 @@ use crate::mesh::variety::Variety;
 /// Side of a layer in texels.
 pub const SIDE: u32 = 128;
 
-/// What is more than this is leaf, in `leaf.wgsl` too.
+/// What is this or more is leaf, in `leaf.wgsl` too.
 pub const THRESHOLD: u8 = 128;
 
 /// One layer for each [`Leaf`]; of each its mip levels, two bytes a texel, from the finest to a single one.

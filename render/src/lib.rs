@@ -8,6 +8,7 @@ mod actors;
 pub mod adapter;
 pub mod camera;
 mod castings;
+mod clouds;
 mod corners;
 mod effects;
 mod error;

@@ -12,10 +12,13 @@ use crate::view::View;
 pub(crate) const SIDE: usize = 160;
 const TEXEL_M: f32 = 1.0;
 
+/// Half of the square's side.
+const HALF_M: f32 = 0.5 * SIDE as f32 * TEXEL_M;
+
 /// Most light of street lamps and of headlights that a texel tells, in that of one street lamp right below it.
 const MOST: [f32; 2] = [2.0, 4.0];
 /// Heights are told from so far below the ego car's to so far above, as `scene.wgsl` has it.
-const HALF_RISE_M: f32 = 64.0;
+pub(crate) const HALF_RISE_M: f32 = 64.0;
 
 /// A street lamp lights the ground up to this distance from the point below it, and half as much as there at the other.
 const STREET_REACH_M: f32 = 24.0;
@@ -59,6 +62,11 @@ impl Default for LightMap {
     }
 }
 
+/// The middle of the square for a view: it sees more of what lies ahead.
+fn middle_of(view: &View) -> Vec2 {
+    view.eye.truncate() + View::level_ahead(view.ahead) * (0.75 * HALF_M)
+}
+
 /// Two headlights.
 struct Beam {
     from: Vec3,
@@ -85,9 +93,7 @@ impl LightMap {
 
     /// Makes it for what a view sees of a scene.
     pub(crate) fn light(&mut self, view: &View, scene: &SceneSnapshot, street: &[StreetLamp]) {
-        let half = 0.5 * SIDE as f32 * TEXEL_M;
-        let flat = view.ahead.truncate().normalize_or_zero();
-        let middle = view.eye.truncate() + flat * (0.75 * half);
+        let (half, middle) = (HALF_M, middle_of(view));
         self.corner = (middle / TEXEL_M).floor() * TEXEL_M - half;
         self.base_m = scene.ego.position.z;
         self.lit.fill(Lit::default());
@@ -254,9 +260,25 @@ impl Beam {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Camera;
 
     fn beam(hidden: Vec<(f32, [f32; 2])>) -> Beam {
         Beam { from: Vec3::ZERO, ahead: Vec2::X, reach_m: 60.0, strength: 1.0, hidden }
+    }
+
+    #[test]
+    fn the_map_lies_ahead_and_below_who_looks_straight_down() {
+        let ego =
+            EgoScene { position: Vec3::ZERO, rotation: Quat::IDENTITY, speed_mps: 0.0, wheel_angle_rad: 0.0, lamps: 0 };
+        let middle = |pitch_rad: f32| {
+            let rotation = Quat::from_rotation_y(pitch_rad);
+            middle_of(&View::new(&Camera { position: Vec3::ZERO, rotation, ..Camera::chase(64, 64) }, &ego))
+        };
+        for off_rad in [-0.01, -1e-6, 0.0, 1e-6, 0.01] {
+            let at = middle(core::f32::consts::FRAC_PI_2 + off_rad);
+            assert!(at.length() < 2.0, "{off_rad}: {at}");
+        }
+        assert!(middle(0.16).distance(Vec2::X * 60.0) < 1e-3 && middle(-1.0).distance(Vec2::X * 60.0) < 1e-3);
     }
 
     #[test]

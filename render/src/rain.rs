@@ -16,7 +16,7 @@ const EXPOSURE_S: f32 = 0.03;
 /// Drops in the box around the eye in a cloudburst.
 const DROPS: f32 = 5000.0;
 /// Sides of that box, metres, as `rain.wgsl` has them.
-const BOX_M: Vec3 = Vec3::new(24.0, 24.0, 12.0);
+pub(crate) const BOX_M: Vec3 = Vec3::new(24.0, 24.0, 12.0);
 
 /// Whether rain, fog or water changes the picture.
 pub(crate) fn is_drawn(weather: &Weather) -> bool {
@@ -32,11 +32,12 @@ fn velocity_mps(weather: &Weather) -> Vec3 {
     (wind::DIRECTION * (STORM_MPS * 0.01 * weather.wind_pct)).extend(-FALL_MPS)
 }
 
-/// How far drops have come since the start, metres, up to whole boxes.
-pub(crate) fn drift_m(weather: &Weather, tick: Tick) -> Vec3 {
+/// How far drops have fallen since the start, metres upwards, up to whole boxes. How far the wind takes them aside follows from their
+/// height in the box: a snapshot knows the wind of its tick alone, and drops that had always gone with that would leap where it
+/// changes.
+pub(crate) fn fall_m(tick: Tick) -> f32 {
     let time_s = f64::from(TICK_S) * tick as f64;
-    let way = velocity_mps(weather).as_dvec3() * time_s;
-    way.rem_euclid(BOX_M.as_dvec3()).as_vec3()
+    (f64::from(-FALL_MPS) * time_s).rem_euclid(f64::from(BOX_M.z)) as f32
 }
 
 /// The way of a drop during the exposure, metres.

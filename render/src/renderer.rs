@@ -1,6 +1,9 @@
 //! The renderer: one map on one adapter.
 
-use glam::Vec3;
+mod picture;
+
+use std::sync::Arc;
+
 use kernel::map::LightHead;
 use kernel::weather::Water;
 use kernel::{RoadNetwork, SceneSnapshot};
@@ -9,21 +12,21 @@ use crate::actors::{Cast, Moving};
 use crate::castings;
 use crate::effects::{self, Lenses};
 use crate::glows::{self, Glow};
-use crate::gpu::{Draws, Gpu, Lighting, Passes, SceneUniform, ShadowDraws, Targets};
-use crate::light::Light;
+use crate::gpu::{Draws, Gpu, Passes, SceneUniform, ShadowDraws, Targets};
+use crate::horizon::Horizon;
 use crate::light_map::LightMap;
 use crate::mirrors::{self, Feet, Streak};
 use crate::models::{Models, ModelsId};
 use crate::quality::longest_side;
-use crate::rain;
 use crate::scenery::{Scenery, gone, parked_looks};
 use crate::shadow_box::ShadowBox;
 use crate::shadows::ShadowMaps;
 use crate::sieve::{MOVING, Sieve};
 use crate::spray::{self, Puff};
 use crate::street_lamps::{self, StreetLamp};
-use crate::view::View;
 use crate::{AdapterChoice, Camera, Frame, Quality, RenderError};
+
+use picture::Picture;
 
 /// Draws one map on one adapter.
 pub struct Renderer {
@@ -80,7 +83,7 @@ impl Renderer {
             moving: Moving::default(),
             targets: None,
             shadows: ShadowMaps::new(1),
-            street_lamps: street_lamps::all(network),
+            street_lamps: street_lamps::all(&network.props, None),
             light_map: LightMap::default(),
             glows: Vec::new(),
             streaks: Vec::new(),
@@ -123,51 +126,58 @@ impl Renderer {
         Ok(effects::take(seen, scene, camera, &lens))
     }
 
+    /// Draws what a pinhole sees. What went wrong with one picture is no matter of the next: targets that were not read back cannot
+    /// be drawn to, and tiles of shadow maps that were to be drawn may not have been.
     fn planes(&mut self, scene: &SceneSnapshot, camera: &Camera, colours: bool) -> Result<Frame, RenderError> {
         self.check(scene, camera)?;
         self.dress(camera.models)?;
-        let view = View::new(camera, &scene.ego);
-        let (width, height) = (camera.width, camera.height);
-        let corners = view.at_corners(width, height);
-        let means = camera.quality.means();
-        let takes_corners = colours && means.corners;
-        let seen = if takes_corners { corners } else { view };
-        let light = Light::new(&scene.weather);
-        let horizon = self.scenery.horizon(view.eye);
-        let shadow = ShadowBox::ahead_of(view.eye, view.ahead, scene.ego.position, light.sun, means.shadows.reach_m);
-        let lamps_shine = colours && light.lamps.is_some();
-        let lighting = match (lamps_shine, light.sun_light == Vec3::ZERO) {
-            (false, _) => Lighting::Day,
-            (true, false) => Lighting::Dusk,
-            (true, true) => Lighting::Night,
-        };
-        let shines = colours && light.sun_light != Vec3::ZERO;
-        self.moving.shine = light.lamps.filter(|_| colours).map_or(0.0, |lamps| lamps.shine);
-        self.cast.pose(scene, &self.heads, (&seen, horizon), shines.then_some(&shadow), &mut self.moving);
-        self.shine(scene, &seen, &light, colours);
-        spray::of(scene, &seen, &mut self.spray);
-        let samples = [width, height].map(|side| side * means.samples);
-        let gone = gone(scene);
-        self.sieve.begin(&view, samples, takes_corners, scene, !self.sifts);
+        let picture = Picture::new(scene, camera, colours);
+        let shadows = self.stage(scene, &picture);
+        let frame = self.paint(scene, &picture, shadows);
+        if frame.is_err() {
+            self.targets = None;
+            self.shadows.forget();
+        }
+        frame
+    }
+
+    /// Puts all in its place that is to be drawn; gives what is lacking on the shadow map.
+    fn stage(&mut self, scene: &SceneSnapshot, picture: &Picture) -> ShadowDraws {
+        let (seen, gone) = (picture.seen(), gone(scene));
+        let horizon = self.scenery.horizon(seen.eye);
+        let shadow = picture.sun_shines().then_some(&picture.shadow);
+        self.moving.shine = picture.light.lamps.filter(|_| picture.colours).map_or(0.0, |lamps| lamps.shine);
+        self.cast.pose(scene, &self.heads, (seen, horizon.clone()), shadow, &mut self.moving);
+        self.shine(scene, picture, &horizon);
+        self.spray.clear();
+        if picture.colours {
+            spray::of(scene, seen, &mut self.spray);
+        }
+        self.sieve.begin(&picture.views[0], picture.samples(), picture.takes_corners(), scene, !self.sifts);
         let moving_triangles = core::iter::once((MOVING, &self.moving.indices[..]));
         self.sieve.sift(&self.moving.vertices, 0, moving_triangles);
-        self.scenery.sift(&seen, &gone, &mut self.sieve);
-        let shadows = if shines { self.cast(&shadow, &gone, means.shadows.side) } else { Default::default() };
+        self.scenery.sift((seen, horizon), &gone, &mut self.sieve);
+        shadow.map_or_else(Default::default, |shadow| self.cast(shadow, &gone, picture.means.shadows.side))
+    }
+
+    /// Draws what is in its place and reads it back.
+    fn paint(&mut self, scene: &SceneSnapshot, picture: &Picture, shadows: ShadowDraws) -> Result<Frame, RenderError> {
+        let Picture { width, height, means, colours, ref light, .. } = *picture;
         let texel = 1.0 / means.shadows.side as f32;
         let draws = Draws {
-            uniforms: [view, corners].map(|view| {
-                let uniform = SceneUniform::new(&view, scene, &light).shaded(&shadow, texel);
-                uniform.sampled(means.samples).lit(&light, &self.light_map)
+            uniforms: picture.views.map(|view| {
+                let uniform = SceneUniform::new(&view, scene, light).shaded(&picture.shadow, texel);
+                uniform.sampled(means.samples).lit(light, &self.light_map)
             }),
             moving_vertices: &self.moving.vertices,
             seen: self.sieve.seen(),
             shadows,
             shadow_style: means.shadows,
             colours,
-            weather: rain::is_drawn(&scene.weather),
-            drops: rain::drops(&scene.weather),
-            lighting,
-            light_map: lamps_shine.then_some(&self.light_map.texels),
+            weather: picture.weather,
+            drops: picture.drops,
+            lighting: picture.lighting(),
+            light_map: picture.lamps_shine().then_some(&self.light_map.texels),
             glows: &self.glows,
             streaks: &self.streaks,
             spray: &self.spray,
@@ -180,7 +190,7 @@ impl Renderer {
         };
         self.passes.submit(&self.gpu, &draws, &targets);
         let targets = &*self.targets.insert(targets);
-        if !takes_corners {
+        if !picture.takes_corners() {
             return targets.read(&self.gpu, scene.tick, colours);
         }
         let (frame, middles) = targets.read_middles(&self.gpu, scene.tick)?;
@@ -208,19 +218,34 @@ impl Renderer {
         }
         let missing = |wanted| RenderError::Models { wanted, given: Models::known_ids() };
         let models = wanted.map(|wanted| Models::known(wanted).ok_or_else(|| missing(wanted))).transpose()?;
+        let dressed = self.wear(models);
+        if dressed.is_err() {
+            // What there was before is no longer on the adapter; without any it is as it began.
+            self.wear(None)?;
+        }
+        dressed
+    }
+
+    /// Puts the scenery up anew, and on the adapter.
+    fn wear(&mut self, models: Option<Arc<Models>>) -> Result<(), RenderError> {
         self.scenery.dress(models.as_deref());
+        self.street_lamps = street_lamps::all(self.scenery.objects(), models.as_deref());
+        let turn = self.gpu.turn();
         self.passes.replace_fixed(&self.gpu, &self.scenery.vertices);
+        drop(turn);
         self.shadows.forget();
+        self.models = models.as_deref().map(Models::id);
         self.cast.dress(models);
-        self.models = wanted;
-        Ok(())
+        let adapter = || self.gpu.info.name.clone();
+        self.gpu.failure().map_or(Ok(()), |reason| Err(RenderError::Scenery { adapter: adapter(), reason }))
     }
 
     /// Makes the map of lamps' light and their glows, where they shine.
-    fn shine(&mut self, scene: &SceneSnapshot, view: &View, light: &Light, colours: bool) {
+    fn shine(&mut self, scene: &SceneSnapshot, picture: &Picture, horizon: &Horizon) {
         self.glows.clear();
         self.streaks.clear();
-        let Some(lamps) = light.lamps.filter(|_| colours) else { return };
+        let Some(lamps) = picture.light.lamps.filter(|_| picture.colours) else { return };
+        let view = picture.seen();
         let near = street_lamps::near(&self.street_lamps, view.eye, STREET_LAMPS_M);
         self.light_map.light(view, scene, &near);
         self.glows.extend_from_slice(&self.moving.glows);
@@ -228,8 +253,7 @@ impl Renderer {
         let wet = Water::of(&scene.weather).wet;
         if wet > 0.0 {
             let feet = Feet::of(scene, &self.heads, &near);
-            let seen = (view, self.scenery.horizon(view.eye));
-            mirrors::of_glows(&self.glows, &feet, seen, wet, &mut self.streaks);
+            mirrors::of_glows(&self.glows, &feet, (view, horizon.clone()), wet, &mut self.streaks);
         }
     }
 

@@ -97,6 +97,11 @@ impl Scenery {
         scenery
     }
 
+    /// All that stands on the ground.
+    pub(crate) fn objects(&self) -> &[Prop] {
+        &self.objects
+    }
+
     /// Puts all objects on the ground, with models of a user's own or without.
     pub(crate) fn dress(&mut self, models: Option<&Models>) {
         let [pieces, vertices, indices] = self.ground;
@@ -144,15 +149,14 @@ impl Scenery {
         Horizon::new(eye, &self.houses, HOUSES_M)
     }
 
-    /// Sifts what a view sees, front to back, without the parked cars that are gone.
-    pub(crate) fn sift(&self, view: &View, gone: &[usize], sieve: &mut Sieve) {
+    /// Sifts what a view sees before a skyline, front to back, without the parked cars that are gone.
+    pub(crate) fn sift(&self, (view, mut horizon): (&View, Horizon), gone: &[usize], sieve: &mut Sieve) {
         let large = |p: &Piece| view.pixels(2.0 * p.radius_m, p.centre, p.radius_m) > SMALLEST_PX;
         let is_seen = |p: &&Piece| p.stands(gone) && view.sees(p.centre, p.radius_m) && large(p);
         let near_m = |p: &Piece| p.centre.truncate().distance(view.eye.truncate()) - p.radius_m;
         let (others, plain) = self.pieces.split_at(self.pieces.len() - 1);
         let mut seen: Vec<(f32, &Piece)> = others.iter().filter(is_seen).map(|p| (near_m(p), p)).collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut horizon = self.horizon(view.eye);
         seen.retain(|(_, p)| !horizon.hides(p.centre, p.radius_m));
         for piece in seen.into_iter().map(|(_, piece)| piece).chain(plain) {
             if !sieve.may_show_of(piece.extent) {

@@ -1,7 +1,8 @@
 //! Constants that stand in shaders too are the same there.
 
+use crate::gpu::NEAR_M;
 use crate::mesh::street::building::{CELL_M, style};
-use crate::{SemanticTag as Tag, ground_textures::plan, leaves, mesh, spray, wind};
+use crate::{SemanticTag as Tag, clouds, ground_textures::plan, leaves, light_map, mesh, rain, spray, wind};
 
 /// What follows `const NAME = ` in a shader.
 fn constant<'a>(shader: &'a str, name: &str) -> Option<&'a str> {
@@ -72,6 +73,14 @@ fn sizes_are_those_of_the_shaders() {
     let scene = include_str!("shaders/scene.wgsl");
     assert_eq!(constant(scene, "WIND_DIRECTION"), Some(pair(wind::DIRECTION.to_array()).as_str()));
     assert_eq!(constant(scene, "WIND_WAVE"), Some(pair(wind::WAVE.to_array()).as_str()));
+    assert_eq!(constant(scene, "NEAR_M"), Some(format!("{NEAR_M:?}").as_str()));
+    assert_eq!(constant(scene, "LIGHT_MAP_RISE_M"), Some(format!("{:?}", 2.0 * light_map::HALF_RISE_M).as_str()));
+    let [x, y, z] = rain::BOX_M.to_array();
+    let rain_shader = include_str!("shaders/rain.wgsl");
+    assert_eq!(constant(rain_shader, "BOX_M"), Some(format!("vec3f({x:?}, {y:?}, {z:?})").as_str()));
+    for (name, scale) in ["COARSE_CLOUDS", "FINE_CLOUDS"].iter().zip(clouds::SCALES) {
+        assert_eq!(constant(include_str!("shaders/sky.wgsl"), name), Some(format!("{scale:?}").as_str()));
+    }
     // A texel is a byte there and a share here.
     let leaf: f32 =
         constant(include_str!("shaders/leaf.wgsl"), "LEAF").and_then(|it| it.parse().ok()).expect("a number");

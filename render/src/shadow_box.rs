@@ -3,6 +3,8 @@
 use glam::{IVec2, Mat4, Vec2, Vec3, Vec4};
 use kernel::ops;
 
+use crate::view::View;
+
 /// Tiles along each side of a shadow map.
 pub(crate) const TILES: i32 = 8;
 
@@ -87,8 +89,8 @@ impl ShadowBox {
     pub(crate) fn ahead_of(eye: Vec3, ahead: Vec3, ego: Vec3, sun: Vec3, reach_m: f32) -> Self {
         let is_near = eye.truncate().distance(ego.truncate()) < reach_m;
         let eye = eye.truncate().extend(if is_near { ego.z } else { eye.z });
-        let flat = Vec3::new(ahead.x, ahead.y, 0.0).normalize_or_zero();
-        Self::around(eye + flat * (0.7 * reach_m), sun, reach_m)
+        let level = View::level_ahead(ahead).extend(0.0);
+        Self::around(eye + level * (0.7 * reach_m), sun, reach_m)
     }
 
     /// The one whose middle is within half a tile of a place.
@@ -180,6 +182,28 @@ mod tests {
         for eye_m in [1.5, 20.0, 50.0, 300.0] {
             let shadow = ShadowBox::ahead_of(ego + Vec3::Z * eye_m, Vec3::X, ego, sun(10.0), 64.0);
             assert!(shadow.reaches(ego + Vec3::X * 40.0, 0.0) && shadow.reaches(ego, 0.0), "{eye_m} m");
+        }
+    }
+
+    /// The place of the middle against the eye, level.
+    fn off(ahead: Vec3) -> Vec2 {
+        let sun = Vec3::Z;
+        let shadow = ShadowBox::ahead_of(Vec3::ZERO, ahead, Vec3::ZERO, sun, 64.0);
+        let [right, down, _] = shadow.grid.rows().map(Vec4::truncate);
+        let tiles = (shadow.first + TILES / 2).as_vec2();
+        (right * (tiles.x / right.length_squared()) + down * (tiles.y / down.length_squared())).truncate()
+    }
+
+    #[test]
+    fn who_looks_straight_down_has_shadows_around_the_place_below() {
+        let tile_m = 2.0 * 64.0 / TILES as f32;
+        let lean = |rad: f32| Vec3::new(ops::sin(rad), 0.0, -ops::cos(rad));
+        for rad in [-0.02, -1e-6, 0.0, 1e-6, 0.02] {
+            assert!(off(lean(rad)).length() <= tile_m, "{rad}: {}", off(lean(rad)));
+        }
+        for rad in [-1.4f32, -0.7, 0.7, 1.4] {
+            let ahead = Vec2::new(rad.signum() * 0.7 * 64.0, 0.0);
+            assert!(off(lean(rad)).distance(ahead) <= tile_m, "{rad}: {}", off(lean(rad)));
         }
     }
 

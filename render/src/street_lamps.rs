@@ -1,9 +1,10 @@
 //! Where the street lamps of a map shine.
 
 use glam::{Quat, Vec3};
-use kernel::map::{Prop, PropKind, RoadNetwork};
+use kernel::map::{Prop, PropKind};
 
 use crate::mesh::street::lamp;
+use crate::models::Models;
 
 /// A street lamp that shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,16 +16,20 @@ pub(crate) struct StreetLamp {
 }
 
 impl StreetLamp {
-    fn of(object: &Prop) -> Option<Self> {
-        let turn = Quat::from_rotation_z(object.heading_rad);
-        let position = object.position + turn * lamp::lamp_glass(object.size.z);
-        (object.kind == PropKind::Lamp).then_some(Self { position, foot_m: object.position.z })
+    fn of(object: &Prop, models: Option<&Models>) -> Option<Self> {
+        if object.kind != PropKind::Lamp {
+            return None;
+        }
+        let own = models.and_then(|models| models.lamp_glass(object));
+        let glass = own.unwrap_or_else(|| lamp::lamp_glass(object.size.z));
+        let position = object.position + Quat::from_rotation_z(object.heading_rad) * glass;
+        Some(Self { position, foot_m: object.position.z })
     }
 }
 
-/// All of a map.
-pub(crate) fn all(network: &RoadNetwork) -> Vec<StreetLamp> {
-    network.props.iter().filter_map(StreetLamp::of).collect()
+/// All of some objects, with models of a user's own or without.
+pub(crate) fn all(objects: &[Prop], models: Option<&Models>) -> Vec<StreetLamp> {
+    objects.iter().filter_map(|object| StreetLamp::of(object, models)).collect()
 }
 
 /// Those no farther than this from a point.

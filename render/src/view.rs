@@ -1,6 +1,6 @@
 //! A camera in the world: what it sees and how large.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use kernel::ops;
 use kernel::scene::EgoScene;
 
@@ -20,6 +20,9 @@ pub(crate) struct View {
     /// Size in pixels of one metre, one metre ahead.
     pub(crate) pixels_per_m: f32,
 }
+
+/// A view is steep whose level share is less than this: one that looks down by more than 60 degrees.
+const STEEP: f32 = 0.5;
 
 impl View {
     pub(crate) fn new(camera: &Camera, ego: &EgoScene) -> Self {
@@ -41,6 +44,13 @@ impl View {
     pub(crate) fn at_corners(self, width: u32, height: u32) -> Self {
         let wider = |tan: f32, side: u32| tan * ((side + 1) as f32 / side as f32);
         Self { tan_x: wider(self.tan_x, width), tan_y: wider(self.tan_y, height), ..self }
+    }
+
+    /// Which way it looks, level, as long as 1; shorter where it looks so steeply that it sees as much of what lies behind, and zero
+    /// straight down or up.
+    pub(crate) fn level_ahead(ahead: Vec3) -> Vec2 {
+        let flat = ahead.truncate();
+        flat * (1.0 / flat.length().max(STEEP))
     }
 
     /// Whether any of a sphere can be in the picture.

@@ -19,7 +19,7 @@ use crate::{Camera, Frame};
 /// What a camera with a sensor takes, from what the pinhole camera of its lens sees of a scene.
 pub(crate) fn take(seen: Frame, scene: &SceneSnapshot, camera: &Camera, lens: &Lens) -> Frame {
     let sensor = &camera.sensor;
-    if seen.rgb.is_empty() || !(sensor.develops() || sensor.distorts()) {
+    if seen.rgb.is_empty() {
         return lens.labels(seen);
     }
     let mut light = Light::of(&seen.rgb);

@@ -2,7 +2,6 @@
 
 use bytemuck::{Pod, Zeroable};
 use kernel::SceneSnapshot;
-use kernel::time::TICK_S;
 use kernel::weather::Water;
 
 use super::Gpu;
@@ -10,7 +9,7 @@ use crate::light::Light;
 use crate::light_map::LightMap;
 use crate::shadow_box::ShadowBox;
 use crate::view::View;
-use crate::{rain, wind};
+use crate::{clouds, rain, wind};
 
 /// The uniform block of `scene.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -35,18 +34,16 @@ pub(crate) struct SceneUniform {
     horizon: [f32; 3],
     shadow_at_y: f32,
     zenith: [f32; 3],
-    pad2: f32,
+    fog_from_m: f32,
     shadow: [[f32; 4]; 4],
     fog: [f32; 3],
     fog_per_m: f32,
-    rain_drift: [f32; 3],
-    fog_from_m: f32,
     rain_streak: [f32; 3],
+    rain_fall: f32,
     wet: f32,
     puddles: f32,
     pixel_rad: f32,
     leaf_bias: f32,
-    pad3: f32,
     street: [f32; 3],
     window: f32,
     headlight: [f32; 3],
@@ -58,16 +55,11 @@ pub(crate) struct SceneUniform {
     light_map_height: f32,
 }
 
-/// Clouds drift by this share of their pattern a second in a storm.
-const DRIFT_PER_S: f32 = 0.05;
-
 impl SceneUniform {
     pub(crate) fn new(view: &View, scene: &SceneSnapshot, light: &Light) -> Self {
         let weather = &scene.weather;
         let water = Water::of(weather);
-        // The pattern repeats every 100 units (noise scales 0.05 and 0.21), so it may wrap there.
-        let drift = f64::from(DRIFT_PER_S * 0.01 * weather.wind_pct * TICK_S) * scene.tick as f64 % 100.0;
-        let drift = wind::DIRECTION * -(drift as f32);
+        let drift = clouds::drift(scene.tick);
         Self {
             eye: view.eye.to_array(),
             wind_phase: wind::phase_rad(scene.tick),
@@ -85,17 +77,15 @@ impl SceneUniform {
             ground_light: light.ground_light.to_array(),
             horizon: light.horizon.to_array(),
             zenith: light.zenith.to_array(),
-            pad2: 0.0,
+            fog_from_m: weather.fog_distance_m,
             fog: light.fog.to_array(),
             fog_per_m: weather.fog_extinction_per_m(),
-            rain_drift: rain::drift_m(weather, scene.tick).to_array(),
-            fog_from_m: weather.fog_distance_m,
             rain_streak: rain::streak_m(weather).to_array(),
+            rain_fall: rain::fall_m(scene.tick),
             wet: water.wet,
             puddles: water.level,
             pixel_rad: 1.0 / view.pixels_per_m,
             leaf_bias: 0.0,
-            pad3: 0.0,
             ..Self::zeroed()
         }
     }

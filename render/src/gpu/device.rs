@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::{AdapterChoice, AdapterInfo, RenderError};
+use crate::{AdapterChoice, AdapterInfo, RenderError, adapter};
 
 /// An open device.
 pub(crate) struct Gpu {
@@ -36,8 +36,9 @@ impl Gpu {
     }
 
     pub(crate) fn open(choice: &AdapterChoice) -> Result<Self, RenderError> {
-        let (adapter, info) = choice.open()?;
+        let (shared, info) = choice.best()?;
         let _turn = turn(&info);
+        let adapter = adapter::to_itself(shared);
         // Roads of a hundred kilometres are one buffer.
         let max_buffer_size = adapter.limits().max_buffer_size;
         let descriptor = wgpu::DeviceDescriptor {
@@ -63,6 +64,12 @@ impl Gpu {
     /// Held while the device is at work.
     pub(crate) fn turn(&self) -> Option<MutexGuard<'static, ()>> {
         turn(&self.info)
+    }
+
+    /// Lets something go wrong.
+    #[cfg(test)]
+    pub(crate) fn fail(&self, reason: &str) {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(reason.into());
     }
 
     /// The first error since the last call.

@@ -16,5 +16,7 @@ pub(crate) use buffers::{GrowingBuffer, SceneUniform};
 pub(crate) use device::Gpu;
 pub(crate) use passes::{Draws, Passes};
 pub(crate) use pipelines::Lighting;
+#[cfg(test)]
+pub(crate) use readback::NEAR_M;
 pub(crate) use shadow_passes::ShadowDraws;
 pub(crate) use targets::Targets;

@@ -1,5 +1,6 @@
 //! The commands of a frame.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::attachments::{colour_attachment, depth_attachment};
@@ -76,7 +77,8 @@ struct Style {
     shadows: Shadows,
     /// With what they are for: whether there is fog, water or rain, and which light; made when they are needed first.
     pipelines: Vec<((bool, Lighting), Pipelines)>,
-    maps: Vec<ShadowMap>,
+    /// By their numbers, which all kinds share: a map is made where its number comes up.
+    maps: BTreeMap<usize, ShadowMap>,
 }
 
 fn fixed_vertices(gpu: &Gpu, fixed: &[Vertex]) -> wgpu::Buffer {
@@ -134,6 +136,12 @@ impl Passes {
     /// Replaces what stands still.
     pub(crate) fn replace_fixed(&mut self, gpu: &Gpu, fixed: &[Vertex]) {
         self.fixed = fixed_vertices(gpu, fixed);
+    }
+
+    /// How many shadow maps of so many texels a side there are.
+    #[cfg(test)]
+    pub(crate) fn shadow_maps(&self, side: u32) -> usize {
+        self.styles.iter().filter(|style| style.shadows.side == side).map(|style| style.maps.len()).sum()
     }
 
     /// Draws a frame and copies its planes to the read-back buffer.
@@ -201,11 +209,14 @@ impl Passes {
     ) {
         let style = self.styles.iter().position(|style| style.shadows == draws.shadow_style);
         let style = style.map(|index| self.styles.swap_remove(index));
-        let mut style =
-            style.unwrap_or_else(|| Style { shadows: draws.shadow_style, pipelines: Vec::new(), maps: Vec::new() });
+        let mut style = style.unwrap_or_else(|| Style {
+            shadows: draws.shadow_style,
+            pipelines: Vec::new(),
+            maps: BTreeMap::new(),
+        });
         style.prepare(gpu, &self.layouts, draws, &self.shadow_sampler);
-        if draws.lighting != Lighting::Night {
-            let map = &mut style.maps[draws.shadows.map];
+        let map = style.maps.get_mut(&draws.shadows.map).filter(|_| draws.lighting != Lighting::Night);
+        if let Some(map) = map {
             let casters = Casters { fixed: &self.fixed, moving: &self.moving.buffer, indices: &self.indices.buffer };
             self.shadows.record(gpu, encoder, map, &draws.shadows, (&ranges.casters, &casters));
         }
@@ -266,7 +277,7 @@ impl Passes {
             pass.draw(0..3, 0..1);
         }
         pass.set_bind_group(0, &scene.group, &[]);
-        pass.set_bind_group(1, &style.maps[draws.shadows.map].group, &[]);
+        pass.set_bind_group(1, &style.maps[&draws.shadows.map].group, &[]);
         pass.set_pipeline(&pipelines.world[Finish::Plain as usize]);
         self.draw_mesh(&mut pass, &self.moving.buffer, &seen[MOVING]);
         for finish in DRAW_ORDER {
@@ -313,9 +324,8 @@ fn draw_quads(
 impl Style {
     /// Makes what is lacking for a picture.
     fn prepare(&mut self, gpu: &Gpu, layouts: &Layouts, draws: &Draws<'_>, sampler: &wgpu::Sampler) {
-        while self.maps.len() <= draws.shadows.map {
-            self.maps.push(ShadowMap::new(gpu, layouts, self.shadows.side, sampler));
-        }
+        let map = self.maps.entry(draws.shadows.map);
+        map.or_insert_with(|| ShadowMap::new(gpu, layouts, self.shadows.side, sampler));
         let wanted = (draws.weather, draws.lighting);
         let known = self.pipelines.iter().position(|(made_for, _)| *made_for == wanted);
         let last = known.unwrap_or_else(|| {

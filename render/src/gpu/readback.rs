@@ -9,7 +9,7 @@ use crate::quincunx::Quincunx;
 use crate::{Frame, RenderError, SemanticTag};
 
 /// Distance at which depth is 1, metres; as in `scene.wgsl`.
-const NEAR_M: f32 = 0.1;
+pub(crate) const NEAR_M: f32 = 0.1;
 
 /// What pixels' middles say of their corners.
 pub(crate) struct Middles {

@@ -9,7 +9,7 @@ use crate::SemanticTag;
 use crate::mesh::model::{Joint, Model};
 use crate::mesh::motion::Motion;
 use crate::mesh::street::tree;
-use crate::mesh::{CODE_LACQUER, Mesh, Vertex};
+use crate::mesh::{CODE_LACQUER, CODE_STREET, Mesh, Vertex};
 
 /// A model is stretched along one axis by up to so much more than along another.
 pub const MOST_STRETCH: f32 = 1.5;
@@ -26,7 +26,8 @@ enum Rule {
     Length,
 }
 
-/// The model with the middle of its footprint at the origin, scaled, and its size, metres.
+/// The model with the middle of its footprint at the origin, scaled, and its size, metres. What stands in the street is of the usual
+/// size: each of a map is made as large as it is from that.
 pub(super) fn fitted(subject: Subject, model: Model) -> Result<(Model, Vec3), String> {
     let [low, high] = bounds(&model).ok_or("has no triangles")?;
     let own = high - low;
@@ -36,10 +37,22 @@ pub(super) fn fitted(subject: Subject, model: Model) -> Result<(Model, Vec3), St
     }
     let middle = (0.5 * (low + high)).truncate().extend(low.z);
     let moved = moved(model, -middle);
-    let Some(wanted) = subject.size_m() else { return Ok((moved, own)) };
-    let has_rider = has_rider(&moved);
-    let factor = factor(&rule(subject, has_rider), own, wanted)?;
+    let factor = if subject.stands_still() {
+        Vec3::splat(1.0 / per_m(subject, own))
+    } else {
+        factor(&rule(subject, has_rider(&moved)), own, subject.usual_size_m())?
+    };
     Ok((stretched(moved, factor), own * factor))
+}
+
+/// How many of a file's units are a metre, if a model so large is as large as usual.
+pub fn per_m(subject: Subject, own: Vec3) -> f32 {
+    let usual = subject.usual_size_m();
+    match subject {
+        // Models without a rider are not as high as the box.
+        Subject::Actor(kind) if is_ridden(kind) => own.x / usual.x,
+        _ => own.z / usual.z,
+    }
 }
 
 /// The factors that make an object as large as one of a map is.
@@ -135,10 +148,7 @@ pub(super) fn has_rider(model: &Model) -> bool {
 /// The model under the rider of another.
 pub(super) fn with_rider_of(mut model: Model, mut other: Model) -> Model {
     for part in &mut other.parts {
-        let Mesh { vertices, triangles } = &mut part.mesh;
-        for list in triangles {
-            list.retain(|corners| is_rider(&vertices[corners[0] as usize]));
-        }
+        part.mesh = riders_of(&part.mesh);
     }
     let first = model.parts.len();
     model.parts.extend(other.parts.into_iter().map(|mut part| {
@@ -146,6 +156,32 @@ pub(super) fn with_rider_of(mut model: Model, mut other: Model) -> Model {
         part
     }));
     model
+}
+
+/// A mesh of the triangles that are a rider, and of their vertices alone: lamps that are not drawn would glow.
+fn riders_of(mesh: &Mesh) -> Mesh {
+    let mut riders = Mesh::default();
+    let mut kept: Vec<Option<u32>> = vec![None; mesh.vertices.len()];
+    for (list, all) in riders.triangles.iter_mut().zip(&mesh.triangles) {
+        let of_rider = all.iter().filter(|corners| is_rider(&mesh.vertices[corners[0] as usize]));
+        list.extend(of_rider.map(|corners| {
+            corners.map(|i| {
+                *kept[i as usize].get_or_insert_with(|| {
+                    riders.vertices.push(mesh.vertices[i as usize]);
+                    riders.vertices.len() as u32 - 1
+                })
+            })
+        }));
+    }
+    riders
+}
+
+/// The middle of the box around the glass of a street lamp.
+pub(super) fn glass(model: &Model) -> Option<Vec3> {
+    let mesh = model.at_rest();
+    let places = mesh.vertices.iter().filter(|v| v.code == CODE_STREET).map(|v| Vec3::from(v.position));
+    let [low, high] = places.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
+    low.is_finite().then(|| 0.5 * (low + high))
 }
 
 /// What an object's place in the map says of its mesh: its class, and that wind moves trees. It has no lacquer.

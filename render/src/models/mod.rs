@@ -20,6 +20,7 @@ use crate::mesh::variety::Variety;
 use crate::mesh::vehicles::lacquer;
 use crate::mesh::{CODE_LACQUER, Mesh, simplify};
 
+pub use fit::per_m;
 pub use id::ModelsId;
 pub use subject::Subject;
 
@@ -35,6 +36,8 @@ pub struct Figure {
     levels: [Model; Detail::ALL.len()],
     /// Length, width and height of the box around it, metres.
     size_m: Vec3,
+    /// The middle of the glass of a street lamp, if it has one.
+    glass: Option<Vec3>,
 }
 
 impl Figure {
@@ -50,7 +53,7 @@ impl Figure {
             model
         };
         let levels = Detail::ALL.map(level);
-        Ok(Self { levels, size_m })
+        Ok(Self { levels, size_m, glass: fit::glass(&fitted) })
     }
 
     /// That level, in the colours that its file has.
@@ -138,18 +141,29 @@ impl Models {
 
     /// What stands in the street, if a model of it can be made as large as that is.
     pub(crate) fn object(&self, object: &Prop, detail: Detail) -> Option<Mesh> {
-        let look = look(object);
         if object.kind == PropKind::ParkedCar {
             let kind = object.parked_kind();
-            return Some(self.actor(kind, look, detail, Model::default)?.at_rest());
+            return Some(self.actor(kind, look(object), detail, Model::default)?.at_rest());
         }
-        let subject = Subject::of(object)?;
-        let fits = |figure: &Figure| fit::stretch(subject, figure.size_m, object.size).is_ok();
-        let figure = self.chosen(subject, look, fits)?;
+        let (figure, stretch) = self.standing(object)?;
         let mut mesh = figure.levels[detail as usize].at_rest();
-        mesh.scale(fit::stretch(subject, figure.size_m, object.size).ok()?);
+        mesh.scale(stretch);
         fit::finish_object(&mut mesh, object);
         Some(mesh)
+    }
+
+    /// Where a street lamp of a map shines, as seen from its foot, if its model says so.
+    pub(crate) fn lamp_glass(&self, object: &Prop) -> Option<Vec3> {
+        let (figure, stretch) = self.standing(object)?;
+        Some(figure.glass? * stretch)
+    }
+
+    /// The model of what stands in the street, and the factors that make it as large as that is.
+    fn standing(&self, object: &Prop) -> Option<(&Figure, Vec3)> {
+        let subject = Subject::of(object)?;
+        let stretch = |figure: &Figure| fit::stretch(subject, figure.size_m, object.size).ok();
+        let figure = self.chosen(subject, look(object), |figure| stretch(figure).is_some())?;
+        Some((figure, stretch(figure)?))
     }
 
     fn chosen(&self, subject: Subject, variant: u32, fits: impl Fn(&Figure) -> bool) -> Option<&Figure> {

@@ -111,18 +111,21 @@ impl Subject {
         }
     }
 
-    /// Length, width and height that it always has, metres.
-    pub(super) fn size_m(self) -> Option<Vec3> {
+    /// Length, width and height that it has, metres; of what stands in the street, where each has its own, usual ones.
+    pub(super) fn usual_size_m(self) -> Vec3 {
         match self {
-            Ego => Some(A::Car.size_m()),
-            Actor(kind) => Some(kind.size_m()),
-            Tree | Lamp | Furniture(_) => None,
+            Ego => A::Car.size_m(),
+            Actor(kind) => kind.size_m(),
+            Tree => Vec3::new(3.6, 3.6, 8.0),
+            Lamp => Vec3::new(2.0, 0.5, 7.0),
+            Furniture(F::Shelter | F::Stall) => Vec3::new(3.0, 2.0, 2.5),
+            Furniture(_) => Vec3::ONE,
         }
     }
 
     /// Whether each of them is kept in memory by itself, as what stands in the street is.
     pub fn stands_still(self) -> bool {
-        self.size_m().is_none()
+        matches!(self, Tree | Lamp | Furniture(_))
     }
 }
 

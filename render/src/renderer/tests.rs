@@ -174,8 +174,12 @@ fn a_used_renderer_draws_what_a_new_one_does() {
         ["noise=0", "noise=3,motion_blur_s=0.03", "k1=-0.1,vignetting=1"].map(|text| text.parse().expect("a sensor"));
     let imaging = |i: usize| Imaging { quality: Quality::ALL[i % 3], sensor: sensors[i / 2 % 3], models: None };
     let camera = |i: usize| Camera::driver(128, 64).at(imaging(i));
-    let mut new = renderer(&network);
-    let first: Vec<Frame> = (0..scenes.len()).map(|i| new.draw(&scenes[i], &camera(i)).expect("drawn")).collect();
+    let mut one = renderer(&network);
+    let first: Vec<Frame> = (0..scenes.len()).map(|i| one.draw(&scenes[i], &camera(i)).expect("drawn")).collect();
+    // A clear place by day, rain with a car ahead, and two nights, one of them wet.
+    for i in [2, 10, 11, 20] {
+        assert!(renderer(&network).draw(&scenes[i], &camera(i)).expect("drawn") == first[i], "new, scene {i}");
+    }
     for maps in [1, 3] {
         let mut used = renderer(&network).with_shadow_maps(maps);
         for step in [5, 7, 11] {
@@ -185,6 +189,74 @@ fn a_used_renderer_draws_what_a_new_one_does() {
             }
         }
     }
+}
+
+#[test]
+fn a_picture_that_failed_is_no_matter_of_the_next() {
+    let network = network("city");
+    let mut renderer = renderer(&network);
+    let scene = places("city", &network, 2).remove(0);
+    for quality in [Quality::Plain, Quality::Standard] {
+        let camera = Camera::driver(64, 32).at(quality);
+        let whole = renderer.draw(&scene, &camera).expect("drawn");
+        renderer.gpu.fail("a cable was pulled");
+        let said = renderer.draw(&scene, &camera).expect_err("it failed").to_string();
+        assert!(said.contains("a cable was pulled"), "{said}");
+        assert!(renderer.draw(&scene, &camera).expect("drawn") == whole, "{quality:?}");
+    }
+}
+
+/// Each number of a shadow map is that of one grid, and qualities have other grids.
+#[test]
+fn a_quality_has_no_shadow_maps_of_others() {
+    let network = network("rural");
+    let mut renderer = renderer(&network).with_shadow_maps(3);
+    let scenes = places("rural", &network, 2);
+    let day = Weather::dry(0.0, 0.0, 40.0, 0.0);
+    for (scene, quality) in [(0, Quality::Plain), (1, Quality::Plain), (0, Quality::Fine)] {
+        let scene = SceneSnapshot { weather: day, ..scenes[scene].clone() };
+        renderer.draw(&scene, &Camera::driver(64, 32).at(quality)).expect("drawn");
+    }
+    let sides = [Quality::Plain, Quality::Fine].map(|quality| quality.means().shadows.side);
+    assert_eq!(sides.map(|side| renderer.passes.shadow_maps(side)), [2, 1]);
+}
+
+/// After an hour and a half: what had always gone with the wind of its tick would be metres away.
+#[test]
+fn neither_clouds_nor_rain_leap_where_the_wind_changes() {
+    let network = network("rural");
+    let mut renderer = renderer(&network);
+    let scene = places("rural", &network, 2).remove(0);
+    let camera = Camera::driver(256, 128).at(Quality::Plain);
+    let mut draw = |wind_pct: f32, precipitation_pct: f32| {
+        let weather = Weather { precipitation_pct, ..Weather::dry(50.0, wind_pct, 40.0, 0.0) };
+        renderer.draw(&SceneSnapshot { tick: 300_000, weather, ..scene.clone() }, &camera).expect("drawn")
+    };
+    let differing = |a: &Frame, b: &Frame| {
+        let pixels = a.rgb.chunks(3).zip(b.rgb.chunks(3));
+        pixels.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 8)).count()
+    };
+    let [now, then, storm] = [40.0, 40.01, 90.0].map(|wind_pct| draw(wind_pct, 80.0));
+    assert!(differing(&now, &then) < 100 && differing(&now, &storm) > 400, "{}", differing(&now, &then));
+    let [now, storm] = [40.0, 90.0].map(|wind_pct| draw(wind_pct, 0.0));
+    let is_sky = |frame: &Frame, i: usize| frame.class_ids[i] == SemanticTag::Sky as u8;
+    let sky: Vec<usize> = (0..now.class_ids.len()).filter(|i| is_sky(&now, *i) && is_sky(&storm, *i)).collect();
+    let colour = |frame: &Frame, i: usize| [0, 1, 2].map(|channel| frame.rgb[3 * i + channel]);
+    assert!(sky.len() > 1000 && sky.iter().all(|i| colour(&now, *i) == colour(&storm, *i)), "{}", sky.len());
+}
+
+#[test]
+fn labels_take_no_spray() {
+    let network = network("rural");
+    let mut renderer = renderer(&network);
+    let scene = places("rural", &network, 2).remove(0);
+    let weather = Weather { precipitation_pct: 90.0, wetness_pct: 100.0, ..Weather::dry(90.0, 0.0, 40.0, 0.0) };
+    let actors = vec![ActorScene { speed_mps: 30.0, ..car_at(&scene, 14.0, 0.0) }];
+    let (scene, camera) = (SceneSnapshot { weather, actors, ..scene }, Camera::driver(64, 32));
+    renderer.draw(&scene, &camera).expect("drawn");
+    assert!(!renderer.spray.is_empty());
+    renderer.draw_classes(&scene, &camera).expect("drawn");
+    assert!(renderer.spray.is_empty());
 }
 
 /// Roads on which nothing else casts a shadow, and a place there.

@@ -53,9 +53,4 @@ impl Sensor {
     pub(crate) fn distorts(&self) -> bool {
         self.distortion() != [0.0; 2]
     }
-
-    /// Whether it changes colours.
-    pub(crate) fn develops(&self) -> bool {
-        !Self { k1: 0.0, k2: 0.0, ..*self }.is_ideal()
-    }
 }

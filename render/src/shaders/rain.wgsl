@@ -19,8 +19,11 @@ fn drawn(number: u32) -> f32 {
 fn vertex(@builtin(vertex_index) index: u32) -> DropOut {
     let drop = 3u * (index / 6u);
     let start = vec3f(drawn(drop), drawn(drop + 1u), drawn(drop + 2u));
-    // Drops are in the world, and those that leave the box come in again on its other side.
-    let rel = (fract(start + (scene.rain_drift - scene.eye) / BOX_M + 0.5) - 0.5) * BOX_M;
+    // Drops are in the world, and those that leave the box come in again on its other side. The higher they are, the less far
+    // has the wind taken them.
+    let up = (fract(start.z + (scene.rain_fall - scene.eye.z) / BOX_M.z + 0.5) - 0.5) * BOX_M.z;
+    let aside_m = scene.rain_streak.xy / scene.rain_streak.z * up;
+    let rel = vec3f((fract(start.xy + (aside_m - scene.eye.xy) / BOX_M.xy + 0.5) - 0.5) * BOX_M.xy, up);
     let distance = length(rel);
     let side = cross(rel, scene.rain_streak);
     let half_width = 0.5 * max(WIDTH_M, scene.pixel_rad * distance);

@@ -22,21 +22,19 @@ struct Scene {
     horizon: vec3f,
     shadow_at_y: f32,
     zenith: vec3f,
-    pad2: f32,
+    fog_from_m: f32,
     // World to depth and uv from the corner of what the shadow map shows, which lies at `shadow_at` and goes on over its edges.
     shadow: mat4x4f,
     fog: vec3f,
     fog_per_m: f32,
-    // How far all drops have come, and the way that one leaves on a picture.
-    rain_drift: vec3f,
-    fog_from_m: f32,
+    // The way that a drop leaves on a picture, and how far all have fallen.
     rain_streak: vec3f,
+    rain_fall: f32,
     wet: f32,
     puddles: f32,
     pixel_rad: f32,
     // Levels of detail that leaves are shown coarser than samples ask for, as many samples are one pixel.
     leaf_bias: f32,
-    pad3: f32,
     // Of lamps, in the light of the sky: 1 is as bright.
     street: vec3f,
     window: f32,
@@ -96,11 +94,14 @@ fn fogged(colour: vec3f, distance: f32) -> vec3f {
     return mix(scene.fog, colour, through);
 }
 
+// Between the lowest and the highest ground that the map of lamps' light tells.
+const LIGHT_MAP_RISE_M = 128.0;
+
 // What lamps add to what lies so far from the eye, in the light of the sky.
 fn lamplight(from_eye: vec3f) -> vec3f {
     let uv = clamp(from_eye.xy * scene.light_map_per_m + scene.light_map_at, vec2f(0.003), vec2f(0.997));
     let lit = textureSampleLevel(light_map, noise_sampler, uv, 0.0);
-    let height = from_eye.z + scene.light_map_height - 128.0 * lit.b;
+    let height = from_eye.z + scene.light_map_height - LIGHT_MAP_RISE_M * lit.b;
     // Shades of street lamps and the low beam keep light from what is high.
     let below = clamp((10.5 - height) / 6.0, 0.08, 1.0);
     let low = clamp((1.9 - height) / 1.1, 0.1, 1.0);

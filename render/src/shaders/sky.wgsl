@@ -27,9 +27,13 @@ fn vertex(@builtin(vertex_index) index: u32) -> SkyOut {
 // Which way it is, level; zero where it is upright.
 fn flat(direction: vec3f) -> vec2f { return direction.xy / max(length(direction.xy), 1e-4); }
 
+// Tiles of noise in a unit of the pattern.
+const COARSE_CLOUDS = 0.05;
+const FINE_CLOUDS = 0.21;
+
 fn cloud(at: vec2f) -> f32 {
-    let big = textureSampleLevel(noise, noise_sampler, at * 0.05, 0.0).g;
-    let small = textureSampleLevel(noise, noise_sampler, at * 0.21 + 0.37, 0.0).g;
+    let big = textureSampleLevel(noise, noise_sampler, at * COARSE_CLOUDS, 0.0).g;
+    let small = textureSampleLevel(noise, noise_sampler, at * FINE_CLOUDS + 0.37, 0.0).g;
     return 0.72 * big + 0.28 * small;
 }
 

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use kernel::map::Prop;
+
 use super::*;
 use crate::mesh::model::{Detail, Model};
-use crate::mesh::{CODE_LACQUER, Mesh, Paint};
+use crate::mesh::{CODE_LACQUER, CODE_STREET, Mesh, Paint};
 use crate::models::{Figure, Subject};
 
 /// Magenta, which nothing else is.
@@ -87,6 +89,22 @@ fn models_that_were_not_read_are_named() {
 }
 
 #[test]
+fn models_that_do_not_come_to_the_adapter_are_told_and_taken_off() {
+    let (network, scene) = scene_with(ActorKind::Car);
+    let models = register(7, &[("car", Vec3::new(4.5, 1.85, 1.5))], 0);
+    let usual = Camera::driver(64, 32);
+    let own = Camera { models: Some(models), ..usual };
+    let mut renderer = renderer(&network);
+    let [before, with] = [&usual, &own].map(|camera| renderer.draw(&scene, camera).expect("drawn"));
+    renderer.draw(&scene, &usual).expect("drawn");
+    renderer.gpu.fail("out of memory");
+    let said = renderer.draw(&scene, &own).expect_err("it failed").to_string();
+    assert!(said.contains("did not come to adapter") && said.contains("out of memory"), "{said}");
+    assert!(renderer.draw(&scene, &usual).expect("drawn") == before);
+    assert!(renderer.draw(&scene, &own).expect("drawn") == with);
+}
+
+#[test]
 fn lacquer_is_that_of_the_variant() {
     let models = register(3, &[("car", Vec3::new(4.5, 1.85, 1.5))], CODE_LACQUER);
     let models = Models::known(models).expect("known");
@@ -112,6 +130,56 @@ fn a_bicycle_alone_has_a_rider() {
     let [rider, riders_pink, _] = counts(&frame, SemanticTag::Rider, instance_of_actor(1));
     assert!(2 * pink > bicycle && bicycle > 20 && rider > 20 && riders_pink == 0, "{pink} {bicycle} {rider}");
     assert_eq!(bicycle + rider, all);
+}
+
+/// A tree whose file has so many units to the metre.
+fn tree_in(per_m: f32) -> Figure {
+    let paint = Paint::plain(SemanticTag::Vegetation, COLOUR);
+    let mut mesh = Mesh::default();
+    mesh.tube(paint, Vec3::ZERO, Vec3::Z * (3.0 * per_m), 0.25 * per_m, 0.125 * per_m, 12);
+    mesh.ellipsoid(paint, Vec3::Z * (5.0 * per_m), Vec3::new(1.75, 1.75, 3.0) * per_m, 24, 32);
+    // Files have none, and those of shapes made in code are metres.
+    mesh.vertices.iter_mut().for_each(|v| v.uv = [0.0; 2]);
+    Figure::new(Subject::Tree, Model::rigid(mesh)).expect("it fits")
+}
+
+#[test]
+fn a_tree_is_as_detailed_in_any_unit() {
+    let metres = tree_in(1.0);
+    let triangles = Detail::ALL.map(|detail| metres.at(detail).at_rest().all_triangles().count());
+    assert!(triangles.is_sorted_by(|a, b| a > b) && triangles[2] > 20, "{triangles:?}");
+    for per_m in [1024.0, 1.0 / 64.0] {
+        assert!(tree_in(per_m) == metres, "{per_m} units a metre");
+    }
+}
+
+/// A street lamp whose glass, if it has one, hangs to the left.
+fn lamp(digest: u8, code: u8) -> ModelsId {
+    let mut mesh = Mesh::default();
+    let steel = Paint::plain(SemanticTag::Pole, COLOUR);
+    mesh.cuboid(steel, Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 100.0));
+    mesh.cuboid(steel.coded(code), Vec3::new(-1.0, 9.0, 80.0), Vec3::new(1.0, 11.0, 90.0));
+    let figure = Figure::new(Subject::Lamp, Model::rigid(mesh)).expect("it fits");
+    Models::new([digest; 16].into(), BTreeMap::from([(Subject::Lamp, vec![figure])])).register()
+}
+
+#[test]
+fn a_lamp_shines_where_its_glass_is() {
+    let (_, scene) = scene_with(ActorKind::Car);
+    let (position, size) = (scene.ego.position, Vec3::new(0.2, 0.2, 10.0));
+    let prop = Prop { kind: PropKind::Lamp, position, heading_rad: 0.5, size, variant: 0 };
+    let roads = MapData { props: vec![prop], ..MapData::clone(&network("city")) };
+    let mut renderer = renderer(&roads.into());
+    let mut place = |models: Option<ModelsId>| {
+        renderer.draw(&scene, &Camera { models, ..Camera::driver(64, 32) }).expect("drawn");
+        renderer.street_lamps[0].position
+    };
+    let made = place(None);
+    // The model is 12 wide and 100 high: its middle stands on the place, five to the left of its pole.
+    let glass = place(Some(lamp(5, CODE_STREET)));
+    let expected = position + Quat::from_rotation_z(0.5) * Vec3::new(0.0, 0.5, 8.5);
+    assert!(glass.distance(expected) < 1e-3, "{glass}, expected {expected}");
+    assert_eq!([place(Some(lamp(6, 0))), place(None)], [made; 2], "one that says nothing shines where others do");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use gltf::{Node, Primitive, Semantic};
 use render::SemanticTag;
 use render::mesh::model::{Joint, Model as Posed, Part, Swing};
 use render::mesh::{Finish, Mesh};
-use render::models::Subject;
+use render::models::{Subject, per_m};
 
 use super::document::Document;
 use super::list::{Entry, Model};
@@ -17,7 +17,7 @@ use super::texture_split::{Corner, split};
 /// Nodes below one another, and of a file, at most.
 const MOST_DEPTH: usize = 64;
 const MOST_NODES: usize = 100_000;
-/// Triangles of a file at most, as they are read.
+/// Triangles of a file at most; those of two sides are two.
 const MOST_TRIANGLES: usize = 100_000;
 /// The same of what stands in the street, of which each one takes memory.
 const MOST_STANDING_TRIANGLES: usize = 5_000;
@@ -26,6 +26,8 @@ const MOST_VERTICES: usize = 400_000;
 /// Triangles that show more of a texture: so many for each of a primitive, and more, and as many as a file may have in all.
 const SPLIT_SHARE: usize = 2;
 const SPLIT_ROOM: usize = 2000;
+/// Wheels are no smaller than this, metres: those of a point would turn without end.
+const LEAST_RADIUS_M: f32 = 1e-3;
 /// Farther than this from the origin nothing lies, in the file's unit.
 const FARTHEST: f32 = 1e6;
 
@@ -60,8 +62,8 @@ struct Walk<'a> {
     nodes: usize,
     triangles: usize,
     vertices: usize,
-    /// Triangles that may still be added to show more of textures.
-    room: usize,
+    /// What was found, with the limbs that it is of.
+    surfaces: Vec<(Option<usize>, Surface, Material<'a>)>,
 }
 
 /// The file as a model of a subject, as large as the file has it.
@@ -73,8 +75,8 @@ pub(super) fn model(document: &Document, entry: &Entry, subject: Subject) -> any
         .default_scene()
         .or_else(|| gltf.scenes().next())
         .ok_or_else(|| anyhow!("has no scene, expected one with the model's nodes"))?;
-    let (tag, body, limbs, room) = (subject.tag(), Mesh::default(), Vec::new(), most_triangles(subject));
-    let mut walk = Walk { document, said, body, limbs, subject, nodes: 0, triangles: 0, vertices: 0, room };
+    let (tag, body, limbs, surfaces) = (subject.tag(), Mesh::default(), Vec::new(), Vec::new());
+    let mut walk = Walk { document, said, body, limbs, subject, nodes: 0, triangles: 0, vertices: 0, surfaces };
     let axes = Mat4::from_cols_array_2d(&[
         [0.0, 1.0, 0.0, 0.0],
         [0.0, 0.0, 1.0, 0.0],
@@ -85,7 +87,9 @@ pub(super) fn model(document: &Document, entry: &Entry, subject: Subject) -> any
     for node in scene.nodes() {
         walk.node(&node, &frame, Below { limb: None, tag, depth: 0 })?;
     }
-    Ok(walk.posed())
+    let per_m = per_m(subject, walk.size());
+    walk.paint(per_m);
+    Ok(walk.posed(per_m))
 }
 
 fn most_triangles(subject: Subject) -> usize {
@@ -162,21 +166,36 @@ impl Walk<'_> {
         }
         let material = Material::of(self.document, &primitive.material(), self.said, below.tag);
         let surface = Surface::read(self.document, primitive, frame, &material)?;
-        self.triangles += surface.triangles.len();
+        self.triangles += surface.triangles.len() * material.sides().len();
         self.vertices += surface.corners.len();
         let (most, name) = (most_triangles(self.subject), self.subject.name());
         if self.triangles > most || self.vertices > MOST_VERTICES {
             bail!("is too much, expected at most {most} triangles and {MOST_VERTICES} vertices in all as {name}");
         }
-        let mesh = match below.limb {
-            None => &mut self.body,
-            Some(limb) => &mut self.limbs[limb].mesh,
-        };
-        surface.append_to(mesh, &material, &mut self.room);
+        self.surfaces.push((below.limb, surface, material));
         Ok(())
     }
 
-    fn posed(self) -> Posed {
+    /// Of the box around all triangles, in the file's unit.
+    fn size(&self) -> Vec3 {
+        let places = self.surfaces.iter().flat_map(|(_, surface, _)| surface.places());
+        let [low, high] = bounds(places);
+        (high - low).max(Vec3::ZERO)
+    }
+
+    /// Makes meshes of what was found. Triangles that show more of textures are as many as there is room for.
+    fn paint(&mut self, per_m: f32) {
+        let mut room = most_triangles(self.subject) - self.triangles;
+        for (limb, surface, material) in core::mem::take(&mut self.surfaces) {
+            let mesh = match limb {
+                None => &mut self.body,
+                Some(limb) => &mut self.limbs[limb].mesh,
+            };
+            surface.append_to(mesh, &material, per_m, &mut room);
+        }
+    }
+
+    fn posed(self, per_m: f32) -> Posed {
         let mut model = Posed::rigid(self.body);
         for Limb { role, origin, mut mesh } in self.limbs {
             let swing = |amplitude_rad: f32, left: bool| Swing {
@@ -198,7 +217,8 @@ impl Walk<'_> {
                 model.add_part(Part { parent: None, pivot, joint, shown_mps: None, mesh });
                 continue;
             };
-            let radius_m = mesh.vertices.iter().fold(1e-3, |radius: f32, v| radius.max(v.position[2].abs()));
+            let least = (LEAST_RADIUS_M * per_m).max(f32::MIN_POSITIVE);
+            let radius_m = mesh.vertices.iter().fold(least, |radius: f32, v| radius.max(v.position[2].abs()));
             let steer = steers.then_some(Joint::Steer);
             let hub =
                 model.add_part(Part { parent: None, pivot, joint: steer, shown_mps: None, mesh: Mesh::default() });
@@ -211,10 +231,13 @@ impl Walk<'_> {
 
 /// The middle of the box around a mesh.
 fn middle(mesh: &Mesh) -> Vec3 {
-    let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let at = mesh.vertices.iter().map(|v| Vec3::from(v.position));
-    let (low, high) = at.fold(start, |(low, high), p| (low.min(p), high.max(p)));
+    let [low, high] = bounds(mesh.vertices.iter().map(|v| Vec3::from(v.position)));
     if mesh.vertices.is_empty() { Vec3::ZERO } else { 0.5 * (low + high) }
+}
+
+/// Corners of the box around some places.
+fn bounds(places: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+    places.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
 }
 
 /// Triangles of one material.
@@ -298,12 +321,19 @@ impl Surface {
         flat
     }
 
-    fn append_to(self, mesh: &mut Mesh, material: &Material<'_>, room: &mut usize) {
+    /// Where the corners of its triangles are.
+    fn places(&self) -> impl Iterator<Item = Vec3> + '_ {
+        self.triangles.iter().flatten().map(|i| self.corners[*i as usize].position)
+    }
+
+    fn append_to(self, mesh: &mut Mesh, material: &Material<'_>, per_m: f32, room: &mut usize) {
         let Self { mut corners, mut triangles } = self;
+        let sides = material.sides();
         if material.is_textured() {
             let whole = triangles.len();
-            split(&mut corners, &mut triangles, material, (SPLIT_SHARE * whole + SPLIT_ROOM).min(*room));
-            *room -= triangles.len() - whole;
+            let more = (SPLIT_SHARE * whole + SPLIT_ROOM).min(*room / sides.len());
+            split(&mut corners, &mut triangles, (material, per_m), more);
+            *room -= (triangles.len() - whole) * sides.len();
         }
         let colours: Vec<[f32; 4]> =
             corners.iter().map(|corner| material.colour(corner.at.to_array(), corner.own)).collect();
@@ -311,7 +341,6 @@ impl Surface {
             let alpha = t.iter().map(|i| colours[*i as usize][3]).sum::<f32>() / 3.0;
             material.cutoff.is_none_or(|cutoff| alpha >= cutoff)
         };
-        let sides: &[f32] = if material.double_sided { &[1.0, -1.0] } else { &[1.0] };
         for &side in sides {
             // Vertices that no triangle has are left out.
             let mut kept: Vec<Option<u32>> = vec![None; corners.len()];

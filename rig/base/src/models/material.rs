@@ -23,7 +23,7 @@ pub(super) struct Material<'a> {
     /// Below this alpha nothing is there.
     pub(super) cutoff: Option<f32>,
     is_pane: bool,
-    pub(super) double_sided: bool,
+    double_sided: bool,
 }
 
 impl<'a> Material<'a> {
@@ -57,6 +57,11 @@ impl<'a> Material<'a> {
     /// Whether its colour changes from place to place by more than vertices know.
     pub(super) fn is_textured(&self) -> bool {
         self.texture.is_some()
+    }
+
+    /// Which way its triangles face, as they do or the other way too.
+    pub(super) fn sides(&self) -> &'static [f32] {
+        if self.double_sided { &[1.0, -1.0] } else { &[1.0] }
     }
 
     /// The paint of that colour.

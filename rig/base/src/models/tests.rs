@@ -11,7 +11,7 @@ use render::models::Subject;
 use tempfile::TempDir;
 
 use super::load;
-use sketch::{Sketch, boxed, car, glb, packed, textured};
+use sketch::{Sketch, boxed, car, glb, packed, parts, textured};
 
 /// A folder with a list and files.
 fn folder(list: &str, files: &[(&str, &[u8])]) -> TempDir {
@@ -192,6 +192,67 @@ fn large_files_are_read_and_too_large_ones_refused() {
     large.repeats = 500;
     let tree = CAR_PLAIN.replace("[\"car\"]", "[\"tree\"]");
     let said = refused(&tree, &[("car.glb", &glb(&large))]);
+    assert!(said.contains("expected at most 5000 triangles"), "{said}");
+}
+
+/// A file in another unit: so many times as large.
+fn scaled((mut root, bin): (serde_json::Value, Vec<u8>), times: f32) -> Vec<u8> {
+    for node in root["nodes"].as_array_mut().expect("a list") {
+        node["scale"] = serde_json::json!(vec![times; 3]);
+    }
+    packed(root.to_string().into_bytes(), bin)
+}
+
+/// The triangles of a file as something.
+fn corners_of(name: &str, file: &[u8]) -> Vec<Vec3> {
+    let dir = folder(&CAR_PLAIN.replace("\"car\"", &format!("{name:?}")), &[("car.glb", file)]);
+    let models = load(dir.path()).expect("models");
+    let mesh = models.of(Subject::named(name).expect("a name"))[0].at(Detail::Fine).at_rest();
+    mesh.all_triangles().flatten().map(|i| Vec3::from(mesh.vertices[i as usize].position)).collect()
+}
+
+#[test]
+fn files_in_any_unit_are_the_same() {
+    for name in ["car", "tree"] {
+        let [metres, less, more] = [1.0, 1.0 / 128.0, 128.0].map(|times| corners_of(name, &scaled(textured(1), times)));
+        assert!(
+            metres.len() > 100 && less == metres && more == metres,
+            "{name}: {} {} {}",
+            metres.len(),
+            less.len(),
+            more.len()
+        );
+    }
+    let dir = folder(CAR, &[("car.glb", &scaled(parts(&car()), 1.0 / 1024.0))]);
+    let models = load(dir.path()).expect("models");
+    let parts = &models.of(Subject::named("car").expect("a name"))[0].at(Detail::Fine).parts;
+    let radii = parts.iter().filter_map(|part| match part.joint {
+        Some(Joint::Roll { radius_m }) => Some(radius_m),
+        _ => None,
+    });
+    assert!(
+        radii.clone().count() == 4 && radii.clone().all(|m| (0.28..0.4).contains(&m)),
+        "{:?}",
+        radii.collect::<Vec<_>>()
+    );
+}
+
+/// What is seen from both sides is two triangles, and so is each that shows more of a picture.
+#[test]
+fn no_model_has_more_triangles_than_is_said() {
+    let double_sided = |repeats: u32| {
+        let (mut root, bin) = textured(repeats);
+        root["materials"][0]["doubleSided"] = true.into();
+        root["materials"][0]["alphaMode"] = "OPAQUE".into();
+        packed(root.to_string().into_bytes(), bin)
+    };
+    for (repeats, more) in [(20, true), (60, false), (100, false)] {
+        let count = corners_of("tree", &double_sided(repeats)).len() / 3;
+        let least = 24 * repeats as usize;
+        assert!((least..=5000).contains(&count) && (count > least || !more), "{repeats}: {count}");
+    }
+    let tree = CAR_PLAIN.replace("[\"car\"]", "[\"tree\"]");
+    let said = refused(&tree, &[("car.glb", &double_sided(250))]);
     assert!(said.contains("expected at most 5000 triangles"), "{said}");
 }
 

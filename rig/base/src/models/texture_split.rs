@@ -10,8 +10,8 @@ use super::material::Material;
 const ROUNDS: usize = 4;
 /// A side is halved where its middle differs by so much from the mean of its ends, of 1.
 const DIFFERS: f32 = 0.06;
-/// Shorter sides stay whole, in the file's unit, which is the metre.
-const SHORTEST: f32 = 0.03;
+/// Shorter sides stay whole, metres.
+const SHORTEST_M: f32 = 0.03;
 
 /// A corner of a triangle in the model's frame.
 #[derive(Clone, Copy, Debug)]
@@ -24,11 +24,16 @@ pub(super) struct Corner {
     pub(super) own: [f32; 4],
 }
 
-/// Halves sides of triangles along which the colour bends, up to so many triangles more.
-pub(super) fn split(corners: &mut Vec<Corner>, triangles: &mut Vec<[u32; 3]>, material: &Material<'_>, room: usize) {
+/// Halves sides of triangles along which the colour bends, up to so many triangles more; `per_m` of the file's units are a metre.
+pub(super) fn split(
+    corners: &mut Vec<Corner>,
+    triangles: &mut Vec<[u32; 3]>,
+    (material, per_m): (&Material<'_>, f32),
+    room: usize,
+) {
     let most = triangles.len() + room;
     for _ in 0..ROUNDS {
-        let mut halves = Halves { middles: BTreeMap::new(), corners, material };
+        let mut halves = Halves { middles: BTreeMap::new(), corners, material, shortest: SHORTEST_M * per_m };
         let mut finer = Vec::with_capacity(triangles.len());
         for &triangle in triangles.iter() {
             halves.split(triangle, &mut finer);
@@ -45,6 +50,8 @@ struct Halves<'a> {
     middles: BTreeMap<[u32; 2], Option<u32>>,
     corners: &'a mut Vec<Corner>,
     material: &'a Material<'a>,
+    /// In the file's unit.
+    shortest: f32,
 }
 
 impl Halves<'_> {
@@ -70,7 +77,7 @@ impl Halves<'_> {
         }
         let [one, other] = key.map(|i| self.corners[i as usize]);
         let middle = halfway(&one, &other);
-        let is_long = one.position.distance(other.position) > SHORTEST;
+        let is_long = one.position.distance(other.position) > self.shortest;
         let made = (is_long && self.bends(&one, &middle, &other)).then(|| {
             self.corners.push(middle);
             self.corners.len() as u32 - 1
