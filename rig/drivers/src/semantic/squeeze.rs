@@ -40,6 +40,8 @@ const LET_PASS_M: f32 = 15.0;
 const FORGOTTEN_S: f32 = 45.0;
 /// Who moves is this near to where it was seen, metres.
 const ONE_BODY_M: f32 = 3.0;
+/// What would be so far inside the car by now has moved since it was seen, metres: what is told of places is no better.
+const INSIDE_M: f32 = 0.2;
 
 /// Where somebody's lowest part is, the nearest place where what the picture cuts may be, the ground that is hidden, and how
 /// long ago that was seen.
@@ -62,6 +64,11 @@ impl Spot {
     fn carry(&mut self, moved: Moved) {
         (self.at, self.hides) = (moved.shift(self.at), moved.shift(self.hides));
         self.nearest = self.nearest.map(|at| moved.shift(at));
+    }
+
+    /// Whether the car is by now where it was.
+    fn is_inside(&self) -> bool {
+        (INSIDE_M..FRONT_M - INSIDE_M).contains(&self.at.0) && self.at.1.abs() < HALF_WIDTH_M - INSIDE_M
     }
 
     /// Metres before the front of the car along an arc until it would touch it; none if it would not. A turn towards what
@@ -123,6 +130,9 @@ impl Squeeze {
         self.seen.iter_mut().chain(&mut self.gone).for_each(|spot| spot.carry(moved));
         self.gone.iter_mut().for_each(|spot| spot.unseen_s += TICK_S);
         self.gone.retain(|spot| spot.at.0 > 0.0 && spot.unseen_s < FORGOTTEN_S);
+        if let Some(left) = self.gone.iter().find(|spot| spot.is_inside()).map(|spot| spot.at) {
+            self.gone.retain(|spot| !is_of(left, spot));
+        }
         self.since_look_m += moved.forward_m;
         self.driven_m += moved.forward_m;
         if let Some(way) = &mut self.way {
@@ -144,7 +154,6 @@ impl Squeeze {
             self.gone.extend(seen.into_iter().filter(|spot| is_hidden(sight, spot.hides)));
         }
         let moving = || others.iter().flat_map(|others| others.moving(MOVING_MPS)).map(|track| track.at);
-        let is_of = |at: Point, spot: &Spot| ops::hypot(at.0 - spot.at.0, at.1 - spot.at.1) < ONE_BODY_M;
         self.gone.retain(|spot| moving().all(|at| !is_of(at, spot)));
         if self.stood_s < WAITED_S {
             return;
@@ -181,6 +190,11 @@ impl Squeeze {
     fn free_m(&self, arc: Arc) -> f32 {
         self.seen.iter().chain(&self.gone).filter_map(|spot| spot.touches_m(arc)).fold(f32::INFINITY, f32::min)
     }
+}
+
+/// Whether what is somewhere may be what was seen.
+fn is_of(at: Point, spot: &Spot) -> bool {
+    ops::hypot(at.0 - spot.at.0, at.1 - spot.at.1) < ONE_BODY_M
 }
 
 fn is_hidden(sight: &Sight<'_>, at: Point) -> bool {
@@ -358,6 +372,19 @@ mod tests {
             (0..6).for_each(|_| driving.carry(STILL));
         }
         assert_eq!(left_behind(Contact::of_car((6.2, 2.2)), &[&driving]).beside_m(Arc { curvature: 0.15 }), None);
+    }
+
+    /// A vehicle's flank left the picture while both moved, and the car drives on over where it was.
+    #[test]
+    fn what_the_car_drives_over_is_not_remembered() {
+        let left = Arc { curvature: 0.15 };
+        let behind = |y_m: f32| {
+            let mut squeeze = left_behind(Contact::of_car((6.2, y_m)), &[]);
+            let was = squeeze.beside_m(left).is_some();
+            (0..150).for_each(|_| squeeze.carry(Moved { forward_m: 0.01, turned_rad: 0.0 }, true));
+            (was, squeeze.beside_m(left).is_some())
+        };
+        assert_eq!([behind(0.6), behind(HALF_WIDTH_M + 0.2)], [(true, false), (true, true)]);
     }
 
     /// The lower edge of a bumper hides ground that is farther away.
