@@ -219,8 +219,8 @@ impl Recording {
         let asked = Asked { last, from: time(from_, "from_")?, to: time(to, "to")?, fps: frame_rate(fps)? };
         let (viewpoint, size) = (viewpoint(camera)?, picture_size(size, "size")?);
         let imaging = values::imaging(quality, sensor)?;
-        let shots = Shots::of_window(&self.stage, &asked, viewpoint, size);
-        Ok(shots.map_err(|error| raise(&error))?.at(imaging).into())
+        let shots = Shots::of_window(&self.stage, &asked, viewpoint.camera(size).at(imaging));
+        Ok(shots.map_err(|error| raise(&error))?.into())
     }
 
     /// The picture of a tick.
@@ -243,8 +243,8 @@ impl Recording {
         let imaging = values::imaging(quality, sensor)?;
         let tick = tick.within("tick", self.first_tick()..=self.log().last_tick())?;
         let (viewpoint, size) = (viewpoint(camera)?, picture_size(size, "size")?);
-        let shots = Shots::of_tick(&self.stage, tick, viewpoint, size).map_err(|error| raise(&error))?;
-        Frames::from(shots.at(imaging)).draw(py, 0)
+        let shots = Shots::of_tick(&self.stage, tick, viewpoint.camera(size).at(imaging));
+        Frames::from(shots.map_err(|error| raise(&error))?).draw(py, 0)
     }
 
     fn __repr__(&self) -> String {

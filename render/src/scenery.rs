@@ -12,6 +12,7 @@ use crate::horizon::{Horizon, Occluder};
 use crate::instance_ids::{instance_of_parked, parked_number};
 use crate::mesh::look::look;
 use crate::mesh::model::Detail;
+use crate::mesh::rows::Rise;
 use crate::mesh::street::surface;
 use crate::mesh::{FINISHES, Mesh, Vertex, prop, simplify, skirt};
 use crate::models::Models;
@@ -109,8 +110,8 @@ impl Scenery {
         self.vertices.truncate(vertices);
         self.indices.truncate(indices);
         let objects = core::mem::take(&mut self.objects);
-        for (object, parked) in numbered(&objects) {
-            self.add(Detail::ALL.map(|detail| placed(object, parked, (models, detail))), parked, true);
+        for ((object, parked), rise) in numbered(&objects).zip(Rise::of_all(&objects)) {
+            self.add(Detail::ALL.map(|detail| placed(object, rise, parked, (models, detail))), parked, true);
         }
         self.objects = objects;
         let plain = self.plain.clone();
@@ -225,10 +226,11 @@ pub(crate) fn gone(scene: &SceneSnapshot) -> Vec<usize> {
 }
 
 /// The mesh of an object in the world's frame.
-fn placed(object: &Prop, parked: Option<usize>, (models, detail): (Option<&Models>, Detail)) -> Mesh {
+fn placed(object: &Prop, rise: Rise, parked: Option<usize>, (models, detail): (Option<&Models>, Detail)) -> Mesh {
     let instance = parked.map_or(0, instance_of_parked);
     let model = models.and_then(|models| models.object(object, detail));
     let mut mesh = model.unwrap_or_else(|| prop::mesh(object, detail));
+    rise.tilt(&mut mesh, object.size.x);
     prop::place(&mut mesh, object.position, object.heading_rad);
     mesh.vertices.iter_mut().for_each(|v| v.instance = instance);
     mesh

@@ -8,8 +8,12 @@ use crate::ops;
 
 /// Vertices of a lane that share a box in the grid.
 const STRETCH: usize = 8;
-/// Lanes of more vertices than this are looked at stretch by stretch.
+/// Of lanes of more vertices than this the boxes of all stretches are looked at first, and of those of more than that only
+/// the stretches around.
+const SHORT: usize = 2 * STRETCH;
 const LONG: usize = 256;
+/// Rounding moves distances by less than this, metres.
+const ROUNDING_M: f32 = 0.1;
 /// Side of a cell, metres.
 const CELL_M: f32 = 10.0;
 /// Distances that differ by less tie, and direction decides, metres.
@@ -23,12 +27,16 @@ pub(crate) struct LaneGrid {
     grid: Grid,
     /// Lane and first vertex of each item of the grid.
     stretches: Vec<(LaneId, u32)>,
+    /// Their boxes, and the first one of each lane.
+    boxes: Vec<Bounds>,
+    firsts: Vec<u32>,
 }
 
 impl LaneGrid {
     pub fn new(lanes: &[Lane]) -> Self {
         let (boxes, stretches) = boxes(lanes);
-        Self { grid: Grid::new(&boxes, CELL_M), stretches }
+        let firsts = (0..=lanes.len()).map(|id| stretches.partition_point(|s| (s.0 as usize) < id) as u32);
+        Self { grid: Grid::new(&boxes, CELL_M), firsts: firsts.collect(), stretches, boxes }
     }
 
     /// A lane in the cell that the most stretches touch, and how many do.
@@ -128,28 +136,53 @@ impl Roads<'_> {
         self.grid.grid.around(position.truncate(), radius_m).map(|i| self.grid.stretches[i as usize])
     }
 
-    /// [`Projection::onto`] a lane near `position`; of a long one only the stretches around are looked at.
+    /// [`Projection::onto`] a lane near `position`; of one that is not short only stretches that may be nearest are looked at.
     fn onto(&self, id: LaneId, position: Vec3, near_m: f32) -> Projection {
         let lane = &self.lanes[id as usize];
-        if lane.points.len() <= LONG {
-            return Projection::onto(id, lane, position);
-        }
+        let (s_m, lateral_m, distance_m) = match lane.points.len() {
+            ..=SHORT => lane.project(position),
+            ..=LONG => self.onto_by_boxes(id, position),
+            _ => self.onto_by_cells(id, position, near_m),
+        };
+        Projection { lane: id, s_m, lateral_m, distance_m }
+    }
+
+    /// By the stretches whose boxes are no farther than the line in the nearest box.
+    fn onto_by_boxes(&self, id: LaneId, position: Vec3) -> (f32, f32, f32) {
+        let (lane, p) = (&self.lanes[id as usize], position.truncate());
+        let stretches = self.grid.firsts[id as usize] as usize..self.grid.firsts[id as usize + 1] as usize;
+        let away2_m2 = |&i: &usize| {
+            let (low, high) = self.grid.boxes[i];
+            p.distance_squared(p.max(low).min(high))
+        };
+        let vertices = |i: usize| {
+            let first = self.grid.stretches[i].1 as usize;
+            first..(first + STRETCH).min(lane.points.len() - 1)
+        };
+        let Some(nearest) = stretches.clone().min_by(|a, b| away2_m2(a).total_cmp(&away2_m2(b))) else {
+            return lane.project(position);
+        };
+        let (.., within_m) = lane.project_onto(std::iter::once(vertices(nearest)), position);
+        let within2_m2 = (within_m + ROUNDING_M) * (within_m + ROUNDING_M);
+        lane.project_onto(stretches.filter(|i| away2_m2(i) <= within2_m2).map(vertices), position)
+    }
+
+    /// By the stretches in the cells around, within `near_m` or as far as there is one.
+    fn onto_by_cells(&self, id: LaneId, position: Vec3, near_m: f32) -> (f32, f32, f32) {
+        let lane = &self.lanes[id as usize];
         let within = |reach_m: f32| {
-            // A little more, so that rounding leaves no stretch out.
-            let near = self.near(position, reach_m + 0.1).filter(|s| s.0 == id);
+            let near = self.near(position, reach_m + ROUNDING_M).filter(|s| s.0 == id);
             let mut firsts: Vec<usize> = near.map(|s| s.1 as usize).collect();
             firsts.sort_unstable();
             firsts.dedup();
             let stretches = firsts.into_iter().map(|k| k..(k + STRETCH).min(lane.points.len() - 1));
             lane.project_onto(stretches, position)
         };
-        let mut found = within(near_m);
-        if found.2 > near_m {
+        match within(near_m) {
             // A stretch beyond may be nearer, but none farther than this.
-            found = within(found.2);
+            (.., distance_m) if distance_m > near_m => within(distance_m),
+            found => found,
         }
-        let (s_m, lateral_m, distance_m) = found;
-        Projection { lane: id, s_m, lateral_m, distance_m }
     }
 
     /// Distance from the lane's edge, negative inside its area.

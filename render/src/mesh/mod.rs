@@ -12,6 +12,7 @@ pub mod motion;
 pub mod people;
 pub mod prop;
 mod rings;
+pub mod rows;
 pub mod shape;
 pub mod simplify;
 mod skin;

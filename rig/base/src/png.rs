@@ -19,7 +19,8 @@ fn encode(
     let mut encoder = png::Encoder::new(&mut out, width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
-    encoder.set_compression(png::Compression::Balanced);
+    // A tenth of the time of `Balanced` or less, for files that are 15 to 30 % larger.
+    encoder.set_compression(png::Compression::Fast);
     if let Some(palette) = palette {
         encoder.set_palette(palette);
     }

@@ -26,6 +26,8 @@ const STANDOFF_M: f32 = 3.0;
 const HEADWAY_S: f32 = 1.2;
 /// Half of the width that must be free, metres.
 const HALF_CORRIDOR_M: f32 = 1.4;
+/// How far into it what stands across reaches at most, counted from its middle, metres.
+const REACHES_M: f32 = 0.9;
 /// How far ahead others are predicted, seconds, and in which steps.
 const PREDICTED_S: [f32; 5] = [0.0, 0.5, 1.0, 1.5, 2.0];
 /// From the middle of the car to its front bumper, metres.
@@ -41,7 +43,7 @@ pub struct Expert;
 impl Driver<World> for Expert {
     fn controls(&mut self, world: &World) -> Controls {
         let scene = world.scene();
-        let route = Route { points: world.route_ahead(SIGHT_M).iter().map(|p| p.truncate()).collect() };
+        let route = Route::new(world.route_ahead(SIGHT_M).iter().map(|p| p.truncate()).collect());
         let hud = world.hud();
         let speed_mps = hud.speed_mps;
         let wanted_mps = hud.limit_mps.min(route.bend_mps());
@@ -61,6 +63,8 @@ impl Driver<World> for Expert {
 /// The middle of the route ahead from the middle of the car on, seen from above, a point a metre.
 struct Route {
     points: Vec<Vec2>,
+    /// The corners of a box that holds the whole corridor.
+    bounds: [Vec2; 2],
 }
 
 /// Something to keep a distance to.
@@ -73,6 +77,20 @@ struct Leader {
 }
 
 impl Route {
+    fn new(points: Vec<Vec2>) -> Self {
+        // A little more, so that rounding leaves nobody out.
+        let margin_m = HALF_CORRIDOR_M + REACHES_M + 0.1;
+        let low = points.iter().copied().fold(Vec2::MAX, Vec2::min) - margin_m;
+        let high = points.iter().copied().fold(Vec2::MIN, Vec2::max) + margin_m;
+        Self { points, bounds: [low, high] }
+    }
+
+    /// Whether the corridor may come near the way between two places.
+    fn may_hold(&self, [a, b]: [Vec2; 2]) -> bool {
+        let [low, high] = self.bounds;
+        a.max(b).cmpge(low).all() && a.min(b).cmple(high).all()
+    }
+
     /// Steering towards the route, [-1, 1], positive to the right.
     fn steer(&self, ego: &EgoScene) -> f32 {
         let distance_m = PURSUIT_M.max(PURSUIT_S * ego.speed_mps);
@@ -97,8 +115,13 @@ impl Route {
         let size = actor.kind.size_m();
         let direction = (actor.rotation * Vec3::X).truncate();
         let velocity = direction * actor.speed_mps;
+        let place = actor.position.truncate();
+        let farthest_s = PREDICTED_S.into_iter().fold(0.0, f32::max);
+        if !self.may_hold([place, place + velocity * farthest_s]) {
+            return None;
+        }
         PREDICTED_S.iter().find_map(|&after_s| {
-            let (i, tangent) = self.nearest(actor.position.truncate() + velocity * after_s, 0.5 * size.x)?;
+            let (i, tangent) = self.nearest(place + velocity * after_s, 0.5 * size.x)?;
             let along = direction.dot(tangent).abs();
             let half_length_m = 0.5 * (size.x * along + size.y * (1.0 - along));
             let gap_m = i as f32 - NOSE_M - half_length_m;
@@ -120,7 +143,7 @@ impl Route {
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|(i, _)| *i + 1 < self.points.len())?;
         let tangent = (self.points[i + 1] - self.points[i]).normalize_or_zero();
-        let reach_m = HALF_CORRIDOR_M + half_length_m.min(0.9);
+        let reach_m = HALF_CORRIDOR_M + half_length_m.min(REACHES_M);
         (distance2 < reach_m * reach_m).then_some((i, tangent))
     }
 }
@@ -170,7 +193,7 @@ mod tests {
     use super::*;
 
     fn straight() -> Route {
-        Route { points: (0..60).map(|i| Vec2::new(i as f32, 0.0)).collect() }
+        Route::new((0..60).map(|i| Vec2::new(i as f32, 0.0)).collect())
     }
 
     #[test]
@@ -184,9 +207,25 @@ mod tests {
     }
 
     #[test]
+    fn who_is_beside_its_box_is_in_the_way_nowhere() {
+        let (mut held, mut left_out) = (0, 0);
+        let arc = |i: i32| 30.0 * Vec2::new(ops::sin(i as f32 / 30.0), 1.0 - ops::cos(i as f32 / 30.0));
+        let route = Route::new((0..60).map(arc).collect());
+        for step in 0..40_000 {
+            let at = |step: i32| Vec2::new((step % 200) as f32, (step / 200) as f32) * 0.4 - Vec2::splat(20.0);
+            let (a, b) = (at(step), at((step * 7 + 1234) % 40_000));
+            let places = PREDICTED_S.map(|after_s| a.lerp(b, after_s / 2.0));
+            let is_held = places.iter().any(|place| route.nearest(*place, 6.0).is_some());
+            assert!(route.may_hold([a, b]) || !is_held, "{a} to {b}");
+            (held, left_out) = (held + usize::from(is_held), left_out + usize::from(!route.may_hold([a, b])));
+        }
+        assert!(held > 1000 && left_out > 1000, "{held} {left_out}");
+    }
+
+    #[test]
     fn bends_are_taken_slowly_and_straights_are_not() {
         let arc = |i: i32| 10.0 * Vec2::new(ops::sin(i as f32 / 10.0), 1.0 - ops::cos(i as f32 / 10.0));
-        let bend = Route { points: (0..60).map(arc).collect() };
+        let bend = Route::new((0..60).map(arc).collect());
         assert!(straight().bend_mps() > 50.0);
         assert!((bend.bend_mps() - 20f32.sqrt()).abs() < 0.5, "{}", bend.bend_mps());
     }

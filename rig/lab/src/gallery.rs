@@ -9,10 +9,10 @@ use anyhow::{Context, bail};
 use base::failure::Usage;
 use base::json::{Typed, json_file};
 use base::output::{self, OutputFolder};
+use base::png;
 use base::progress::{self, Interrupt};
 use base::setting::{Changes, Setting};
 use base::words::count;
-use base::{asked, png};
 use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use kernel::weather::{Weather, WeatherPreset};
@@ -20,6 +20,7 @@ use kernel::{RoadNetwork, Scenario};
 use render::{Imaging, ModelsId, Quality, Sensor};
 use serde::Serialize;
 
+use super::cameras;
 use super::looks::Size;
 use super::plot::escape;
 use super::still;
@@ -111,7 +112,8 @@ fn lights() -> anyhow::Result<[(&'static str, Weather); 5]> {
 
 /// Makes a gallery; a folder of the same that was interrupted is gone on with.
 pub fn gallery(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Gallery> {
-    asked::check_size(options.size)?;
+    let camera = options.camera.camera(options.size).at(options.imaging);
+    cameras::check(&camera)?;
     let settings = options.maps.iter().map(|map| Setting::of_map(map)).collect::<anyhow::Result<Vec<_>>>()?;
     let mut names = BTreeSet::new();
     if let Some(twice) = settings.iter().map(|setting| &setting.map.network.name).find(|name| !names.insert(*name)) {
@@ -130,7 +132,7 @@ pub fn gallery(options: &Options, interrupt: &Interrupt) -> anyhow::Result<Galle
             let scenario = Scenario { weather: *weather, ..scenario };
             let (scene, mut renderer) = still::of_run(&setting.map, &scenario, options.tick, interrupt)
                 .with_context(|| format!("{} at {}", picture.map, picture.light))?;
-            let frame = renderer.draw(&scene, &options.camera.camera(options.size).at(options.imaging))?;
+            let frame = renderer.draw(&scene, &camera)?;
             output::write_file(&path, &png::rgb(options.size, &frame.rgb)?)?;
         }
         bar.inc(1);

@@ -8,14 +8,13 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use anyhow::{Context, bail};
 use base::asked;
 use base::failure::Usage;
-use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use kernel::{RoadNetwork, SceneSnapshot};
 use measures::footage::{Asked, Window, scenes};
-use render::{AdapterChoice, Camera, Frame, Imaging, Renderer};
+use render::{AdapterChoice, Camera, Frame, Renderer};
 use replay::{Log, Manifest, Recording};
 
-use super::looks::Size;
+use super::cameras;
 
 /// Pictures whose scenes are simulated at once: a replay begins at a keyframe, up to 12 s before the first of them.
 const AT_ONCE: usize = 32;
@@ -137,33 +136,28 @@ pub struct Shot {
 
 impl Shots {
     /// The pictures of a window; those of `last` are the ones that `aeye rerender` makes.
-    pub fn of_window(stage: &Arc<Stage>, asked: &Asked, viewpoint: Viewpoint, size: Size) -> anyhow::Result<Self> {
+    pub fn of_window(stage: &Arc<Stage>, asked: &Asked, camera: Camera) -> anyhow::Result<Self> {
         if !asked::is_frame_rate(asked.fps) {
             return Err(Usage(format!("{} frames a second; expected {}", asked.fps, asked::frame_rates())).into());
         }
         let window = Window::of(stage.log(), asked).with_context(|| stage.path.display().to_string())?;
-        Self::of(stage, window.pictures().collect(), viewpoint, size)
+        Self::of(stage, window.pictures().collect(), camera)
     }
 
     /// The picture of a tick.
-    pub fn of_tick(stage: &Arc<Stage>, tick: Tick, viewpoint: Viewpoint, size: Size) -> anyhow::Result<Self> {
+    pub fn of_tick(stage: &Arc<Stage>, tick: Tick, camera: Camera) -> anyhow::Result<Self> {
         let (first, last) = held(stage.log()).into_inner();
         if !(first..=last).contains(&tick) {
             let path = stage.path.display();
             return Err(Usage(format!("{path}: holds ticks {first} to {last}, and no tick {tick}")).into());
         }
-        Self::of(stage, vec![tick], viewpoint, size)
+        Self::of(stage, vec![tick], camera)
     }
 
-    fn of(stage: &Arc<Stage>, ticks: Vec<Tick>, viewpoint: Viewpoint, size: Size) -> anyhow::Result<Self> {
-        asked::check_size(size)?;
+    fn of(stage: &Arc<Stage>, ticks: Vec<Tick>, camera: Camera) -> anyhow::Result<Self> {
+        cameras::check(&camera)?;
         let scenes = Mutex::new((0, Vec::new()));
-        Ok(Self { stage: stage.clone(), camera: viewpoint.camera(size), ticks, scenes })
-    }
-
-    /// The same, made otherwise.
-    pub fn at(self, imaging: impl Into<Imaging>) -> Self {
-        Self { camera: self.camera.at(imaging), ..self }
+        Ok(Self { stage: stage.clone(), camera, ticks, scenes })
     }
 
     /// Their ticks.

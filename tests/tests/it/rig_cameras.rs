@@ -247,8 +247,10 @@ fn files_of_cameras_that_cannot_be_are_refused_in_one_sentence() {
     for (text, words) in [
         (camera("../../climbs", ""), "cannot be a file's"),
         (camera("a", "") + &camera("a", ""), "two cameras are named \"a\""),
+        (camera("a", "") + &camera("A", ""), "two cameras are named \"A\""),
         (camera("a", "yaw_rad = nan"), "camera a: yaw_rad is NaN"),
         (camera("a", "sensor = \"k1=-0.9\""), "camera a: a lens of k1=-0.9 folds the picture"),
+        (camera("a", "quality = \"fine\"\nwidth = 6000"), "camera a: fine pictures of 6000x"),
         ("cameras = []".into(), "0 cameras; expected 1 to 32"),
         (String::new(), "missing field `cameras`"),
         ("\u{0}".into(), "rig.toml"),

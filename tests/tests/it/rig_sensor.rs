@@ -4,7 +4,6 @@ use std::fs;
 use std::path::Path;
 
 use aeye::cli::Cli;
-use base::failure::sentence;
 use clap::Parser;
 use tests::command::aeye;
 use tests::files::contents;
@@ -132,10 +131,50 @@ fn a_sensor_that_cannot_be_is_refused() {
     );
     assert!(refused("aeye render --out a.png --sensor iso=100").contains("no such setting: \"iso\""));
     assert!(refused("aeye campaign --runs 1 --out a --sensor noise=1,noise=2").contains("noise is given twice"));
-    let out = Path::new("folded.png");
-    let cli = Cli::try_parse_from(
-        "aeye render --map rural --at 0s --size 64x32 --sensor k1=-0.9 --out folded.png".split(' '),
-    );
-    let said = aeye::run(&cli.unwrap()).map(drop).map_err(|error| sentence(&error)).unwrap_err();
-    assert!(said.starts_with("a lens of k1=-0.9 folds the picture") && !out.exists(), "{said}");
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn what_no_camera_can_draw_is_refused_before_anything_is_done() {
+    let dir = tempfile::tempdir().unwrap();
+    let (_, case) = recorded(dir.path());
+    let there = contents(dir.path());
+    let commands = [
+        ("render --map rural --at 0s", "still.png"),
+        ("gallery --maps rural", "gallery"),
+        ("rerender --checkpoint truth CASE", "rerendered"),
+        ("export --format gif CASE", "case.gif"),
+        ("export CASE", "case.mcap"),
+        ("dataset natural --maps rural --scenes 1 --val-scenes 0 --test-scenes 0 --frames 1", "natural"),
+        ("dataset cases CASE", "cases"),
+    ];
+    let cameras = [
+        ("--size 64x32 --sensor k1=-0.9", "a lens of k1=-0.9 folds the picture"),
+        ("--size 6000x64 --quality fine", "fine pictures of 6000x64; expected sides of at most"),
+    ];
+    for ((command, out), (camera, words)) in commands.into_iter().flat_map(|command| cameras.map(|it| (command, it))) {
+        let files: &[&Path] = if command.contains("CASE") { &[&case] } else { &[] };
+        let command = format!("{} {camera}", command.trim_end_matches(" CASE"));
+        let (code, said) = aeye(&command, files, &dir.path().join(out));
+        assert!(code == 2 && said.starts_with(words) && !said.contains('\n'), "{command}: {code}, {said:?}");
+        assert!(contents(dir.path()) == there, "{command}: something was left");
+    }
+}
+
+#[test]
+#[cfg_attr(no_vulkan, ignore = "no Vulkan driver is installed; AEYE_GPU=require makes this an error")]
+fn a_still_is_a_new_png_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let still = |out: &Path| aeye("render --map rural --at 0s --size 64x32", &[], out);
+    let refused = |name: &str, words: &str| {
+        let (code, said) = still(&dir.path().join(name));
+        assert!(code == 2 && said.contains(words) && contents(dir.path()).is_empty(), "{name}: {code}, {said}");
+    };
+    refused("still", "expected the name of a PNG file, as in still.png");
+    refused("still.jpg", "expected the name of a PNG file");
+    let out = dir.path().join("still.png");
+    assert_eq!(still(&out).0, 0);
+    let drawn = fs::read(&out).unwrap();
+    let (code, said) = still(&out);
+    assert!(code == 1 && said.contains("exists already") && fs::read(&out).unwrap() == drawn, "{code}, {said}");
 }

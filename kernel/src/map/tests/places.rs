@@ -46,6 +46,29 @@ fn the_grid_finds_what_a_search_of_all_lanes_finds() {
     }
 }
 
+/// To the bit: what is left out of lanes could not be nearest.
+#[test]
+fn lanes_are_projected_onto_as_if_all_of_them_were_looked_at() {
+    let mut seen = [0; 3];
+    for name in ["old_town", "motorway"] {
+        let map = bundled(name).unwrap();
+        for (k, lane) in map.lanes.iter().enumerate().flat_map(|(id, lane)| [id; 12].map(|id| (id, lane))).enumerate() {
+            let (id, lane) = lane;
+            let draw = |n| crate::rng::unit(1, crate::rng::Stream::Dressing, k as u64, n);
+            // Vertices are where stretches tie.
+            let on = if k % 2 == 0 { lane.at(lane.length_m * draw(0)) } else { lane.points[k % lane.points.len()] };
+            let off_m = [0.0, 0.3, 5.0, 40.0][k % 4];
+            let p = on.position + off_m * Vec3::new(draw(1) - 0.5, draw(2) - 0.5, 0.0);
+            for found in map.places().roads().around(p, lane.kind, 8.0) {
+                let lane = &map.lanes[found.lane as usize];
+                assert_eq!(found, Projection::onto(found.lane, lane, p), "{name}, lane {id}");
+                seen[usize::from(lane.points.len() > 16) + usize::from(lane.points.len() > 256)] += 1;
+            }
+        }
+    }
+    assert!(seen.iter().all(|&found| found > 1000), "{seen:?}");
+}
+
 #[test]
 fn heading_chooses_among_lanes_that_overlap() {
     let map = bundled("city").unwrap();

@@ -19,6 +19,9 @@ const ROOF_INSET_M: f32 = 0.07;
 /// How strongly panes and roofs are bent, radians a metre.
 const BOW: f32 = 0.3;
 
+/// How wide the pillars behind the rear doors are, metres.
+const REAR_PILLAR_M: f32 = 0.26;
+
 /// Heads are so far below the upper edge of the windows, and so far from the middle, metres.
 const HEAD_BELOW_M: f32 = 0.17;
 const SEAT_Y_M: f32 = 0.36;
@@ -96,20 +99,30 @@ fn rails(mesh: &mut Mesh, paint: Paint, ridge: &[Vec3; 4]) {
     }
 }
 
-/// Painted strips over a side pane: along the windscreen, dark behind the front door, behind the rear door.
+/// Painted bands over a side pane, from its lower edge to its upper one: along the windscreen, dark behind the front door,
+/// behind the rear door.
 fn pillars(mesh: &mut Mesh, paint: Paint, pane: &[Vec3; 4], side: f32) {
     let [mut front, mut rear] = [[pane[0], pane[3]], [pane[1], pane[2]]];
     if side < 0.0 {
         [front, rear] = [[pane[1], pane[2]], [pane[0], pane[3]]];
     }
     let out = (pane[1] - pane[0]).cross(pane[2] - pane[0]).normalize_or_zero();
-    let middle = [0, 1].map(|i| (front[i] + rear[i]) * 0.5 + Vec3::NEG_X * (0.12 - 0.04 * i as f32));
-    for (paint, [foot, top], shift, width) in
-        [(paint, front, -0.03, 0.09), (plastic(paint.tag), middle, 0.0, 0.1), (paint, rear, 0.1, 0.24)]
-    {
-        let before = out * 0.012 + Vec3::X * shift;
-        strip(mesh, paint, foot + before, top + before, out, width);
-    }
+    let mut band = |paint: Paint, from: [Vec3; 2], shift_m: [f32; 2], width_m: f32| {
+        let edge = |i: usize, ahead_m: f32| {
+            let back = (rear[i] - front[i]).normalize_or_zero();
+            from[i] - back * ahead_m + out * 0.012
+        };
+        let [ahead, behind] = [0.5 * width_m, -0.5 * width_m].map(|m| [0, 1].map(|i| edge(i, shift_m[i] + m)));
+        let mut corners = [ahead[0], behind[0], behind[1], ahead[1]];
+        if side < 0.0 {
+            corners.reverse();
+        }
+        mesh.polygon(paint, &corners);
+    };
+    let middle = [0, 1].map(|i| (front[i] + rear[i]) * 0.5);
+    band(paint, front, [-0.05; 2], 0.1);
+    band(plastic(paint.tag), middle, [-0.12, -0.08], 0.11);
+    band(paint, rear, [REAR_PILLAR_M * 0.5; 2], REAR_PILLAR_M);
 }
 
 /// The driver and those who ride along, behind all panes that show them.

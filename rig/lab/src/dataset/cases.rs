@@ -107,9 +107,9 @@ pub(super) fn build(
     if let Some(finished) = Manifest::of_finished(out, &whole)? {
         return Ok(finished);
     }
+    let views = views(&recipe.cameras, recipe.size, recipe.imaging())?;
     let adapter = vision::find_adapter()?;
     let (pending, studios) = (PendingFolder::new(out)?, Studios::new(recipe.imaging()));
-    let views = views(&recipe.cameras, recipe.size, recipe.imaging())?;
     say_sizes(&views);
     let bar = progress::bar("cases", files.len() as u64);
     let draw = |scene: usize| {

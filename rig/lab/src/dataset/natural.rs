@@ -116,13 +116,14 @@ fn shoot(
     (share, threads): (Share, Option<u16>),
     interrupt: &Interrupt,
 ) -> anyhow::Result<Shot> {
+    let views = views(&recipe.cameras, recipe.size, recipe.imaging())?;
     let adapter = vision::find_adapter()?;
     let folder = OutputFolder::open(out)?;
     let parts = Parts::open(out, recipe, &adapter)?;
     let mut scenes = recipe.scenes();
     share.keep(&mut scenes);
     let bar = progress::bar("frames", scenes.iter().map(|scene| u64::from(scene.frames)).sum());
-    let (no_room, views) = (Mutex::default(), views(&recipe.cameras, recipe.size, recipe.imaging())?);
+    let no_room = Mutex::default();
     say_sizes(&views);
     let fresh = || maps.iter().map(|_| None).collect::<Vec<Option<Renderer>>>();
     on_threads(jobs(threads), scenes.len(), fresh, |renderers, index| {

@@ -17,7 +17,9 @@ pub(super) struct View {
 /// Those that a recipe describes, or else the drivers'.
 pub(super) fn views(cameras: &[Mounted], size: Size, imaging: Imaging) -> anyhow::Result<Vec<View>> {
     if cameras.is_empty() {
-        return Ok(vec![View { name: None, camera: Camera::driver(size.0, size.1).at(imaging) }]);
+        let camera = Camera::driver(size.0, size.1).at(imaging);
+        cameras::check(&camera)?;
+        return Ok(vec![View { name: None, camera }]);
     }
     let of = |Named { name, camera }: Named| View { name: Some(name), camera };
     Ok(cameras::named(cameras, size, imaging).map_err(Usage)?.into_iter().map(of).collect())

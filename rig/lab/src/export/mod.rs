@@ -86,6 +86,7 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
     args.format.check(args.camera, &args.checkpoint, args.cameras.is_some())?;
     let Places { layout, files, mut failed, folder } = places(args)?;
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
+    cameras::check(&args.camera.camera(size).at(args.imaging))?;
     let others = match &args.cameras {
         Some(path) => cameras::read(path, size, args.imaging)?,
         None => Vec::new(),

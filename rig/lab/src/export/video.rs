@@ -38,7 +38,7 @@ pub fn export(
     interrupt: &Interrupt,
 ) -> anyhow::Result<Export> {
     let stage = Arc::new(Stage::open(file, screen.workshop)?);
-    let shots = Shots::of_window(&stage, &args.asked(), args.camera, screen.size)?.at(args.imaging);
+    let shots = Shots::of_window(&stage, &args.asked(), args.camera.camera(screen.size).at(args.imaging))?;
     let (Some(&from), Some(&to)) = (shots.ticks().first(), shots.ticks().last()) else {
         bail!("no picture falls into the window; expected a longer one, or more pictures a second");
     };

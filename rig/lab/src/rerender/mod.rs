@@ -24,7 +24,7 @@ use base::words::count;
 use drivers::vision::Eye;
 use kernel::time::Tick;
 use perception::ConfusionMatrix;
-use render::AdapterChoice;
+use render::{AdapterChoice, Camera};
 use serde::Serialize;
 
 use self::pictures::{Matrices, Pictures};
@@ -144,6 +144,7 @@ fn draw(args: &Options, share: Option<Share>, interrupt: &Interrupt) -> anyhow::
         None => found,
     };
     let (eyes, size) = open_eyes(&args.checkpoint, args.size)?;
+    cameras::check(&Camera::driver(size.0, size.1).at(args.imaging))?;
     let cameras = args.cameras.as_ref().map(|path| cameras::read(path, size, args.imaging)).transpose()?;
     store.hold(&options::of_pictures(args, size))?;
     let metrics = args.out.join(TABLE);

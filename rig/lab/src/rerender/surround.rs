@@ -9,7 +9,6 @@ use base::library::Entry;
 use base::png;
 use base::progress::Interrupt;
 use base::spread::{jobs, on_threads};
-use drivers::film::Viewpoint;
 use kernel::time::Tick;
 use measures::footage::Asked;
 use render::Frame;
@@ -58,8 +57,7 @@ impl Surround<'_> {
         let Some(first) = missing.first() else { return Ok(()) };
         let stage = Arc::new(Stage::open(&file.path, workshop)?);
         let asked = Asked { last: Some(self.args.last), from: None, to: None, fps: self.args.fps };
-        let size = (first.camera.width, first.camera.height);
-        let shots = Shots::of_window(&stage, &asked, Viewpoint::Driver, size)?;
+        let shots = Shots::of_window(&stage, &asked, first.camera)?;
         let pending = missing.iter().map(|_| self.pending()).collect::<anyhow::Result<Vec<_>>>()?;
         for (index, tick) in shots.ticks().iter().enumerate() {
             for (Named { camera, .. }, pending) in missing.iter().zip(&pending) {

@@ -149,10 +149,7 @@ impl Moment {
 
     fn draw(&mut self, camera: &Camera) -> anyhow::Result<Frame> {
         match self {
-            Self::OfFile(stage, tick) => {
-                let size = (camera.width, camera.height);
-                Ok(Shots::of_tick(stage, *tick, Viewpoint::Driver, size)?.draw_through(0, camera)?.frame)
-            }
+            Self::OfFile(stage, tick) => Ok(Shots::of_tick(stage, *tick, *camera)?.draw(0)?.frame),
             Self::OfRun(scene, renderer) => Ok(renderer.draw(scene, camera)?),
         }
     }

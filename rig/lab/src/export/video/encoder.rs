@@ -108,7 +108,7 @@ fn png_writer(
     let mut encoder = png::Encoder::new(BufWriter::new(File::create_new(path)?), width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
+    encoder.set_compression(png::Compression::Fast);
     encoder.set_animated(frames, 0)?;
     encoder.set_frame_delay(1, fps as u16)?;
     Ok(encoder.write_header()?)
