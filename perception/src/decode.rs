@@ -11,8 +11,10 @@ use crate::onnx::Output;
 use crate::simd::vectorised;
 use crate::taps::{Enlarge, Taps};
 
-/// Pixels that are interpolated at a time.
+/// Pixels that are interpolated at a time: neighbours in a cell, or one in each of neighbouring cells.
 const LANES: usize = 8;
+/// Pixels of each cell that are interpolated at a time where neighbouring cells are.
+const BESIDE: usize = 2;
 
 /// How sure a network is of every pixel, row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,6 +59,36 @@ pub(crate) struct Decoder {
     height: usize,
     columns: Vec<Span>,
     rows: Vec<Span>,
+    /// All columns; none where scores of neighbours do not lie beside each other.
+    blocks: Vec<Block>,
+}
+
+/// Neighbouring spans along an axis, a lane each. The last block overlaps the one before.
+#[derive(Clone)]
+struct Block {
+    /// The first of its spans.
+    first: usize,
+    /// Weights of the right source pixel, for each pixel of the longest of its spans, padded to whole steps.
+    weights: Vec<[[f32; LANES]; BESIDE]>,
+}
+
+impl Block {
+    fn all(spans: &[Span]) -> Vec<Self> {
+        let is_row =
+            spans.iter().enumerate().all(|(i, span)| span.left == spans[0].left + i && span.right == span.left + 1);
+        if spans.len() < LANES || !is_row {
+            return Vec::new();
+        }
+        let firsts = (0..spans.len()).step_by(LANES).map(|first| first.min(spans.len() - LANES));
+        firsts.map(|first| Self::of(first, &spans[first..][..LANES])).collect()
+    }
+
+    fn of(first: usize, spans: &[Span]) -> Self {
+        let longest = spans.iter().map(|span| span.pixels.len()).fold(0, usize::max);
+        let weight = |lane: usize, pixel: usize| spans[lane].weights.get(pixel).copied().unwrap_or(0.0);
+        let step = |from: usize| std::array::from_fn(|i| std::array::from_fn(|lane| weight(lane, from + i)));
+        Self { first, weights: (0..longest).step_by(BESIDE).map(step).collect() }
+    }
 }
 
 /// The output pixels between two neighbouring source pixels along one axis.
@@ -97,7 +129,8 @@ impl Decoder {
     pub fn new(grid: Grid, width: usize, height: usize, how: Enlarge) -> Self {
         let columns = spans(grid.width, width, how);
         let rows = spans(grid.height, height, how);
-        Self { grid, width, height, columns, rows }
+        let blocks = if grid.interleaved { Vec::new() } else { Block::all(&columns) };
+        Self { grid, width, height, columns, rows, blocks }
     }
 
     /// An output whose scores lie as this one's in planes, the order in which devices are compared.
@@ -127,19 +160,87 @@ impl Decoder {
         }
         let mut out = vec![0; self.width * self.height];
         for row in &self.rows {
-            for column in &self.columns {
-                let corners = self.corners(row, column);
-                let class = coarse[corners[0]];
-                if corners.iter().all(|&corner| coarse[corner] == class) {
-                    for y in row.pixels.clone() {
-                        out[y * self.width..][column.pixels.clone()].fill(class);
-                    }
-                } else {
-                    self.interpolate(scores, corners, row, column, &mut out);
+            for block in &self.blocks {
+                self.fill_block(scores, &coarse, (row, block), &mut out);
+            }
+            for column in if self.blocks.is_empty() { &self.columns[..] } else { &[] } {
+                match self.class_of_all(&coarse, row, column) {
+                    Some(class) => self.fill(class, row, column, &mut out),
+                    None => self.interpolate(scores, self.corners(row, column), row, column, &mut out),
                 }
             }
         }
         out
+    }
+
+    /// The class of all four source pixels around a cell, if it is one.
+    #[inline(always)]
+    fn class_of_all(&self, coarse: &[u8], row: &Span, column: &Span) -> Option<u8> {
+        let [first, others @ ..] = self.corners(row, column).map(|corner| coarse[corner]);
+        others.iter().all(|class| *class == first).then_some(first)
+    }
+
+    #[inline(always)]
+    fn fill(&self, class: u8, row: &Span, column: &Span, out: &mut [u8]) {
+        for y in row.pixels.clone() {
+            out[y * self.width..][column.pixels.clone()].fill(class);
+        }
+    }
+
+    /// Fills the cells of a block: where one class has it all, with that, and the others together.
+    #[inline(always)]
+    fn fill_block(&self, scores: &[f32], coarse: &[u8], (row, block): (&Span, &Block), out: &mut [u8]) {
+        let columns = &self.columns[block.first..][..LANES];
+        let classes: [Option<u8>; LANES] = std::array::from_fn(|lane| self.class_of_all(coarse, row, &columns[lane]));
+        for (column, class) in columns.iter().zip(classes) {
+            if let Some(class) = class {
+                self.fill(class, row, column, out);
+            }
+        }
+        if classes.iter().any(Option::is_none) {
+            self.interpolate_block(scores, &classes, (row, block), out);
+        }
+    }
+
+    /// Fills those cells of a block that have no class yet.
+    #[inline(always)]
+    fn interpolate_block(
+        &self,
+        scores: &[f32],
+        classes: &[Option<u8>; LANES],
+        (row, block): (&Span, &Block),
+        out: &mut [u8],
+    ) {
+        let columns = &self.columns[block.first..][..LANES];
+        let plane = self.grid.width * self.grid.height;
+        let [above, below] = [row.left, row.right].map(|y| &scores[y * self.grid.width + columns[0].left..]);
+        for (y, &down) in row.pixels.clone().zip(&row.weights) {
+            for (step, weights) in block.weights.iter().enumerate() {
+                let mut best = [[f32::NEG_INFINITY; LANES]; BESIDE];
+                let mut class = [[0u32; LANES]; BESIDE];
+                for channel in 0..self.grid.channels {
+                    let [above, below] = [above, below].map(|scores| &scores[channel * plane..][..LANES + 1]);
+                    let mixed = |side: usize| -> [f32; LANES] {
+                        let (above, below) = (&above[side..][..LANES], &below[side..][..LANES]);
+                        std::array::from_fn(|lane| above[lane] + (below[lane] - above[lane]) * down)
+                    };
+                    let (left, right) = (mixed(0), mixed(1));
+                    for pixel in 0..BESIDE {
+                        for lane in 0..LANES {
+                            let score = left[lane] + (right[lane] - left[lane]) * weights[pixel][lane];
+                            let better = score > best[pixel][lane];
+                            best[pixel][lane] = if better { score } else { best[pixel][lane] };
+                            class[pixel][lane] = if better { channel as u32 } else { class[pixel][lane] };
+                        }
+                    }
+                }
+                let line = &mut out[y * self.width..][..self.width];
+                for (lane, column) in columns.iter().enumerate().filter(|(lane, _)| classes[*lane].is_none()) {
+                    let pixels = column.pixels.clone().skip(step * BESIDE);
+                    pixels.zip(&class).for_each(|(x, class)| line[x] = class[lane] as u8);
+                }
+            }
+        }
     }
 
     /// How sure the scores are at every pixel.
@@ -326,7 +427,8 @@ mod tests {
     #[test]
     fn agrees_with_the_textbook() {
         let sizes = [((8, 4), (64, 32)), ((5, 3), (17, 11)), ((16, 8), (16, 8)), ((9, 6), (7, 5)), ((2, 1), (30, 9))];
-        for (seed, ((w, h), (width, height))) in sizes.into_iter().enumerate() {
+        let sizes = sizes.into_iter().chain([((20, 6), (50, 20)), ((16, 8), (32, 16)), ((9, 4), (81, 9))]);
+        for (seed, ((w, h), (width, height))) in sizes.enumerate() {
             for (interleaved, align) in [(false, false), (true, false), (false, true), (true, true)] {
                 let grid = Grid { channels: 16, width: w, height: h, interleaved };
                 let decoder = Decoder::new(grid, width, height, how(align));
@@ -379,10 +481,16 @@ mod tests {
 
     #[test]
     fn both_memory_layouts_give_the_same_classes() {
-        let planes = Grid { channels: 5, width: 6, height: 4, interleaved: false };
-        let pixels = Grid { interleaved: true, ..planes };
-        let of = |grid: Grid| Decoder::new(grid, 48, 32, Enlarge::HalfPixel).classes(&scores(&grid, 3));
-        assert_eq!(of(planes), of(pixels));
+        for (width, height, size) in
+            [(6, 4, (48, 32)), (21, 4, (42, 8)), (21, 4, (64, 9)), (9, 3, (81, 30)), (300, 2, (333, 4))]
+        {
+            for how in [Enlarge::HalfPixel, Enlarge::AlignCorners, Enlarge::Nearest] {
+                let planes = Grid { channels: 5, width, height, interleaved: false };
+                let pixels = Grid { interleaved: true, ..planes };
+                let of = |grid: Grid| Decoder::new(grid, size.0, size.1, how).classes(&scores(&grid, 3));
+                assert_eq!(of(planes), of(pixels), "{width}x{height} to {size:?}, {how:?}");
+            }
+        }
     }
 
     #[test]

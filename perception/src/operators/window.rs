@@ -1,11 +1,17 @@
 //! A window that moves over a map: of a convolution or a pool.
 
+use std::cell::Cell;
 use std::ops::Range;
 
 use tract_onnx::tract_core::ops::cnn::PoolSpec;
 
 /// Floats of a band of the input that is worked on at once: a quarter of a usual second-level cache.
 const BAND: usize = 1 << 16;
+
+thread_local! {
+    /// Where bands are padded: as large as the largest one was, with what was left there, all of which is written over.
+    static SCRATCH: Cell<Vec<f32>> = const { Cell::new(Vec::new()) };
+}
 
 /// Sizes in pixels, rows before columns, of a window with its way over a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,8 +71,12 @@ impl Window {
     /// Where the window of each output pixel of so many rows begins, in floats.
     pub fn starts(&self, rows: usize, channels: usize) -> Vec<usize> {
         let (pitch, [down, along]) = (self.pitch(), self.stride);
-        let start = |row: usize, col: usize| (row * down * pitch + col * along) * channels;
-        (0..rows).flat_map(|row| (0..self.output[1]).map(move |col| start(row, col))).collect()
+        let mut starts = Vec::with_capacity(rows * self.output[1]);
+        for row in 0..rows {
+            let first = row * down * pitch;
+            starts.extend((0..self.output[1]).map(|col| (first + col * along) * channels));
+        }
+        starts
     }
 
     /// Visits a map band by band, from top to bottom: with the part of the input that a band of output rows reads, its
@@ -74,17 +84,21 @@ impl Window {
     pub fn bands(&self, x: &[f32], channels: usize, fill: f32, mut visit: impl FnMut(&[f32], Range<usize>)) {
         let (pitch, is_padded) = (self.pitch(), self.is_padded());
         let rows = (BAND / (pitch * channels)).saturating_sub(self.reach(0, 1)) / self.stride[0] + 1;
-        let mut scratch = Vec::new();
+        let mut scratch = if is_padded { SCRATCH.take() } else { Vec::new() };
         for from in (0..self.output[0]).step_by(rows) {
             let band = from..(from + rows).min(self.output[0]);
             let top = from * self.stride[0];
             if is_padded {
-                scratch.resize(self.reach(0, band.len()) * pitch * channels, fill);
-                self.pad(x, channels, fill, top, &mut scratch);
-                visit(&scratch, band);
+                let length = self.reach(0, band.len()) * pitch * channels;
+                scratch.resize(length.max(scratch.len()), fill);
+                self.pad(x, channels, fill, top, &mut scratch[..length]);
+                visit(&scratch[..length], band);
             } else {
                 visit(&x[top * pitch * channels..], band);
             }
+        }
+        if is_padded {
+            SCRATCH.set(scratch);
         }
     }
 
