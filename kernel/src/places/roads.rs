@@ -140,8 +140,8 @@ impl Roads<'_> {
     fn onto(&self, id: LaneId, position: Vec3, near_m: f32) -> Projection {
         let lane = &self.lanes[id as usize];
         let (s_m, lateral_m, distance_m) = match lane.points.len() {
-            ..=SHORT => lane.project(position),
-            ..=LONG => self.onto_by_boxes(id, position),
+            vertices if vertices <= SHORT => lane.project(position),
+            vertices if vertices <= LONG => self.onto_by_boxes(id, position),
             _ => self.onto_by_cells(id, position, near_m),
         };
         Projection { lane: id, s_m, lateral_m, distance_m }
