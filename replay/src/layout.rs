@@ -120,7 +120,7 @@ pub(crate) const CHANNELS: [Layout; 10] = [
         "/notes",
         "aeye.Notes",
         "What happened to the rig, if anything, as columns: tick (differences), code of the kind, seat (0 semantic, 1 \
-         safety).",
+         safety, 2 the whole rig).",
     ),
     layout(
         Channel::Map,

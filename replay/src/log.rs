@@ -86,10 +86,18 @@ impl ForeignMap {
 
 impl Log {
     /// The tick at which a run became a corner case: that of its intervention, or the last one where it ended in a
-    /// collision that nobody prevented.
+    /// collision that nobody prevented; none where the operators say that it is no corner case.
     pub fn decided_at(&self) -> Option<Tick> {
+        if self.annotation.as_ref().is_some_and(|annotation| !annotation.label.is_case()) {
+            return None;
+        }
         let missed = self.summary.as_ref().filter(|summary| summary.outcome == Some(Outcome::Missed));
         self.intervention.map(|intervention| intervention.tick).or(missed.map(|summary| summary.ticks))
+    }
+
+    /// Whether what was driven counts as driven; a run that the operators set aside for a fault or another reason does not.
+    pub fn counts(&self) -> bool {
+        self.annotation.as_ref().is_none_or(|annotation| annotation.label.counts())
     }
 
     /// The mask in view when the controls of a tick were given.
@@ -143,7 +151,7 @@ impl MaskShown {
     }
 }
 
-/// What kind of corner case an intervention was (paper, section 3).
+/// What was said of how a run ended: what kind of corner case it was (paper, section 3), or that it is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum Label {
@@ -155,11 +163,34 @@ pub enum Label {
     Rules = 2,
     /// The safety driver intervened out of boredom.
     Boredom = 3,
+    /// No corner case: the semantic driver erred at what the mask showed well. What was driven counts.
+    DriverError = 4,
+    /// No corner case: the rig failed. The run does not count.
+    TechnicalFault = 5,
+    /// No corner case: the run does not count for another reason, which the comment says.
+    Discarded = 6,
 }
 
 impl Label {
+    /// The kinds of corner cases, in the order of their codes.
+    pub const CASES: [Self; 4] = [Self::Walker, Self::Vehicle, Self::Rules, Self::Boredom];
+    /// Why a run is no corner case, in the order of their codes.
+    pub const SET_ASIDE: [Self; 3] = [Self::DriverError, Self::TechnicalFault, Self::Discarded];
+
     /// Every label, in the order of their codes.
-    pub const ALL: [Self; 4] = [Self::Walker, Self::Vehicle, Self::Rules, Self::Boredom];
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::CASES.into_iter().chain(Self::SET_ASIDE)
+    }
+
+    /// Whether it is a kind of corner case.
+    pub fn is_case(self) -> bool {
+        Self::CASES.contains(&self)
+    }
+
+    /// Whether what was driven counts as driven.
+    pub fn counts(self) -> bool {
+        !matches!(self, Self::TechnicalFault | Self::Discarded)
+    }
 
     /// The name that files and commands use.
     pub fn name(self) -> &'static str {
@@ -168,6 +199,9 @@ impl Label {
             Self::Vehicle => "vehicle",
             Self::Rules => "rules",
             Self::Boredom => "boredom",
+            Self::DriverError => "driver-error",
+            Self::TechnicalFault => "technical-fault",
+            Self::Discarded => "discarded",
         }
     }
 }
@@ -181,16 +215,17 @@ impl fmt::Display for Label {
 impl FromStr for Label {
     type Err = Error;
 
+    /// The kind of corner case with a name.
     fn from_str(text: &str) -> Result<Self, Error> {
-        let label = Self::ALL.into_iter().find(|l| l.name() == text);
+        let label = Self::CASES.into_iter().find(|l| l.name() == text);
         label.ok_or_else(|| Error::Unsuited(format!("label {text:?}: expected walker, vehicle, rules or boredom")))
     }
 }
 
-/// What the operators, or the truth, say about an intervention.
+/// What the operators, or the truth, say about the end of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Annotation {
-    /// What kind of corner case.
+    /// What kind of corner case, or why none.
     pub label: Label,
     /// Anything worth saying; may be empty.
     pub comment: String,

@@ -10,8 +10,8 @@ pub struct Note {
     pub tick: Tick,
     /// What happened.
     pub kind: NoteKind,
-    /// Whose seat it happened to.
-    pub seat: Seat,
+    /// Whose seat it happened to; none where it happened to all of the rig.
+    pub seat: Option<Seat>,
 }
 
 /// What can happen to the rig; the discriminant is its code in files.
@@ -26,11 +26,16 @@ pub enum NoteKind {
     UnitLost = 2,
     /// A device came back to the seat that had lost one.
     UnitReturned = 3,
+    /// Time stood from here on: for the operators, or because a seat was without its unit.
+    Paused = 4,
+    /// Time went on.
+    Resumed = 5,
 }
 
 impl NoteKind {
     /// Every kind, by code.
-    pub const ALL: [Self; 4] = [Self::UnitBound, Self::UnitArmed, Self::UnitLost, Self::UnitReturned];
+    pub const ALL: [Self; 6] =
+        [Self::UnitBound, Self::UnitArmed, Self::UnitLost, Self::UnitReturned, Self::Paused, Self::Resumed];
 
     /// What people call it.
     pub fn name(self) -> &'static str {
@@ -39,6 +44,8 @@ impl NoteKind {
             Self::UnitArmed => "unit armed",
             Self::UnitLost => "unit lost",
             Self::UnitReturned => "unit returned",
+            Self::Paused => "paused",
+            Self::Resumed => "resumed",
         }
     }
 }

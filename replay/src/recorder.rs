@@ -143,7 +143,7 @@ mod tests {
     fn what_no_reader_would_take_is_not_written() {
         let log = testing::sample(1);
         let mut recorder = Recorder::new(Vec::new(), &log.manifest, &log.keyframes[0]).expect("a new log");
-        let note = |tick| Note { tick, kind: NoteKind::UnitLost, seat: Seat::Safety };
+        let note = |tick| Note { tick, kind: NoteKind::UnitLost, seat: Some(Seat::Safety) };
         assert!((0..16).all(|_| recorder.note(note(3)).is_ok()));
         let said = |refused: Result<(), Error>| refused.expect_err("refused").to_string();
         assert!(said(recorder.note(note(2))).ends_with("cannot log a note of tick 2: the one before is of tick 3"));

@@ -40,9 +40,9 @@ pub(crate) fn sample(ticks: Tick) -> Log {
         intervention: Some(intervention),
         masks: (1..=ticks).step_by(6).map(mask).collect(),
         notes: vec![
-            Note { tick: 1, kind: NoteKind::UnitArmed, seat: Seat::Semantic },
-            Note { tick: takeover, kind: NoteKind::UnitLost, seat: Seat::Safety },
-            Note { tick: ticks + 1, kind: NoteKind::UnitReturned, seat: Seat::Safety },
+            Note { tick: 1, kind: NoteKind::UnitArmed, seat: Some(Seat::Semantic) },
+            Note { tick: takeover, kind: NoteKind::UnitLost, seat: Some(Seat::Safety) },
+            Note { tick: ticks + 1, kind: NoteKind::UnitReturned, seat: Some(Seat::Safety) },
         ],
         annotation: Some(Annotation { label: Label::Walker, comment: "dusk".into(), perception_caused: Some(true) }),
         summary: Some(RunSummary {

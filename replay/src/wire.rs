@@ -20,6 +20,8 @@ use crate::{
 
 /// Most bytes that a payload may claim; keeps damaged lengths from asking for memory.
 const LIMIT: usize = 16 << 20;
+/// Whose note it is that happened to all of the rig.
+const WHOLE_RIG: u8 = 2;
 /// Most masks, and most notes, of a tick.
 pub(crate) const MOST_A_TICK: usize = 16;
 /// Most masks, and most notes, of a message.
@@ -316,7 +318,7 @@ pub(crate) fn notes_bytes(notes: &[Note]) -> Vec<u8> {
     encode(NotesWire {
         ticks: columns::differences(notes.iter().map(|n| n.tick)),
         kinds: notes.iter().map(|n| n.kind as u8).collect(),
-        seats: notes.iter().map(|n| n.seat as u8).collect(),
+        seats: notes.iter().map(|n| n.seat.map_or(WHOLE_RIG, |seat| seat as u8)).collect(),
     })
 }
 
@@ -330,8 +332,11 @@ pub(crate) fn notes(bytes: &[u8]) -> Result<Vec<Note>, Wrong> {
     let rows = columns::sums(&wire.ticks).zip(codes).map(|(tick, (kind, seat))| {
         let known = NoteKind::ALL.into_iter().find(|k| *k as u8 == *kind);
         let kind = known.ok_or_else(|| format!("unknown kind {kind} of note"))?;
-        let seat = [Seat::Semantic, Seat::Safety].into_iter().find(|s| *s as u8 == *seat);
-        Ok(Note { tick, kind, seat: seat.ok_or("a note of an unknown seat")? })
+        let whose = [Seat::Semantic, Seat::Safety].into_iter().find(|s| *s as u8 == *seat);
+        if whose.is_none() && *seat != WHOLE_RIG {
+            return Err("a note of an unknown seat".to_owned());
+        }
+        Ok(Note { tick, kind, seat: whose })
     });
     rows.collect()
 }
@@ -352,7 +357,7 @@ pub(crate) fn end_bytes(annotation: Option<&Annotation>, summary: Option<&RunSum
 pub(crate) fn end(bytes: &[u8]) -> Result<(Option<Annotation>, Option<RunSummary>), Wrong> {
     let wire: EndWire = decode(bytes)?;
     let annotation = wire.annotation.map(|(code, comment, perception_caused)| {
-        let label = Label::ALL.into_iter().find(|l| *l as u8 == code).ok_or(format!("unknown label {code}"))?;
+        let label = Label::all().find(|l| *l as u8 == code).ok_or(format!("unknown label {code}"))?;
         Ok::<_, Wrong>(Annotation { label, comment, perception_caused })
     });
     let summary = wire.summary.map(|(ticks, odometer_mm, intervention, outcome)| {
@@ -422,7 +427,7 @@ mod tests {
     }
 
     fn note() -> impl Strategy<Value = Note> {
-        let (kinds, seats) = (NoteKind::ALL.to_vec(), vec![Seat::Semantic, Seat::Safety]);
+        let (kinds, seats) = (NoteKind::ALL.to_vec(), vec![None, Some(Seat::Semantic), Some(Seat::Safety)]);
         let fields = (any::<u64>(), prop::sample::select(kinds), prop::sample::select(seats));
         fields.prop_map(|(tick, kind, seat)| Note { tick, kind, seat })
     }
@@ -476,9 +481,9 @@ mod tests {
     #[test]
     fn an_unknown_note_is_an_error() {
         let wire = |kind, seat| encode(NotesWire { ticks: vec![5], kinds: vec![kind], seats: vec![seat] });
-        assert!(notes(&wire(0, 1)).is_ok());
+        assert!(notes(&wire(0, 1)).is_ok() && notes(&wire(4, 2)).is_ok());
         assert_eq!(notes(&wire(200, 1)), Err("unknown kind 200 of note".to_owned()));
-        assert_eq!(notes(&wire(0, 2)), Err("a note of an unknown seat".to_owned()));
+        assert_eq!(notes(&wire(0, 3)), Err("a note of an unknown seat".to_owned()));
         let short = encode(NotesWire { ticks: vec![5], kinds: vec![], seats: vec![0] });
         assert!(notes(&short).is_err_and(|e| e.contains("different lengths")));
     }

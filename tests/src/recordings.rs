@@ -38,7 +38,7 @@ pub fn record(scene: &Scene, ticks: Tick, script: Script) -> Vec<u8> {
 
 /// As [`record`], with notes as well: a file with something of everything.
 pub fn record_all(scene: &Scene, ticks: Tick, script: Script) -> Vec<u8> {
-    let note = |tick, kind| Note { tick, kind, seat: Seat::Safety };
+    let note = |tick, kind| Note { tick, kind, seat: Some(Seat::Safety) };
     write(scene, ticks, script, &[note(1, NoteKind::UnitBound), note(40, NoteKind::UnitArmed)])
 }
 

@@ -72,7 +72,7 @@ fn change(log: &mut Log, number: u64) {
         case.source = std::array::from_fn(|byte| draw(number << 8 | byte as u64) as u8);
     }
     log.manifest.scenario.seed = drawn;
-    let label = Label::ALL[drawn as usize % Label::ALL.len()];
+    let label = Label::CASES[drawn as usize % Label::CASES.len()];
     let comment = log.annotation.as_ref().map(|annotation| annotation.comment.clone()).unwrap_or_default();
     log.annotation = Some(Annotation { label, comment, perception_caused: Some(drawn >> 8 & 1 == 1) });
     let part = |shift: u32| (drawn >> shift & 0xffff) as f32 / 65_536.0 - 0.5;

@@ -5,6 +5,7 @@ use std::fmt::Display;
 use kernel::Seat;
 use kernel::events::{Event, EventKind};
 use kernel::scene::{ActorKind, ActorScene, FIRST_DOOR_ID, FIRST_PARKED_ID, FIRST_STORY_DOOR_ID, FIRST_STORY_ID};
+use replay::Note;
 
 /// What people and files call the seats.
 pub const SEATS: [&str; 2] = ["semantic", "safety"];
@@ -12,6 +13,12 @@ pub const SEATS: [&str; 2] = ["semantic", "safety"];
 /// What people and files call a seat.
 pub fn seat(seat: Seat) -> &'static str {
     SEATS[seat as usize]
+}
+
+/// What happened to the rig, and to whose unit.
+pub fn note(note: &Note) -> String {
+    let whose = note.seat.map_or(String::new(), |whose| format!(" ({} driver)", seat(whose)));
+    format!("{}{whose}", note.kind.name())
 }
 
 /// A number of things, as in `1 frame` and `2 frames`.

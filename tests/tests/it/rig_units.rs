@@ -78,7 +78,7 @@ impl Rig {
     }
 
     fn tell(&mut self, id: usize, kind: NoteKind) {
-        self.told.push(Note { tick: self.world().tick() + 1, kind, seat: SEATS[id] });
+        self.told.push(Note { tick: self.world().tick() + 1, kind, seat: Some(SEATS[id]) });
     }
 
     fn put(&self, device: usize, controls: Controls) {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 use replay::Recording;
 
@@ -28,6 +29,8 @@ fn two_people_drive_intervene_label_and_go_on() {
     check_pictures(&display);
     display.focus(&safety);
     display.keys(&["keydown", "Down"]);
+    wait_until(|| Recording::open(&record).is_ok_and(|recording| recording.log().intervention.is_some()));
+    display.keep("takeover");
     rig.says("run 1 has ended");
     display.keys(&["keyup", "Down"]);
     display.focus(&centre);
@@ -46,6 +49,16 @@ fn two_people_drive_intervene_label_and_go_on() {
     let second = dir.path().join("drive-2.mcap");
     wait_for_tick(&second, 60);
     display.keys(&["key", "Escape"]);
+    std::thread::sleep(Duration::from_millis(500));
+    display.keep("ending");
+    display.keys(&["key", "p"]);
+    wait_for_tick(&second, 180);
+    display.keys(&["key", "b", "7"]);
+    display.keys(&["type", "--delay", "50", "spilt coffee"]);
+    display.keep("discard");
+    display.keys(&["key", "Return"]);
+    rig.says("run 3 is ready");
+    display.keys(&["key", "Escape"]);
     assert!(rig.exit().success());
 
     for file in [&record, &second, &case] {
@@ -60,7 +73,14 @@ fn two_people_drive_intervene_label_and_go_on() {
     let digests = aeye(&["view", "--digests"], &record);
     assert_eq!((&digests["different"], &digests["equal"]), (&0.into(), &digests["masks"]), "{digests}");
     assert_eq!(aeye(&["inspect"], &case)["comment"], "seen too late");
-    assert_eq!(aeye(&["inspect"], &second)["outcome"], "stopped");
+    let discarded = aeye(&["inspect"], &second);
+    assert_eq!((&discarded["outcome"], &discarded["comment"]), (&"discarded".into(), &"spilt coffee".into()));
+    let notes = discarded["notes"].as_array().expect("notes");
+    let kinds: Vec<&str> = notes.iter().filter_map(|note| note["kind"].as_str()).collect();
+    assert_eq!(kinds, ["paused", "resumed"]);
+    let counted = aeye(&["statistics"], dir.path());
+    let [of_all] = counted["checkpoints"].as_array().expect("checkpoints").as_slice() else { panic!("{counted}") };
+    assert_eq!((&of_all["rides"], &of_all["set_aside"][0]["label"]), (&1.into(), &"discarded".into()), "{counted}");
 }
 
 /// The semantic driver sees class colours and nothing else of the world, the safety driver the image.

@@ -213,11 +213,23 @@ impl<'a> Sight<'a> {
                 let Some(figure) = self.figure(column, row, &mut seen).filter(|f| f.left < f.right) else { continue };
                 let (column, end) = self.vehicle_under(&figure).unwrap_or((column, row + 1));
                 let foot = self.contact(column, end, end - figure.top);
+                let on_road = |foot: &Contact| if foot.is_cut { self.is_amid_road(&figure) } else { foot.on_road };
+                let foot = foot.map(|foot| Contact { on_road: on_road(&foot), ..foot });
                 let part = |foot: Contact, column| Contact { y_m: self.column_y_m(column, foot.x_m), ..foot };
                 found.extend(foot.iter().flat_map(|foot| (figure.left..=figure.right).map(|c| part(*foot, c))));
             }
         }
         found
+    }
+
+    /// Whether the ground on both sides of a figure that the picture's lower edge cuts is road, as far as it is seen.
+    fn is_amid_road(&self, figure: &Figure) -> bool {
+        let row = self.mask.height - 1;
+        let ground = |column| ground_of(self.tag(column, row));
+        let is_seen = |ground: &Ground| *ground != Ground::Hidden;
+        let left = (0..figure.left).rev().map(ground).find(is_seen);
+        let right = (figure.right + 1..self.mask.width).map(ground).find(is_seen);
+        [left, right].into_iter().flatten().all(|ground| ground != Ground::Other)
     }
 
     /// Where the vehicle ends that carries or hides a figure: a column, and the row below its wheels.

@@ -333,6 +333,22 @@ fn a_bend_ahead_is_no_farther_than_it_is_along_the_route() {
     }
 }
 
+/// The right kerb is at column 210 of the lowest row.
+#[test]
+fn who_is_cut_by_the_lower_edge_stands_where_the_ground_beside_him_is() {
+    let free = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });
+    let on_road = |columns: std::ops::Range<usize>| {
+        let mut ids = free.clone();
+        for row in 40..HEIGHT {
+            ids[row * WIDTH + columns.start..row * WIDTH + columns.end].fill(SemanticTag::Pedestrian as u8);
+        }
+        let contacts = Sight::new(MaskView { width: WIDTH, height: HEIGHT, ids: &ids }, 0.0).contacts();
+        assert!(contacts.len() >= columns.len() && contacts.iter().all(|contact| contact.is_cut));
+        contacts[0].on_road
+    };
+    assert_eq!([150..160, 205..215, 218..228].map(on_road), [true, false, false]);
+}
+
 #[test]
 fn a_rider_is_where_his_wheels_are() {
     let mut ids = Road { curvature: 0.0 }.mask(Pose { x: 0.0, y: 0.0, heading: 0.0 });

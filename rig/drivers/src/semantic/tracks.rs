@@ -12,6 +12,8 @@ use super::sight::{self, Contact};
 const NEW_SHARE: f32 = 0.3;
 const KNOWN_DEPTH_M: f32 = 2.0;
 const MOST_CHANGE_MPS: f32 = 6.0;
+/// An edge that seems faster than the rest by more than this is not the one that was seen before, m/s.
+const OTHER_EDGE_MPS: f32 = 8.0;
 /// Gap that splits contacts into two vehicles, metres, and its growth with distance.
 const GAP_M: f32 = 1.2;
 const GAP_PER_M: f32 = 0.08;
@@ -39,6 +41,8 @@ pub struct Track {
     pub at: Point,
     /// Velocity over ground, m/s.
     pub velocity_mps: Point,
+    /// Its left and right edge, where they are in the picture.
+    edges: [Option<Point>; 2],
     looks: u32,
     /// For so long it has been out of the picture, seconds.
     unseen_s: f32,
@@ -48,7 +52,8 @@ pub struct Track {
 
 impl Track {
     fn new(blob: &Blob) -> Self {
-        Self { at: blob.at, velocity_mps: (0.0, 0.0), looks: 0, unseen_s: 0.0, seen: vec![blob.seen()] }
+        let (edges, seen) = (blob.edges(), vec![blob.seen()]);
+        Self { at: blob.at, velocity_mps: (0.0, 0.0), edges, looks: 0, unseen_s: 0.0, seen }
     }
 
     /// How fast it is, m/s over ground.
@@ -84,9 +89,20 @@ impl Track {
         let known_share = NEW_SHARE / (1.0 + blob.depth_error_m / KNOWN_DEPTH_M);
         let share = NEW_SHARE.min(known_share.max(2.0 / (self.looks + 1) as f32));
         let along_mps = mix(self.velocity_mps.0, share, at.0 - self.at.0);
-        let velocity_mps = (along_mps, mix(self.velocity_mps.1, share, at.1 - self.at.1));
+        let edges = blob.edges().map(|edge| edge.map(|edge| sight::on_ray(edge, edge.0 + at.0 - blob.at.0)));
+        let to_left_m = self.to_left_m(&edges, dt_s).unwrap_or(self.velocity_mps.1 * dt_s);
+        let velocity_mps = (along_mps, mix(self.velocity_mps.1, share, to_left_m));
         let seen = self.seen.iter().copied().chain([blob.seen()]).collect();
-        Self { at, velocity_mps, looks: self.looks + 1, unseen_s: 0.0, seen }
+        Self { at, velocity_mps, edges, looks: self.looks + 1, unseen_s: 0.0, seen }
+    }
+
+    /// How far its edges have moved to the left, metres; unknown where none is seen again. The middle of what is seen moves as
+    /// well when the picture cuts more of it, when more of it comes into view, and when it merges with others.
+    fn to_left_m(&self, edges: &[Option<Point>; 2], dt_s: f32) -> Option<f32> {
+        let moved_m = self.edges.iter().zip(edges).filter_map(|(old, new)| Some(new.as_ref()?.1 - old.as_ref()?.1));
+        let is_same = |moved_m: &f32| (moved_m / dt_s - self.velocity_mps.1).abs() < OTHER_EDGE_MPS;
+        let same: Vec<f32> = moved_m.filter(is_same).collect();
+        (!same.is_empty()).then(|| same.iter().sum::<f32>() / same.len() as f32)
     }
 
     /// The same, if it has gone on unseen beside the picture.
@@ -111,6 +127,7 @@ impl Tracks {
         for track in &mut self.tracks {
             track.at = moved.shift(track.at);
             track.velocity_mps = moved.turn(track.velocity_mps);
+            track.edges.iter_mut().flatten().for_each(|edge| *edge = moved.shift(*edge));
             for seen in &mut track.seen {
                 seen.at = moved.shift(seen.at);
                 seen.ago_s += TICK_S;
@@ -170,15 +187,15 @@ struct Blob {
     at: Point,
     /// As [`Contact::depth_error_m`], at its nearest.
     depth_error_m: f32,
-    /// The contact that was added last, and how far to the left the first one is.
+    /// Its contacts farthest to the left and to the right.
+    first: Contact,
     last: Contact,
-    left_m: f32,
 }
 
 impl Blob {
     fn of(contact: &Contact) -> Self {
         let at = (contact.x_m, contact.y_m);
-        Self { at, depth_error_m: contact.depth_error_m, last: *contact, left_m: contact.y_m }
+        Self { at, depth_error_m: contact.depth_error_m, first: *contact, last: *contact }
     }
 
     fn seen(&self) -> Seen {
@@ -195,8 +212,14 @@ impl Blob {
         if contact.x_m < self.at.0 {
             (self.at.0, self.depth_error_m) = (contact.x_m, contact.depth_error_m);
         }
-        self.at.1 = 0.5 * (self.left_m + contact.y_m);
+        self.at.1 = 0.5 * (self.first.y_m + contact.y_m);
         self.last = *contact;
+    }
+
+    /// Its left and right edge, unless the picture cuts it there.
+    fn edges(&self) -> [Option<Point>; 2] {
+        let is_whole = |edge: &&Contact| !edge.is_cut && sight::is_in_picture((edge.x_m, edge.y_m));
+        [&self.first, &self.last].map(|edge| Some(edge).filter(is_whole).map(|edge| (edge.x_m, edge.y_m)))
     }
 
     /// Where it is if it is as near to a point as the rows of pixels leave open: somewhere on the ray on which it is seen.
@@ -268,5 +291,45 @@ mod tests {
         let (vx, vy) = moving[0].velocity_mps;
         assert!(vx.abs() < 0.5 && (vy + 4.0).abs() < 0.5, "{vx} {vy}");
         assert_eq!(STILL.shift((3.0, 4.0)), (3.0, 4.0));
+    }
+
+    /// The greatest speed across that is believed of what is seen in each look, a tenth of a second apart, while the car drives
+    /// at 6 m/s.
+    fn fastest_across_mps(looks: impl Iterator<Item = Vec<Contact>>) -> f32 {
+        let (mut tracks, mut fastest_mps) = (Tracks::default(), 0.0_f32);
+        for contacts in looks {
+            tracks.look(&contacts);
+            fastest_mps = tracks.known().map(|track| track.velocity_mps.1.abs()).fold(fastest_mps, f32::max);
+            (0..6).for_each(|_| tracks.carry(Moved { forward_m: 0.1, turned_rad: 0.0 }));
+        }
+        fastest_mps
+    }
+
+    /// Contacts of a vehicle's rear as far as the picture shows it, from left to right.
+    fn rear(x_m: f32, right_m: f32) -> impl Iterator<Item = Contact> {
+        let across = (0..=18).rev().map(move |i| Contact::of_car((x_m, right_m + 0.1 * i as f32)));
+        across.filter(|contact| sight::is_in_front((contact.x_m, contact.y_m)))
+    }
+
+    #[test]
+    fn parked_cars_that_leave_the_picture_or_merge_in_it_do_not_move() {
+        let passed = |look: i32| rear(30.0 - 0.6 * look as f32, -4.2).collect();
+        let leaving_mps = fastest_across_mps((0..48).map(passed));
+        let row = |look: i32| {
+            let nearest = rear(20.0 - 0.2 * look as f32, -4.2);
+            // The one behind it seems to belong to it in every third look.
+            let behind = rear(21.0 - 0.2 * look as f32, -2.0 + if look % 3 == 0 { 0.2 } else { 2.2 });
+            behind.chain(nearest).collect()
+        };
+        let merging_mps = fastest_across_mps((0..40).map(row));
+        assert!(leaving_mps < 0.5 && merging_mps < 1.5, "{leaving_mps} {merging_mps} m/s");
+    }
+
+    #[test]
+    fn who_comes_into_the_picture_from_its_side_is_seen_to_move() {
+        // 12 m in front of the car, which drives towards its way.
+        let across = |look: i32| rear(24.0 - 0.6 * look as f32, -16.0 + 0.5 * look as f32).collect();
+        let mps = fastest_across_mps((0..24).map(across));
+        assert!((4.0..6.0).contains(&mps), "{mps} m/s");
     }
 }

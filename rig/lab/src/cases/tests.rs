@@ -42,7 +42,7 @@ fn pick<T: Clone + std::fmt::Debug + 'static>(values: &[T]) -> impl Strategy<Val
 }
 
 fn facts() -> impl Strategy<Value = Facts> {
-    let said = (prop::option::of(pick(&Label::ALL)), prop::option::of(any::<bool>()));
+    let said = (prop::option::of(pick(&Label::CASES)), prop::option::of(any::<bool>()));
     let checkpoint = (prop::option::of(pick(&["early", "full", "00ffaa1122"])), 0u64..3, any::<bool>());
     let world = (pick(&MAPS), prop::option::of(pick(&["WetNoon", "ClearNight"])), 0i64..16, pick(&["none", "own"]));
     let spot = (prop::option::weighted(0.9, (-30.0f64..30.0, -15.0f64..15.0)), 0.0f64..60.0, 4.0f64..12.0);
@@ -129,7 +129,7 @@ fn query() -> impl Strategy<Value = Query> {
     let names = |all: &[&'static str]| few(pick(all).prop_map(str::to_owned));
     let checkpoints = names(&["early", "full", "00ffaa11", "00ffaa1122", "00ffaa12"]);
     let first =
-        (few(pick(&Label::ALL)), few(pick(&Need::WITHOUT_INTERVENTION)), names(&MAPS), few(weather), checkpoints);
+        (few(pick(&Label::CASES)), few(pick(&Need::WITHOUT_INTERVENTION)), names(&MAPS), few(weather), checkpoints);
     let second = (
         few(pick(&[Caused::Yes, Caused::No, Caused::Unknown])),
         few(overlooked),

@@ -26,6 +26,6 @@ fn of_event(tick: Tick, event: &Event, annotation: Option<&Annotation>) -> Line 
 }
 
 fn of_note(note: &Note) -> Line {
-    let message = format!("{} ({} driver)", note.kind.name(), words::seat(note.seat));
+    let message = words::note(note);
     report::note(message, note.kind == NoteKind::UnitLost, nanoseconds(note.tick))
 }

@@ -139,13 +139,13 @@ pub struct NoteLine {
     pub tick: Tick,
     /// What.
     pub kind: &'static str,
-    /// Whose unit: `semantic` or `safety`.
-    pub seat: String,
+    /// Whose unit: `semantic` or `safety`; absent where it happened to all of the rig.
+    pub seat: Option<&'static str>,
 }
 
 impl NoteLine {
     fn of(note: &Note) -> Self {
-        Self { tick: note.tick, kind: note.kind.name(), seat: words::seat(note.seat).into() }
+        Self { tick: note.tick, kind: note.kind.name(), seat: note.seat.map(words::seat) }
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt;
 use base::say::printable;
 use base::words;
 use kernel::time::{TICK_HZ, Tick};
+use measures::run_figures::outcome_words;
 use measures::{Criticality, human};
 
 use super::contents::{Contents, Overall};
@@ -43,7 +44,8 @@ fn text(c: &Contents) -> String {
         line("no room for", missing);
     }
     line("ticks", format!("{} to {}{}", c.first_tick, c.last_tick, if c.finished { "" } else { " (cut off)" }));
-    line("driven", format!("{:.3} km, {:.2} min, {}", c.figures.km, c.figures.minutes, c.figures.outcome));
+    line("driven", format!("{:.3} km, {:.2} min", c.figures.km, c.figures.minutes));
+    line("outcome", format!("{} ({})", c.figures.outcome, outcome_words(c.figures.outcome)));
     line(
         "holds",
         [(c.keyframes, "keyframe"), (c.masks, "mask"), (c.events.len(), "event")]
@@ -77,7 +79,8 @@ fn text(c: &Contents) -> String {
         line("event", format!("{}: {}", at(e.tick), e.words));
     }
     for n in &c.notes {
-        line("note", format!("{}: {} ({} driver)", at(n.tick), n.kind, n.seat));
+        let whose = n.seat.map_or(String::new(), |seat| format!(" ({seat} driver)"));
+        line("note", format!("{}: {}{whose}", at(n.tick), n.kind));
     }
     match (&c.measures, &c.unmeasured) {
         (Some(measures), _) => human::lines(measures).into_iter().for_each(|(name, value)| line(name, value)),

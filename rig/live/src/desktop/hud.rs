@@ -25,6 +25,10 @@ pub const LIGHT_M_AT: [f32; 2] = [0.945, 0.34];
 pub const GEAR_AT: [f32; 2] = [0.04, 0.08];
 /// Lower centre: what is to be done.
 pub const NOTE_AT: [f32; 2] = [0.5, 0.92];
+/// Above it: what the car did wrong, or what happened to it.
+pub const ALERT_AT: [f32; 2] = [0.5, 0.78];
+/// Width of the frame around the picture after a takeover.
+pub const FRAME_WIDTH: f32 = 0.02;
 
 /// The words and colours of the HUD.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +51,10 @@ pub struct HudText {
     pub arrow_m: String,
     /// What is to be done; empty while driving.
     pub note: String,
+    /// What the car did wrong, or what happened to it, a moment ago; mostly empty.
+    pub alert: String,
+    /// The safety driver has taken over.
+    pub is_taken_over: bool,
 }
 
 impl HudText {
@@ -65,6 +73,8 @@ impl HudText {
             arrow_rad: arrow_rad(&hud),
             arrow_m: hud.junction_m.map(metres).unwrap_or_default(),
             note: String::new(),
+            alert: String::new(),
+            is_taken_over: false,
         }
     }
 }
@@ -103,10 +113,11 @@ mod tests {
 
     #[test]
     fn what_is_written_stays_in_the_picture_and_apart() {
-        for [x, y] in [SPEED_AT, LIMIT_AT, ARROW_AT, LIGHT_AT, LIGHT_M_AT, GEAR_AT, NOTE_AT] {
+        for [x, y] in [SPEED_AT, LIMIT_AT, ARROW_AT, LIGHT_AT, LIGHT_M_AT, GEAR_AT, NOTE_AT, ALERT_AT] {
             assert!((0.03..0.97).contains(&x) && (0.05..0.95).contains(&y));
         }
         const { assert!(ARROW_AT[1] - SPEED_AT[1] > SPEED_SIZE) };
+        const { assert!(NOTE_AT[1] - ALERT_AT[1] > 2.0 * TEXT_SIZE) };
         const { assert!(LIMIT_AT[0] - SPEED_AT[0] > SPEED_SIZE) };
     }
 

@@ -1,12 +1,13 @@
 //! The HUD over a driver's picture.
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Vec2};
 use kernel::signals::LightPhase;
 
 use super::hud::{self, HudText};
 
 const SHADE: Color32 = Color32::from_black_alpha(150);
 const WHITE: Color32 = Color32::WHITE;
+const ALARM: Color32 = Color32::from_rgb(200, 20, 30);
 /// Words that are wider are broken into lines, fraction of the picture's width.
 const MOST_WIDTH: f32 = 0.9;
 const OFF: Color32 = Color32::from_gray(60);
@@ -15,18 +16,26 @@ const OFF: Color32 = Color32::from_gray(60);
 pub fn paint(painter: &Painter, rect: Rect, hud: &HudText) {
     let at = |[x, y]: [f32; 2]| rect.min + Vec2::new(x * rect.width(), y * rect.height());
     let font = |size: f32| FontId::proportional(size * rect.height());
-    let write = |place, anchor: Align2, text: &str, size: f32| {
+    let write_on = |shade: Color32, place, anchor: Align2, text: &str, size: f32| {
         let galley = painter.layout(text.to_owned(), font(size), WHITE, MOST_WIDTH * rect.width());
         let box_ = anchor.anchor_size(at(place), galley.size());
-        painter.rect_filled(box_.expand(0.15 * size * rect.height()), 0.1 * size * rect.height(), SHADE);
+        painter.rect_filled(box_.expand(0.15 * size * rect.height()), 0.1 * size * rect.height(), shade);
         painter.galley(box_.min, galley, WHITE);
     };
+    let write = |place, anchor, text: &str, size| write_on(SHADE, place, anchor, text, size);
+    if hud.is_taken_over {
+        let stroke = Stroke::new(hud::FRAME_WIDTH * rect.height(), ALARM);
+        painter.rect_stroke(rect, 0.0, stroke, StrokeKind::Inside);
+    }
     write(hud::SPEED_AT, Align2::CENTER_CENTER, &format!("{} km/h", hud.speed), hud::SPEED_SIZE);
     let [left, right] = hud.indicators;
     let gear = format!("{left}{}{right}   {}", hud.gear, hud.control);
     write(hud::GEAR_AT, Align2::LEFT_CENTER, &gear, hud::TEXT_SIZE);
     if !hud.note.is_empty() {
         write(hud::NOTE_AT, Align2::CENTER_CENTER, &hud.note, hud::TEXT_SIZE);
+    }
+    if !hud.alert.is_empty() {
+        write_on(ALARM, hud::ALERT_AT, Align2::CENTER_CENTER, &hud.alert, hud::TEXT_SIZE);
     }
     paint_limit(painter, at(hud::LIMIT_AT), hud, rect.height());
     paint_arrow(painter, at(hud::ARROW_AT), hud, rect.height());

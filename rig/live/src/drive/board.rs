@@ -8,11 +8,12 @@ use kernel::events::Hud;
 use kernel::scenario::Rules;
 use kernel::time::Tick;
 use kernel::{Seat, TickInput, World};
-use replay::Log;
+use replay::{Annotation, Label, Log};
 use viewers::events::Events;
 use viewers::feed::{Feed, View};
 use viewers::figures::TickFigures;
 
+use super::alert::Alert;
 use super::stage::{Press, Stage};
 use super::strip::Strip;
 use super::traces::Traces;
@@ -46,8 +47,10 @@ pub enum Message {
     Shown(Seat, Arc<View>, u64),
     /// A corner case was cut, or a run came to its figures.
     Note(String),
-    /// A window was closed.
+    /// Somebody wants to close a window.
     Closed,
+    /// The windows are gone.
+    Gone,
     /// A thread cannot go on.
     Failed(anyhow::Error),
 }
@@ -92,6 +95,8 @@ pub struct Status {
     pub odometer_mm: u64,
     /// What the finished runs came to.
     pub totals: Totals,
+    /// What the car did wrong, or what happened to it, a moment ago.
+    pub alert: Option<Alert>,
     /// How late the last tick began, microseconds.
     pub late_us: u64,
     /// By how much the run has fallen behind real time, microseconds.
@@ -135,6 +140,12 @@ impl Status {
     }
 }
 
+/// Whether a run is a corner case as it stands, which need not have come to its end.
+pub fn is_case(world: &World) -> bool {
+    let arbiter = world.arbiter();
+    arbiter.intervention.is_some() || arbiter.outcome == Some(Outcome::Missed)
+}
+
 /// What the finished runs came to, with those recorded under the same name before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
@@ -149,17 +160,18 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Adds a run that has ended.
-    pub fn add(&mut self, world: &World) {
-        let arbiter = world.arbiter();
-        // As [`Log::decided_at`] has it; the run need not have come to its end.
-        let is_case = arbiter.intervention.is_some() || arbiter.outcome == Some(Outcome::Missed);
-        self.count(world.odometer_mm(), world.tick(), is_case);
+    /// Adds a run that has ended, of which this was said; as [`Log::decided_at`] and [`Log::counts`] have it.
+    pub fn add(&mut self, world: &World, annotation: Option<&Annotation>) {
+        let said = annotation.map(|annotation| annotation.label);
+        if said.is_none_or(Label::counts) {
+            let is_case = is_case(world) && said.is_none_or(Label::is_case);
+            self.count(world.odometer_mm(), world.tick(), is_case);
+        }
     }
 
-    /// Adds a recorded run, unless it was for familiarisation.
+    /// Adds a recorded run, unless it was for familiarisation or does not count.
     pub fn add_recorded(&mut self, log: &Log) {
-        if study::is_familiarisation(&log.manifest.provenance) {
+        if study::is_familiarisation(&log.manifest.provenance) || !log.counts() {
             return;
         }
         self.count(log.odometer_mm(), log.last_tick(), log.decided_at().is_some());

@@ -4,6 +4,7 @@
 //! painted by other threads, of which the newest result wins.
 
 mod aftermath;
+mod alert;
 mod board;
 mod disk;
 mod eyes;
@@ -176,7 +177,7 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) ->
         let shown = catch_unwind(AssertUnwindSafe(|| windows.show(link)));
         let shown = shown.unwrap_or_else(|_| Err(anyhow!("a window was taken away; the session is over")));
         // The windows are gone, by the simulation's word or by a failure of their own.
-        let _ = outbox.send(Message::Closed);
+        let _ = outbox.send(Message::Gone);
         let driven = driving.join().unwrap_or_else(|_| Err(anyhow!("the simulation thread panicked")));
         board.feed.scene.close();
         shown.and(driven)

@@ -40,6 +40,13 @@ impl Pacing {
         self.last_us = now_us;
     }
 
+    /// Time has stood for so long, microseconds: the schedule goes on where it was.
+    pub fn stood(&mut self, us: u64) {
+        self.origin_us += us;
+        self.started_us += us;
+        self.last_us += us;
+    }
+
     /// How late the last tick began, microseconds.
     pub fn late_us(&self) -> u64 {
         self.late_us
@@ -83,6 +90,16 @@ mod tests {
         assert_eq!(pacing.wait_us(46_667), 0, "the second tick is due already");
         pacing.begin_tick(46_667);
         assert_eq!(pacing.wait_us(46_667), 3_333);
+    }
+
+    #[test]
+    fn time_that_stood_is_neither_late_nor_driven() {
+        let mut pacing = Pacing::starting_at(0);
+        (1..=60).for_each(|i| pacing.begin_tick(i * 1_000_000 / 60));
+        pacing.stood(7_000_000);
+        assert_eq!(pacing.wait_us(8_000_000), 16_666);
+        pacing.begin_tick(8_016_666);
+        assert_eq!((pacing.late_us(), pacing.slowed_us(), pacing.driven_us()), (0, 0, 1_016_666));
     }
 
     #[test]

@@ -10,8 +10,8 @@ use drivers::safety::SafetyBot;
 use drivers::semantic::SemanticBot;
 use drivers::session::{Session, SessionState};
 use drivers::{Driver, MaskView, SemanticView};
-use kernel::{Controls, TickInput, TickOutput, World};
-use replay::{Annotation, LiveTimes, Manifest, MaskShown};
+use kernel::{Controls, Seat, TickInput, TickOutput, World};
+use replay::{Annotation, LiveTimes, Manifest, MaskShown, Note, NoteKind};
 use viewers::feed::View;
 
 use super::disk::BackgroundFile;
@@ -106,6 +106,19 @@ impl Run {
         let (state, output) =
             record(&mut self.session, polled, screen, &input).with_context(|| self.path.display().to_string())?;
         Ok((state, output, input))
+    }
+
+    /// Records that time stood or goes on, and whose unit was the reason.
+    pub fn note(&mut self, kind: NoteKind, seat: Option<Seat>) -> anyhow::Result<()> {
+        let note = Note { tick: self.world().tick() + 1, kind, seat };
+        self.session.note(note).with_context(|| self.path.display().to_string())
+    }
+
+    /// Records what happened to the units while time stands; ticks record it themselves.
+    pub fn note_units(&mut self, polled: &Polled) -> anyhow::Result<()> {
+        let next = self.world().tick() + 1;
+        let mut notes = polled.events.iter().map(|event| event.note(next));
+        notes.try_for_each(|note| self.session.note(note)).with_context(|| self.path.display().to_string())
     }
 
     /// What the bot in the safety driver's seat says about the end of the run, if there is one.

@@ -143,11 +143,16 @@ pub fn event_text(event: &UnitEvent) -> String {
     let what = match event.kind {
         UnitEventKind::Bound => "is in use",
         UnitEventKind::Armed => "is armed",
-        UnitEventKind::Lost => "is lost: the car brakes to a stop",
+        UnitEventKind::Lost => "is lost",
         UnitEventKind::Returned if event.unit == KEYBOARD => "is back",
         UnitEventKind::Returned => "is back, and has to be armed again",
     };
     format!("{} driver's {} {what}", words::seat(event.seat), event.unit)
+}
+
+/// The seat whose unit was lost just now.
+pub fn lost(polled: &Polled) -> Option<Seat> {
+    polled.events.iter().find(|e| e.kind == UnitEventKind::Lost).map(|e| e.seat)
 }
 
 /// Whether nobody watches over the car any more.

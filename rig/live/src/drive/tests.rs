@@ -9,7 +9,7 @@ use base::maps::Map;
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
 use kernel::Seat;
-use replay::{Label, NoteKind, Recording};
+use replay::{Annotation, Label, NoteKind, Recording};
 use study::{Lineup, Study};
 use tempfile::TempDir;
 
@@ -17,7 +17,7 @@ use super::about;
 use super::board::{Board, Message, Status};
 use super::seating::Seating;
 use super::simulation::{Links, Plan, Simulation};
-use super::stage::{Press, Stage};
+use super::stage::{Dialog, Pause, Press, Stage};
 use crate::units::source::{AxisRange, DeviceInfo, RawEvent, Simulated};
 use crate::units::testing::LAYOUT;
 use crate::units::{SeatChoice, Seats};
@@ -122,6 +122,18 @@ impl Bench {
         }
     }
 
+    fn enter(&self) {
+        self.outbox.send(Message::Press(Press::Enter, false)).unwrap();
+    }
+
+    /// The semantic driver drives off, and the safety driver brakes.
+    fn take_over(&self) {
+        self.axis(0, THROTTLE, 200);
+        self.wait(|status| status.tick > 190);
+        self.axis(1, BRAKE, 60);
+        self.wait(|status| status.phase == kernel::arbiter::Phase::TakenOver);
+    }
+
     /// Waits for a status.
     fn wait(&self, is_so: impl Fn(&Status) -> bool) -> Arc<Status> {
         let mut seen = 0;
@@ -137,59 +149,117 @@ impl Bench {
 
     /// Quits.
     fn close(self) -> TempDir {
-        self.outbox.send(Message::Closed).unwrap();
+        self.outbox.send(Message::Gone).unwrap();
         self.driving.join().unwrap().unwrap();
         self.dir
     }
 
     /// Quits, and gives what happened to the units of the first run.
-    fn notes(self) -> Vec<(NoteKind, Seat)> {
+    fn notes(self) -> Vec<(NoteKind, Option<Seat>)> {
         let recording = Recording::open(&self.close().path().join("drive.mcap")).unwrap();
         recording.log().notes.iter().map(|note| (note.kind, note.seat)).collect()
+    }
+
+    /// Quits, and gives what was said of the first run.
+    fn said(self) -> Annotation {
+        let recording = Recording::open(&self.close().path().join("drive.mcap")).unwrap();
+        recording.log().annotation.clone().unwrap()
     }
 }
 
 #[test]
-fn lost_wheels_stop_the_car_are_said_and_end_the_run_when_they_are_the_safety_drivers() {
+fn lost_wheels_let_time_stand_until_the_operators_drive_on() {
     let bench = Bench::start();
     bench.axis(0, THROTTLE, 255);
     bench.wait(|status| status.hud.speed_mps > 2.0);
     bench.devices.push(RawEvent::Lost(0));
-    let said = bench.wait(|status| status.hud.speed_mps < 0.1).units_note.clone().unwrap();
+    let paused = bench.wait(|status| status.stage == Stage::Paused(Pause::UnitLost));
+    let said = bench.wait(|status| status.units_note.is_some()).units_note.clone().unwrap();
     assert_eq!(said, "semantic driver's simulated wheel: lost, plug it in again");
+    bench.press("p");
+    bench.wait(|status| status.events.lines().any(|line| line.contains("the run cannot go on")));
     bench.devices.push(device(0));
     bench.wait(|status| status.units_note.as_ref().is_some_and(|said| said.contains("to arm it, move the left stick")));
     bench.arm(0);
+    let armed = bench.wait(|status| status.units_note.is_none());
+    assert_eq!((armed.tick, &armed.stage), (paused.tick, &Stage::Paused(Pause::UnitLost)), "time stands");
+    bench.press("p");
     bench.axis(0, THROTTLE, 255);
-    bench.wait(|status| status.hud.speed_mps > 2.0);
+    bench.wait(|status| status.stage == Stage::Driving && status.hud.speed_mps > 2.5);
     bench.devices.push(RawEvent::Lost(1));
-    let status = bench.wait(|status| status.run == 2);
-    assert!(status.stage == Stage::Ready && status.totals.cases == 0, "{status:?}");
-    assert!(status.units_note.as_ref().is_some_and(|said| said.starts_with("safety driver's")), "{status:?}");
-    use NoteKind::{UnitArmed, UnitLost, UnitReturned};
-    let [semantic, safety] = [Seat::Semantic, Seat::Safety];
-    let expected = [(UnitLost, semantic), (UnitReturned, semantic), (UnitArmed, semantic), (UnitLost, safety)];
-    assert_eq!(bench.notes(), expected);
+    bench.wait(|status| status.stage == Stage::Paused(Pause::UnitLost));
+    use NoteKind::{Paused, Resumed, UnitArmed, UnitLost, UnitReturned};
+    let [semantic, safety] = [Some(Seat::Semantic), Some(Seat::Safety)];
+    let notes = bench.notes();
+    let first =
+        [(UnitLost, semantic), (Paused, semantic), (UnitReturned, semantic), (UnitArmed, semantic), (Resumed, None)];
+    let all: Vec<_> = first.into_iter().chain([(UnitLost, safety), (Paused, safety)]).collect();
+    assert_eq!(notes, all);
 }
 
 #[test]
-fn a_takeover_whose_wheel_is_lost_still_asks_for_its_label() {
+fn a_takeover_whose_wheel_is_lost_is_broken_off_with_its_label() {
     let bench = Bench::start();
-    bench.axis(0, THROTTLE, 200);
-    bench.wait(|status| status.tick > 190);
-    bench.axis(1, BRAKE, 60);
-    bench.wait(|status| status.phase == kernel::arbiter::Phase::TakenOver);
+    bench.take_over();
+    bench.press("1");
+    bench.wait(|status| status.events.lines().any(|line| line.contains("labelled walker")));
     bench.devices.push(RawEvent::Lost(1));
-    bench.wait(|status| matches!(status.stage, Stage::Labelling(_)));
-    assert_eq!(bench.notes(), [(NoteKind::UnitLost, Seat::Safety)]);
+    bench.wait(|status| status.stage == Stage::Paused(Pause::UnitLost));
+    bench.press("b");
+    let asked = bench.wait(|status| matches!(status.stage, Stage::Labelling(_)));
+    assert_eq!(asked.stage, Stage::Labelling(Dialog::of_case(Some(Label::Walker))));
+    bench.enter();
+    let totals = bench.wait(|status| status.run == 2).totals;
+    assert_eq!((totals.runs, totals.cases), (1, 1));
+    assert_eq!(bench.said().label, Label::Walker);
+}
+
+#[test]
+fn a_takeover_that_operators_set_aside_is_no_corner_case_and_a_discarded_run_does_not_count() {
+    for (key, label, runs) in [("5", Label::DriverError, 1), ("7", Label::Discarded, 0)] {
+        let bench = Bench::start();
+        bench.take_over();
+        bench.wait(|status| matches!(status.stage, Stage::Labelling(_)));
+        bench.press(key);
+        bench.enter();
+        let totals = bench.wait(|status| status.run == 2).totals;
+        assert_eq!((totals.runs, totals.cases), (runs, 0), "{label}");
+        let dir = bench.close();
+        let recording = Recording::open(&dir.path().join("drive.mcap")).unwrap();
+        assert!(recording.log().intervention.is_some() && recording.log().decided_at().is_none());
+        assert_eq!(recording.log().annotation.as_ref().map(|said| said.label), Some(label));
+        assert!(!dir.path().join("drive.case.mcap").exists(), "{label}");
+        // The next session counts as this one did.
+        let totals = Bench::start_in(dir).wait(|status| status.stage == Stage::Driving).totals;
+        assert_eq!((totals.runs, totals.cases), (runs, 0), "{label}");
+    }
+}
+
+#[test]
+fn a_run_is_paused_and_broken_off_by_keys_and_a_closed_window_asks_first() {
+    let bench = Bench::start();
+    bench.axis(0, THROTTLE, 255);
+    bench.wait(|status| status.hud.speed_mps > 1.0);
+    bench.press("p");
+    let paused = bench.wait(|status| status.stage == Stage::Paused(Pause::Asked));
+    bench.press("p");
+    bench.wait(|status| status.tick > paused.tick + 30);
+    bench.outbox.send(Message::Closed).unwrap();
+    bench.wait(|status| status.stage == Stage::Paused(Pause::Ending));
+    bench.press("b");
+    bench.wait(|status| status.stage == Stage::Labelling(Dialog::of_broken_off()));
+    bench.enter();
+    let totals = bench.wait(|status| status.run == 2).totals;
+    assert_eq!((totals.runs, totals.cases), (1, 0));
+    let recording = Recording::open(&bench.close().path().join("drive.mcap")).unwrap();
+    let log = recording.log();
+    assert_eq!((&log.annotation, log.summary.as_ref().unwrap().outcome), (&None, None), "it was stopped");
 }
 
 #[test]
 fn a_label_survives_an_early_end_and_the_next_session_counts_the_case() {
     let bench = Bench::start();
-    bench.axis(0, THROTTLE, 200);
-    bench.wait(|status| status.tick > 190);
-    bench.axis(1, BRAKE, 60);
+    bench.take_over();
     bench.wait(|status| matches!(status.stage, Stage::Labelling(_)));
     ["2", "t", "o", "o"].iter().for_each(|key| bench.press(key));
     let dir = bench.close();

@@ -90,6 +90,6 @@ impl UnitEvent {
             UnitEventKind::Lost => NoteKind::UnitLost,
             UnitEventKind::Returned => NoteKind::UnitReturned,
         };
-        Note { tick, kind, seat: self.seat }
+        Note { tick, kind, seat: Some(self.seat) }
     }
 }

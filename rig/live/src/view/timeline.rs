@@ -91,8 +91,7 @@ fn event_mark(tick: Tick, event: &Event) -> Mark {
 }
 
 fn note_mark(note: &Note) -> Mark {
-    let text = format!("{} ({} driver)", note.kind.name(), words::seat(note.seat));
-    Mark { tick: note.tick, kind: MarkKind::Note, text }
+    Mark { tick: note.tick, kind: MarkKind::Note, text: words::note(note) }
 }
 
 #[cfg(test)]

@@ -15,6 +15,8 @@ pub struct Tally {
     pub runs: u32,
     /// Runs that do not: drives for familiarisation.
     pub familiarisation_runs: u32,
+    /// Runs that operators discarded, or in which the rig failed.
+    pub discarded_runs: u32,
     /// Runs that ended by an intervention.
     pub interventions: u32,
     /// Of these, those with a label.
@@ -65,6 +67,10 @@ impl Tally {
                 tally.familiarisation_runs += 1;
                 continue;
             }
+            if !log.counts() {
+                tally.discarded_runs += 1;
+                continue;
+            }
             tally.add_run(recording);
             tally.km += measures.map_or(0.0, |m| m.km);
             hazards.extend(measures.into_iter().flat_map(|m| &m.hazards));
@@ -78,7 +84,7 @@ impl Tally {
         let log = recording.log();
         let outcome = log.summary.as_ref().and_then(|summary| summary.outcome);
         self.runs += 1;
-        if log.intervention.is_none() || outcome == Some(Outcome::Missed) {
+        if log.decided_at().is_none() || log.intervention.is_none() || outcome == Some(Outcome::Missed) {
             return;
         }
         self.interventions += 1;

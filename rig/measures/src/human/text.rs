@@ -96,10 +96,14 @@ fn spread_words(spread: &Spread, unit: &str) -> String {
 impl Tally {
     /// As names and values.
     pub fn lines(&self) -> Vec<(&'static str, String)> {
-        let Self { runs, familiarisation_runs, interventions, labelled, boredom, hazards, .. } = self;
+        let Self { runs, familiarisation_runs, discarded_runs, interventions, labelled, boredom, hazards, .. } = self;
         let practice = match familiarisation_runs {
             0 => String::new(),
             n => format!(", and {n} for familiarisation, which do not count"),
+        };
+        let discarded = match discarded_runs {
+            0 => String::new(),
+            n => format!(", and {n} that operators discarded or in which the rig failed"),
         };
         let bored = self.boredom_share.map_or(String::new(), |s| {
             format!("; {boredom} of {labelled} labelled were out of boredom ({:.0} %)", 100.0 * s)
@@ -119,7 +123,7 @@ impl Tally {
         let rates = self.hazards_per_km.zip(self.hazards_by_mistakes_per_km);
         let rates = rates.map_or(String::new(), |(all, by)| format!(": {all:.2} a km, {by:.2} by mistakes of others"));
         let head = [
-            ("runs", format!("{runs}{practice}")),
+            ("runs", format!("{runs}{practice}{discarded}")),
             ("takeovers", format!("{interventions}{bored}")),
             ("hazards", format!("{hazards}, {by_mistakes} of them by mistakes of others, in {km:.2} km{rates}")),
         ];

@@ -11,7 +11,7 @@ use drivers::{external, recorded_eye};
 use replay::Recording;
 use serde::Serialize;
 
-use super::{Comparison, Ride, Sampling, Statistics};
+use super::{Comparison, Ride, Sampling, SetAside, Statistics};
 
 /// What blind drives go by.
 const BLIND: &str = "blind";
@@ -30,6 +30,8 @@ pub struct CheckpointStatistics {
     pub statistics: Statistics,
     /// Against the reference; absent for the reference itself.
     pub against_reference: Option<Comparison>,
+    /// Runs that operators set aside, by why.
+    pub set_aside: Vec<SetAside>,
 }
 
 /// The rides through one checkpoint.
@@ -38,8 +40,23 @@ pub struct Group {
     /// Its name; with the beginning of its digest where several have that name.
     pub checkpoint: String,
     digest: Option<String>,
-    /// In the order in which they were driven.
+    /// Those that count, in the order in which they were driven.
     pub rides: Vec<Ride>,
+    /// Runs that operators set aside, by why; those that count are rides as well.
+    pub set_aside: Vec<SetAside>,
+}
+
+impl Group {
+    fn new(checkpoint: String, digest: Option<String>) -> Self {
+        Self { checkpoint, digest, rides: Vec::new(), set_aside: Vec::new() }
+    }
+
+    fn add(&mut self, ride: Ride) {
+        SetAside::add(&mut self.set_aside, &ride);
+        if ride.counts() {
+            self.rides.push(ride);
+        }
+    }
 }
 
 /// How the statistics are made.
@@ -95,7 +112,8 @@ pub fn of_recordings(
     let of = |(i, group): (usize, Group)| {
         let statistics = Statistics::of(&group.rides, choice.sampling);
         let against_reference = (i != at).then(|| Comparison::of(&reference, &statistics));
-        CheckpointStatistics { checkpoint: group.checkpoint, digest: group.digest, statistics, against_reference }
+        let Group { checkpoint, digest, set_aside, .. } = group;
+        CheckpointStatistics { checkpoint, digest, statistics, against_reference, set_aside }
     };
     Ok(StatisticsOfAll { checkpoints: groups.into_iter().enumerate().map(of).collect(), failed })
 }
@@ -120,10 +138,12 @@ pub fn group(
     for (Entry { path, .. }, known) in files.iter().zip(known) {
         match known {
             Ok(Known { ride: Some(ride), checkpoint, checkpoint_digest: digest }) => {
-                match groups.iter_mut().find(|g| g.digest == digest && g.checkpoint == checkpoint) {
-                    Some(group) => group.rides.push(ride),
-                    None => groups.push(Group { checkpoint, digest, rides: vec![ride] }),
-                }
+                let is_it = |group: &Group| group.digest == digest && group.checkpoint == checkpoint;
+                let at = groups.iter().position(is_it).unwrap_or_else(|| {
+                    groups.push(Group::new(checkpoint, digest));
+                    groups.len() - 1
+                });
+                groups[at].add(ride);
             }
             Ok(_) => {}
             Err(error) => failed.push(Failure::new(path, &error)),
@@ -146,7 +166,8 @@ fn read(path: &Path, reveal: bool, counts: impl Fn(&Path, &Recording) -> bool) -
     let untold = if study::is_blind(&manifest.provenance) { BLIND } else { UNKNOWN };
     let ride = Ride::of(&recording);
     let is_takeover = recording.log().intervention.is_some();
-    let counted = |ride: Ride| if is_takeover && !counts(path, &recording) { ride.uncounted() } else { ride };
+    let is_doubted = |ride: &Ride| ride.is_case && is_takeover && !counts(path, &recording);
+    let counted = |ride: Ride| if is_doubted(&ride) { ride.uncounted() } else { ride };
     Ok(Known {
         checkpoint: told.get("checkpoint").cloned().unwrap_or_else(|| untold.into()),
         checkpoint_digest: recorded_eye::digest_of(&told),

@@ -6,6 +6,7 @@ mod groups;
 mod legs;
 mod ride;
 mod sampling;
+mod set_aside;
 mod text;
 
 use std::collections::BTreeMap;
@@ -19,6 +20,7 @@ pub use groups::{CheckpointStatistics, Choice, Group, StatisticsOfAll, of_record
 pub use legs::Legs;
 pub use ride::Ride;
 pub use sampling::Sampling;
+pub use set_aside::SetAside;
 pub use text::table;
 
 use crate::stats;

@@ -4,7 +4,7 @@ use drivers::temper::Temper;
 use kernel::Seat;
 use replay::{Label, Recording};
 
-/// A run that counts.
+/// A run of a study or a campaign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ride {
     /// Kilometres driven.
@@ -13,7 +13,7 @@ pub struct Ride {
     pub minutes: f64,
     /// Whether it ended by an intervention, or by a collision that nobody prevented.
     pub is_case: bool,
-    /// What kind of corner case.
+    /// What kind of corner case, or why none.
     pub label: Option<Label>,
     /// Whether true masks avoid the corner case, where that is known.
     pub perception_caused: Option<bool>,
@@ -37,6 +37,16 @@ impl Ride {
             perception_caused: annotation.and_then(|a| a.perception_caused),
             tempers: [Seat::Semantic, Seat::Safety].map(|seat| Temper::told(&log.manifest.provenance, seat)),
         })
+    }
+
+    /// Why operators said that it is no corner case, if they did.
+    pub fn set_aside(&self) -> Option<Label> {
+        self.label.filter(|label| !label.is_case())
+    }
+
+    /// Whether what was driven counts as driven.
+    pub fn counts(&self) -> bool {
+        self.label.is_none_or(Label::counts)
     }
 
     /// The same drive where its end is not to count as a corner case.

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use kernel::time::Tick;
 use kernel::{TickInput, TickOutput, World};
 use viewers::feed::Look;
 
+use crate::drive::alert::Alert;
 use crate::drive::board::{Board, Status, Wake};
 use crate::drive::traces::Traces;
 
@@ -16,6 +18,7 @@ pub struct Display {
     /// Both drivers' controls.
     pub input: TickInput,
     last: Option<TickOutput>,
+    alert: Option<Alert>,
 }
 
 impl Drop for Display {
@@ -29,26 +32,32 @@ impl Drop for Display {
 impl Display {
     /// Shows nothing yet. `wake` draws windows anew.
     pub fn new(board: Arc<Board>, wake: Box<dyn Fn(Wake) + Send>) -> Self {
-        Self { board, wake, traces: Traces::default(), input: TickInput::default(), last: None }
+        Self { board, wake, traces: Traces::default(), input: TickInput::default(), last: None, alert: None }
     }
 
     /// A new run waits, of which nothing has been driven.
     pub fn begin(&mut self, world: &World) {
         self.traces = Traces::of(world);
         self.show_traces();
-        self.last = None;
+        (self.last, self.alert) = (None, None);
     }
 
     /// Takes a tick in.
     pub fn tick(&mut self, world: &World, input: TickInput, output: TickOutput) {
         self.traces.tick(world, &input, &output);
         self.input = input;
+        self.alert = Alert::of(output.tick, &output.events).or(self.alert.take());
         self.last = Some(output);
     }
 
     /// What the last tick came to.
     pub fn last(&self) -> Option<&TickOutput> {
         self.last.as_ref()
+    }
+
+    /// What is to be told at a tick of what the car did wrong, or of what happened to it.
+    pub fn alert(&self, tick: Tick) -> Option<&Alert> {
+        self.alert.as_ref().filter(|alert| alert.is_shown(tick))
     }
 
     /// Puts the plots on the board.

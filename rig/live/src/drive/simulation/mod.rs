@@ -23,7 +23,7 @@ use super::board::{Message, Wake};
 use super::force::Driven;
 use super::run::car_state;
 use super::seating::{self, Seating};
-use super::stage::{Press, Stage, Wish};
+use super::stage::{Pause, Press, Stage, Wish};
 use super::timings::Timings;
 use crate::units::Polled;
 pub use plan::{Links, Plan};
@@ -69,7 +69,7 @@ impl Simulation {
     pub fn drive(mut self) -> anyhow::Result<Timings> {
         let end = self.listen_and_tick();
         let session = &mut self.session;
-        let unfinished = session.end_run(session.runs.stage.annotation());
+        let unfinished = session.end_run(session.runs.said());
         let cut = session.join_cutters();
         let mut last = Ok(());
         if let (Ok(Some(path)), true) = (&unfinished, session.is_attended()) {
@@ -120,12 +120,19 @@ impl Simulation {
             session.note(seating::event_text(event));
         }
         session.display.input = polled.input();
+        let lost = seating::lost(&polled).filter(|_| session.is_attended() && session.runs.is_driving());
+        if lost.is_some() || matches!(session.runs.stage, Stage::Paused(_)) {
+            session.runs.current().map_or(Ok(()), |run| run.note_units(&polled))?;
+        }
+        if lost.is_some() {
+            session.pause(Pause::UnitLost, lost)?;
+        }
         match &session.runs.stage {
             Stage::Ready if !session.is_attended() && session.sights.screen().is_some() => session.start()?,
             Stage::Driving => tick(session, &polled)?,
             _ => {}
         }
-        // After a takeover the car is braked to standstill instead, and the case asks for its label.
+        // Nobody is there to pause the run and to go on.
         if session.runs.is_driving() && !car.taken_over && seating::is_unwatched(&polled) {
             let number = session.runs.number();
             session.voice.say(format_args!("run {number} was ended: the safety driver's unit is lost"));
@@ -135,7 +142,7 @@ impl Simulation {
             Stage::Driving => {}
             // The jolt of the collision that ended the run fades.
             Stage::Labelling(_) => session.force.drive(&Driven::default(), session.seating.armed_devices()),
-            Stage::Ready => session.force.rest(),
+            Stage::Ready | Stage::Paused(_) => session.force.rest(),
         }
         Ok(())
     }
@@ -151,7 +158,11 @@ impl Simulation {
             Message::Press(press, repeated) => return obey(session, &press, repeated),
             Message::Shown(seat, view, presented_us) => session.shown(seat, view, presented_us),
             Message::Note(text) => session.note(text),
-            Message::Closed => return Ok(Some(End::Closed)),
+            // Who closes a window while the car drives is asked first.
+            Message::Closed if session.is_attended() && session.runs.is_driving() => {
+                session.pause(Pause::Ending, None)?
+            }
+            Message::Closed | Message::Gone => return Ok(Some(End::Closed)),
             Message::Failed(error) => return Err(error),
         }
         Ok(None)
@@ -168,7 +179,11 @@ fn obey(session: &mut Session, press: &Press, repeated: bool) -> anyhow::Result<
             session.force.toggle();
             session.show_status(Some(Wake::Centre));
         }
-        Wish::Annotate(annotation) => session.finish(Some(annotation))?,
+        Wish::Pause(why) => session.pause(why, None)?,
+        Wish::Resume => session.resume()?,
+        Wish::BreakOff => session.break_off(),
+        Wish::Label(label) => session.label(label),
+        Wish::Finish(annotation) => session.finish(annotation)?,
         Wish::Quit => return Ok(Some(End::Asked)),
     }
     Ok(None)

@@ -16,12 +16,14 @@ pub struct Pace {
     clock: SessionClock,
     pacing: Pacing,
     timings: Timings,
+    /// When time was stopped, while it stands, microseconds.
+    paused_us: Option<u64>,
 }
 
 impl Pace {
     /// Nothing drives yet.
     pub fn new(clock: SessionClock) -> Self {
-        Self { clock, pacing: Pacing::starting_at(0), timings: Timings::default() }
+        Self { clock, pacing: Pacing::starting_at(0), timings: Timings::default(), paused_us: None }
     }
 
     /// Time since the session began, microseconds.
@@ -37,6 +39,19 @@ impl Pace {
     /// The schedule begins anew: a run starts, or waits for its start.
     pub fn restart(&mut self) {
         self.pacing = Pacing::starting_at(self.now_us());
+        self.paused_us = None;
+    }
+
+    /// Time stands from now on.
+    pub fn pause(&mut self) {
+        self.paused_us = Some(self.now_us());
+    }
+
+    /// Time goes on where it stopped.
+    pub fn resume(&mut self) {
+        if let Some(paused_us) = self.paused_us.take() {
+            self.pacing.stood(self.now_us().saturating_sub(paused_us));
+        }
     }
 
     /// Time until the units are to be asked again; while a run drives, until its next tick.

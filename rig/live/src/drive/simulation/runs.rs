@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use kernel::{Scenario, World};
-use replay::{Annotation, Recording};
+use replay::{Annotation, Label, Recording};
 
 use super::plan::Plan;
-use crate::drive::board::Totals;
+use crate::drive::board::{self, Totals};
 use crate::drive::disk;
 use crate::drive::run::Run;
-use crate::drive::stage::Stage;
+use crate::drive::stage::{Dialog, Stage};
 
 /// The runs of a session.
 pub struct Runs {
@@ -19,6 +19,8 @@ pub struct Runs {
     /// The world of a run that waits for its start.
     next: Option<World>,
     run: Option<Run>,
+    /// The kind of corner case that the operators gave the run's takeover before its end.
+    label: Option<Label>,
     totals: Totals,
 }
 
@@ -26,7 +28,8 @@ impl Runs {
     /// A campaign goes on in a new session under the same name, with the runs after the last one.
     /// Gives what is to be said about those that are not counted, too.
     pub fn after_earlier_ones(record: &Path) -> (Self, Vec<String>) {
-        let mut runs = Self { stage: Stage::Ready, number: 0, next: None, run: None, totals: Totals::default() };
+        let totals = Totals::default();
+        let mut runs = Self { stage: Stage::Ready, number: 0, next: None, run: None, label: None, totals };
         let mut not_counted = Vec::new();
         for number in disk::numbers(record) {
             runs.number = number;
@@ -79,7 +82,7 @@ impl Runs {
         let seed = plan.cast.seed_of_run(self.number);
         let scenario = Scenario { seed, ..plan.scenario.clone() };
         let world = World::new(&scenario, &plan.map.network)?;
-        self.run = None;
+        (self.run, self.label) = (None, None);
         self.stage = Stage::Ready;
         Ok(self.next.insert(world))
     }
@@ -95,11 +98,36 @@ impl Runs {
         self.stage = Stage::Driving;
     }
 
+    /// The takeover that is on is of this kind; says whether there is one.
+    pub fn label(&mut self, label: Label) -> bool {
+        let is_taken_over = self.run.as_ref().is_some_and(|run| run.world().arbiter().intervention.is_some());
+        self.label = Some(label).filter(|_| is_taken_over);
+        is_taken_over
+    }
+
+    /// What the operators have said of the run so far, however it ends.
+    pub fn said(&self) -> Option<Annotation> {
+        let early = || Some(Annotation { label: self.label?, comment: String::new(), perception_caused: None });
+        self.stage.annotation().or_else(early)
+    }
+
+    /// The run has ended as a corner case and waits for its label.
+    pub fn ask(&mut self) {
+        self.stage = Stage::Labelling(Dialog::of_case(self.label));
+    }
+
+    /// The run is broken off. A takeover that is on is one all the same.
+    pub fn break_off(&mut self) {
+        let is_case = self.run.as_ref().is_some_and(|run| board::is_case(run.world()));
+        let dialog = if is_case { Dialog::of_case(self.label) } else { Dialog::of_broken_off() };
+        self.stage = Stage::Labelling(dialog);
+    }
+
     /// Ends the recording of the run that is on, and counts the run unless it is for familiarisation.
     pub fn end(&mut self, annotation: Option<Annotation>, counts: bool) -> Option<anyhow::Result<PathBuf>> {
         let run = self.run.take()?;
         if counts {
-            self.totals.add(run.world());
+            self.totals.add(run.world(), annotation.as_ref());
         }
         Some(run.finish(annotation))
     }

@@ -9,7 +9,7 @@ use base::maps;
 use base::room::NoRoom;
 use kernel::Seat;
 use kernel::time::{TICK_HZ, Tick};
-use replay::Annotation;
+use replay::{Annotation, Label, NoteKind};
 use viewers::feed::View;
 
 use super::cutters::Cutters;
@@ -26,7 +26,7 @@ use crate::drive::board::{Board, Message, Wake};
 use crate::drive::force::Force;
 use crate::drive::run::Run;
 use crate::drive::seating::Seating;
-use crate::drive::stage::{Dialog, Stage};
+use crate::drive::stage::{Pause, Stage};
 
 /// An unattended session that takes three times as long as it should, and this, has failed, microseconds.
 const PATIENCE_US: u64 = 30_000_000;
@@ -134,6 +134,55 @@ impl Session {
         self.show_status(Some(Wake::All));
     }
 
+    /// Time stands from now on; `seat` is whose unit is lost, if it is for that.
+    pub fn pause(&mut self, why: Pause, seat: Option<Seat>) -> anyhow::Result<()> {
+        match self.runs.stage {
+            Stage::Driving => {
+                self.pace.pause();
+                self.note_run(NoteKind::Paused, seat)?;
+                self.seating.seats().release_keys();
+            }
+            // Who asks for the end while time stands is asked once.
+            Stage::Paused(_) => {}
+            Stage::Ready | Stage::Labelling(_) => return Ok(()),
+        }
+        self.runs.stage = Stage::Paused(why);
+        self.show_status(Some(Wake::All));
+        Ok(())
+    }
+
+    /// Time goes on, if the units are armed.
+    pub fn resume(&mut self) -> anyhow::Result<()> {
+        if !self.seating.is_ready() {
+            let why = self.seating.note();
+            self.note(format!("the run cannot go on: {}", why.as_deref().unwrap_or("the units are not known yet")));
+            return Ok(());
+        }
+        self.pace.resume();
+        self.note_run(NoteKind::Resumed, None)?;
+        self.runs.stage = Stage::Driving;
+        self.show_status(Some(Wake::All));
+        Ok(())
+    }
+
+    fn note_run(&mut self, kind: NoteKind, seat: Option<Seat>) -> anyhow::Result<()> {
+        self.voice.note(kind.name().into());
+        self.runs.current().map_or(Ok(()), |run| run.note(kind, seat))
+    }
+
+    /// The run ends here, and the operators are asked why.
+    pub fn break_off(&mut self) {
+        self.runs.break_off();
+        self.show_status(Some(Wake::All));
+    }
+
+    /// The takeover that is on is of this kind.
+    pub fn label(&mut self, label: Label) {
+        if self.runs.label(label) {
+            self.note(format!("the takeover is labelled {label}"));
+        }
+    }
+
     /// A view came onto a driver's screen. Ages are those of the pictures that the drivers drove by; a
     /// picture of another run is none.
     pub fn shown(&mut self, seat: Seat, view: Arc<View>, presented_us: u64) {
@@ -153,7 +202,7 @@ impl Session {
             None => {
                 let number = self.runs.number();
                 self.voice.say(format_args!("run {number} has ended: label it in the control centre"));
-                self.runs.stage = Stage::Labelling(Dialog::default());
+                self.runs.ask();
                 self.show_status(Some(Wake::All));
                 Ok(())
             }

@@ -47,6 +47,7 @@ impl Parts<'_> {
             input: display.input,
             odometer_mm: world.odometer_mm(),
             totals: runs.totals(),
+            alert: display.alert(world.tick()).cloned(),
             late_us: pace.schedule().late_us(),
             slowed_us: pace.schedule().slowed_us(),
             mask_age_us,

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use base::chart::Chart;
 use egui::{Color32, Frame, Label as Words, Margin, Panel, Rect, RichText, Ui, Vec2};
+use kernel::Seat;
+use kernel::arbiter::Phase;
 use kernel::time::TICK_HZ;
 use measures::stats;
 use replay::Label;
@@ -12,16 +14,17 @@ use super::map::MapView;
 use super::plots;
 use crate::desktop::{Picture, hud};
 use crate::drive::board::{Board, Status, Totals};
-use crate::drive::stage::{Dialog, Stage};
+use crate::drive::stage::{Dialog, Pause, Stage};
 use crate::drive::strip::Strip;
 use crate::drive::traces::Traces;
 
 const ATTENTION: Color32 = Color32::from_rgb(255, 190, 60);
+const ALARM: Color32 = Color32::from_rgb(255, 90, 80);
 /// Height of both views, points.
 const VIEWS_HEIGHT: f32 = 210.0;
 const FIGURES_WIDTH: f32 = 430.0;
 const MAP_WIDTH: f32 = 330.0;
-const KEYS: &str = "N starts a run, X swaps the seats before it, Q quits before it, Escape any time; F9 all monitors, F10 next monitor, F11 full screen";
+const WINDOW_KEYS: &str = "; F9 all monitors, F10 next monitor, F11 full screen";
 
 /// Panels are not filled, since the window is: filling it again is most of the work on a CPU.
 fn bare() -> Frame {
@@ -77,8 +80,8 @@ impl Centre {
         self.map.paint(ui, size, look.as_ref().map(|look| &look.scene), traces);
         ui.vertical(|ui| match &status.stage {
             Stage::Labelling(dialog) => label_dialog(ui, dialog),
-            Stage::Ready | Stage::Driving => {
-                ui.label(RichText::new(KEYS).weak());
+            Stage::Ready | Stage::Driving | Stage::Paused(_) => {
+                ui.label(RichText::new(keys(&status.stage, status.phase)).weak());
                 let strip = board.strip.get();
                 if strip.is_none() && status.stage == Stage::Ready {
                     status.setup.iter().for_each(|line| drop(ui.label(line)));
@@ -98,17 +101,47 @@ impl Centre {
     }
 }
 
+/// What the operators' keys do now.
+fn keys(stage: &Stage, phase: Phase) -> String {
+    let words = match (stage, phase) {
+        (Stage::Ready, _) => "N starts the run, X swaps the seats, Q quits",
+        (Stage::Driving, Phase::TakenOver) => "1 to 4 label the takeover, P pauses, B breaks the run off, Escape quits",
+        (Stage::Driving, _) => "P pauses, B breaks the run off, Escape quits",
+        (Stage::Paused(Pause::Ending), _) => "P drives on, B breaks the run off, Q or Escape ends the session",
+        (Stage::Paused(_), _) => "P drives on, B breaks the run off, Q quits",
+        (Stage::Labelling(_), _) => "",
+    };
+    format!("{words}{WINDOW_KEYS}")
+}
+
+/// Where a run stands, in words.
+fn phase(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Arming => "arming",
+        Phase::Driving => "the semantic driver drives",
+        Phase::TakenOver => "the safety driver has taken over",
+        Phase::Done => "over",
+    }
+}
+
 fn headline(ui: &mut Ui, status: &Status) {
     let text = match &status.stage {
         Stage::Ready if status.units_note.is_some() => format!("Run {} waits for both units", status.run),
         Stage::Ready => format!("Run {} is ready: N starts it", status.run),
-        Stage::Driving => format!("Run {}: {:?}", status.run, status.phase),
+        Stage::Driving => format!("Run {}: {}", status.run, phase(status.phase)),
+        Stage::Paused(Pause::Asked) => format!("Run {}: time stands", status.run),
+        Stage::Paused(Pause::UnitLost) => format!("Run {}: time stands, since a unit is lost", status.run),
+        Stage::Paused(Pause::Ending) => format!("Run {}: time stands. End the session?", status.run),
+        Stage::Labelling(dialog) if dialog.may_be_empty() => format!("Run {} is broken off", status.run),
         Stage::Labelling(_) => format!("Run {} has ended as a corner case", status.run),
     };
     ui.horizontal(|ui| {
         ui.label(RichText::new(text).size(22.0).strong());
         ui.add_space(20.0);
         ui.label(RichText::new(hud::control(status.steering, status.pedals)).size(22.0).color(ATTENTION));
+        if let Some(alert) = status.alert.as_ref().and_then(|alert| alert.words(Seat::Safety)) {
+            ui.label(RichText::new(alert).size(22.0).color(ALARM));
+        }
         if status.about.is_familiarisation {
             ui.label(RichText::new("familiarisation: does not count").size(22.0));
         }
@@ -183,13 +216,15 @@ fn rates(totals: &Totals) -> [(&'static str, String); 2] {
 }
 
 fn label_dialog(ui: &mut Ui, dialog: &Dialog) {
-    ui.label(RichText::new("What kind of corner case is it?").size(18.0).color(ATTENTION));
-    for (i, label) in Label::ALL.into_iter().enumerate() {
-        let text = RichText::new(format!(" {}  {} ", i + 1, words(label))).size(16.0);
+    let question = if dialog.may_be_empty() { "Why is it broken off?" } else { "What kind of corner case is it?" };
+    ui.label(RichText::new(question).size(18.0).color(ATTENTION));
+    for (number, label) in dialog.choices() {
+        let text = RichText::new(format!(" {number}  {} ", words(label))).size(16.0);
         let is_chosen = dialog.label == Some(label);
         ui.label(if is_chosen { text.background_color(ATTENTION).color(Color32::BLACK) } else { text });
     }
     let help = match dialog.label {
+        None if dialog.may_be_empty() => "Press its number, or Enter: it was stopped, and what was driven counts.",
         None => "Press its number.",
         Some(_) => "Type a comment; Enter saves, Backspace in an empty comment chooses another label.",
     };
@@ -197,12 +232,15 @@ fn label_dialog(ui: &mut Ui, dialog: &Dialog) {
     ui.label(RichText::new(format!("Comment: {}_", dialog.comment)).size(16.0));
 }
 
-/// The four labels of the paper.
+/// The four labels of the paper, and what is none of them.
 fn words(label: Label) -> &'static str {
     match label {
         Label::Walker => "walker overlooked",
         Label::Vehicle => "vehicle overlooked",
         Label::Rules => "rules disregarded",
         Label::Boredom => "boredom",
+        Label::DriverError => "no corner case: the driver's error (counts as driven)",
+        Label::TechnicalFault => "no corner case: the rig failed (does not count)",
+        Label::Discarded => "no corner case: discard the run (does not count)",
     }
 }

@@ -69,15 +69,20 @@ fn command(text: &str, place: PhysicalKey) -> Option<char> {
 }
 
 /// The operators' keys, each with its place on a US keyboard; what they do, labels among it, is in [`crate::drive::stage`].
-const COMMANDS: [(char, KeyCode); 8] = [
+const COMMANDS: [(char, KeyCode); 13] = [
     ('n', KeyCode::KeyN),
     ('x', KeyCode::KeyX),
     ('f', KeyCode::KeyF),
     ('q', KeyCode::KeyQ),
+    ('p', KeyCode::KeyP),
+    ('b', KeyCode::KeyB),
     ('1', KeyCode::Digit1),
     ('2', KeyCode::Digit2),
     ('3', KeyCode::Digit3),
     ('4', KeyCode::Digit4),
+    ('5', KeyCode::Digit5),
+    ('6', KeyCode::Digit6),
+    ('7', KeyCode::Digit7),
 ];
 
 /// What a key does to the window that has the keyboard.
@@ -132,8 +137,8 @@ mod tests {
         for code in SEATS {
             assert!(seat_key(PhysicalKey::Code(code)).is_some(), "{code:?}");
             // On AZERTY A types q, on Colemak E types f, elsewhere anything.
-            for text in ["q", "Q", "f", "n", "x", "1", "\u{11}", ""] {
-                let mut stages = [Stage::Ready, Stage::Driving, Stage::Labelling(Dialog::default())];
+            for text in ["q", "Q", "f", "n", "x", "p", "b", "1", "\u{11}", ""] {
+                let mut stages = [Stage::Ready, Stage::Driving, Stage::Labelling(Dialog::of_case(None))];
                 for stage in &mut stages {
                     let before = stage.clone();
                     assert_eq!(wish(stage, text, code), Wish::Nothing, "{text:?} at {code:?}");
@@ -155,13 +160,13 @@ mod tests {
 
     #[test]
     fn labels_are_chosen_by_the_number_row_and_comments_are_as_typed() {
-        let mut stage = Stage::Labelling(Dialog::default());
+        let mut stage = Stage::Labelling(Dialog::of_case(None));
         // AZERTY: the number row types signs; Z, A and Q are where W, Q and A are elsewhere.
         let keys = [("\u{e9}", KeyCode::Digit2), ("z", KeyCode::KeyW), ("a", KeyCode::KeyQ), ("q", KeyCode::KeyA)];
         for (text, code) in keys {
             assert_eq!(wish(&mut stage, text, code), Wish::Nothing);
         }
         let said = stage.annotation().map(|annotation| (annotation.label, annotation.comment));
-        assert_eq!(said, Some((replay::Label::ALL[1], "zaq".into())));
+        assert_eq!(said, Some((replay::Label::CASES[1], "zaq".into())));
     }
 }

@@ -170,11 +170,13 @@ impl Desk {
         let Link { board, clock, .. } = &*link;
         let Some(status) = board.status.get() else { return };
         let of_this_run = |view: &Arc<View>| view.run == status.run;
-        let hud = hud::text(&status);
+        let hud = |seat| hud::text(&status, seat);
         let (seat, new) = if panes.semantic.pane.id() == id {
-            (Seat::Semantic, panes.semantic.paint(board.feed.semantic.get().filter(of_this_run), &hud))
+            let view = board.feed.semantic.get().filter(of_this_run);
+            (Seat::Semantic, panes.semantic.paint(view, &hud(Seat::Semantic)))
         } else if panes.safety.pane.id() == id {
-            (Seat::Safety, panes.safety.paint(board.feed.safety.get().filter(of_this_run), &hud))
+            let view = board.feed.safety.get().filter(of_this_run);
+            (Seat::Safety, panes.safety.paint(view, &hud(Seat::Safety)))
         } else {
             let (pane, centre) = &mut panes.centre;
             return pane.paint(|ui| centre.paint(ui, &status, board));
@@ -238,7 +240,8 @@ impl ApplicationHandler<Wake> for Desk {
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } => return self.key(id, event),
             // A key that was down already when the window got the keyboard, or lost it.
             WindowEvent::KeyboardInput { event, .. } => return self.seat_key(event),
-            WindowEvent::CloseRequested | WindowEvent::Destroyed => self.link.tell(Message::Closed),
+            WindowEvent::CloseRequested => self.link.tell(Message::Closed),
+            WindowEvent::Destroyed => self.link.tell(Message::Gone),
             WindowEvent::Focused(true) => {
                 self.focused = Some(id);
                 self.link.tell(Message::Focus(true));

@@ -1,9 +1,10 @@
 //! Where the session stands between and within runs, and what the operators' keys do there.
 
+mod dialog;
+
 use replay::{Annotation, Label};
 
-/// Longest comment, characters.
-const MAX_COMMENT: usize = 400;
+pub use dialog::Dialog;
 
 /// Where a session stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,17 +13,21 @@ pub enum Stage {
     Ready,
     /// The car drives.
     Driving,
-    /// The run has ended as a corner case and waits for its label.
+    /// The car drives no more for now: time stands.
+    Paused(Pause),
+    /// The run has ended and waits for what is to be said of it.
     Labelling(Dialog),
 }
 
-/// What the operators have entered about a corner case so far.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Dialog {
-    /// The label, once chosen.
-    pub label: Option<Label>,
-    /// The comment as typed.
-    pub comment: String,
+/// Why time stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pause {
+    /// The operators asked for it.
+    Asked,
+    /// A seat is without its unit, or no window of the rig has the keyboard.
+    UnitLost,
+    /// Somebody asked for the end of the session, and is to confirm it.
+    Ending,
 }
 
 /// A key went down.
@@ -54,8 +59,16 @@ pub enum Wish {
     Swap,
     /// Switch force feedback off or on.
     Force,
-    /// End the run with this said about it.
-    Annotate(Annotation),
+    /// Let time stand.
+    Pause(Pause),
+    /// Let time go on.
+    Resume,
+    /// End the run, and ask why.
+    BreakOff,
+    /// The takeover that is on is of this kind.
+    Label(Label),
+    /// End the run with this said about it, if anything.
+    Finish(Option<Annotation>),
     /// End the session.
     Quit,
 }
@@ -64,48 +77,30 @@ impl Stage {
     /// Takes a key. `repeated` says that it is held down: then it only types or deletes.
     pub fn press(&mut self, press: &Press, repeated: bool) -> Wish {
         match self {
-            Self::Labelling(dialog) if *dialog != Dialog::default() => dialog.press(press, repeated),
-            _ if *press == Press::Escape => Wish::Quit,
+            Self::Labelling(dialog) if !dialog.is_empty() => dialog.press(press, repeated),
+            Self::Driving if *press == Press::Escape && !repeated => Wish::Pause(Pause::Ending),
+            _ if *press == Press::Escape && !repeated => Wish::Quit,
             Self::Labelling(dialog) => dialog.press(press, repeated),
             _ if repeated => Wish::Nothing,
+            _ if is(press, 'f') => Wish::Force,
             Self::Ready if is(press, 'n') => Wish::Start,
             Self::Ready if is(press, 'x') => Wish::Swap,
-            _ if is(press, 'f') => Wish::Force,
             Self::Ready if is(press, 'q') => Wish::Quit,
-            _ => Wish::Nothing,
+            Self::Driving if is(press, 'p') => Wish::Pause(Pause::Asked),
+            Self::Driving | Self::Paused(_) if is(press, 'b') => Wish::BreakOff,
+            Self::Driving => label(press).map_or(Wish::Nothing, Wish::Label),
+            Self::Paused(_) if is(press, 'p') => Wish::Resume,
+            Self::Paused(_) if is(press, 'q') => Wish::Quit,
+            Self::Ready | Self::Paused(_) => Wish::Nothing,
         }
     }
 
-    /// What has been entered about a corner case, when a label is chosen.
+    /// What has been entered about the end of a run, when a label is chosen.
     pub fn annotation(&self) -> Option<Annotation> {
         match self {
             Self::Labelling(dialog) => dialog.annotation(),
-            Self::Ready | Self::Driving => None,
+            Self::Ready | Self::Driving | Self::Paused(_) => None,
         }
-    }
-}
-
-impl Dialog {
-    /// The label comes first, so that keys still held from driving type nothing.
-    fn press(&mut self, press: &Press, repeated: bool) -> Wish {
-        match (press, self.label) {
-            (Press::Text { command, .. }, None) if !repeated => self.label = command.and_then(label_of),
-            (Press::Text { text, .. }, Some(_)) if !repeated => self.type_in(text),
-            (Press::Backspace, Some(_)) if self.comment.pop().is_none() => self.label = None,
-            (Press::Enter, Some(_)) if !repeated => return self.annotation().map_or(Wish::Nothing, Wish::Annotate),
-            (Press::Escape, _) => *self = Self::default(),
-            _ => {}
-        }
-        Wish::Nothing
-    }
-
-    fn annotation(&self) -> Option<Annotation> {
-        Some(Annotation { label: self.label?, comment: self.comment.trim().to_owned(), perception_caused: None })
-    }
-
-    fn type_in(&mut self, text: &str) {
-        let room = MAX_COMMENT.saturating_sub(self.comment.chars().count());
-        self.comment.extend(text.chars().filter(|c| !c.is_control()).take(room));
     }
 }
 
@@ -113,10 +108,10 @@ fn is(press: &Press, letter: char) -> bool {
     matches!(press, Press::Text { command: Some(command), .. } if *command == letter)
 }
 
-/// The label with a number key: 1 for the first.
-fn label_of(digit: char) -> Option<Label> {
-    let number = digit.to_digit(10)? as usize;
-    Label::ALL.get(number.checked_sub(1)?).copied()
+/// The kind of corner case that a key stands for.
+fn label(press: &Press) -> Option<Label> {
+    let Press::Text { command: Some(command), .. } = press else { return None };
+    dialog::case_of(*command)
 }
 
 #[cfg(test)]
@@ -145,7 +140,7 @@ mod tests {
     fn forces_are_switched_off_at_any_time_but_not_by_a_comment() {
         assert_eq!(Stage::Driving.press(&text("f"), false), Wish::Force);
         assert_eq!(Stage::Driving.press(&text("f"), true), Wish::Nothing);
-        let mut stage = Stage::Labelling(Dialog::default());
+        let mut stage = Stage::Labelling(Dialog::of_case(None));
         enter(&mut stage, "1off");
     }
 
@@ -153,33 +148,33 @@ mod tests {
     fn seats_are_swapped_between_runs_only() {
         assert_eq!(Stage::Ready.press(&text("X"), false), Wish::Swap);
         assert_eq!(Stage::Driving.press(&text("x"), false), Wish::Nothing);
-        let mut stage = Stage::Labelling(Dialog::default());
+        let mut stage = Stage::Labelling(Dialog::of_case(None));
         assert_eq!(stage.press(&text("x"), false), Wish::Nothing);
     }
 
     #[test]
     fn a_case_gets_its_label_then_its_comment() {
-        let mut stage = Stage::Labelling(Dialog::default());
+        let mut stage = Stage::Labelling(Dialog::of_case(None));
         assert_eq!(stage.press(&Press::Enter, false), Wish::Nothing, "a label is asked for");
         enter(&mut stage, "w92near quarter 7x");
         assert_eq!(stage.press(&Press::Backspace, true), Wish::Nothing);
         let annotation =
             Annotation { label: Label::Vehicle, comment: "near quarter 7".into(), perception_caused: None };
-        assert_eq!(stage.press(&Press::Enter, false), Wish::Annotate(annotation));
+        assert_eq!(stage.press(&Press::Enter, false), Wish::Finish(Some(annotation)));
     }
 
     #[test]
     fn keys_held_from_driving_type_nothing_and_a_label_can_be_changed() {
-        let mut stage = Stage::Labelling(Dialog::default());
+        let mut stage = Stage::Labelling(Dialog::of_case(None));
         enter(&mut stage, "1a");
         assert_eq!(stage.press(&text("w"), true), Wish::Nothing);
-        let entered = Dialog { label: Some(Label::Walker), comment: "a".into() };
+        let entered = Dialog { comment: "a".into(), ..Dialog::of_case(Some(Label::Walker)) };
         assert_eq!(stage, Stage::Labelling(entered));
         for _ in 0..2 {
             stage.press(&Press::Backspace, false);
         }
         enter(&mut stage, "4");
-        let entered = Dialog { label: Some(Label::Boredom), comment: String::new() };
+        let entered = Dialog::of_case(Some(Label::Boredom));
         assert_eq!(stage, Stage::Labelling(entered));
     }
 
@@ -187,11 +182,39 @@ mod tests {
     fn q_quits_between_runs_only_and_escape_everywhere_but_in_a_label() {
         assert_eq!(Stage::Ready.press(&text("q"), false), Wish::Quit);
         assert_eq!(Stage::Driving.press(&text("q"), false), Wish::Nothing, "it is beside W and A");
-        assert_eq!(Stage::Driving.press(&Press::Escape, false), Wish::Quit);
-        let mut stage = Stage::Labelling(Dialog::default());
+        assert_eq!(Stage::Driving.press(&Press::Escape, false), Wish::Pause(Pause::Ending), "it asks first");
+        let mut ending = Stage::Paused(Pause::Ending);
+        assert_eq!(ending.press(&Press::Escape, true), Wish::Nothing, "held down");
+        let [again, on] = [Press::Escape, text("p")].map(|press| ending.press(&press, false));
+        assert_eq!((again, on), (Wish::Quit, Wish::Resume));
+        let mut stage = Stage::Labelling(Dialog::of_case(None));
         enter(&mut stage, "q1q");
         assert_eq!(stage.annotation().map(|a| (a.label, a.comment)), Some((Label::Walker, "q".into())));
         assert_eq!(stage.press(&Press::Escape, false), Wish::Nothing, "the entry goes first");
         assert_eq!((stage.annotation(), stage.press(&Press::Escape, false)), (None, Wish::Quit));
+    }
+
+    #[test]
+    fn a_run_that_is_broken_off_is_no_corner_case_and_may_go_without_a_word() {
+        for mut stage in [Stage::Driving, Stage::Paused(Pause::UnitLost)] {
+            assert_eq!(stage.press(&text("b"), false), Wish::BreakOff);
+        }
+        let mut stage = Stage::Labelling(Dialog::of_broken_off());
+        enter(&mut stage, "14");
+        assert_eq!(stage.annotation(), None, "no takeover has happened");
+        assert_eq!(stage.press(&Press::Enter, false), Wish::Finish(None));
+        enter(&mut stage, "6wheel");
+        let annotation = Annotation { label: Label::TechnicalFault, comment: "wheel".into(), perception_caused: None };
+        assert_eq!(stage.press(&Press::Enter, false), Wish::Finish(Some(annotation)));
+    }
+
+    #[test]
+    fn a_takeover_can_be_labelled_while_it_goes_on_and_set_aside_at_its_end() {
+        assert_eq!(Stage::Driving.press(&text("2"), false), Wish::Label(Label::Vehicle));
+        assert_eq!(Stage::Driving.press(&text("6"), false), Wish::Nothing);
+        let mut stage = Stage::Labelling(Dialog::of_case(Some(Label::Vehicle)));
+        assert_eq!(stage.press(&Press::Backspace, false), Wish::Nothing);
+        enter(&mut stage, "5");
+        assert_eq!(stage.annotation().map(|said| said.label), Some(Label::DriverError));
     }
 }
