@@ -30,6 +30,7 @@ fn two_people_drive_intervene_label_and_go_on() {
     display.focus(&safety);
     display.keys(&["keydown", "Down"]);
     wait_until(|| Recording::open(&record).is_ok_and(|recording| recording.log().intervention.is_some()));
+    std::thread::sleep(Duration::from_millis(200));
     display.keep("takeover");
     rig.says("run 1 has ended");
     display.keys(&["keyup", "Down"]);

@@ -2,7 +2,8 @@
 
 use replay::{Annotation, Label};
 
-use super::{Press, Wish};
+use super::press::Press;
+use super::wish::Wish;
 
 /// Longest comment, characters.
 const MAX_COMMENT: usize = 400;

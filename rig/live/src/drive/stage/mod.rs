@@ -1,10 +1,14 @@
 //! Where the session stands between and within runs, and what the operators' keys do there.
 
 mod dialog;
+mod press;
+mod wish;
 
 use replay::{Annotation, Label};
 
 pub use dialog::Dialog;
+pub use press::Press;
+pub use wish::{Pause, Wish};
 
 /// Where a session stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,60 +21,6 @@ pub enum Stage {
     Paused(Pause),
     /// The run has ended and waits for what is to be said of it.
     Labelling(Dialog),
-}
-
-/// Why time stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pause {
-    /// The operators asked for it.
-    Asked,
-    /// A seat is without its unit, or no window of the rig has the keyboard.
-    UnitLost,
-    /// Somebody asked for the end of the session, and is to confirm it.
-    Ending,
-}
-
-/// A key went down.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Press {
-    /// Enter.
-    Enter,
-    /// Escape.
-    Escape,
-    /// Backspace.
-    Backspace,
-    /// Any other key.
-    Text {
-        /// What it types into a comment.
-        text: String,
-        /// The operators' letter or digit that it stands for; none of a seat's key, whatever that types.
-        command: Option<char>,
-    },
-}
-
-/// What a key asks for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Wish {
-    /// Nothing, or something that the stage has done itself.
-    Nothing,
-    /// Start the run.
-    Start,
-    /// Let the units change seats.
-    Swap,
-    /// Switch force feedback off or on.
-    Force,
-    /// Let time stand.
-    Pause(Pause),
-    /// Let time go on.
-    Resume,
-    /// End the run, and ask why.
-    BreakOff,
-    /// The takeover that is on is of this kind.
-    Label(Label),
-    /// End the run with this said about it, if anything.
-    Finish(Option<Annotation>),
-    /// End the session.
-    Quit,
 }
 
 impl Stage {

@@ -149,6 +149,7 @@ fn headline(ui: &mut Ui, status: &Status) {
 }
 
 fn figures(ui: &mut Ui, status: &Status) {
+    let kmh = |mps: f32| base::words::kmh(mps.into());
     let mut lines = vec![
         ("map", status.about.map.clone()),
         ("checkpoint", status.about.checkpoint.clone()),
@@ -156,7 +157,7 @@ fn figures(ui: &mut Ui, status: &Status) {
         ("safety driver", status.units[1].clone()),
         ("intervention from", thresholds(status)),
         ("force feedback", status.force.clone()),
-        ("speed", format!("{:.0} of {:.0} km/h", 3.6 * status.hud.speed_mps, 3.6 * status.hud.limit_mps)),
+        ("speed", format!("{} of {} km/h", kmh(status.hud.speed_mps), kmh(status.hud.limit_mps))),
         ("this run", exposure(status.odometer_mm, status.tick)),
         (
             "runs so far",
