@@ -5,6 +5,7 @@ pub mod criticality;
 pub mod footage;
 pub mod human;
 pub mod run_figures;
+pub mod run_outcome;
 pub mod statistics;
 pub mod stats;
 

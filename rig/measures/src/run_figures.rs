@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::room::RoadUsers;
-use kernel::arbiter::Outcome;
 use kernel::{RoadNetwork, World};
 use replay::{Label, Manifest, Recording};
 use serde::Serialize;
+
+use crate::run_outcome::RunOutcome;
 
 /// What a drive came to, or what a recording holds of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,7 +29,7 @@ pub struct RunFigures {
     pub missing: Option<RoadUsers>,
     /// `intervened`, `missed`, `censored`, or `stopped` when it was ended from outside; `driver-error`, `technical-fault` or
     /// `discarded` where operators set it aside.
-    pub outcome: &'static str,
+    pub outcome: RunOutcome,
     /// Whether it was a drive to get used to the rig, which does not count.
     pub familiarisation: bool,
     /// What kind of corner case, if it is one.
@@ -43,9 +44,7 @@ impl RunFigures {
     /// Those of a recording, and of its map where that is there.
     pub fn of(recording: &Recording, network: Option<&Arc<RoadNetwork>>) -> Self {
         let log = recording.log();
-        let outcome = log.summary.as_ref().and_then(|s| s.outcome);
         let annotation = log.annotation.as_ref();
-        let set_aside = annotation.map(|a| a.label).filter(|label| !label.is_case());
         Self {
             map: log.manifest.scenario.map.clone(),
             seed: log.manifest.scenario.seed,
@@ -54,7 +53,7 @@ impl RunFigures {
             minutes: log.last_tick() as f64 / f64::from(60 * kernel::time::TICK_HZ),
             asked: RoadUsers::asked(&log.manifest.scenario.traffic),
             missing: network.and_then(|network| missing(&log.manifest, network)),
-            outcome: set_aside.map_or_else(|| outcome_name(outcome), Label::name),
+            outcome: RunOutcome::of(log),
             familiarisation: study::is_familiarisation(&log.manifest.provenance),
             label: annotation.map(|a| a.label).filter(|label| label.is_case()).map(Label::name),
             comment: annotation.map(|a| a.comment.clone()),
@@ -77,27 +76,4 @@ fn missing(manifest: &Manifest, network: &Arc<RoadNetwork>) -> Option<RoadUsers>
     manifest.check_kernel().ok()?;
     let world = World::new(&manifest.scenario, network).ok()?;
     Some(RoadUsers::missing(&world.missing()))
-}
-
-/// What an outcome means, for those who read it for the first time; nothing for what is none.
-pub fn outcome_words(outcome: &str) -> &'static str {
-    match outcome {
-        "intervened" => "the safety driver took over: a corner case",
-        "missed" => "a collision that nobody prevented: a corner case",
-        "censored" => "its time or its road was over, without a corner case",
-        "stopped" => "ended from outside, without a corner case",
-        "driver-error" => "an error of the driver's, by the operators: no corner case, its kilometres count",
-        "technical-fault" => "the rig failed, by the operators: it does not count",
-        "discarded" => "discarded by the operators: it does not count",
-        _ => "",
-    }
-}
-
-fn outcome_name(outcome: Option<Outcome>) -> &'static str {
-    match outcome {
-        Some(Outcome::Intervened) => "intervened",
-        Some(Outcome::Missed) => "missed",
-        Some(Outcome::Censored) => "censored",
-        None => "stopped",
-    }
 }

@@ -1,13 +1,14 @@
 //! What makes drives a study with people: who drives by pseudonym, what they answered, whether the
-//! drive counts, and which checkpoint drives without anybody knowing.
+//! drive counts, which checkpoint drives without anybody knowing, and what is driven in which order.
 //!
 //! All of it is provenance in the recording's manifest; nothing of it steers a replay.
 
 mod attached;
 mod blind;
 mod lineup;
+pub mod protocol;
 mod pseudonym;
-mod questionnaire;
+pub mod questionnaire;
 
 use std::path::PathBuf;
 
@@ -16,7 +17,8 @@ use replay::Provenance;
 
 pub use attached::{answers_of, attached, path_beside};
 pub use blind::{is_blind, tellable};
-pub use lineup::{Cast, Lineup};
+pub use lineup::{Cast, Draw, Lineup};
+pub use protocol::Protocol;
 pub use pseudonym::Pseudonym;
 pub use questionnaire::{Answer, Questionnaire};
 
@@ -54,6 +56,11 @@ impl Study {
             entries.extend(Questionnaire::read(path)?.provenance());
         }
         Ok(entries)
+    }
+
+    /// The checkpoints of which each run draws one: those of a blind session, or else this one.
+    pub fn candidates(&self, otherwise: &CheckpointChoice) -> Vec<CheckpointChoice> {
+        if self.blind.is_empty() { vec![otherwise.clone()] } else { self.blind.clone() }
     }
 
     /// The operators' pseudonyms, semantic driver's first.

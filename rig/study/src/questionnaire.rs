@@ -8,7 +8,8 @@ use std::path::Path;
 use anyhow::anyhow;
 use base::files::{self, most};
 use base::toml_text;
-use base::words::SEATS;
+use base::words::{self, SEATS};
+use kernel::Seat;
 use replay::Provenance;
 use serde::Serialize;
 use toml::{Table, Value};
@@ -25,6 +26,31 @@ const NUMBERS: [(&str, RangeInclusive<i64>); 6] = [
     ("after.fatigue", 1..=9),
     ("after.stress", 0..=10),
 ];
+/// A question that is answered by a whole number.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Question {
+    /// Its name, after the seat's.
+    pub name: &'static str,
+    /// In words.
+    pub words: &'static str,
+    /// Answers that it allows.
+    pub range: RangeInclusive<i64>,
+}
+
+/// What is asked after a drive.
+pub const AFTER: [Question; 2] = [
+    Question {
+        name: "after.fatigue",
+        words: "How sleepy are you? 1 extremely alert, 3 alert, 5 neither, 7 sleepy, 9 very sleepy",
+        range: 1..=9,
+    },
+    Question {
+        name: "after.stress",
+        words: "How stressed are you? 0 not at all, 10 the worst imaginable",
+        range: 0..=10,
+    },
+];
+
 /// The question that is answered in words.
 const REMARK: &str = "remark";
 /// Longest answer in words, characters.
@@ -118,6 +144,11 @@ impl Questionnaire {
             self.0.insert(key, answer);
         }
         Ok(self)
+    }
+
+    /// Takes an answer of the driver in a seat.
+    pub fn answer(&mut self, seat: Seat, question: &Question, number: i64) {
+        self.0.insert(format!("{}.{}", words::seat(seat), question.name), Answer::Number(number));
     }
 
     /// Whether nobody answered anything.
@@ -246,6 +277,17 @@ mod tests {
         ] {
             let sentence = said(text);
             assert!(sentence.starts_with(words) && !sentence.contains('\n'), "{sentence:?}, not {words:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_asked_after_a_drive_is_what_files_can_answer() {
+        for question in &AFTER {
+            let (_, range) = NUMBERS.into_iter().find(|(name, _)| *name == question.name).expect("a known question");
+            assert_eq!(range, question.range);
+            let mut asked = Questionnaire::default();
+            asked.answer(Seat::Safety, question, *range.start());
+            assert_eq!(Questionnaire::from_table(asked.to_table()), Ok(asked));
         }
     }
 

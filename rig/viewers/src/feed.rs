@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use base::image::Image;
 use base::newest::Newest;
-use kernel::SceneSnapshot;
 use kernel::time::Tick;
+use kernel::{RoadNetwork, SceneSnapshot};
 
 use crate::figures::TickFigures;
 
@@ -27,6 +27,10 @@ pub struct Feed {
 pub struct Look {
     /// Number of the run.
     pub run: u32,
+    /// The map that it drives on.
+    pub network: Arc<RoadNetwork>,
+    /// Which of the session's checkpoints the semantic driver sees it through.
+    pub eye: usize,
     /// What there is to see.
     pub scene: SceneSnapshot,
     /// When it was captured, microseconds since the session began.

@@ -94,6 +94,22 @@ pub struct DriveArgs {
     /// What makes it part of a study with people.
     #[command(flatten, next_help_heading = "Study")]
     pub study: StudyArgs,
+    /// Drive what a plan has for two people, from where it was left under the name of `--record`: maps, checkpoints and
+    /// seats in order, breaks, questions.
+    #[arg(
+        long,
+        value_name = "FILE.toml",
+        help_heading = "Study",
+        conflicts_with_all = [
+            "headless", "map", "scenario", "embed_map", "checkpoint", "seed", "hazards", "weather", "seconds",
+            "brake_threshold", "steer_threshold", "print_scenario", "semantic_name", "safety_name", "questionnaire",
+            "familiarisation", "blind",
+        ]
+    )]
+    pub plan: Option<PathBuf>,
+    /// Print what the plan has, what of it is driven, and what each person did in each seat, and do nothing.
+    #[arg(long, requires = "plan", help_heading = "Study")]
+    pub print_plan: bool,
 }
 
 impl DriveArgs {

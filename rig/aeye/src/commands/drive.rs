@@ -25,10 +25,10 @@ use perception::Compute;
 use render::{AdapterChoice, Renderer};
 use replay::Recording;
 use serde::Serialize;
-use study::{Lineup, Study};
+use study::{Lineup, Protocol, Study};
 use viewers::server::Publisher;
 
-use super::windows;
+use super::{plan, windows};
 use crate::cli::DriveArgs;
 use crate::exit::Verdict;
 use crate::print::{self, print};
@@ -53,6 +53,14 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
             Usage(format!("{}: is named as a corner case; expected another name", args.record().display())).into()
         );
     }
+    if let Some(path) = &args.plan {
+        let protocol = Protocol::read(path)?;
+        return if args.print_plan {
+            plan::print(&protocol, args.record(), json)
+        } else {
+            planned(args, protocol, json)
+        };
+    }
     let (scenario, map) = scenario(args)?;
     if args.print_scenario {
         print::text(&as_driven(scenario, &map)?)?;
@@ -64,6 +72,12 @@ pub fn run(args: &DriveArgs, json: bool) -> anyhow::Result<Verdict> {
     } else {
         windows::drive(args, scenario, map, move |path, figures| tell(path, figures, json))?;
     }
+    Ok(Verdict::Ok)
+}
+
+/// Drives the trials of a protocol that are not driven yet.
+fn planned(args: &DriveArgs, protocol: Protocol, json: bool) -> anyhow::Result<Verdict> {
+    windows::drive_planned(args, protocol, move |path, figures| tell(path, figures, json))?;
     Ok(Verdict::Ok)
 }
 
@@ -123,11 +137,12 @@ fn tell(path: &Path, figures: &RunFigures, json: bool) -> anyhow::Result<()> {
 fn headless(args: &DriveArgs, scenario: &Scenario, map: &Map, json: bool) -> anyhow::Result<()> {
     let study = Study::from(&args.study);
     let about = study.provenance()?;
-    let mut lineup =
-        Lineup::open(&study, &args.checkpoint, (None, args.pictures.imaging.into()), Compute::Cpu, scenario.seed)?;
-    let eye = lineup.of_run(1).clone();
+    let pictures = (None, args.pictures.imaging.into());
+    let lineup = Lineup::open(&study.candidates(&args.checkpoint), true, pictures, Compute::Cpu)?;
+    let drawn = lineup.cast().draw(scenario.seed).eye_of_run(1);
+    let eye = lineup.eye(drawn).clone();
     let mut manifest = simulate::manifest(scenario, map, &eye);
-    manifest.provenance.extend(lineup.cast().provenance_of_run(1).clone());
+    manifest.provenance.extend(lineup.cast().provenance(drawn).clone());
     manifest.provenance.extend(about);
     let vision = Vision::new(Renderer::new(&map.network, &AdapterChoice::default())?, eye);
     let no_room = NoRoom::default().of_run(scenario, map)?;

@@ -16,6 +16,7 @@ pub mod export;
 pub mod gallery;
 pub mod inspect;
 pub mod map;
+mod plan;
 pub mod questionnaire;
 pub mod redrive;
 pub mod render;

@@ -11,6 +11,7 @@ use drivers::film::Film;
 use kernel::Scenario;
 use measures::RunFigures;
 use serde::Serialize;
+use study::Protocol;
 
 use crate::cli::{DoctorArgs, DriveArgs, WheelCommand};
 use crate::exit::Verdict;
@@ -31,6 +32,15 @@ pub fn drive(
     _: impl Fn(&Path, &RunFigures) -> anyhow::Result<()> + Send + Sync + 'static,
 ) -> anyhow::Result<()> {
     Err(refusal("expected --headless"))
+}
+
+/// Live runs of a protocol; there are none.
+pub fn drive_planned(
+    _: &DriveArgs,
+    _: Protocol,
+    _: impl Fn(&Path, &RunFigures) -> anyhow::Result<()> + Send + Sync + 'static,
+) -> anyhow::Result<()> {
+    Err(refusal("plans are driven in windows"))
 }
 
 /// A recording or case in a window; there is none.

@@ -3,6 +3,7 @@
 mod display;
 mod drive;
 mod ends;
+mod plan;
 mod rig;
 mod study;
 mod view;

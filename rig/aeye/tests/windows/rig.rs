@@ -34,11 +34,24 @@ impl Rig {
 
     /// The same behind another program, which runs it.
     pub fn start_with(display: &Display, wrapper: &[&str], record: &Path, arguments: &[&str]) -> Self {
+        let drive = ["drive", "--map", "city", "--checkpoint", "early", "--record"];
+        let record = record.to_str().expect("a plain path");
+        let arguments: Vec<&str> = drive.into_iter().chain([record]).chain(arguments.iter().copied()).collect();
+        Self::run(display, wrapper, &arguments)
+    }
+
+    /// Starts what a plan has, or goes on with it, at keyboards.
+    pub fn planned(display: &Display, plan: &Path, record: &Path) -> Self {
+        let [plan, record] = [plan, record].map(|path| path.to_str().expect("a plain path"));
+        let keyboards = ["--semantic", "keyboard", "--safety", "keyboard"];
+        Self::run(display, &[], &[&["drive", "--plan", plan, "--record", record], &keyboards[..]].concat())
+    }
+
+    fn run(display: &Display, wrapper: &[&str], arguments: &[&str]) -> Self {
         let program: Vec<&str> = wrapper.iter().copied().chain([AEYE]).collect();
         let mut child = Command::new(program[0])
             .args(&program[1..])
-            .args(["--json", "drive", "--map", "city", "--checkpoint", "early", "--record"])
-            .arg(record)
+            .arg("--json")
             .args(arguments)
             .env("DISPLAY", display.name())
             .env("XDG_CONFIG_HOME", display.folder())

@@ -4,6 +4,7 @@
 mod kind;
 mod listed;
 mod names;
+mod numbered;
 mod twins;
 
 use std::collections::HashSet;
@@ -15,6 +16,7 @@ use anyhow::{Context, anyhow, bail};
 pub use self::kind::{Kind, case_path, fork_name, is_case_name, is_drive_name};
 pub use self::listed::expand;
 use self::names::{Way, tell_apart};
+pub use self::numbered::{numbered, numbers};
 use self::twins::{Opened, Place, Twins};
 use crate::failure::{Failed, Failure};
 use crate::say::say;

@@ -9,7 +9,7 @@ use super::moved::Moved;
 use super::sight::Contact;
 
 /// So long the car stands without a way by before it backs off, seconds.
-const WAITED_S: f32 = 60.0;
+const WAITED_S: f32 = 45.0;
 /// Who stands nearer before its front, and to its sides, may need its place, metres. Queues keep more.
 const NEAR_M: f32 = 1.5;
 const BESIDE_M: f32 = 0.3;
@@ -22,12 +22,14 @@ const THROTTLE_S_PER_M: f32 = 0.5;
 const BRAKE: f32 = 0.3;
 /// It does so again only after it has driven on, metres.
 const AGAIN_M: f32 = 5.0;
+/// Who has come no farther than this still stands there, metres: a way by that led nowhere.
+const NOWHERE_M: f32 = 0.5;
 
 /// Whether the car backs off, and when it may.
 #[derive(Clone, Copy, Debug)]
 pub enum Backing {
-    /// It has stood for so long.
-    Waits { stood_s: f32 },
+    /// It has been stuck for so long, and has come so far meanwhile.
+    Waits { stood_s: f32, crept_m: f32 },
     /// It backs off, so far yet and for so long at most.
     Backs { left_m: f32, left_s: f32 },
     /// It did, and has driven so far since.
@@ -36,7 +38,7 @@ pub enum Backing {
 
 impl Default for Backing {
     fn default() -> Self {
-        Self::Waits { stood_s: 0.0 }
+        Self::Waits { stood_s: 0.0, crept_m: 0.0 }
     }
 }
 
@@ -49,9 +51,12 @@ impl Backing {
     /// Takes in how the car moved in this tick; `is_stuck` where it waits for what stands close before it and knows no way by.
     pub fn carry(&mut self, moved: Moved, is_stuck: bool) {
         match self {
-            Self::Waits { stood_s } => {
-                *stood_s = if is_stuck && moved.forward_m == 0.0 { *stood_s + TICK_S } else { 0.0 };
-                if *stood_s >= WAITED_S {
+            Self::Waits { stood_s, crept_m } => {
+                *crept_m += moved.forward_m;
+                *stood_s += if is_stuck && moved.forward_m == 0.0 { TICK_S } else { 0.0 };
+                if *crept_m > NOWHERE_M {
+                    *self = Self::default();
+                } else if *stood_s >= WAITED_S {
                     *self = Self::Backs { left_m: BACK_M, left_s: LONGEST_S };
                 }
             }
@@ -108,7 +113,8 @@ mod tests {
     fn it_backs_off_once_after_a_while_and_again_only_after_it_has_driven_on() {
         let mut backing = Backing::default();
         assert!(!after(&mut backing, WAITED_S - 1.0, STILL, true));
-        assert!(!after(&mut backing, 0.1, moved(0.3), true) && !after(&mut backing, WAITED_S - 1.0, STILL, true));
+        assert!(!after(&mut backing, 2.0, moved(0.3), true) && !after(&mut backing, WAITED_S - 1.0, STILL, true));
+        assert!(!after(&mut backing, 0.2, moved(0.3), false), "a way by that led nowhere");
         assert!(after(&mut backing, 1.1, STILL, true));
         assert!(after(&mut backing, 0.9 * BACK_M / BACKING_MPS, moved(-BACKING_MPS), true));
         assert!(!after(&mut backing, 0.2 * BACK_M / BACKING_MPS, moved(-BACKING_MPS), true));

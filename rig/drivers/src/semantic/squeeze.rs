@@ -40,6 +40,8 @@ const LET_PASS_M: f32 = 15.0;
 const FORGOTTEN_S: f32 = 45.0;
 /// Who moves is this near to where it was seen, metres.
 const ONE_BODY_M: f32 = 3.0;
+/// Who leaves the picture of a car that creeps less than this has driven off, metres.
+const CREPT_M: f32 = 0.1;
 /// What would be so far inside the car by now has moved since it was seen, metres: what is told of places is no better.
 const INSIDE_M: f32 = 0.2;
 
@@ -114,8 +116,10 @@ pub struct Squeeze {
     way: Option<Way>,
     driven_m: f32,
     since_look_m: f32,
-    /// What the last mask showed, and what left the picture while the car drove.
+    /// What the last mask showed, what one showed before the car crept so far since, and what left the picture meanwhile.
     seen: Vec<Spot>,
+    before: Vec<Spot>,
+    crept_m: f32,
     gone: Vec<Spot>,
 }
 
@@ -127,7 +131,7 @@ impl Squeeze {
 
     /// Carries what is known along while the car moves; `waits` for something that stands in its way.
     pub fn carry(&mut self, moved: Moved, waits: bool) {
-        self.seen.iter_mut().chain(&mut self.gone).for_each(|spot| spot.carry(moved));
+        self.seen.iter_mut().chain(&mut self.before).chain(&mut self.gone).for_each(|spot| spot.carry(moved));
         self.gone.iter_mut().for_each(|spot| spot.unseen_s += TICK_S);
         self.gone.retain(|spot| spot.at.0 > 0.0 && spot.unseen_s < FORGOTTEN_S);
         if let Some(left) = self.gone.iter().find(|spot| spot.is_inside()).map(|spot| spot.at) {
@@ -138,7 +142,11 @@ impl Squeeze {
         if let Some(way) = &mut self.way {
             way.free_m -= moved.forward_m;
         } else {
-            self.stood_s = if waits && moved.forward_m == 0.0 { self.stood_s + TICK_S } else { 0.0 };
+            // Who backs off makes room to go on at once.
+            let backs_off = moved.forward_m < 0.0;
+            let stands = waits && moved.forward_m == 0.0;
+            self.stood_s += if stands { TICK_S } else { 0.0 };
+            self.stood_s = if stands || backs_off { self.stood_s } else { 0.0 };
             self.driven_m = 0.0;
         }
         if self.driven_m > FARTHEST_M {
@@ -148,10 +156,15 @@ impl Squeeze {
 
     /// Takes in a mask: the way beside what it shows that turns least from the wanted one.
     pub fn look(&mut self, sight: &Sight<'_>, contacts: &[Contact], others: &[&Tracks], wanted: Arc) {
-        let seen = std::mem::replace(&mut self.seen, contacts.iter().map(Spot::of).collect());
+        self.seen = contacts.iter().map(Spot::of).collect();
+        let crept_m = std::mem::take(&mut self.since_look_m);
+        self.crept_m += crept_m;
         // Who leaves the picture of a car that stands has driven off.
-        if std::mem::take(&mut self.since_look_m) > 0.0 {
-            self.gone.extend(seen.into_iter().filter(|spot| is_hidden(sight, spot.hides)));
+        if self.crept_m > CREPT_M {
+            self.gone.extend(self.before.drain(..).filter(|spot| is_hidden(sight, spot.hides)));
+        }
+        if crept_m == 0.0 || self.crept_m > CREPT_M {
+            (self.before, self.crept_m) = (self.seen.clone(), 0.0);
         }
         let moving = || others.iter().flat_map(|others| others.moving(MOVING_MPS)).map(|track| track.at);
         self.gone.retain(|spot| moving().all(|at| !is_of(at, spot)));
@@ -260,6 +273,19 @@ mod tests {
         let [left, right] = [1.0, -1.0].map(|side| after_s(&beside(side), WAITED_S + 1.0).expect("there is a way"));
         assert!(left.arc.curvature > 0.01 && right.arc.curvature < -0.01, "{left:?} {right:?}");
         assert_eq!(after_s(&vehicle_rear(6.5, -8.0, 8.0), WAITED_S + 1.0), None, "from side to side");
+    }
+
+    #[test]
+    fn who_has_backed_off_after_waiting_goes_by_at_once() {
+        let after = |moved: Moved| {
+            let mut squeeze = Squeeze::default();
+            (0..1860).for_each(|_| squeeze.carry(STILL, true));
+            (0..60).for_each(|_| squeeze.carry(moved, true));
+            on_asphalt(|sight| squeeze.look(sight, &vehicle_rear(8.0, -3.0, -0.5), &[], STRAIGHT));
+            squeeze.way().is_some()
+        };
+        assert!(after(Moved { forward_m: -0.01, turned_rad: 0.0 }));
+        assert!(!after(Moved { forward_m: 0.01, turned_rad: 0.0 }), "who drives on has not waited");
     }
 
     /// What stands there is nearer to the left edge than to the right one, and seems the other way round later.
@@ -372,6 +398,22 @@ mod tests {
             (0..6).for_each(|_| driving.carry(STILL));
         }
         assert_eq!(left_behind(Contact::of_car((6.2, 2.2)), &[&driving]).beside_m(Arc { curvature: 0.15 }), None);
+    }
+
+    /// Oncoming cars pass a car that stands before a narrow place, and moves by a hand's breadth now and then.
+    #[test]
+    fn who_drives_by_a_car_that_hardly_moves_is_not_remembered() {
+        let passes_while = |crept_m: f32| {
+            let mut squeeze = Squeeze::default();
+            for look in 0..40 {
+                let contacts = if look % 4 < 2 { vec![Contact::of_car((6.2, 2.2))] } else { Vec::new() };
+                on_asphalt(|sight| squeeze.look(sight, &contacts, &[], STRAIGHT));
+                let is_moving = look % 4 == 1;
+                squeeze.carry(if is_moving { Moved { forward_m: crept_m, turned_rad: 0.0 } } else { STILL }, true);
+            }
+            squeeze.beside_m(Arc { curvature: 0.15 }).is_some()
+        };
+        assert_eq!([0.03, 1.0].map(passes_while), [false, true]);
     }
 
     /// A vehicle's flank left the picture while both moved, and the car drives on over where it was.

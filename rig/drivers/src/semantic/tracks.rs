@@ -14,6 +14,8 @@ const KNOWN_DEPTH_M: f32 = 2.0;
 const MOST_CHANGE_MPS: f32 = 6.0;
 /// An edge that seems faster than the rest by more than this is not the one that was seen before, m/s.
 const OTHER_EDGE_MPS: f32 = 8.0;
+/// Who shows no edge that was seen before goes on across as it did, but for who moves by less than this share of that.
+const STAYS_SHARE: f32 = 0.3;
 /// Gap that splits contacts into two vehicles, metres, and its growth with distance.
 const GAP_M: f32 = 1.2;
 const GAP_PER_M: f32 = 0.08;
@@ -90,7 +92,10 @@ impl Track {
         let share = NEW_SHARE.min(known_share.max(2.0 / (self.looks + 1) as f32));
         let along_mps = mix(self.velocity_mps.0, share, at.0 - self.at.0);
         let edges = blob.edges().map(|edge| edge.map(|edge| sight::on_ray(edge, edge.0 + at.0 - blob.at.0)));
-        let to_left_m = self.to_left_m(&edges, dt_s).unwrap_or(self.velocity_mps.1 * dt_s);
+        let to_left_m = self.to_left_m(&edges, dt_s).unwrap_or_else(|| {
+            let (middle_m, expected_m) = (at.1 - self.at.1, self.velocity_mps.1 * dt_s);
+            if middle_m.abs() < STAYS_SHARE * expected_m.abs() { middle_m } else { expected_m }
+        });
         let velocity_mps = (along_mps, mix(self.velocity_mps.1, share, to_left_m));
         let seen = self.seen.iter().copied().chain([blob.seen()]).collect();
         Self { at, velocity_mps, edges, looks: self.looks + 1, unseen_s: 0.0, seen }
@@ -323,6 +328,22 @@ mod tests {
         };
         let merging_mps = fastest_across_mps((0..40).map(row));
         assert!(leaving_mps < 0.5 && merging_mps < 1.5, "{leaving_mps} {merging_mps} m/s");
+    }
+
+    /// A bin between the car and its picture's side, whose edge seemed to be that of who drove by behind it.
+    #[test]
+    fn who_shows_no_edge_is_not_believed_to_move_for_ever() {
+        let mut tracks = Tracks::default();
+        let cut = |y_m: f32| Contact { is_cut: true, ..Contact::of_car((6.5, y_m)) };
+        for look in 0..60 {
+            match look {
+                0..10 => tracks.look(&[Contact::of_car((6.5, 3.9 - 0.6 * (9 - look) as f32))]),
+                _ => tracks.look(&[cut(4.1), cut(3.8)]),
+            }
+            (0..6).for_each(|_| tracks.carry(STILL));
+            let is_moving = tracks.moving(1.5).next().is_some();
+            assert!(if look < 10 { look < 8 || is_moving } else { look < 30 || !is_moving }, "{look}: {tracks:?}");
+        }
     }
 
     #[test]

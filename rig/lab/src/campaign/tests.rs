@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use base::room::RoadUsers;
+use kernel::arbiter::Outcome;
 use measures::run_figures::RunFigures;
+use measures::run_outcome::RunOutcome;
 use measures::statistics::Ride;
 
 use super::figures;
@@ -19,7 +21,7 @@ fn runs(each: impl IntoIterator<Item = (f64, bool)>) -> Vec<RunLine> {
         minutes: 1.0,
         asked: RoadUsers::default(),
         missing: None,
-        outcome: "censored",
+        outcome: RunOutcome::Ended(Outcome::Censored),
         familiarisation: false,
         label: None,
         comment: None,

@@ -5,7 +5,6 @@ use std::fmt;
 use base::say::printable;
 use base::words;
 use kernel::time::{TICK_HZ, Tick};
-use measures::run_figures::outcome_words;
 use measures::{Criticality, human};
 
 use super::contents::{Contents, Overall};
@@ -45,7 +44,7 @@ fn text(c: &Contents) -> String {
     }
     line("ticks", format!("{} to {}{}", c.first_tick, c.last_tick, if c.finished { "" } else { " (cut off)" }));
     line("driven", format!("{:.3} km, {:.2} min", c.figures.km, c.figures.minutes));
-    line("outcome", format!("{} ({})", c.figures.outcome, outcome_words(c.figures.outcome)));
+    line("outcome", format!("{} ({})", c.figures.outcome, c.figures.outcome.meaning()));
     line(
         "holds",
         [(c.keyframes, "keyframe"), (c.masks, "mask"), (c.events.len(), "event")]
@@ -64,13 +63,15 @@ fn text(c: &Contents) -> String {
     if let Some(i) = &c.intervention {
         line("takeover", format!("{} at {} km/h", at(i.tick), words::kmh(i.speed_mps.into())));
     }
-    if let (Some(label), Some(comment)) = (c.figures.label, &c.figures.comment) {
-        let by = match c.figures.perception_caused {
-            Some(true) => ", caused by perception",
-            Some(false) => ", not caused by perception",
-            None => "",
-        };
-        line("label", format!("{label}: {comment}{by}"));
+    let by = match c.figures.perception_caused {
+        Some(true) => ", caused by perception",
+        Some(false) => ", not caused by perception",
+        None => "",
+    };
+    match (c.figures.label, c.figures.comment.as_deref()) {
+        (Some(label), Some(comment)) => line("label", format!("{label}: {comment}{by}")),
+        (None, Some(comment)) if !comment.is_empty() => line("comment", comment.to_owned()),
+        _ => {}
     }
     if let Some(w) = &c.window {
         line("window", format!("ticks {} to {}, {}", w.from, w.to, words::count(w.scenes, "scene")));

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use base::newest::Newest;
-use kernel::arbiter::{Outcome, Phase};
+use kernel::arbiter::Phase;
 use kernel::events::Hud;
 use kernel::scenario::Rules;
 use kernel::time::Tick;
-use kernel::{Seat, TickInput, World};
-use replay::{Annotation, Label, Log};
+use kernel::{Seat, TickInput};
+use study::protocol::Progress;
 use viewers::events::Events;
 use viewers::feed::{Feed, View};
 use viewers::figures::TickFigures;
@@ -95,6 +95,12 @@ pub struct Status {
     pub odometer_mm: u64,
     /// What the finished runs came to.
     pub totals: Totals,
+    /// The same by person and seat, a line each; none without a plan.
+    pub tally: Arc<[String]>,
+    /// Seconds that are left of a break.
+    pub rest_s: Option<u32>,
+    /// Where people are to answer questions about the run before.
+    pub link: Option<String>,
     /// What the car did wrong, or what happened to it, a moment ago.
     pub alert: Option<Alert>,
     /// How late the last tick began, microseconds.
@@ -115,7 +121,7 @@ pub struct Status {
     pub setup: Arc<[String]>,
     /// How force feedback is.
     pub force: String,
-    /// What does not change.
+    /// What the run is about.
     pub about: Arc<About>,
 }
 
@@ -140,12 +146,6 @@ impl Status {
     }
 }
 
-/// Whether a run is a corner case as it stands, which need not have come to its end.
-pub fn is_case(world: &World) -> bool {
-    let arbiter = world.arbiter();
-    arbiter.intervention.is_some() || arbiter.outcome == Some(Outcome::Missed)
-}
-
 /// What the finished runs came to, with those recorded under the same name before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
@@ -160,32 +160,18 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Adds a run that has ended, of which this was said; as [`Log::decided_at`] and [`Log::counts`] have it.
-    pub fn add(&mut self, world: &World, annotation: Option<&Annotation>) {
-        let said = annotation.map(|annotation| annotation.label);
-        if said.is_none_or(Label::counts) {
-            let is_case = is_case(world) && said.is_none_or(Label::is_case);
-            self.count(world.odometer_mm(), world.tick(), is_case);
-        }
-    }
-
-    /// Adds a recorded run, unless it was for familiarisation or does not count.
-    pub fn add_recorded(&mut self, log: &Log) {
-        if study::is_familiarisation(&log.manifest.provenance) || !log.counts() {
-            return;
-        }
-        self.count(log.odometer_mm(), log.last_tick(), log.decided_at().is_some());
-    }
-
-    fn count(&mut self, odometer_mm: u64, ticks: Tick, is_case: bool) {
-        self.runs += 1;
-        self.odometer_mm += odometer_mm;
-        self.ticks += ticks;
-        self.cases += u32::from(is_case);
+    /// Of all runs that count.
+    pub fn of(progress: &Progress) -> Self {
+        progress.runs().filter(|ended| ended.counts).fold(Self::default(), |sum, ended| Self {
+            runs: sum.runs + 1,
+            odometer_mm: sum.odometer_mm + ended.odometer_mm,
+            ticks: sum.ticks + ended.ticks,
+            cases: sum.cases + u32::from(ended.is_case),
+        })
     }
 }
 
-/// What does not change in a session.
+/// What does not change in a run.
 #[derive(Clone, Debug)]
 pub struct About {
     /// Name of the checkpoint; in a blind session, that it is one.
@@ -198,4 +184,6 @@ pub struct About {
     pub operators: [Option<String>; 2],
     /// Whether the drives are to get used to the rig and do not count.
     pub is_familiarisation: bool,
+    /// Which trial of a plan it is; none without a plan.
+    pub trial: Option<String>,
 }

@@ -1,6 +1,5 @@
 //! Writes a recording from a thread of its own, so that a slow disk delays nobody.
 
-use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -8,7 +7,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::JoinHandle;
 
 use anyhow::Context;
-use base::library::case_path;
+use base::library;
 
 /// A file that is written in the background. Bytes reach it in order; each flush reaches the system.
 pub struct BackgroundFile {
@@ -71,38 +70,9 @@ fn write_all(mut file: File, inbox: &Receiver<Vec<u8>>) -> io::Result<()> {
 /// Opens a new file for a run: `NAME` for the first, `NAME-2`, `NAME-3` and so on. Nothing is ever
 /// overwritten.
 pub fn create(record: &Path, number: u32) -> anyhow::Result<(PathBuf, File)> {
-    let path = numbered(record, number);
+    let path = library::numbered(record, number);
     let file = OpenOptions::new().write(true).create_new(true).open(&path);
     file.map(|file| (path.clone(), file)).with_context(|| path.display().to_string())
-}
-
-/// The numbers of the runs under a name of which there is a recording, or at least the case.
-pub fn numbers(record: &Path) -> BTreeSet<u32> {
-    let folder = record.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
-    names.filter_map(|name| number_of(record, &name.to_string_lossy())).collect()
-}
-
-fn number_of(record: &Path, name: &str) -> Option<u32> {
-    let is_run = |number: &u32| {
-        let path = numbered(record, *number);
-        [&path, &case_path(&path)].iter().any(|path| path.file_name().is_some_and(|n| n.to_string_lossy() == name))
-    };
-    let stem = record.file_stem()?.to_string_lossy();
-    let rest = name.strip_prefix(&*stem)?.trim_start_matches('-');
-    let digits = rest.split(|c: char| !c.is_ascii_digit()).next().unwrap_or_default();
-    let number = if digits.is_empty() { 1 } else { digits.parse().ok()? };
-    Some(number).filter(is_run)
-}
-
-/// The recording of a run.
-pub fn numbered(record: &Path, number: u32) -> PathBuf {
-    if number == 1 {
-        return record.to_owned();
-    }
-    let stem = record.file_stem().unwrap_or_default().to_string_lossy();
-    let ending = record.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
-    record.with_file_name(format!("{stem}-{number}{ending}"))
 }
 
 #[cfg(test)]
@@ -113,20 +83,11 @@ mod tests {
     fn runs_are_numbered_and_nothing_is_overwritten() {
         let dir = tempfile::tempdir().expect("a folder");
         let record = dir.path().join("drive.mcap");
-        assert_eq!(numbers(&record), BTreeSet::new());
         let names: Vec<_> = (1..=3).map(|number| create(&record, number).expect("free").0).collect();
         let expected = ["drive.mcap", "drive-2.mcap", "drive-3.mcap"].map(|name| dir.path().join(name));
         assert_eq!(names, expected);
         assert!(create(&record, 2).is_err());
-        assert_eq!(case_path(&expected[1]), dir.path().join("drive-2.case.mcap"));
         assert!(create(&dir.path().join("absent/drive.mcap"), 1).is_err());
-        assert_ne!(case_path(Path::new("run.1")), case_path(Path::new("run.2")));
-        std::fs::remove_file(&expected[0]).expect("there");
-        for other in ["drive-x.mcap", "drive-04.mcap", "drive--7.mcap", "drives.mcap", "drive-8.txt"] {
-            std::fs::write(dir.path().join(other), "no run of that name").expect("written");
-        }
-        std::fs::write(dir.path().join("drive-5.case.mcap"), "a case whose recording is elsewhere").expect("written");
-        assert_eq!(numbers(&record), BTreeSet::from([2, 3, 5]));
     }
 
     #[test]

@@ -28,6 +28,8 @@ fn note<'a>(stage: &Stage, phase: Phase, seat: Seat, units: Option<&'a str>) -> 
         (Stage::Paused(_), ..) => "Time stands: P drives on",
         (Stage::Ready, ..) => "N starts the run",
         (Stage::Labelling(_), ..) => "The run has ended: label it in the control centre",
+        (Stage::Asking(_), ..) => "The operators ask you how you are",
+        (Stage::Over, ..) => "All runs of the plan are driven",
         (Stage::Driving, Phase::Arming, None) => "Arming",
         (Stage::Driving, Phase::TakenOver, None) => match seat {
             Seat::Semantic => "The safety driver has the car: your controls are off",
@@ -50,6 +52,7 @@ mod tests {
     fn something_is_said_whenever_something_is_to_be_done() {
         assert_eq!(said(&Stage::Driving, Phase::Driving, None), "");
         assert!(said(&Stage::Ready, Phase::Arming, None).starts_with('N'));
+        assert!(said(&Stage::Over, Phase::Arming, None).starts_with("All runs"));
         assert!(said(&Stage::Labelling(Dialog::of_case(None)), Phase::Done, None).contains("label"));
         assert!(said(&Stage::Paused(Pause::Ending), Phase::Driving, None).contains("Q ends"));
     }

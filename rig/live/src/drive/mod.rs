@@ -11,6 +11,7 @@ mod eyes;
 mod force;
 mod hud;
 mod pacing;
+mod pending;
 mod run;
 mod seating;
 mod simulation;
@@ -29,7 +30,6 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Sender};
 
 use anyhow::{Context, anyhow};
-use base::chart::Chart;
 use base::clock::SessionClock;
 use base::maps::Map;
 use base::output;
@@ -38,15 +38,16 @@ use base::say::say;
 use drivers::checkpoint::CheckpointChoice;
 use drivers::pictures::{Pictures, Screens};
 use drivers::seat::SeatChoice;
+use kernel::Scenario;
 use kernel::time::{TICK_HZ, Tick};
-use kernel::{Scenario, World};
 use render::Camera;
-use study::{Lineup, Study};
+use study::{Lineup, Protocol, Study};
 
 pub use aftermath::Tell;
-use board::{About, Board, Message, Wake};
+use board::{Board, Message, Wake};
+use eyes::Eyes;
 use seating::Seating;
-use simulation::{Links, Plan, Simulation};
+use simulation::{Agenda, Links, Plan, Simulation};
 pub use timings::LiveFigures;
 use timings::Timings;
 use viewers::server::{Endpoint, Server};
@@ -54,10 +55,8 @@ use windows::{Link, Waker, Windows};
 
 /// A session of live drives.
 pub struct Options {
-    /// Where to drive.
-    pub map: Map,
-    /// The scenario of the first run; the others follow from its seed.
-    pub scenario: Scenario,
+    /// What is driven.
+    pub wanted: Wanted,
     /// What each driver drives with, semantic driver's first.
     pub seats: [SeatChoice; 2],
     /// Calibrations of wheels and gamepads, chosen by the names of their devices.
@@ -66,37 +65,37 @@ pub struct Options {
     pub force: f32,
     /// Where the drive is shown to Foxglove.
     pub foxglove: Option<Endpoint>,
-    /// What the semantic driver sees.
-    pub checkpoint: CheckpointChoice,
     /// The pictures in windows.
     pub pictures: Pictures,
-    /// What makes it part of a study with people.
-    pub study: Study,
     /// Where the recording goes; further runs go to `FILE-2.mcap`, `FILE-3.mcap` and so on.
     pub record: PathBuf,
     /// Told what each run came to.
     pub tell: Tell,
 }
 
+/// What is driven in a session.
+pub enum Wanted {
+    /// One scenario, again and again.
+    Scenario {
+        /// Where to drive.
+        map: Map,
+        /// The scenario of the first run; the others follow from its seed.
+        scenario: Box<Scenario>,
+        /// What the semantic driver sees.
+        checkpoint: CheckpointChoice,
+        /// What makes it part of a study with people.
+        study: Study,
+    },
+    /// The trials of a protocol, as far as they are not driven yet.
+    Trials(Protocol),
+}
+
 /// Drives in windows until the operators have had enough.
 pub fn drive(options: Options) -> anyhow::Result<()> {
-    let Options { map, scenario, seats, calibration, force, foxglove, checkpoint, pictures, study, record, tell } =
-        options;
+    let Options { wanted, seats, calibration, force, foxglove, pictures, record, tell } = options;
     output::check_file(&record)?;
-    let lineup = Lineup::open(&study, &checkpoint, pictures.of_networks(), pictures.inference, scenario.seed)?;
-    let plan = Plan {
-        about: about(&study, &lineup, &scenario),
-        map,
-        scenario,
-        force,
-        foxglove,
-        record,
-        provenance: study.provenance()?,
-        cast: lineup.cast().clone(),
-        tell,
-        unattended: None,
-    };
-    let seating = Seating::new(seats, &calibration, &plan.scenario.rules)?;
+    let (plan, lineup) = opened(wanted, &pictures, Around { force, foxglove, record, tell, unattended: None })?;
+    let seating = Seating::new(seats, &calibration)?;
     let timings = session(plan, seating, lineup, &pictures)?;
     if let Some(figures) = timings.figures() {
         say(figures);
@@ -110,31 +109,65 @@ pub fn drive(options: Options) -> anyhow::Result<()> {
 pub fn trial(choice: &CheckpointChoice, pictures: &Pictures, seconds: u32) -> anyhow::Result<LiveFigures> {
     let dir = tempfile::tempdir()?;
     let map = Map::find(kernel::map::BUNDLED[0])?;
-    let (study, scenario) = (Study::default(), map.scenario(1));
-    let lineup = Lineup::open(&study, choice, pictures.of_networks(), pictures.inference, scenario.seed)?;
-    let plan = Plan {
-        about: about(&study, &lineup, &scenario),
-        scenario,
-        map,
+    let scenario = Box::new(map.scenario(1));
+    let wanted = Wanted::Scenario { map, scenario, checkpoint: choice.clone(), study: Study::default() };
+    let around = Around {
         force: 0.0,
         foxglove: None,
         record: dir.path().join("trial.mcap"),
-        provenance: study.provenance()?,
-        cast: lineup.cast().clone(),
         tell: Arc::new(|_, _| Ok(())),
         unattended: Some(Tick::from(seconds) * Tick::from(TICK_HZ)),
     };
-    let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[], &plan.scenario.rules)?;
+    let (plan, lineup) = opened(wanted, pictures, around)?;
+    let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[])?;
     session(plan, seating, lineup, pictures)?.figures().context("no picture came onto the semantic driver's screen")
+}
+
+/// What a session has around what is driven.
+struct Around {
+    force: f32,
+    foxglove: Option<Endpoint>,
+    record: PathBuf,
+    tell: Tell,
+    unattended: Option<Tick>,
+}
+
+/// What the session is about, and the eyes that drive it.
+fn opened(wanted: Wanted, pictures: &Pictures, around: Around) -> anyhow::Result<(Plan, Lineup)> {
+    let open = |checkpoints: &[CheckpointChoice], is_blind: bool| {
+        Lineup::open(checkpoints, is_blind, pictures.of_networks(), pictures.inference)
+    };
+    let (agenda, study, lineup) = match wanted {
+        Wanted::Scenario { map, scenario, checkpoint, study } => {
+            let lineup = open(&study.candidates(&checkpoint), true)?;
+            let draw = lineup.cast().draw(scenario.seed);
+            (Agenda::Drawn { map, scenario, draw }, study, lineup)
+        }
+        Wanted::Trials(protocol) => {
+            let lineup = open(&protocol.checkpoints, protocol.is_blind)?;
+            let study = protocol.study();
+            (Agenda::Planned(Arc::new(protocol)), study, lineup)
+        }
+    };
+    let Around { force, foxglove, record, tell, unattended } = around;
+    let plan = Plan {
+        agenda,
+        force,
+        foxglove,
+        record,
+        provenance: study.provenance()?,
+        cast: lineup.cast().clone(),
+        operators: study.names(),
+        is_familiarisation: study.familiarisation,
+        tell,
+        unattended,
+    };
+    Ok((plan, lineup))
 }
 
 /// Opens the windows and drives until the operators, or the plan, have had enough.
 fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) -> anyhow::Result<Timings> {
     let windows = Windows::new()?;
-    let network = plan.map.network.clone();
-    World::new(&plan.scenario, &network)?;
-    let [safety_renderer, semantic_renderer] = [eyes::renderer(&network)?, eyes::renderer(&network)?];
-
     let (outbox, inbox) = mpsc::channel();
     let (board, clock) = (Arc::new(Board::default()), SessionClock::starting_now());
     let _server = plan.foxglove.clone().map(|at| Server::bind(at, board.feed.clone(), clock)).transpose()?;
@@ -149,30 +182,31 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) ->
         interrupt: Interrupt::listen(),
     };
     let simulation = Simulation::new(plan, seating, links)?;
+    let network = simulation.network();
+    let [safety_eyes, semantic_eyes] = [Eyes::on(network)?, Eyes::on(network)?];
 
     let (width, height) = pictures.image_size;
     let cameras = match pictures.screens {
         Screens::Three => Camera::driver_row(width, height).to_vec(),
         Screens::One => vec![Camera::driver(width, height)],
     };
-    let imaging = pictures.imaging.in_quality(safety_renderer.quality_for_people());
+    let imaging = pictures.imaging.in_quality(safety_eyes.quality_for_people());
     let cameras: Vec<_> = cameras.into_iter().map(|camera| camera.at(imaging)).collect();
     std::thread::scope(|scope| {
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Safety));
             let cameras = cameras.clone();
-            move || report(&outbox, || eyes::watch_as_safety(board, safety_renderer, &cameras, clock, show))
+            move || report(&outbox, || eyes::watch_as_safety(board, safety_eyes, &cameras, clock, show))
         });
         scope.spawn({
             let (board, outbox, show) = (&*board, outbox.clone(), waker.to(Wake::Semantic));
-            move || report(&outbox, || eyes::watch_as_semantic(board, semantic_renderer, lineup, clock, show))
+            move || report(&outbox, || eyes::watch_as_semantic(board, semantic_eyes, lineup, clock, show))
         });
         let driving = scope.spawn(move || {
             let _over = Over(waker);
             simulation.drive()
         });
-        let chart = Arc::new(Chart::of(&network));
-        let link = Link { board: board.clone(), outbox: outbox.clone(), clock, chart, screens: cameras.len() };
+        let link = Link { board: board.clone(), outbox: outbox.clone(), clock, screens: cameras.len() };
         // A window that the system takes away makes winit panic; the recording is to be finished all the same.
         let shown = catch_unwind(AssertUnwindSafe(|| windows.show(link)));
         let shown = shown.unwrap_or_else(|_| Err(anyhow!("a window was taken away; the session is over")));
@@ -199,15 +233,4 @@ impl Drop for Over {
     fn drop(&mut self) {
         self.0.wake(Wake::Over);
     }
-}
-
-/// What may be shown of a session while it lasts.
-fn about(study: &Study, lineup: &Lineup, scenario: &Scenario) -> Arc<About> {
-    Arc::new(About {
-        checkpoint: lineup.cast().public_name().to_owned(),
-        map: scenario.map.clone(),
-        rules: scenario.rules,
-        operators: study.names(),
-        is_familiarisation: study.familiarisation,
-    })
 }

@@ -10,11 +10,13 @@ use drivers::safety::SafetyBot;
 use drivers::semantic::SemanticBot;
 use drivers::session::{Session, SessionState};
 use drivers::{Driver, MaskView, SemanticView};
+use kernel::time::Tick;
 use kernel::{Controls, Seat, TickInput, TickOutput, World};
 use replay::{Annotation, LiveTimes, Manifest, MaskShown, Note, NoteKind};
 use viewers::feed::View;
 
 use super::disk::BackgroundFile;
+use super::pending::Pending;
 use crate::units::{CarState, Polled, SeatChoice};
 
 /// The bots of those seats that no one sits in.
@@ -73,6 +75,7 @@ impl Screen {
 pub struct Run {
     session: Session<BackgroundFile>,
     bots: Bots,
+    notes: Pending,
     path: PathBuf,
 }
 
@@ -86,7 +89,7 @@ impl Run {
         file: BackgroundFile,
     ) -> anyhow::Result<Self> {
         let session = Session::new(world, manifest, file).with_context(|| path.display().to_string())?;
-        Ok(Self { session, bots, path })
+        Ok(Self { session, bots, notes: Pending::default(), path })
     }
 
     /// The world at the last tick.
@@ -103,22 +106,36 @@ impl Run {
     ) -> anyhow::Result<(SessionState, TickOutput, TickInput)> {
         let mut input = polled.input();
         self.bots.act(self.session.world(), screen, polled.ready(), &mut input);
-        let (state, output) =
-            record(&mut self.session, polled, screen, &input).with_context(|| self.path.display().to_string())?;
+        self.note_units(polled);
+        let (state, output) = self.record(screen, &input).with_context(|| self.path.display().to_string())?;
         Ok((state, output, input))
     }
 
-    /// Records that time stood or goes on, and whose unit was the reason.
-    pub fn note(&mut self, kind: NoteKind, seat: Option<Seat>) -> anyhow::Result<()> {
-        let note = Note { tick: self.world().tick() + 1, kind, seat };
-        self.session.note(note).with_context(|| self.path.display().to_string())
+    fn record(&mut self, screen: Option<&Screen>, input: &TickInput) -> anyhow::Result<(SessionState, TickOutput)> {
+        self.write_notes()?;
+        if let Some(shown) = screen.and_then(|screen| screen.shown(self.next_tick())) {
+            self.session.mask_shown(shown)?;
+        }
+        self.session.tick(input)
     }
 
-    /// Records what happened to the units while time stands; ticks record it themselves.
-    pub fn note_units(&mut self, polled: &Polled) -> anyhow::Result<()> {
-        let next = self.world().tick() + 1;
-        let mut notes = polled.events.iter().map(|event| event.note(next));
-        notes.try_for_each(|note| self.session.note(note)).with_context(|| self.path.display().to_string())
+    fn write_notes(&mut self) -> anyhow::Result<()> {
+        self.notes.drain().try_for_each(|note| Ok(self.session.note(note)?))
+    }
+
+    fn next_tick(&self) -> Tick {
+        self.world().tick() + 1
+    }
+
+    /// Notes that time stood or goes on, and whose unit was the reason.
+    pub fn note(&mut self, kind: NoteKind, seat: Option<Seat>) {
+        self.notes.take(Note { tick: self.next_tick(), kind, seat });
+    }
+
+    /// Notes what happened to the units while time stands; ticks note it themselves.
+    pub fn note_units(&mut self, polled: &Polled) {
+        let next = self.next_tick();
+        polled.events.iter().for_each(|event| self.notes.take(event.note(next)));
     }
 
     /// What the bot in the safety driver's seat says about the end of the run, if there is one.
@@ -132,24 +149,12 @@ impl Run {
         if let Some(annotation) = annotation {
             self.session.annotate(annotation);
         }
-        let named = || self.path.display().to_string();
+        let path = self.path.clone();
+        let named = || path.display().to_string();
+        self.write_notes().with_context(named)?;
         self.session.finish().and_then(|file| Ok(file.close()?)).with_context(named)?;
         Ok(self.path)
     }
-}
-
-fn record(
-    session: &mut Session<BackgroundFile>,
-    polled: &Polled,
-    screen: Option<&Screen>,
-    input: &TickInput,
-) -> anyhow::Result<(SessionState, TickOutput)> {
-    let next = session.world().tick() + 1;
-    polled.events.iter().try_for_each(|event| session.note(event.note(next)))?;
-    if let Some(shown) = screen.and_then(|screen| screen.shown(next)) {
-        session.mask_shown(shown)?;
-    }
-    session.tick(input)
 }
 
 /// What the units need to know of the car.

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use base::words::{self, SEATS};
 use drivers::temper::Temper;
 use kernel::Seat;
-use kernel::scenario::Rules;
 use replay::Provenance;
 
 use super::run::Bots;
@@ -25,11 +24,9 @@ pub struct Seating {
 }
 
 impl Seating {
-    /// Takes the seats, with calibrations from files, for drives by these rules.
-    pub fn new(choices: [SeatChoice; 2], calibrations: &[PathBuf], rules: &Rules) -> anyhow::Result<Self> {
-        let mut seats = Seats::calibrated(choices.clone(), calibrations)?;
-        seats.set_takeover_steer(rules.steer_threshold);
-        Ok(Self::of(seats, choices))
+    /// Takes the seats, with calibrations from files.
+    pub fn new(choices: [SeatChoice; 2], calibrations: &[PathBuf]) -> anyhow::Result<Self> {
+        Ok(Self::of(Seats::calibrated(choices.clone(), calibrations)?, choices))
     }
 
     /// With seats that are taken already, by what was chosen.

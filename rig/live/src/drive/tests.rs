@@ -8,16 +8,17 @@ use base::clock::SessionClock;
 use base::maps::Map;
 use base::progress::Interrupt;
 use drivers::checkpoint::CheckpointChoice;
+use drivers::pictures::{Pictures, Screens};
 use kernel::Seat;
 use replay::{Annotation, Label, NoteKind, Recording};
-use study::{Lineup, Study};
+use study::{Protocol, Study};
 use tempfile::TempDir;
 
-use super::about;
 use super::board::{Board, Message, Status};
 use super::seating::Seating;
-use super::simulation::{Links, Plan, Simulation};
+use super::simulation::{Links, Simulation};
 use super::stage::{Dialog, Pause, Press, Stage};
+use super::{Around, Wanted, opened};
 use crate::units::source::{AxisRange, DeviceInfo, RawEvent, Simulated};
 use crate::units::testing::LAYOUT;
 use crate::units::{SeatChoice, Seats};
@@ -45,6 +46,16 @@ fn device(id: usize) -> RawEvent {
     })
 }
 
+fn pictures() -> Pictures {
+    Pictures {
+        image_size: (64, 32),
+        mask_size: None,
+        imaging: render::Imaging::default(),
+        inference: perception::Compute::Cpu,
+        screens: Screens::One,
+    }
+}
+
 /// A session that drives in a thread of its own.
 struct Bench {
     devices: Simulated,
@@ -60,32 +71,28 @@ impl Bench {
     }
 
     fn start_in(dir: TempDir) -> Self {
+        let map = Map::find("rural").unwrap();
+        let scenario = Box::new(map.scenario(1));
+        let (checkpoint, study) = (CheckpointChoice::Truth, Study::default());
+        let bench = Self::ready(dir, Wanted::Scenario { map, scenario, checkpoint, study });
+        bench.press("n");
+        bench
+    }
+
+    /// A session whose wheels are armed, and that waits.
+    fn ready(dir: TempDir, wanted: Wanted) -> Self {
         let devices = Simulated::default();
         (0..2).for_each(|id| devices.push(device(id)));
         let choices = [0, 1].map(|id| SeatChoice::Device(path(id)));
         let seats = Seats::with_source(choices.clone(), Vec::new(), Box::new(devices.clone()));
-        let map = Map::find("rural").unwrap();
-        let (study, scenario) = (Study::default(), map.scenario(1));
-        let lineup = Lineup::open(
-            &study,
-            &CheckpointChoice::Truth,
-            (None, render::Imaging::default()),
-            perception::Compute::Cpu,
-            scenario.seed,
-        )
-        .unwrap();
-        let plan = Plan {
-            about: about(&study, &lineup, &scenario),
-            cast: lineup.cast().clone(),
-            scenario,
-            map,
+        let around = Around {
             force: 0.0,
             foxglove: None,
             record: dir.path().join("drive.mcap"),
-            provenance: Default::default(),
-            tell: std::sync::Arc::new(|_, _| Ok(())),
+            tell: Arc::new(|_, _| Ok(())),
             unattended: None,
         };
+        let (plan, _) = opened(wanted, &pictures(), around).unwrap();
         let (outbox, inbox) = mpsc::channel();
         let board = Arc::new(Board::default());
         let links = Links {
@@ -101,7 +108,6 @@ impl Bench {
         let bench = Self { devices, board, outbox, driving, dir };
         (0..2).for_each(|id| bench.arm(id));
         bench.wait(|status| status.units_note.is_none() && status.units[0].contains("armed"));
-        bench.press("n");
         bench
     }
 
@@ -273,4 +279,112 @@ fn a_label_survives_an_early_end_and_the_next_session_counts_the_case() {
     let driven_mm = recording.log().summary.as_ref().unwrap().odometer_mm;
     assert_eq!((totals.runs, totals.cases, totals.odometer_mm), (1, 1, driven_mm));
     bench.close();
+}
+
+/// Two maps, each for four seconds in both arrangements of seats.
+const PLAN: &str = r#"
+participants = ["P07", "P03"]
+blind = true
+break_s = 300
+questions = "each-half"
+link = "https://forms.test/{participants}/{trial}/{run}"
+[[conditions]]
+map = "rural"
+max_time_s = 4
+[[conditions]]
+map = "city"
+checkpoint = "early"
+max_time_s = 4
+"#;
+
+impl Bench {
+    /// The plan's session in a folder, where it was left.
+    fn planned(dir: TempDir) -> Self {
+        let path = dir.path().join("plan.toml");
+        std::fs::write(&path, PLAN).unwrap();
+        Self::ready(dir, Wanted::Trials(Protocol::read(&path).unwrap()))
+    }
+
+    /// Starts a run of a trial, and waits for its end.
+    fn drive_trial(&self, run: u32, trial: &str) -> Arc<Status> {
+        let ready = self.wait(|status| status.run == run && status.stage == Stage::Ready);
+        assert_eq!(ready.about.trial.as_deref(), Some(trial));
+        self.press("n");
+        self.wait(|status| status.run == run + 1)
+    }
+
+    /// Answers all questions with a digit.
+    fn answer(&self, digit: &str) {
+        for _ in 0..4 {
+            self.press(digit);
+            self.enter();
+        }
+    }
+}
+
+#[test]
+fn a_plan_is_driven_trial_by_trial_and_goes_on_where_it_was_left() {
+    let bench = Bench::planned(tempfile::tempdir().unwrap());
+    let second = bench.drive_trial(1, "trial 1 of 4: rural");
+    assert_eq!((second.about.map.as_str(), second.about.checkpoint.as_str()), ("city", "blind, one of 2"));
+    // A run that does not count is driven again.
+    bench.press("n");
+    bench.wait(|status| status.stage == Stage::Driving);
+    bench.press("b");
+    bench.wait(|status| matches!(status.stage, Stage::Labelling(_)));
+    bench.press("7");
+    bench.enter();
+    let asked = bench.drive_trial(3, "trial 2 of 4: city");
+    assert_eq!(asked.link.as_deref(), Some("https://forms.test/P07,P03/2/3"));
+    bench.wait(|status| matches!(&status.stage, Stage::Asking(form) if form.asks().0 == "P07"));
+    bench.answer("4");
+    let half = bench.wait(|status| status.stage == Stage::Ready);
+    assert!(half.rest_s.is_some_and(|left_s| left_s > 250) && half.units[0].starts_with("P03"), "{half:?}");
+    bench.press("x");
+    bench.wait(|status| status.events.lines().any(|line| line.contains("the plan says who sits where")));
+    let tally = ["P07 semantic, P03 safety: 2 runs, 0.05 km, 0.1 min, 0 corner cases"];
+    assert!(half.tally.len() == 1 && half.tally[0].starts_with("P07 semantic, P03 safety: 2 runs"), "{tally:?}");
+
+    let bench = Bench::planned(bench.close());
+    let again = bench.wait(|status| status.units[0].starts_with("P03"));
+    assert_eq!((again.run, again.totals.runs, again.rest_s.is_some()), (4, 2, true));
+    bench.drive_trial(4, "trial 3 of 4: city");
+    bench.drive_trial(5, "trial 4 of 4: rural");
+    bench.answer("2");
+    let over = bench.wait(|status| status.stage == Stage::Over);
+    assert_eq!((over.totals.runs, over.tally.len()), (4, 2));
+    bench.press("n");
+    let dir = bench.close();
+    let told = |name: &str, key: &str| {
+        let recording = Recording::open(&dir.path().join(name)).unwrap();
+        recording.log().manifest.provenance.get(key).cloned()
+    };
+    let (third, fourth) = ("drive-3.mcap", "drive-4.mcap");
+    let trials = ["drive.mcap", "drive-2.mcap", third, fourth, "drive-5.mcap"].map(|name| told(name, "plan_trial"));
+    assert_eq!(trials, ["1", "2", "2", "3", "4"].map(|trial| Some(trial.to_owned())));
+    let pair = |name: &str| ["semantic_name", "safety_name", "checkpoint"].map(|key| told(name, key).unwrap());
+    assert_eq!(
+        (pair(third), pair(fourth)),
+        (["P07", "P03", "early"].map(Into::into), ["P03", "P07", "early"].map(Into::into))
+    );
+    let answers = std::fs::read_to_string(dir.path().join("drive-3.questionnaire.toml")).unwrap();
+    assert!(answers.contains("fatigue = 4") && answers.contains("stress = 4"), "{answers}");
+    assert!(dir.path().join("drive-5.questionnaire.toml").is_file() && !dir.path().join("drive-6.mcap").exists());
+
+    let bench = Bench::planned(dir);
+    bench.wait(|status| status.stage == Stage::Over && status.totals.runs == 4);
+    bench.close();
+}
+
+#[test]
+fn a_plan_does_not_go_on_among_recordings_of_anything_else() {
+    let bench = Bench::start();
+    bench.wait(|status| status.tick > 10);
+    let dir = bench.close();
+    let path = dir.path().join("plan.toml");
+    std::fs::write(&path, PLAN).unwrap();
+    let protocol = Protocol::read(&path).unwrap();
+    let refused = study::protocol::Recorded::under(&dir.path().join("drive.mcap"), |of| protocol.trial_of(of));
+    let said = format!("{:#}", refused.unwrap_err());
+    assert!(said.ends_with("drive.mcap: was not driven by a plan; expected another --record"), "{said}");
 }

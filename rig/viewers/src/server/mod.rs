@@ -47,7 +47,8 @@ impl Publisher {
     /// Shows the world at its last tick.
     pub fn show(&mut self, world: &World) {
         world.last_events().iter().for_each(|event| self.events.push(words::event_at(world.tick(), event)));
-        self.feed.scene.put(Look { run: 1, scene: world.scene(), captured_us: self.clock.now_us() });
+        let (network, captured_us) = (world.network().clone(), self.clock.now_us());
+        self.feed.scene.put(Look { run: 1, network, eye: 0, scene: world.scene(), captured_us });
         self.feed.figures.put(TickFigures { events: self.events.clone(), ..TickFigures::of_world(world, 1) });
     }
 }

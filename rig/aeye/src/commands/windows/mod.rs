@@ -11,9 +11,10 @@ use drivers::checkpoint::CheckpointChoice;
 use drivers::film::Film;
 use kernel::Scenario;
 pub use live::drive::LiveFigures;
-use live::drive::{Options, Tell};
+use live::drive::{Options, Tell, Wanted};
 use live::units::hardware::Hardware;
 use measures::RunFigures;
+use study::Protocol;
 
 use crate::cli::DriveArgs;
 pub use trial::trial;
@@ -26,20 +27,27 @@ pub fn drive(
     map: Map,
     tell: impl Fn(&Path, &RunFigures) -> anyhow::Result<()> + Send + Sync + 'static,
 ) -> anyhow::Result<()> {
-    live::drive::drive(options(args, scenario, map, Arc::new(tell)))
+    let (scenario, checkpoint, study) = (Box::new(scenario), args.checkpoint.clone(), (&args.study).into());
+    live::drive::drive(options(args, Wanted::Scenario { map, scenario, checkpoint, study }, Arc::new(tell)))
 }
 
-fn options(args: &DriveArgs, scenario: Scenario, map: Map, tell: Tell) -> Options {
+/// The trials of a protocol, as far as they are not driven yet.
+pub fn drive_planned(
+    args: &DriveArgs,
+    protocol: Protocol,
+    tell: impl Fn(&Path, &RunFigures) -> anyhow::Result<()> + Send + Sync + 'static,
+) -> anyhow::Result<()> {
+    live::drive::drive(options(args, Wanted::Trials(protocol), Arc::new(tell)))
+}
+
+fn options(args: &DriveArgs, wanted: Wanted, tell: Tell) -> Options {
     Options {
-        map,
-        scenario,
+        wanted,
         seats: [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default),
         calibration: args.calibration.clone(),
         force: args.force,
         foxglove: args.foxglove(),
-        checkpoint: args.checkpoint.clone(),
         pictures: (&args.pictures).into(),
-        study: (&args.study).into(),
         record: args.record().to_owned(),
         tell,
     }

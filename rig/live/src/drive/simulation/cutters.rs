@@ -16,21 +16,20 @@ use crate::drive::strip::Strip;
 pub struct Cutters {
     board: Arc<Board>,
     outbox: Sender<Message>,
-    network: Arc<RoadNetwork>,
     tell: Tell,
     helpers: Vec<JoinHandle<anyhow::Result<()>>>,
 }
 
 impl Cutters {
     /// None cuts yet. What they find goes onto the board and is said to the simulation.
-    pub fn new(board: Arc<Board>, outbox: Sender<Message>, network: Arc<RoadNetwork>, tell: Tell) -> Self {
-        Self { board, outbox, network, tell, helpers: Vec::new() }
+    pub fn new(board: Arc<Board>, outbox: Sender<Message>, tell: Tell) -> Self {
+        Self { board, outbox, tell, helpers: Vec::new() }
     }
 
-    /// Cuts the case of a recording, if there is one that counts.
-    pub fn cut(&mut self, path: &Path) {
+    /// Cuts the case of a recording on a map, if there is one that counts.
+    pub fn cut(&mut self, path: &Path, network: Arc<RoadNetwork>) {
         let (path, board) = (path.to_owned(), self.board.clone());
-        let (outbox, network, tell) = (self.outbox.clone(), self.network.clone(), self.tell.clone());
+        let (outbox, tell) = (self.outbox.clone(), self.tell.clone());
         self.helpers.push(std::thread::spawn(move || {
             // When nobody listens any more the session is over, and says itself what failed.
             let note = |text: String| drop(outbox.send(Message::Note(text)));

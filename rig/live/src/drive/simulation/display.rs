@@ -66,8 +66,9 @@ impl Display {
     }
 
     /// Puts what there is to see on the board.
-    pub fn show_scene(&self, run: u32, world: &World, captured_us: u64) {
-        self.board.feed.scene.put(Look { run, scene: world.scene(), captured_us });
+    pub fn show_scene(&self, run: u32, eye: usize, world: &World, captured_us: u64) {
+        let network = world.network().clone();
+        self.board.feed.scene.put(Look { run, network, eye, scene: world.scene(), captured_us });
     }
 
     /// Puts how the session is on the board, and has windows drawn anew.

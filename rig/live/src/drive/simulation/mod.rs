@@ -1,21 +1,25 @@
 //! The thread that drives: it paces the ticks, listens to everybody, and waits for nobody.
 
+mod agenda;
 mod cutters;
 mod display;
 mod pace;
 mod plan;
 mod recording;
+mod rest;
 mod runs;
 mod session;
 mod sights;
 mod status;
 mod voice;
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 
 use base::progress::Interrupt;
 use base::words;
 use drivers::session::SessionState;
+use kernel::RoadNetwork;
 use kernel::arbiter::Outcome;
 use kernel::time::{TICK_HZ, Tick};
 
@@ -26,6 +30,7 @@ use super::seating::{self, Seating};
 use super::stage::{Pause, Press, Stage, Wish};
 use super::timings::Timings;
 use crate::units::Polled;
+pub use agenda::Agenda;
 pub use plan::{Links, Plan};
 use session::Session;
 
@@ -64,11 +69,18 @@ impl Simulation {
         Ok(Self { session, inbox, interrupt })
     }
 
+    /// The map of the run that waits.
+    pub fn network(&self) -> &Arc<RoadNetwork> {
+        &self.session.runs.bill().map.network
+    }
+
     /// Drives until the operators have had enough, and says how well it kept real time. The last
     /// recording is finished whatever happens.
     pub fn drive(mut self) -> anyhow::Result<Timings> {
         let end = self.listen_and_tick();
         let session = &mut self.session;
+        let answered = session.keep_answers();
+        let network = session.runs.bill().map.network.clone();
         let unfinished = session.end_run(session.runs.said());
         let cut = session.join_cutters();
         let mut last = Ok(());
@@ -76,10 +88,11 @@ impl Simulation {
             let why = end.as_ref().map_or("it could not go on", End::words);
             let path_said = path.display();
             session.voice.say(format_args!("the run is over: {why}; its recording is complete: {path_said}"));
-            last = session.look_back(path);
+            last = session.look_back(path, &network);
         }
         end?;
         unfinished?;
+        answered?;
         last?;
         cut?;
         Ok(self.session.pace.timings())
@@ -116,16 +129,18 @@ impl Simulation {
         if is_news {
             session.show_status(Some(Wake::All));
         }
+        session.show_rest();
         for event in &polled.events {
             session.note(seating::event_text(event));
         }
         session.display.input = polled.input();
         let lost = seating::lost(&polled).filter(|_| session.is_attended() && session.runs.is_driving());
-        if lost.is_some() || matches!(session.runs.stage, Stage::Paused(_)) {
-            session.runs.current().map_or(Ok(()), |run| run.note_units(&polled))?;
+        let stands = lost.is_some() || matches!(session.runs.stage, Stage::Paused(_));
+        if let Some(run) = session.runs.current().filter(|_| stands) {
+            run.note_units(&polled);
         }
         if lost.is_some() {
-            session.pause(Pause::UnitLost, lost)?;
+            session.pause(Pause::UnitLost, lost);
         }
         match &session.runs.stage {
             Stage::Ready if !session.is_attended() && session.sights.screen().is_some() => session.start()?,
@@ -142,7 +157,7 @@ impl Simulation {
             Stage::Driving => {}
             // The jolt of the collision that ended the run fades.
             Stage::Labelling(_) => session.force.drive(&Driven::default(), session.seating.armed_devices()),
-            Stage::Ready | Stage::Paused(_) => session.force.rest(),
+            Stage::Ready | Stage::Paused(_) | Stage::Asking(_) | Stage::Over => session.force.rest(),
         }
         Ok(())
     }
@@ -151,7 +166,7 @@ impl Simulation {
         let session = &mut self.session;
         match message {
             // What is typed into a comment drives nothing.
-            Message::SeatKey(_, true) if matches!(session.runs.stage, Stage::Labelling(_)) => {}
+            Message::SeatKey(_, true) if matches!(session.runs.stage, Stage::Labelling(_) | Stage::Asking(_)) => {}
             Message::SeatKey(key, pressed) => session.seating.seats().key(key, pressed),
             Message::KeysReleased => session.seating.seats().release_keys(),
             Message::Focus(is_ours) => session.seating.seats().focus(is_ours),
@@ -159,9 +174,7 @@ impl Simulation {
             Message::Shown(seat, view, presented_us) => session.shown(seat, view, presented_us),
             Message::Note(text) => session.note(text),
             // Who closes a window while the car drives is asked first.
-            Message::Closed if session.is_attended() && session.runs.is_driving() => {
-                session.pause(Pause::Ending, None)?
-            }
+            Message::Closed if session.is_attended() && session.runs.is_driving() => session.pause(Pause::Ending, None),
             Message::Closed | Message::Gone => return Ok(Some(End::Closed)),
             Message::Failed(error) => return Err(error),
         }
@@ -179,11 +192,12 @@ fn obey(session: &mut Session, press: &Press, repeated: bool) -> anyhow::Result<
             session.force.toggle();
             session.show_status(Some(Wake::Centre));
         }
-        Wish::Pause(why) => session.pause(why, None)?,
-        Wish::Resume => session.resume()?,
+        Wish::Pause(why) => session.pause(why, None),
+        Wish::Resume => session.resume(),
         Wish::BreakOff => session.break_off(),
         Wish::Label(label) => session.label(label),
         Wish::Finish(annotation) => session.finish(annotation)?,
+        Wish::Answered => session.answered()?,
         Wish::Quit => return Ok(Some(End::Asked)),
     }
     Ok(None)

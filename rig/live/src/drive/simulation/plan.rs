@@ -5,23 +5,20 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
 
 use base::clock::SessionClock;
-use base::maps::Map;
 use base::progress::Interrupt;
-use kernel::Scenario;
 use kernel::time::Tick;
 use replay::Provenance;
 use study::Cast;
 use viewers::server::Endpoint;
 
+use super::agenda::{Agenda, Bill};
 use crate::drive::aftermath::Tell;
 use crate::drive::board::{About, Board, Message, Wake};
 
 /// What a session is about.
 pub struct Plan {
-    /// Where to drive.
-    pub map: Map,
-    /// The scenario of the first run; the others follow from its seed.
-    pub scenario: Scenario,
+    /// What its runs are to be.
+    pub agenda: Agenda,
     /// Greatest force of wheels, [0, 1].
     pub force: f32,
     /// Where remote control centres are served.
@@ -30,14 +27,30 @@ pub struct Plan {
     pub record: PathBuf,
     /// What the recordings say about themselves, the checkpoint aside.
     pub provenance: Provenance,
-    /// Which seed and which checkpoint a run has.
+    /// What is known of its checkpoints.
     pub cast: Cast,
-    /// What may be shown of all that.
-    pub about: Arc<About>,
+    /// Pseudonyms of the operators, first of whoever begins as the semantic driver.
+    pub operators: [Option<String>; 2],
+    /// Whether the drives are to get used to the rig and do not count.
+    pub is_familiarisation: bool,
     /// Told what each run came to.
     pub tell: Tell,
     /// Runs start by themselves until so much has been driven, ticks; then the session ends.
     pub unattended: Option<Tick>,
+}
+
+impl Plan {
+    /// What may be shown of a run.
+    pub fn about(&self, bill: &Bill) -> Arc<About> {
+        Arc::new(About {
+            checkpoint: self.cast.public_name(bill.eye).to_owned(),
+            map: bill.scenario.map.clone(),
+            rules: bill.scenario.rules,
+            operators: self.operators.clone(),
+            is_familiarisation: self.is_familiarisation,
+            trial: self.agenda.protocol().map(|protocol| protocol.words(bill.trial)),
+        })
+    }
 }
 
 /// The threads around the simulation.

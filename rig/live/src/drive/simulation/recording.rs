@@ -7,20 +7,22 @@ use anyhow::anyhow;
 use kernel::World;
 use replay::Manifest;
 
+use super::agenda::Bill;
 use super::plan::Plan;
 use crate::drive::board::Message;
 use crate::drive::disk::{self, BackgroundFile};
 use crate::drive::seating::Seating;
 
 /// What the recording of a run says about itself: the world's scenario, who sits where, and the checkpoint.
-pub fn manifest(plan: &Plan, seating: &Seating, number: u32, world: &World) -> Manifest {
+pub fn manifest(plan: &Plan, seating: &Seating, bill: &Bill, world: &World) -> Manifest {
     let swapped = || study::swapped(&plan.provenance);
     let mut provenance = if seating.is_swapped() { swapped() } else { plan.provenance.clone() };
     provenance.insert("live".into(), "true".into());
-    provenance.extend(plan.cast.provenance_of_run(number).clone());
+    provenance.extend(plan.cast.provenance(bill.eye).clone());
+    provenance.extend(plan.agenda.protocol().map(|protocol| protocol.provenance(bill.trial)).unwrap_or_default());
     provenance.extend(seating.provenance());
     provenance.extend(seating.tempers(world.scenario().seed));
-    Manifest::new(world.scenario(), &plan.map.network, plan.map.foreign.clone(), provenance)
+    Manifest::new(world.scenario(), &bill.map.network, bill.map.foreign.clone(), provenance)
 }
 
 /// A new file for the recording of a run, written in the background; failures are said to the simulation.

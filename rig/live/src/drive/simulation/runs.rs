@@ -1,13 +1,15 @@
 //! The runs of a session: which one is on, where it stands, and what those before it came to.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
 
-use kernel::{Scenario, World};
-use replay::{Annotation, Label, Recording};
+use kernel::World;
+use replay::{Annotation, Label, Provenance};
+use study::protocol::{Ended, Progress, Recorded};
 
+use super::agenda::Bill;
 use super::plan::Plan;
-use crate::drive::board::{self, Totals};
-use crate::drive::disk;
+use crate::drive::board::{About, Totals};
 use crate::drive::run::Run;
 use crate::drive::stage::{Dialog, Stage};
 
@@ -19,26 +21,39 @@ pub struct Runs {
     /// The world of a run that waits for its start.
     next: Option<World>,
     run: Option<Run>,
+    bill: Bill,
+    about: Arc<About>,
+    /// Nothing is left to be driven.
+    is_over: bool,
     /// The kind of corner case that the operators gave the run's takeover before its end.
     label: Option<Label>,
+    progress: Progress,
     totals: Totals,
+    tally: Arc<[String]>,
 }
 
 impl Runs {
     /// A campaign goes on in a new session under the same name, with the runs after the last one.
     /// Gives what is to be said about those that are not counted, too.
-    pub fn after_earlier_ones(record: &Path) -> (Self, Vec<String>) {
-        let totals = Totals::default();
-        let mut runs = Self { stage: Stage::Ready, number: 0, next: None, run: None, label: None, totals };
-        let mut not_counted = Vec::new();
-        for number in disk::numbers(record) {
-            runs.number = number;
-            match Recording::open(&disk::numbered(record, number)) {
-                Ok(recording) => runs.totals.add_recorded(recording.log()),
-                Err(error) => not_counted.push(format!("not counted: {error:#}")),
-            }
-        }
-        (runs, not_counted)
+    pub fn after_earlier_ones(plan: &Plan) -> anyhow::Result<(Self, Vec<String>)> {
+        let trial_of = |provenance: &Provenance| plan.agenda.trial_of(provenance);
+        let Recorded { last, progress, not_counted } = Recorded::under(&plan.record, trial_of)?;
+        let bill = plan.agenda.last(last + 1, &progress);
+        let mut runs = Self {
+            stage: Stage::Ready,
+            number: last,
+            next: None,
+            run: None,
+            about: plan.about(&bill),
+            bill,
+            is_over: false,
+            label: None,
+            progress,
+            totals: Totals::default(),
+            tally: Arc::default(),
+        };
+        runs.sum_up(plan);
+        Ok((runs, not_counted))
     }
 
     /// Number of the run that is on, or that waits.
@@ -76,15 +91,48 @@ impl Runs {
         self.run.as_ref().and_then(Run::bots_word)
     }
 
-    /// Makes the world of the next run, which waits for its start.
+    /// Makes the world of the next run, which waits for its start; once all is driven, one that does not start.
     pub fn prepare(&mut self, plan: &Plan) -> anyhow::Result<&World> {
         self.number += 1;
-        let seed = plan.cast.seed_of_run(self.number);
-        let scenario = Scenario { seed, ..plan.scenario.clone() };
-        let world = World::new(&scenario, &plan.map.network)?;
+        let bill = plan.agenda.bill(self.number, &self.progress);
+        self.is_over = bill.is_none();
+        self.bill = bill.unwrap_or_else(|| plan.agenda.last(self.number, &self.progress));
+        self.about = plan.about(&self.bill);
+        let world = World::new(&self.bill.scenario, &self.bill.map.network)?;
         (self.run, self.label) = (None, None);
-        self.stage = Stage::Ready;
+        self.wait_for_start();
         Ok(self.next.insert(world))
+    }
+
+    /// Nothing but the start is waited for.
+    pub fn wait_for_start(&mut self) {
+        self.stage = if self.is_over { Stage::Over } else { Stage::Ready };
+    }
+
+    /// What the run is to be that is on, or that waits.
+    pub fn bill(&self) -> &Bill {
+        &self.bill
+    }
+
+    /// What may be shown of it.
+    pub fn about(&self) -> &Arc<About> {
+        &self.about
+    }
+
+    /// The runs so far.
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// What each of the people did in each seat, a line each.
+    pub fn tally(&self) -> &Arc<[String]> {
+        &self.tally
+    }
+
+    fn sum_up(&mut self, plan: &Plan) {
+        self.totals = Totals::of(&self.progress);
+        let tally = plan.agenda.protocol().map(|protocol| self.progress.totals(protocol));
+        self.tally = tally.unwrap_or_default().into();
     }
 
     /// Hands out the world that waits, for its run to be started.
@@ -118,17 +166,17 @@ impl Runs {
 
     /// The run is broken off. A takeover that is on is one all the same.
     pub fn break_off(&mut self) {
-        let is_case = self.run.as_ref().is_some_and(|run| board::is_case(run.world()));
+        let is_case = self.run.as_ref().is_some_and(|run| Ended::of_world(run.world(), None).is_case);
         let dialog = if is_case { Dialog::of_case(self.label) } else { Dialog::of_broken_off() };
         self.stage = Stage::Labelling(dialog);
     }
 
     /// Ends the recording of the run that is on, and counts the run unless it is for familiarisation.
-    pub fn end(&mut self, annotation: Option<Annotation>, counts: bool) -> Option<anyhow::Result<PathBuf>> {
+    pub fn end(&mut self, annotation: Option<Annotation>, plan: &Plan) -> Option<anyhow::Result<PathBuf>> {
         let run = self.run.take()?;
-        if counts {
-            self.totals.add(run.world(), annotation.as_ref());
-        }
+        let ended = Ended::of_world(run.world(), annotation.as_ref());
+        self.progress.add(self.bill.trial, Ended { counts: ended.counts && !plan.is_familiarisation, ..ended });
+        self.sum_up(plan);
         Some(run.finish(annotation))
     }
 }

@@ -6,10 +6,11 @@ use std::sync::mpsc::Sender;
 
 use base::clock::SessionClock;
 use base::maps;
+use base::output;
 use base::room::NoRoom;
-use kernel::Seat;
 use kernel::time::{TICK_HZ, Tick};
-use replay::{Annotation, Label, NoteKind};
+use kernel::{RoadNetwork, Seat};
+use replay::{Annotation, Label, NoteKind, Recording};
 use viewers::feed::View;
 
 use super::cutters::Cutters;
@@ -17,6 +18,7 @@ use super::display::Display;
 use super::pace::Pace;
 use super::plan::Plan;
 use super::recording;
+use super::rest::Rest;
 use super::runs::Runs;
 use super::sights::Sights;
 use super::status::Parts;
@@ -26,7 +28,7 @@ use crate::drive::board::{Board, Message, Wake};
 use crate::drive::force::Force;
 use crate::drive::run::Run;
 use crate::drive::seating::Seating;
-use crate::drive::stage::{Pause, Stage};
+use crate::drive::stage::{Form, Pause, Stage};
 
 /// An unattended session that takes three times as long as it should, and this, has failed, microseconds.
 const PATIENCE_US: u64 = 30_000_000;
@@ -42,6 +44,11 @@ pub struct Session {
     pub pace: Pace,
     pub sights: Sights,
     no_room: NoRoom,
+    rest: Rest,
+    /// Where people are to answer questions about the run before.
+    link: Option<String>,
+    /// The recording that the questions are about.
+    asked_about: Option<PathBuf>,
     plan: Plan,
     cutters: Cutters,
     outbox: Sender<Message>,
@@ -60,7 +67,7 @@ impl Session {
         let voice = Voice::new(plan.unattended.is_none());
         seating.setup().iter().for_each(|line| voice.say(format_args!("{line}")));
         let force = Force::new(plan.force, &outbox);
-        let (runs, not_counted) = Runs::after_earlier_ones(&plan.record);
+        let (runs, not_counted) = Runs::after_earlier_ones(&plan)?;
         not_counted.iter().for_each(|line| voice.say(format_args!("{line}")));
         let mut session = Self {
             display: Display::new(board.clone(), wake),
@@ -71,7 +78,10 @@ impl Session {
             pace: Pace::new(clock),
             sights: Sights::default(),
             no_room: NoRoom::default(),
-            cutters: Cutters::new(board, outbox.clone(), plan.map.network.clone(), plan.tell.clone()),
+            rest: Rest::default(),
+            link: None,
+            asked_about: None,
+            cutters: Cutters::new(board, outbox.clone(), plan.tell.clone()),
             plan,
             outbox,
         };
@@ -96,12 +106,45 @@ impl Session {
         let world = self.runs.prepare(&self.plan)?;
         self.display.begin(world);
         self.no_room.of_world(world).into_iter().for_each(|line| self.voice.say(format_args!("{line}")));
-        self.voice.say(format_args!("run {} is ready: N starts it", self.runs.number()));
+        let number = self.runs.number();
+        match (&self.runs.about().trial, &self.runs.stage) {
+            (_, Stage::Over) => self.voice.say(format_args!("all trials of the plan are driven")),
+            (Some(trial), _) => self.voice.say(format_args!("run {number} is ready, {trial}: N starts it")),
+            (None, _) => self.voice.say(format_args!("run {number} is ready: N starts it")),
+        }
+        self.seating.seats().set_takeover_steer(self.runs.bill().scenario.rules.steer_threshold);
+        self.sit_as_planned();
         self.sights = Sights::default();
         self.pace.restart();
         self.show_scene();
         self.show_status(Some(Wake::All));
         Ok(())
+    }
+
+    /// Everybody sits where the plan has them, and rests before the second half.
+    fn sit_as_planned(&mut self) {
+        let Some(protocol) = self.plan.agenda.protocol() else { return };
+        let trial = self.runs.bill().trial;
+        let planned = &protocol.trials[trial];
+        let is_first = self.runs.progress().of_trial(trial).next().is_none();
+        let rests = planned.begins_half && is_first && self.runs.stage == Stage::Ready;
+        self.rest.begin(self.pace.now_us(), if rests { protocol.break_s } else { 0 });
+        if planned.is_swapped != self.seating.is_swapped() {
+            self.seating.swap();
+            let [semantic, safety] = self.names();
+            let said = format!(
+                "the seats are swapped by the plan: {semantic} is the semantic driver, {safety} the safety driver"
+            );
+            self.voice.say(format_args!("{said}"));
+            self.voice.note(said);
+        }
+    }
+
+    /// Counts a break down.
+    pub fn show_rest(&mut self) {
+        if self.rest.is_news(self.pace.now_us()) {
+            self.show_status(Some(Wake::Centre));
+        }
     }
 
     /// Starts the run that waits, if the units are armed.
@@ -114,12 +157,14 @@ impl Session {
         let Some(world) = self.runs.take_next() else { return Ok(()) };
         let seed = world.scenario().seed;
         let number = self.runs.number();
-        let manifest = recording::manifest(&self.plan, &self.seating, number, &world);
-        maps::put_beside(self.plan.map.foreign.as_ref(), &self.plan.record)?;
+        let bill = self.runs.bill();
+        let manifest = recording::manifest(&self.plan, &self.seating, bill, &world);
+        maps::put_beside(bill.map.foreign.as_ref(), &self.plan.record)?;
         let (path, file) = recording::create(&self.plan.record, number, self.outbox.clone())?;
         self.voice.say(format_args!("run {number}: recording {}", path.display()));
         self.runs.start(Run::start(world, &manifest, self.seating.bots(seed), path, file)?);
         self.pace.restart();
+        self.rest.end();
         self.voice.forget();
         self.seating.seats().engage_forward();
         self.show_status(Some(Wake::All));
@@ -128,6 +173,9 @@ impl Session {
 
     /// The units change seats, between runs.
     pub fn swap(&mut self) {
+        if self.plan.agenda.protocol().is_some() {
+            return self.note("the plan says who sits where".into());
+        }
         let said = self.seating.swap();
         self.voice.say(format_args!("{said}"));
         self.note(said);
@@ -135,39 +183,39 @@ impl Session {
     }
 
     /// Time stands from now on; `seat` is whose unit is lost, if it is for that.
-    pub fn pause(&mut self, why: Pause, seat: Option<Seat>) -> anyhow::Result<()> {
+    pub fn pause(&mut self, why: Pause, seat: Option<Seat>) {
         match self.runs.stage {
             Stage::Driving => {
                 self.pace.pause();
-                self.note_run(NoteKind::Paused, seat)?;
+                self.note_run(NoteKind::Paused, seat);
                 self.seating.seats().release_keys();
             }
             // Who asks for the end while time stands is asked once.
             Stage::Paused(_) => {}
-            Stage::Ready | Stage::Labelling(_) => return Ok(()),
+            Stage::Ready | Stage::Labelling(_) | Stage::Asking(_) | Stage::Over => return,
         }
         self.runs.stage = Stage::Paused(why);
         self.show_status(Some(Wake::All));
-        Ok(())
     }
 
     /// Time goes on, if the units are armed.
-    pub fn resume(&mut self) -> anyhow::Result<()> {
+    pub fn resume(&mut self) {
         if !self.seating.is_ready() {
             let why = self.seating.note();
             self.note(format!("the run cannot go on: {}", why.as_deref().unwrap_or("the units are not known yet")));
-            return Ok(());
+            return;
         }
         self.pace.resume();
-        self.note_run(NoteKind::Resumed, None)?;
+        self.note_run(NoteKind::Resumed, None);
         self.runs.stage = Stage::Driving;
         self.show_status(Some(Wake::All));
-        Ok(())
     }
 
-    fn note_run(&mut self, kind: NoteKind, seat: Option<Seat>) -> anyhow::Result<()> {
+    fn note_run(&mut self, kind: NoteKind, seat: Option<Seat>) {
         self.voice.note(kind.name().into());
-        self.runs.current().map_or(Ok(()), |run| run.note(kind, seat))
+        if let Some(run) = self.runs.current() {
+            run.note(kind, seat);
+        }
     }
 
     /// The run ends here, and the operators are asked why.
@@ -209,27 +257,71 @@ impl Session {
         }
     }
 
-    /// Ends the run's recording; its case is cut while the next run waits.
+    /// Ends the run's recording; its case is cut while the next run waits. A trial that is done is followed by questions where
+    /// the plan has some.
     pub fn finish(&mut self, annotation: Option<Annotation>) -> anyhow::Result<()> {
+        let (number, trial) = (self.runs.number(), self.runs.bill().trial);
+        let network = self.runs.bill().map.network.clone();
+        let names = self.names();
         let Some(path) = self.end_run(annotation)? else { return Ok(()) };
         self.note(format!("recorded {}", path.display()));
         if self.is_attended() {
-            self.cutters.cut(&path);
+            self.cutters.cut(&path, network);
         }
-        self.prepare()
+        let protocol = self.plan.agenda.protocol();
+        self.link = protocol.and_then(|protocol| protocol.link(trial, number));
+        let progress = self.runs.progress();
+        let asks = protocol.is_some_and(|protocol| protocol.asks_after(trial) && progress.is_done(protocol, trial));
+        self.prepare()?;
+        if asks {
+            self.asked_about = Some(path);
+            self.runs.stage = Stage::Asking(Form::about(names));
+            self.show_status(Some(Wake::All));
+        }
+        Ok(())
+    }
+
+    /// What the drivers go by, semantic driver's first.
+    fn names(&self) -> [String; 2] {
+        let mut names = self.plan.operators.clone();
+        if self.seating.is_swapped() {
+            names.swap(0, 1);
+        }
+        let [semantic, safety] = names;
+        [semantic.unwrap_or_else(|| "semantic driver".into()), safety.unwrap_or_else(|| "safety driver".into())]
+    }
+
+    /// The questions are answered: the next run waits for its start.
+    pub fn answered(&mut self) -> anyhow::Result<()> {
+        let kept = self.keep_answers();
+        self.runs.wait_for_start();
+        self.show_status(Some(Wake::All));
+        kept
+    }
+
+    /// Writes what was answered so far beside the recording that it is about.
+    pub fn keep_answers(&mut self) -> anyhow::Result<()> {
+        let (Stage::Asking(form), Some(path)) = (&self.runs.stage, self.asked_about.take()) else { return Ok(()) };
+        let answers = form.answers();
+        if answers.is_empty() {
+            return Ok(());
+        }
+        let (beside, text) = study::attached(&path, &Recording::open(&path)?, answers)?;
+        output::write_file(&beside, text.as_bytes())?;
+        self.voice.note(format!("answers in {}", beside.display()));
+        Ok(())
     }
 
     /// Ends the run that is on, as far as there is one, and gives where its recording is.
     pub fn end_run(&mut self, annotation: Option<Annotation>) -> anyhow::Result<Option<PathBuf>> {
-        let counts = !self.plan.about.is_familiarisation;
-        let Some(recorded) = self.runs.end(annotation, counts) else { return Ok(None) };
+        let Some(recorded) = self.runs.end(annotation, &self.plan) else { return Ok(None) };
         self.pace.end_run();
         recorded.map(Some)
     }
 
-    /// What follows the last run of the session, for which nobody waits any more.
-    pub fn look_back(&self, path: &Path) -> anyhow::Result<()> {
-        aftermath::of(path, &self.plan.map.network, &*self.plan.tell).map(drop)
+    /// What follows the last run of the session, on a map, for which nobody waits any more.
+    pub fn look_back(&self, path: &Path, network: &Arc<RoadNetwork>) -> anyhow::Result<()> {
+        aftermath::of(path, network, &*self.plan.tell).map(drop)
     }
 
     /// Waits until the cases of all runs but the last are cut.
@@ -246,13 +338,13 @@ impl Session {
     /// Shows what there is to see.
     pub fn show_scene(&self) {
         let Some(world) = self.runs.world() else { return };
-        self.display.show_scene(self.runs.number(), world, self.pace.now_us());
+        self.display.show_scene(self.runs.number(), self.runs.bill().eye, world, self.pace.now_us());
     }
 
     /// Shows how the session is, and has windows drawn anew.
     pub fn show_status(&self, wake: Option<Wake>) {
-        let Self { display, seating, force, voice, runs, pace, sights, plan, .. } = self;
-        let parts = Parts { about: &plan.about, seating, force, voice, display, runs, pace, sights };
+        let Self { display, seating, force, voice, runs, pace, sights, rest, link, .. } = self;
+        let parts = Parts { rest, link: link.as_ref(), seating, force, voice, display, runs, pace, sights };
         display.show_status(parts.status(), wake);
     }
 }

@@ -1,11 +1,10 @@
 //! How the session is, gathered from those of its parts that have something to show.
 
-use std::sync::Arc;
-
 use kernel::Seat;
 
 use super::display::Display;
 use super::pace::Pace;
+use super::rest::Rest;
 use super::runs::Runs;
 use super::sights::Sights;
 use super::voice::Voice;
@@ -15,7 +14,8 @@ use crate::drive::seating::Seating;
 
 /// The parts of a session that have something to show.
 pub struct Parts<'a> {
-    pub about: &'a Arc<About>,
+    pub rest: &'a Rest,
+    pub link: Option<&'a String>,
     pub seating: &'a Seating,
     pub force: &'a Force,
     pub voice: &'a Voice,
@@ -28,7 +28,7 @@ pub struct Parts<'a> {
 impl Parts<'_> {
     /// How the session is; nothing where no run is on and none waits.
     pub fn status(&self) -> Option<Status> {
-        let Self { about, seating, force, voice, display, runs, pace, sights } = self;
+        let Self { rest, link, seating, force, voice, display, runs, pace, sights } = self;
         let world = runs.world()?;
         let now_us = pace.now_us();
         let applied = display.last().map(|output| output.applied);
@@ -47,17 +47,20 @@ impl Parts<'_> {
             input: display.input,
             odometer_mm: world.odometer_mm(),
             totals: runs.totals(),
+            tally: runs.tally().clone(),
+            rest_s: rest.left_s(now_us),
+            link: link.cloned(),
             alert: display.alert(world.tick()).cloned(),
             late_us: pace.schedule().late_us(),
             slowed_us: pace.schedule().slowed_us(),
             mask_age_us,
             image_age_us,
             events: voice.events().clone(),
-            units: operators(about, seating),
+            units: operators(runs.about(), seating),
             units_note: seating.note(),
             setup: seating.setup(),
             force: force.words(),
-            about: Arc::clone(about),
+            about: runs.about().clone(),
         })
     }
 }

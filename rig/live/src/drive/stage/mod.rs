@@ -1,12 +1,14 @@
 //! Where the session stands between and within runs, and what the operators' keys do there.
 
 mod dialog;
+mod form;
 mod press;
 mod wish;
 
 use replay::{Annotation, Label};
 
 pub use dialog::Dialog;
+pub use form::Form;
 pub use press::Press;
 pub use wish::{Pause, Wish};
 
@@ -21,6 +23,10 @@ pub enum Stage {
     Paused(Pause),
     /// The run has ended and waits for what is to be said of it.
     Labelling(Dialog),
+    /// Both drivers are asked how they are.
+    Asking(Form),
+    /// All that was planned has been driven.
+    Over,
 }
 
 impl Stage {
@@ -28,6 +34,7 @@ impl Stage {
     pub fn press(&mut self, press: &Press, repeated: bool) -> Wish {
         match self {
             Self::Labelling(dialog) if !dialog.is_empty() => dialog.press(press, repeated),
+            Self::Asking(form) => form.press(press, repeated),
             Self::Driving if *press == Press::Escape && !repeated => Wish::Pause(Pause::Ending),
             _ if *press == Press::Escape && !repeated => Wish::Quit,
             Self::Labelling(dialog) => dialog.press(press, repeated),
@@ -35,13 +42,13 @@ impl Stage {
             _ if is(press, 'f') => Wish::Force,
             Self::Ready if is(press, 'n') => Wish::Start,
             Self::Ready if is(press, 'x') => Wish::Swap,
-            Self::Ready if is(press, 'q') => Wish::Quit,
+            Self::Ready | Self::Over if is(press, 'q') => Wish::Quit,
             Self::Driving if is(press, 'p') => Wish::Pause(Pause::Asked),
             Self::Driving | Self::Paused(_) if is(press, 'b') => Wish::BreakOff,
             Self::Driving => label(press).map_or(Wish::Nothing, Wish::Label),
             Self::Paused(_) if is(press, 'p') => Wish::Resume,
             Self::Paused(_) if is(press, 'q') => Wish::Quit,
-            Self::Ready | Self::Paused(_) => Wish::Nothing,
+            Self::Ready | Self::Paused(_) | Self::Over => Wish::Nothing,
         }
     }
 
@@ -49,7 +56,7 @@ impl Stage {
     pub fn annotation(&self) -> Option<Annotation> {
         match self {
             Self::Labelling(dialog) => dialog.annotation(),
-            Self::Ready | Self::Driving | Self::Paused(_) => None,
+            Self::Ready | Self::Driving | Self::Paused(_) | Self::Asking(_) | Self::Over => None,
         }
     }
 }

@@ -34,6 +34,8 @@ pub enum Wish {
     Label(Label),
     /// End the run with this said about it, if anything.
     Finish(Option<Annotation>),
+    /// Keep the answers to the questions.
+    Answered,
     /// End the session.
     Quit,
 }

@@ -1,8 +1,5 @@
 //! The control centre: both views, how the run is, and the dialog that labels a corner case.
 
-use std::sync::Arc;
-
-use base::chart::Chart;
 use egui::{Color32, Frame, Label as Words, Margin, Panel, Rect, RichText, Ui, Vec2};
 use kernel::Seat;
 use kernel::arbiter::Phase;
@@ -14,7 +11,7 @@ use super::map::MapView;
 use super::plots;
 use crate::desktop::{Picture, hud};
 use crate::drive::board::{Board, Status, Totals};
-use crate::drive::stage::{Dialog, Pause, Stage};
+use crate::drive::stage::{Dialog, Form, Pause, Stage};
 use crate::drive::strip::Strip;
 use crate::drive::traces::Traces;
 
@@ -40,14 +37,9 @@ pub struct Centre {
 }
 
 impl Centre {
-    /// On a map.
-    pub fn new(chart: Arc<Chart>) -> Self {
-        Self {
-            semantic: Picture::sharp(),
-            safety: Picture::smooth(),
-            strip: Picture::smooth(),
-            map: MapView::new(chart),
-        }
+    /// With nothing to show yet.
+    pub fn new() -> Self {
+        Self { semantic: Picture::sharp(), safety: Picture::smooth(), strip: Picture::smooth(), map: MapView::new() }
     }
 
     /// Paints the window.
@@ -77,11 +69,13 @@ impl Centre {
     fn map_and_words(&mut self, ui: &mut Ui, status: &Status, board: &Board, traces: &Traces) {
         let look = board.feed.scene.get();
         let size = Vec2::new(MAP_WIDTH, ui.available_height());
-        self.map.paint(ui, size, look.as_ref().map(|look| &look.scene), traces);
+        self.map.paint(ui, size, look.as_deref(), traces);
         ui.vertical(|ui| match &status.stage {
             Stage::Labelling(dialog) => label_dialog(ui, dialog),
-            Stage::Ready | Stage::Driving | Stage::Paused(_) => {
-                ui.label(RichText::new(keys(&status.stage, status.phase)).weak());
+            Stage::Asking(form) => questions(ui, form),
+            Stage::Ready | Stage::Driving | Stage::Paused(_) | Stage::Over => {
+                ui.label(RichText::new(keys(&status.stage, status.phase, status.about.trial.is_some())).weak());
+                between_runs(ui, status);
                 let strip = board.strip.get();
                 if strip.is_none() && status.stage == Stage::Ready {
                     status.setup.iter().for_each(|line| drop(ui.label(line)));
@@ -101,15 +95,28 @@ impl Centre {
     }
 }
 
+/// What a plan has to say while nobody drives.
+fn between_runs(ui: &mut Ui, status: &Status) {
+    if !matches!(status.stage, Stage::Ready | Stage::Over) {
+        return;
+    }
+    if let Some(link) = &status.link {
+        ui.label(RichText::new(format!("Questions about the run before: {link}")).color(ATTENTION));
+    }
+    status.tally.iter().for_each(|line| drop(ui.label(RichText::new(line).strong())));
+}
+
 /// What the operators' keys do now.
-fn keys(stage: &Stage, phase: Phase) -> String {
+fn keys(stage: &Stage, phase: Phase, is_planned: bool) -> String {
     let words = match (stage, phase) {
+        (Stage::Ready, _) if is_planned => "N starts the run, Q quits",
         (Stage::Ready, _) => "N starts the run, X swaps the seats, Q quits",
+        (Stage::Over, _) => "Q quits",
         (Stage::Driving, Phase::TakenOver) => "1 to 4 label the takeover, P pauses, B breaks the run off, Escape quits",
         (Stage::Driving, _) => "P pauses, B breaks the run off, Escape quits",
         (Stage::Paused(Pause::Ending), _) => "P drives on, B breaks the run off, Q or Escape ends the session",
         (Stage::Paused(_), _) => "P drives on, B breaks the run off, Q quits",
-        (Stage::Labelling(_), _) => "",
+        (Stage::Labelling(_) | Stage::Asking(_), _) => "",
     };
     format!("{words}{WINDOW_KEYS}")
 }
@@ -127,7 +134,13 @@ fn phase(phase: Phase) -> &'static str {
 fn headline(ui: &mut Ui, status: &Status) {
     let text = match &status.stage {
         Stage::Ready if status.units_note.is_some() => format!("Run {} waits for both units", status.run),
-        Stage::Ready => format!("Run {} is ready: N starts it", status.run),
+        Stage::Ready => match (status.rest_s, &status.about.trial) {
+            (Some(seconds), _) => format!("Break: {}:{:02} to run {}", seconds / 60, seconds % 60, status.run),
+            (None, Some(trial)) => format!("Run {} is ready, {trial}: N starts it", status.run),
+            (None, None) => format!("Run {} is ready: N starts it", status.run),
+        },
+        Stage::Asking(_) => "Questions for both drivers".into(),
+        Stage::Over => "All trials of the plan are driven".into(),
         Stage::Driving => format!("Run {}: {}", status.run, phase(status.phase)),
         Stage::Paused(Pause::Asked) => format!("Run {}: time stands", status.run),
         Stage::Paused(Pause::UnitLost) => format!("Run {}: time stands, since a unit is lost", status.run),
@@ -231,6 +244,17 @@ fn label_dialog(ui: &mut Ui, dialog: &Dialog) {
     };
     ui.label(RichText::new(help).weak());
     ui.label(RichText::new(format!("Comment: {}_", dialog.comment)).size(16.0));
+}
+
+fn questions(ui: &mut Ui, form: &Form) {
+    let ((name, question, typed), (place, last)) = (form.asks(), form.place());
+    ui.label(RichText::new(format!("{name}: {}", question.words)).size(18.0).color(ATTENTION));
+    ui.label(RichText::new(format!("Answer: {typed}_")).size(16.0));
+    let (low, high) = (question.range.start(), question.range.end());
+    let help = format!(
+        "Question {place} of {last}. {low} to {high}, or nothing, and Enter; Backspace goes back; Escape ends the session."
+    );
+    ui.label(RichText::new(help).weak());
 }
 
 /// The four labels of the paper, and what is none of them.

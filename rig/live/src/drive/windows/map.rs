@@ -6,7 +6,8 @@ use base::chart::Chart;
 use egui::epaint::PathShape;
 use egui::{Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2};
 use glam::{Vec2 as Place, Vec3, Vec3Swizzles};
-use kernel::SceneSnapshot;
+use kernel::{RoadNetwork, SceneSnapshot};
+use viewers::feed::Look;
 
 use crate::drive::traces::Traces;
 
@@ -28,7 +29,8 @@ const MIN_SPAN_M: f32 = 40.0;
 
 /// The map and how much of it is seen.
 pub struct MapView {
-    chart: Arc<Chart>,
+    /// The map that is driven on, drawn once.
+    chart: Option<(Arc<RoadNetwork>, Chart)>,
     /// Width on the screen, metres.
     span_m: f32,
 }
@@ -41,40 +43,44 @@ struct Projection {
 }
 
 impl MapView {
-    /// Of a map.
-    pub fn new(chart: Arc<Chart>) -> Self {
-        Self { chart, span_m: SPAN_M }
+    /// Of no map yet.
+    pub fn new() -> Self {
+        Self { chart: None, span_m: SPAN_M }
     }
 
-    /// Paints it; the mouse wheel zooms.
-    pub fn paint(&mut self, ui: &mut Ui, size: Vec2, scene: Option<&SceneSnapshot>, traces: &Traces) {
+    /// Paints the map of what there is to see; the mouse wheel zooms.
+    pub fn paint(&mut self, ui: &mut Ui, size: Vec2, look: Option<&Look>, traces: &Traces) {
+        if let Some(Look { network, .. }) = look
+            && self.chart.as_ref().is_none_or(|(of, _)| !Arc::ptr_eq(of, network))
+        {
+            self.chart = Some((network.clone(), Chart::of(network)));
+        }
         let (response, painter) = ui.allocate_painter(size, Sense::hover());
         let rect = response.rect;
         painter.rect_filled(rect, 2.0, GROUND);
-        let largest_m = (self.chart.high - self.chart.low).max_element();
+        let (Some((_, chart)), Some(Look { scene, .. })) = (&self.chart, look) else { return };
+        let largest_m = (chart.high - chart.low).max_element();
         if response.hovered() {
             let scrolled = ui.input(|input| input.smooth_scroll_delta.y);
             self.span_m = (self.span_m * (-scrolled / 200.0).exp()).clamp(MIN_SPAN_M, largest_m.max(MIN_SPAN_M));
         }
-        let middle_m = scene.map_or(0.5 * (self.chart.low + self.chart.high), |scene| scene.ego.position.xy());
+        let middle_m = scene.ego.position.xy();
         let view = Projection { middle_m, middle: rect.center(), points_per_m: rect.width() / self.span_m };
-        self.paint_chart(&painter, rect, &view);
+        paint_chart(&painter, rect, &view, chart);
         view.line(&painter, &traces.way, Stroke::new(2.0, WAY));
         view.line(&painter, &traces.route, Stroke::new(3.0, ROUTE));
-        if let Some(scene) = scene {
-            paint_actors(&painter, &view, scene);
-        }
+        paint_actors(&painter, &view, scene);
     }
+}
 
-    fn paint_chart(&self, painter: &Painter, rect: Rect, view: &Projection) {
-        let lane = Stroke::new((LANE_M * view.points_per_m).max(1.0), LANE);
-        for house in self.chart.houses.iter().filter(|house| view.meets(rect, *house)) {
-            let corners = house.iter().map(|corner| view.at(*corner)).collect();
-            painter.add(Shape::convex_polygon(corners, HOUSE, Stroke::NONE));
-        }
-        for points in self.chart.lanes.iter().filter(|points| view.meets(rect, points)) {
-            view.line(painter, points, lane);
-        }
+fn paint_chart(painter: &Painter, rect: Rect, view: &Projection, chart: &Chart) {
+    let lane = Stroke::new((LANE_M * view.points_per_m).max(1.0), LANE);
+    for house in chart.houses.iter().filter(|house| view.meets(rect, *house)) {
+        let corners = house.iter().map(|corner| view.at(*corner)).collect();
+        painter.add(Shape::convex_polygon(corners, HOUSE, Stroke::NONE));
+    }
+    for points in chart.lanes.iter().filter(|points| view.meets(rect, points)) {
+        view.line(painter, points, lane);
     }
 }
 

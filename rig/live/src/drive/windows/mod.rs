@@ -9,7 +9,6 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use anyhow::Context;
-use base::chart::Chart;
 use base::clock::SessionClock;
 use kernel::Seat;
 use viewers::feed::View;
@@ -79,8 +78,6 @@ pub struct Link {
     pub outbox: Sender<Message>,
     /// Time since the session began.
     pub clock: SessionClock,
-    /// The map from above.
-    pub chart: Arc<Chart>,
     /// Monitors that the safety driver's view is spread over.
     pub screens: usize,
 }
@@ -123,7 +120,7 @@ impl Panes {
         Ok(Self {
             semantic: Driver { pane: semantic, picture: Picture::sharp(), shown: None },
             safety: Driver { pane: safety, picture: Picture::smooth().over(link.screens), shown: None },
-            centre: (centre, Centre::new(link.chart.clone())),
+            centre: (centre, Centre::new()),
         })
     }
 
