@@ -77,7 +77,7 @@ fn planned(protocol: &Protocol, progress: &Progress, trial: usize) -> Planned {
         checkpoint: (!protocol.is_blind).then(|| protocol.checkpoints[of.checkpoint].name().into_owned()),
         done: progress.is_done(protocol, trial),
         runs: counting.len(),
-        km: counting.iter().map(|ended| ended.km()).sum(),
+        km: Ended::sum_km(counting.iter().copied()),
         cases: counting.iter().filter(|ended| ended.is_case).count(),
     }
 }

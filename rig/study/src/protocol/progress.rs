@@ -52,9 +52,9 @@ impl Ended {
         }
     }
 
-    /// Kilometres.
-    pub fn km(&self) -> f64 {
-        self.odometer_mm as f64 / 1e6
+    /// Kilometres of several runs.
+    pub fn sum_km<'a>(runs: impl Iterator<Item = &'a Self>) -> f64 {
+        runs.map(|ended| ended.odometer_mm).sum::<u64>() as f64 / 1e6
     }
 }
 
@@ -120,7 +120,7 @@ impl Progress {
     pub fn is_done(&self, protocol: &Protocol, trial: usize) -> bool {
         let mut counting = self.of_trial(trial).filter(|ended| ended.counts);
         match protocol.trials[trial].km {
-            Some(km) => counting.map(Ended::km).sum::<f64>() >= km,
+            Some(km) => Ended::sum_km(counting) >= km,
             None => counting.any(|ended| ended.is_over),
         }
     }
@@ -142,7 +142,7 @@ impl Progress {
                 true => String::new(),
                 false => format!(" through {}", protocol.checkpoints[kind].name()),
             };
-            let km: f64 = counting().map(|ended| ended.km()).sum();
+            let km = Ended::sum_km(counting().copied());
             let minutes =
                 counting().map(|ended| ended.ticks).sum::<Tick>() as f64 / f64::from(60 * kernel::time::TICK_HZ);
             let cases = counting().filter(|ended| ended.is_case).count();
