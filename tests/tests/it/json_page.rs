@@ -244,7 +244,7 @@ impl Page<'_> {
             ("Vec", [inner]) => format!("list of {inner}"),
             ("BTreeMap", [_, inner]) => format!("object of {inner}"),
             ("Box", [inner]) => inner.clone(),
-            ("String" | "str" | "PathBuf" | "Provenance" | "Metric" | "Pseudonym", _) => "string".into(),
+            ("String" | "str" | "PathBuf" | "Provenance" | "Metric" | "Pseudonym" | "RunOutcome", _) => "string".into(),
             ("bool", _) => "true or false".into(),
             ("f32" | "f64", _) => "number".into(),
             ("usize" | "u8" | "u16" | "u32" | "u64" | "i32" | "i64" | "Tick", _) => "integer".into(),

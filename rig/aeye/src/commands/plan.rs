@@ -64,11 +64,8 @@ pub fn print(protocol: &Protocol, record: &Path, json: bool) -> anyhow::Result<V
 }
 
 fn planned(protocol: &Protocol, progress: &Progress, trial: usize) -> Planned {
-    let [mut semantic, mut safety] = protocol.participants.each_ref().map(ToString::to_string);
     let of = &protocol.trials[trial];
-    if of.is_swapped {
-        std::mem::swap(&mut semantic, &mut safety);
-    }
+    let [semantic, safety] = protocol.seated(of.is_swapped).map(ToString::to_string);
     let counting: Vec<&Ended> = progress.of_trial(trial).filter(|ended| ended.counts).collect();
     Planned {
         trial: protocol.words(trial),

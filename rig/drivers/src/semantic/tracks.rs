@@ -14,7 +14,7 @@ const KNOWN_DEPTH_M: f32 = 2.0;
 const MOST_CHANGE_MPS: f32 = 6.0;
 /// An edge that seems faster than the rest by more than this is not the one that was seen before, m/s.
 const OTHER_EDGE_MPS: f32 = 8.0;
-/// Who shows no edge that was seen before goes on across as it did, but for who moves by less than this share of that.
+/// Who shows no edge that was seen before is believed to go on across, unless what is seen moves less than this share of that.
 const STAYS_SHARE: f32 = 0.3;
 /// Gap that splits contacts into two vehicles, metres, and its growth with distance.
 const GAP_M: f32 = 1.2;

@@ -13,11 +13,18 @@ pub fn text(status: &Status, seat: Seat) -> HudText {
     let text = HudText::new(&status.hud, status.steering, status.pedals, status.flags);
     let alert = status.alert.as_ref().and_then(|alert: &Alert| alert.words(seat));
     HudText {
-        note: note(&status.stage, status.phase, seat, status.units_note.as_deref()).into(),
+        note: rest(status)
+            .unwrap_or_else(|| note(&status.stage, status.phase, seat, status.units_note.as_deref()).into()),
         alert: alert.unwrap_or_default().into(),
         is_taken_over: status.phase == Phase::TakenOver,
         ..text
     }
+}
+
+/// What is left of a break.
+pub fn rest(status: &Status) -> Option<String> {
+    let seconds = status.rest_s.filter(|_| status.stage == Stage::Ready)?;
+    Some(format!("Break: {}:{:02} to run {}", seconds / 60, seconds % 60, status.run))
 }
 
 /// What is to be done, in words; a unit that is not armed comes first.

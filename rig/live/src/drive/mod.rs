@@ -146,7 +146,7 @@ fn opened(wanted: Wanted, pictures: &Pictures, around: Around) -> anyhow::Result
         Wanted::Trials(protocol) => {
             let lineup = open(&protocol.checkpoints, protocol.is_blind)?;
             let study = protocol.study();
-            (Agenda::Planned(Arc::new(protocol)), study, lineup)
+            (Agenda::Planned(Box::new(protocol)), study, lineup)
         }
     };
     let Around { force, foxglove, record, tell, unattended } = around;

@@ -69,6 +69,12 @@ impl Seating {
         self.is_swapped
     }
 
+    /// What belongs to the people, first to whoever began as the semantic driver, by the seats that they have now.
+    pub fn seated<T>(&self, people: [T; 2]) -> [T; 2] {
+        let [first, second] = people;
+        if self.is_swapped { [second, first] } else { [first, second] }
+    }
+
     fn refresh(&mut self) {
         self.devices = self.seats.devices().to_vec();
         self.setup = self.seats.summary().into();

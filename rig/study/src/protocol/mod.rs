@@ -142,6 +142,12 @@ impl Protocol {
         }
     }
 
+    /// Who drives a half: the semantic driver, and the safety driver.
+    pub fn seated(&self, is_swapped: bool) -> [&Pseudonym; 2] {
+        let [first, second] = &self.participants;
+        if is_swapped { [second, first] } else { [first, second] }
+    }
+
     /// What a trial is, for people to read: place and weather, never the checkpoint.
     pub fn words(&self, trial: usize) -> String {
         let Trial { scenario, km, .. } = &self.trials[trial];

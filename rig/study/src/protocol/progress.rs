@@ -136,8 +136,7 @@ impl Progress {
             };
             let runs: Vec<&Ended> = self.0.iter().filter(|(trial, _)| is_of(*trial)).map(|(_, ended)| ended).collect();
             let counting = || runs.iter().filter(|ended| ended.counts);
-            let [first, second] = &protocol.participants;
-            let [semantic, safety] = if is_swapped { [second, first] } else { [first, second] };
+            let [semantic, safety] = protocol.seated(is_swapped);
             let through = match protocol.is_blind {
                 true => String::new(),
                 false => format!(" through {}", protocol.checkpoints[kind].name()),

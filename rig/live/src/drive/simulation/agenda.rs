@@ -1,7 +1,5 @@
 //! What the runs of a session are to be, one after the other.
 
-use std::sync::Arc;
-
 use base::maps::Map;
 use kernel::Scenario;
 use replay::Provenance;
@@ -9,12 +7,11 @@ use study::protocol::Progress;
 use study::{Draw, Protocol};
 
 /// What the runs of a session are to be.
-#[derive(Clone)]
 pub enum Agenda {
     /// All of them start from one scenario; their seeds and checkpoints are drawn.
     Drawn { map: Map, scenario: Box<Scenario>, draw: Draw },
     /// Trials of a protocol.
-    Planned(Arc<Protocol>),
+    Planned(Box<Protocol>),
 }
 
 /// What a run is to be.
@@ -27,27 +24,33 @@ pub struct Bill {
     pub eye: usize,
     /// Which trial of the protocol it is; 0 without one.
     pub trial: usize,
+    /// All trials are driven: it is shown, and does not start.
+    pub is_over: bool,
 }
 
 impl Agenda {
-    /// The run of a number, from 1, after these; none once all is driven.
-    pub fn bill(&self, number: u32, progress: &Progress) -> Option<Bill> {
+    /// The run of a number, from 1, after these.
+    pub fn bill(&self, number: u32, progress: &Progress) -> Bill {
         match self {
-            Self::Drawn { map, scenario, draw } => {
-                let scenario = Scenario { seed: draw.seed_of_run(number), ..Scenario::clone(scenario) };
-                Some(Bill { map: map.clone(), scenario, eye: draw.eye_of_run(number), trial: 0 })
+            Self::Drawn { map, scenario, draw } => Bill {
+                map: map.clone(),
+                scenario: Scenario { seed: draw.seed_of_run(number), ..Scenario::clone(scenario) },
+                eye: draw.eye_of_run(number),
+                trial: 0,
+                is_over: false,
+            },
+            Self::Planned(protocol) => {
+                let next = progress.next(protocol);
+                let trial = next.unwrap_or(protocol.trials.len() - 1);
+                let planned = &protocol.trials[trial];
+                Bill {
+                    map: planned.setting.map.clone(),
+                    scenario: protocol.scenario(trial, progress.of_trial(trial).count()),
+                    eye: planned.checkpoint,
+                    trial,
+                    is_over: next.is_none(),
+                }
             }
-            Self::Planned(protocol) => progress.next(protocol).map(|trial| planned(protocol, trial, progress)),
-        }
-    }
-
-    /// What is shown when all is driven.
-    pub fn last(&self, number: u32, progress: &Progress) -> Bill {
-        match self {
-            Self::Drawn { map, scenario, draw } => {
-                Bill { map: map.clone(), scenario: Scenario::clone(scenario), eye: draw.eye_of_run(number), trial: 0 }
-            }
-            Self::Planned(protocol) => planned(protocol, protocol.trials.len() - 1, progress),
         }
     }
 
@@ -63,10 +66,4 @@ impl Agenda {
     pub fn trial_of(&self, provenance: &Provenance) -> Result<usize, String> {
         self.protocol().map_or(Ok(0), |protocol| protocol.trial_of(provenance))
     }
-}
-
-fn planned(protocol: &Protocol, trial: usize, progress: &Progress) -> Bill {
-    let earlier = progress.of_trial(trial).count();
-    let map = protocol.trials[trial].setting.map.clone();
-    Bill { map, scenario: protocol.scenario(trial, earlier), eye: protocol.trials[trial].checkpoint, trial }
 }

@@ -23,8 +23,6 @@ pub struct Runs {
     run: Option<Run>,
     bill: Bill,
     about: Arc<About>,
-    /// Nothing is left to be driven.
-    is_over: bool,
     /// The kind of corner case that the operators gave the run's takeover before its end.
     label: Option<Label>,
     progress: Progress,
@@ -38,7 +36,7 @@ impl Runs {
     pub fn after_earlier_ones(plan: &Plan) -> anyhow::Result<(Self, Vec<String>)> {
         let trial_of = |provenance: &Provenance| plan.agenda.trial_of(provenance);
         let Recorded { last, progress, not_counted } = Recorded::under(&plan.record, trial_of)?;
-        let bill = plan.agenda.last(last + 1, &progress);
+        let bill = plan.agenda.bill(last + 1, &progress);
         let mut runs = Self {
             stage: Stage::Ready,
             number: last,
@@ -46,7 +44,6 @@ impl Runs {
             run: None,
             about: plan.about(&bill),
             bill,
-            is_over: false,
             label: None,
             progress,
             totals: Totals::default(),
@@ -94,9 +91,7 @@ impl Runs {
     /// Makes the world of the next run, which waits for its start; once all is driven, one that does not start.
     pub fn prepare(&mut self, plan: &Plan) -> anyhow::Result<&World> {
         self.number += 1;
-        let bill = plan.agenda.bill(self.number, &self.progress);
-        self.is_over = bill.is_none();
-        self.bill = bill.unwrap_or_else(|| plan.agenda.last(self.number, &self.progress));
+        self.bill = plan.agenda.bill(self.number, &self.progress);
         self.about = plan.about(&self.bill);
         let world = World::new(&self.bill.scenario, &self.bill.map.network)?;
         (self.run, self.label) = (None, None);
@@ -106,7 +101,7 @@ impl Runs {
 
     /// Nothing but the start is waited for.
     pub fn wait_for_start(&mut self) {
-        self.stage = if self.is_over { Stage::Over } else { Stage::Ready };
+        self.stage = if self.bill.is_over { Stage::Over } else { Stage::Ready };
     }
 
     /// What the run is to be that is on, or that waits.

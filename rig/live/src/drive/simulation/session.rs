@@ -143,7 +143,7 @@ impl Session {
     /// Counts a break down.
     pub fn show_rest(&mut self) {
         if self.rest.is_news(self.pace.now_us()) {
-            self.show_status(Some(Wake::Centre));
+            self.show_status(Some(Wake::All));
         }
     }
 
@@ -283,11 +283,7 @@ impl Session {
 
     /// What the drivers go by, semantic driver's first.
     fn names(&self) -> [String; 2] {
-        let mut names = self.plan.operators.clone();
-        if self.seating.is_swapped() {
-            names.swap(0, 1);
-        }
-        let [semantic, safety] = names;
+        let [semantic, safety] = self.seating.seated(self.plan.operators.clone());
         [semantic.unwrap_or_else(|| "semantic driver".into()), safety.unwrap_or_else(|| "safety driver".into())]
     }
 

@@ -67,12 +67,8 @@ impl Parts<'_> {
 
 /// Who sits in the seats, as far as that is to be known, and how their units are.
 fn operators(about: &About, seating: &Seating) -> [String; 2] {
-    let mut names = about.operators.clone();
-    if seating.is_swapped() {
-        names.swap(0, 1);
-    }
     let [semantic, safety] = seating.words();
-    let [named, other] = names;
+    let [named, other] = seating.seated(about.operators.clone());
     let with = |name: Option<String>, unit: String| name.map_or(unit.clone(), |name| format!("{name}, {unit}"));
     [with(named, semantic), with(other, safety)]
 }

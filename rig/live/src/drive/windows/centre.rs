@@ -134,8 +134,8 @@ fn phase(phase: Phase) -> &'static str {
 fn headline(ui: &mut Ui, status: &Status) {
     let text = match &status.stage {
         Stage::Ready if status.units_note.is_some() => format!("Run {} waits for both units", status.run),
-        Stage::Ready => match (status.rest_s, &status.about.trial) {
-            (Some(seconds), _) => format!("Break: {}:{:02} to run {}", seconds / 60, seconds % 60, status.run),
+        Stage::Ready => match (crate::drive::hud::rest(status), &status.about.trial) {
+            (Some(rest), _) => rest,
             (None, Some(trial)) => format!("Run {} is ready, {trial}: N starts it", status.run),
             (None, None) => format!("Run {} is ready: N starts it", status.run),
         },
