@@ -1,6 +1,6 @@
 # demo and test install what they need on Debian (apt; sudo only where you are not root).
 
-PACKAGES := gcc libc6-dev pkg-config libudev-dev libvulkan1 mesa-vulkan-drivers \
+PACKAGES := gcc libc6-dev pkg-config libudev-dev libasound2-dev libvulkan1 mesa-vulkan-drivers \
 	libxkbcommon-x11-0 libxcursor1 libxi6 libxrandr2 libx11-xcb1
 TEST_PACKAGES := xvfb xdotool python3-venv libegl1 libgl1-mesa-dri
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)

@@ -2,5 +2,6 @@
 
 pub mod desktop;
 pub mod drive;
+pub mod speakers;
 pub mod units;
 pub mod view;

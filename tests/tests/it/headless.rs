@@ -5,9 +5,21 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
-/// How the names of packages begin that come with windows, wheels or CUDA.
-const OUTSIDE: [&str; 11] =
-    ["libudev", "gilrs", "evdev", "x11", "xkbcommon", "winit", "egui", "wayland", "cudarc", "tract-cuda", "tract-gpu"];
+/// How the names of packages begin that come with windows, wheels, sound or CUDA.
+const OUTSIDE: [&str; 12] = [
+    "libudev",
+    "alsa",
+    "gilrs",
+    "evdev",
+    "x11",
+    "xkbcommon",
+    "winit",
+    "egui",
+    "wayland",
+    "cudarc",
+    "tract-cuda",
+    "tract-gpu",
+];
 
 /// Bindings, as `-sys` at the end of a name says, that need nothing installed: system calls, types alone, libraries
 /// that are compiled along, and what OpenGL and onnxruntime look for when they are asked for.
@@ -37,7 +49,7 @@ fn a_build_without_windows_asks_the_system_for_no_library() {
     assert_eq!(from_outside(&packages("python", &[])), Vec::<&str>::new());
     let full = packages("aeye", &[]);
     let found = from_outside(&full);
-    for (word, feature) in [("libudev-sys", "live"), ("winit", "live"), ("tract-cuda", "cuda")] {
+    for (word, feature) in [("libudev-sys", "live"), ("alsa-sys", "live"), ("winit", "live"), ("tract-cuda", "cuda")] {
         assert!(found.contains(&word), "{word} is no longer what {feature} asks for: {found:?}");
     }
 }

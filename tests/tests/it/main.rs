@@ -44,6 +44,7 @@ mod rig_ros2;
 mod rig_sensor;
 mod rig_shards;
 mod rig_sight;
+mod rig_sound;
 mod rig_statistics;
 mod rig_still;
 mod rig_story;

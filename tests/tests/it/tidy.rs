@@ -10,7 +10,7 @@ const MAX_FILE_LINES: usize = 600;
 const MAX_FUNCTION_LINES: usize = 100;
 
 /// Every crate by its folder, and which others of the workspace it may depend on; each stands above those.
-const IMPORTS: [(&str, &[&str]); 15] = [
+const IMPORTS: [(&str, &[&str]); 16] = [
     ("tests/hunt", &[]),
     ("intake", &[]),
     ("kernel", &["hunt"]),
@@ -21,10 +21,17 @@ const IMPORTS: [(&str, &[&str]); 15] = [
     ("rig/drivers", &["kernel", "perception", "render", "replay", "base"]),
     ("rig/study", &["kernel", "perception", "render", "replay", "base", "drivers"]),
     ("rig/measures", &["kernel", "replay", "base", "drivers", "study"]),
+    ("rig/sound", &["kernel"]),
     ("rig/viewers", &["kernel", "render", "base"]),
-    ("rig/lab", &["kernel", "perception", "render", "replay", "base", "drivers", "study", "measures", "viewers"]),
+    (
+        "rig/lab",
+        &["kernel", "perception", "render", "replay", "base", "drivers", "study", "measures", "sound", "viewers"],
+    ),
     ("python", &["kernel", "perception", "render", "replay", "base", "drivers", "measures", "lab"]),
-    ("rig/live", &["kernel", "perception", "render", "replay", "base", "drivers", "study", "measures", "viewers"]),
+    (
+        "rig/live",
+        &["kernel", "perception", "render", "replay", "base", "drivers", "study", "measures", "sound", "viewers"],
+    ),
     (
         "rig/aeye",
         &["kernel", "perception", "render", "replay", "base", "drivers", "study", "measures", "viewers", "lab", "live"],
@@ -38,7 +45,7 @@ const ONLOOKERS: [&str; 2] = ["tests", "benches"];
 const WINDOWS: [&str; 3] = ["rig/live/src/desktop/", "rig/live/src/drive/windows/", "rig/live/src/view/windows/"];
 
 /// A library and the only files that name it, where its crate has more. A trailing slash allows a folder.
-const NAMED_ONCE: [(&str, &[&str]); 20] = [
+const NAMED_ONCE: [(&str, &[&str]); 23] = [
     ("rapier3d::", &["kernel/src/physics/"]),
     ("xodr::", &["kernel/src/baking/"]),
     ("roxmltree::", &["kernel/src/baking/limits/", "kernel/src/story/reader/"]),
@@ -59,6 +66,9 @@ const NAMED_ONCE: [(&str, &[&str]); 20] = [
         &["rig/viewers/src/server/access.rs", "rig/viewers/src/server/client.rs", "rig/viewers/src/server/tests.rs"],
     ),
     ("evdev::", &["rig/live/src/drive/force/linux.rs"]),
+    ("alsa::", &["rig/live/src/speakers/device.rs"]),
+    ("cpal::", &["rig/live/src/speakers/device.rs"]),
+    ("hound::", &["rig/lab/src/export/hearing.rs"]),
     ("pyo3::", &["python/src/"]),
     ("numpy::", &["python/src/"]),
     // What cannot be printed must not end a drive: `base::say` and `aeye::print` see to that.

@@ -209,7 +209,7 @@ fn so_often_is_braked_for_no_reason_as_is_asked_for() {
 fn so_often_is_cut_in_as_is_asked_for() {
     let rates = HazardRates { cut_ins_per_h: 360.0, ..HazardRates::NONE };
     let mut traffic = on_ring(100, 1, rates);
-    let [k, n] = by_the_hour(&mut traffic, 20, Lapse::CutsIn, |view, i| view.cut_in(i, &view.plans[i]).is_some());
+    let [k, n] = by_the_hour(&mut traffic, 12, Lapse::CutsIn, |view, i| view.cut_in(i, &view.plans[i]).is_some());
     agrees("cut-ins", k, n, 360.0 / 3600.0);
 }
 

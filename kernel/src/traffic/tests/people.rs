@@ -61,7 +61,7 @@ fn people_are_where_there_is_a_reason_and_stay_there() {
     // In the city houses are everywhere.
     let (network, least) = (bundled("city").expect("it is bundled"), 3.0);
     let (mut first, mut last) = (Density::default(), Density::default());
-    for seed in 2101..2105 {
+    for seed in [2101, 2102] {
         let mut traffic = with_people(&network, 200, seed);
         first.add(&traffic, least);
         run(&mut traffic, 1..25 * MINUTE, |t, tick| {
@@ -98,9 +98,9 @@ fn together(traffic: &mut Traffic, minutes: Tick, near_m: f32) -> [f32; 2] {
 fn who_walks_together_stays_together() {
     for (map, pedestrians, least) in [("city", 200, 0.8), ("rural", 60, 0.8)] {
         let network = bundled(map).expect("it is bundled");
-        for seed in 2101..2104 {
+        for seed in [2101, 2102] {
             let mut traffic = with_people(&network, pedestrians, seed);
-            let [near, beside] = together(&mut traffic, 20, 5.0);
+            let [near, beside] = together(&mut traffic, 15, 5.0);
             assert!(near > least, "{map} {seed}: {near}, side by side {beside}");
         }
     }
@@ -188,7 +188,7 @@ fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car()
     let network = bundled("city").expect("it is bundled");
     let (minutes, a_minute) = (10, 6.0);
     let (mut all, mut hidden) = (0, 0);
-    for seed in 2101..2105 {
+    for seed in [2101, 2102] {
         let counts = TrafficCounts { jaywalks_per_min: a_minute, ..counts(100) };
         let mut traffic = Traffic::spawn(&counts, seed, network.ways(), nowhere().position);
         let mut before = traffic.actors.clone();

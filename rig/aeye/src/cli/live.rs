@@ -38,6 +38,16 @@ pub struct DriveArgs {
     /// Greatest force of wheels and gamepads, 0 (off) to 1 (all that they can).
     #[arg(long, default_value_t = 0.6, value_parser = force, value_name = "FRACTION", conflicts_with = "headless")]
     pub force: f32,
+    /// Where the safety driver, and the operators, hear the car and are warned: `default` is the system's own choice, `off` none;
+    /// else part of a device's name.
+    #[arg(long, value_name = "default|off|DEVICE", conflicts_with = "headless")]
+    pub sound: Option<String>,
+    /// Where the semantic driver hears that the car was taken over, as the other one does (default: nowhere).
+    #[arg(long, value_name = "default|off|DEVICE", conflicts_with = "headless")]
+    pub semantic_sound: Option<String>,
+    /// The semantic driver hears the car as well, with all that is around it: that tells what the mask does not.
+    #[arg(long, requires = "semantic_sound")]
+    pub semantic_hears_car: bool,
     /// Shows the drive to Foxglove at this port of this machine, or at this address.
     #[arg(long, value_parser = server::address, value_name = "PORT|ADDRESS:PORT")]
     foxglove: Option<SocketAddr>,

@@ -5,6 +5,7 @@ mod aside;
 mod backing;
 mod coming;
 mod crossing;
+mod flank;
 mod memory;
 mod moved;
 pub mod path;

@@ -5,6 +5,7 @@ use kernel::ops;
 use kernel::time::TICK_S;
 
 use super::arc::{Arc, HALF_WIDTH_M, Point, SHARPEST};
+use super::flank;
 use super::moved::Moved;
 use super::sight::{self, Contact, Ground, Sight};
 use super::tracks::Tracks;
@@ -28,8 +29,9 @@ const NARROW_M: f32 = 0.5;
 const NARROW_AHEAD_M: f32 = 2.0;
 const NARROW_MPS: f32 = 0.8;
 const NARROW_PER_S: f32 = 4.0;
-/// Arcs sharper than this turn to a side, 1/m.
+/// Arcs sharper than this turn to a side, and than this so much that the car's flank sweeps over what is beside it, 1/m.
 const TURNS_TO: f32 = 0.01;
+const SWEEPS: f32 = 0.06;
 /// Room before the car that makes an arc a way by, metres.
 const FREE_M: f32 = 5.5;
 /// Who moves faster than this, within this distance, is let pass first, m/s and metres.
@@ -62,6 +64,11 @@ impl Spot {
         Self { at: contact.lowest(), nearest: contact.nearest(), hides, is_person: contact.is_person, unseen_s: 0.0 }
     }
 
+    /// What is below the picture beside the car.
+    fn below(at: Point) -> Self {
+        Self { at, nearest: None, hides: at, is_person: false, unseen_s: 0.0 }
+    }
+
     /// Carries it along while the car moves.
     fn carry(&mut self, moved: Moved) {
         (self.at, self.hides) = (moved.shift(self.at), moved.shift(self.hides));
@@ -76,14 +83,20 @@ impl Spot {
     /// Metres before the front of the car along an arc until it would touch it; none if it would not. A turn towards what
     /// the picture cuts has to clear all of that.
     fn touches_m(&self, arc: Arc) -> Option<f32> {
+        self.touches_at_m(self.at, arc).into_iter().chain(self.touches_cut_m(arc, TURNS_TO)).reduce(f32::min)
+    }
+
+    /// The same of what the picture cuts, for an arc that turns towards it more sharply than `turns_to`.
+    fn touches_cut_m(&self, arc: Arc, turns_to: f32) -> Option<f32> {
+        let turned_to = self.nearest.filter(|at| arc.curvature * at.1.signum() > turns_to);
+        turned_to.and_then(|at| self.touches_at_m(at, arc))
+    }
+
+    fn touches_at_m(&self, at: Point, arc: Arc) -> Option<f32> {
         let beside_m = if self.is_person { BESIDE_WALKER_M } else { BESIDE_VEHICLE_M };
-        let touches = |at: Point| {
-            let (s_m, room_m) = room_m(arc, at);
-            let least_m = if s_m < FRONT_M { NEXT_TO_M } else { beside_m };
-            (at.0 > 0.0 && room_m < least_m).then_some((s_m - FRONT_M).max(0.0))
-        };
-        let turned_to = self.nearest.filter(|at| arc.curvature * at.1.signum() > TURNS_TO);
-        touches(self.at).into_iter().chain(turned_to.and_then(touches)).reduce(f32::min)
+        let (s_m, room_m) = room_m(arc, at);
+        let least_m = if s_m < FRONT_M { NEXT_TO_M } else { beside_m };
+        (at.0 > 0.0 && room_m < least_m).then_some((s_m - FRONT_M).max(0.0))
     }
 
     /// How fast the car drives by on an arc, m/s.
@@ -116,8 +129,10 @@ pub struct Squeeze {
     way: Option<Way>,
     driven_m: f32,
     since_look_m: f32,
-    /// What the last mask showed, what one showed before the car crept so far since, and what left the picture meanwhile.
+    /// What the last mask showed and what of that goes on below it, what one showed before the car crept so far since, and
+    /// what left the picture meanwhile.
     seen: Vec<Spot>,
+    flanks: Vec<Spot>,
     before: Vec<Spot>,
     crept_m: f32,
     gone: Vec<Spot>,
@@ -131,7 +146,8 @@ impl Squeeze {
 
     /// Carries what is known along while the car moves; `waits` for something that stands in its way.
     pub fn carry(&mut self, moved: Moved, waits: bool) {
-        self.seen.iter_mut().chain(&mut self.before).chain(&mut self.gone).for_each(|spot| spot.carry(moved));
+        let known = [&mut self.seen, &mut self.flanks, &mut self.before, &mut self.gone];
+        known.into_iter().flatten().for_each(|spot| spot.carry(moved));
         self.gone.iter_mut().for_each(|spot| spot.unseen_s += TICK_S);
         self.gone.retain(|spot| spot.at.0 > 0.0 && spot.unseen_s < FORGOTTEN_S);
         if let Some(left) = self.gone.iter().find(|spot| spot.is_inside()).map(|spot| spot.at) {
@@ -157,6 +173,7 @@ impl Squeeze {
     /// Takes in a mask: the way beside what it shows that turns least from the wanted one.
     pub fn look(&mut self, sight: &Sight<'_>, contacts: &[Contact], others: &[&Tracks], wanted: Arc) {
         self.seen = contacts.iter().map(Spot::of).collect();
+        self.flanks = flank::below_picture(contacts).into_iter().map(Spot::below).collect();
         let crept_m = std::mem::take(&mut self.since_look_m);
         self.crept_m += crept_m;
         // Who leaves the picture of a car that stands has driven off.
@@ -179,14 +196,17 @@ impl Squeeze {
         };
     }
 
-    /// Metres before the front of the car along an arc until it would touch what left the picture; none if it would not.
+    /// Metres before the front of the car along an arc until it would touch what is not in the picture, or sweep over what
+    /// that cuts; none if it would not.
     pub fn beside_m(&self, arc: Arc) -> Option<f32> {
-        self.gone.iter().filter_map(|spot| spot.touches_m(arc)).reduce(f32::min)
+        let swept = self.seen.iter().filter_map(|spot| spot.touches_cut_m(arc, SWEEPS));
+        self.unseen().filter_map(|spot| spot.touches_m(arc)).chain(swept).reduce(f32::min)
     }
 
     /// How fast the car drives along an arc beside what stands next to it, seen or no more, m/s.
     pub fn narrow_mps(&self, arc: Arc) -> f32 {
-        self.seen.iter().chain(&self.gone).map(|spot| spot.narrow_mps(arc)).fold(f32::INFINITY, f32::min)
+        let known = self.seen.iter().chain(&self.flanks).chain(&self.gone);
+        known.map(|spot| spot.narrow_mps(arc)).fold(f32::INFINITY, f32::min)
     }
 
     fn best(&self, sight: &Sight<'_>, wanted: Arc) -> Option<Way> {
@@ -201,7 +221,12 @@ impl Squeeze {
 
     /// Metres before the front of the car along an arc until it would touch something.
     fn free_m(&self, arc: Arc) -> f32 {
-        self.seen.iter().chain(&self.gone).filter_map(|spot| spot.touches_m(arc)).fold(f32::INFINITY, f32::min)
+        self.seen.iter().chain(self.unseen()).filter_map(|spot| spot.touches_m(arc)).fold(f32::INFINITY, f32::min)
+    }
+
+    /// What left the picture, and what is before the car below it: a flank may have ended where the car is by now.
+    fn unseen(&self) -> impl Iterator<Item = &Spot> {
+        self.gone.iter().chain(self.flanks.iter().filter(|spot| spot.at.0 > FRONT_M))
     }
 }
 
@@ -388,6 +413,28 @@ mod tests {
         let left = Arc { curvature: 0.1 };
         let touches = |is_cut: bool| Spot::of(&at(is_cut)).touches_m(left);
         assert!(touches(true).is_some() && touches(false).is_none(), "{:?} {:?}", touches(true), touches(false));
+    }
+
+    /// A car stands on the inner side of a sharp turn, so near that its wheels are below the picture.
+    #[test]
+    fn a_sharp_turn_waits_for_what_the_picture_cuts_and_a_wide_one_drives_by() {
+        let mut squeeze = Squeeze::default();
+        let cut = Contact { is_cut: true, ..Contact::of_car((5.5, 2.6)) };
+        on_asphalt(|sight| squeeze.look(sight, &[cut], &[], STRAIGHT));
+        let waits = |curvature: f32| squeeze.beside_m(Arc { curvature }).is_some();
+        assert_eq!([0.12, 0.03, 0.0, -0.12].map(waits), [true, false, false, false]);
+    }
+
+    /// A car that stands askew: its near corner is below the picture, in the line of the flank that is seen.
+    #[test]
+    fn it_goes_round_the_corner_of_a_flank_below_the_picture() {
+        let mut squeeze = Squeeze::default();
+        let flank: Vec<Contact> = (0..=20)
+            .map(|i| Contact { is_cut: i == 0, ..Contact::of_car((5.55 + 0.12 * i as f32, 1.5 + 0.03 * i as f32)) })
+            .collect();
+        on_asphalt(|sight| squeeze.look(sight, &flank, &[], STRAIGHT));
+        assert!(squeeze.beside_m(STRAIGHT).is_some() && squeeze.narrow_mps(STRAIGHT) < 1.5);
+        assert_eq!(squeeze.beside_m(Arc { curvature: -0.1 }), None);
     }
 
     #[test]

@@ -221,10 +221,13 @@ impl Blob {
         self.last = *contact;
     }
 
-    /// Its left and right edge, unless the picture cuts it there.
+    /// Its left and right edge as far as they are in the picture: where the lower edge of that cuts both, as they are seen
+    /// there.
     fn edges(&self) -> [Option<Point>; 2] {
-        let is_whole = |edge: &&Contact| !edge.is_cut && sight::is_in_picture((edge.x_m, edge.y_m));
-        [&self.first, &self.last].map(|edge| Some(edge).filter(is_whole).map(|edge| (edge.x_m, edge.y_m)))
+        let edges = [&self.first, &self.last].map(|edge| Some(edge).filter(|c| sight::is_in_picture((c.x_m, c.y_m))));
+        let whole = edges.map(|edge| edge.filter(|edge| !edge.is_cut));
+        let known = if whole.iter().any(Option::is_some) { whole } else { edges };
+        known.map(|edge| edge.map(|edge| (edge.x_m, edge.y_m)))
     }
 
     /// Where it is if it is as near to a point as the rows of pixels leave open: somewhere on the ray on which it is seen.
@@ -352,5 +355,20 @@ mod tests {
         let across = |look: i32| rear(24.0 - 0.6 * look as f32, -16.0 + 0.5 * look as f32).collect();
         let mps = fastest_across_mps((0..24).map(across));
         assert!((4.0..6.0).contains(&mps), "{mps} m/s");
+    }
+
+    /// It pushes in from the right right before the car, nearer than the picture shows the ground.
+    #[test]
+    fn who_is_cut_by_the_lower_edge_is_seen_to_come_across() {
+        let mut tracks = Tracks::default();
+        for look in 0..12 {
+            let left_m = -3.0 + 0.25 * look as f32;
+            let cut = |i: i32| Contact { is_cut: true, ..Contact::of_car((5.5, left_m - 0.1 * i as f32)) };
+            let contacts: Vec<Contact> = (0..20).map(cut).collect();
+            tracks.look(contacts.iter().filter(|c| sight::is_in_front((c.x_m, c.y_m))));
+            (0..6).for_each(|_| tracks.carry(STILL));
+        }
+        let mps = tracks.known().map(|track| track.velocity_mps.1).fold(0.0, f32::max);
+        assert!((1.5..3.5).contains(&mps), "{mps} m/s");
     }
 }

@@ -29,6 +29,8 @@ pub enum Format {
     OpenLabel,
     /// A bag of ROS 2: a folder with MCAP in it.
     Ros2,
+    /// What the safety driver heard, as a WAV file.
+    Wav,
 }
 
 /// What is written.
@@ -56,7 +58,7 @@ struct Traits {
 
 /// Every format. Where a file's ending fits several, the first of them is meant; an animated PNG ends as all who show
 /// PNGs expect.
-const TABLE: [Traits; 9] = [
+const TABLE: [Traits; 10] = [
     traits(Format::Mcap, "mcap", Written::File("mcap"), true, false, true),
     traits(Format::Apng, "apng", Written::File("png"), true, true, false),
     traits(Format::Gif, "gif", Written::File("gif"), true, true, false),
@@ -66,6 +68,7 @@ const TABLE: [Traits; 9] = [
     traits(Format::Coco, "coco", Written::Folder, false, false, true),
     traits(Format::OpenLabel, "openlabel", Written::File("json"), false, false, true),
     traits(Format::Ros2, "ros2", Written::Folder, true, false, true),
+    traits(Format::Wav, "wav", Written::File("wav"), false, false, false),
 ];
 
 const fn traits(
@@ -177,8 +180,8 @@ mod tests {
     fn an_ending_means_the_usual_format() {
         let of = |name: &str| Format::of_file(Path::new(name));
         assert_eq!(
-            ["a.mcap", "a.png", "a.xosc", "a.json", "a", "a.txt"].map(of).map(Format::name),
-            ["mcap", "apng", "openscenario", "openlabel", "mcap", "mcap"]
+            ["a.mcap", "a.png", "a.xosc", "a.json", "a.wav", "a", "a.txt"].map(of).map(Format::name),
+            ["mcap", "apng", "openscenario", "openlabel", "wav", "mcap", "mcap"]
         );
     }
 }

@@ -1,6 +1,7 @@
 //! Recordings and cases for the programs of others: for viewers of robot logs (Foxglove, Lichtblick, Rerun) an MCAP file
 //! of Foxglove's protobuf messages, and a layout that shows them; or as moving pictures, or as stories in OpenSCENARIO XML,
-//! or as traces of OSI, pictures annotated as in COCO, labels of OpenLABEL, bags of ROS 2.
+//! or as traces of OSI, pictures annotated as in COCO, labels of OpenLABEL, bags of ROS 2,
+//! or as what was heard.
 //!
 //! An export that is there already is kept: its file says what it was made from.
 
@@ -10,6 +11,7 @@ mod criticality;
 mod film;
 mod format;
 mod happenings;
+mod hearing;
 mod layout;
 mod openlabel;
 mod options;
@@ -117,6 +119,7 @@ pub fn export(args: &Options, interrupt: &Interrupt) -> anyhow::Result<Exports> 
             Format::OpenLabel => openlabel::export((args, size), file, out.clone(), others, interrupt),
             Format::OpenScenario => story::export(args, file, out.clone(), interrupt),
             Format::Osi => osi::export(args, file, out.clone(), interrupt),
+            Format::Wav => hearing::export(args, file, out.clone(), interrupt),
             Format::Apng | Format::Gif | Format::Mp4 => {
                 video::export(args, file, out.clone(), Screen { workshop: &workshop, size, eyes }, interrupt)
             }

@@ -4,6 +4,7 @@
 mod blit;
 pub mod hud;
 pub mod layout;
+pub mod legend;
 pub mod overlay;
 pub mod pane;
 pub mod picture;

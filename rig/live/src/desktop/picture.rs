@@ -40,11 +40,12 @@ impl Picture {
         Self { filter, slot: PICTURES.fetch_add(1, Ordering::Relaxed), screens: 1 }
     }
 
-    /// Fills the window with the image, black where its proportions differ, and the HUD.
-    pub fn paint_with_hud(&self, ui: &egui::Ui, image: Option<&Arc<Image>>, hud: &HudText) {
+    /// Fills the window with the image, black where its proportions differ, and the HUD; says where the image is.
+    pub fn paint_with_hud(&self, ui: &egui::Ui, image: Option<&Arc<Image>>, hud: &HudText) -> Rect {
         let rect = self.paint(ui, ui.max_rect(), image);
         let middle = Vec2::new(rect.width() / self.screens as f32, rect.height());
         overlay::paint(ui.painter(), Rect::from_center_size(rect.center(), middle), hud);
+        rect
     }
 
     /// Puts the image into the middle of a rectangle, as large as it fits, and says where.

@@ -121,6 +121,8 @@ pub struct Status {
     pub setup: Arc<[String]>,
     /// How force feedback is.
     pub force: String,
+    /// Where what is heard is played.
+    pub sound: String,
     /// What the run is about.
     pub about: Arc<About>,
 }

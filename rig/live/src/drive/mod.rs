@@ -53,6 +53,8 @@ use timings::Timings;
 use viewers::server::{Endpoint, Server};
 use windows::{Link, Waker, Windows};
 
+use crate::speakers;
+
 /// A session of live drives.
 pub struct Options {
     /// What is driven.
@@ -63,6 +65,8 @@ pub struct Options {
     pub calibration: Vec<PathBuf>,
     /// Greatest force of wheels and gamepads, [0, 1].
     pub force: f32,
+    /// Where the drivers hear the car.
+    pub sound: speakers::Options,
     /// Where the drive is shown to Foxglove.
     pub foxglove: Option<Endpoint>,
     /// The pictures in windows.
@@ -92,11 +96,11 @@ pub enum Wanted {
 
 /// Drives in windows until the operators have had enough.
 pub fn drive(options: Options) -> anyhow::Result<()> {
-    let Options { wanted, seats, calibration, force, foxglove, pictures, record, tell } = options;
+    let Options { wanted, seats, calibration, force, sound, foxglove, pictures, record, tell } = options;
     output::check_file(&record)?;
     let (plan, lineup) = opened(wanted, &pictures, Around { force, foxglove, record, tell, unattended: None })?;
     let seating = Seating::new(seats, &calibration)?;
-    let timings = session(plan, seating, lineup, &pictures)?;
+    let timings = session(plan, seating, lineup, &pictures, &sound)?;
     if let Some(figures) = timings.figures() {
         say(figures);
         figures.shortfalls().iter().for_each(say);
@@ -120,7 +124,8 @@ pub fn trial(choice: &CheckpointChoice, pictures: &Pictures, seconds: u32) -> an
     };
     let (plan, lineup) = opened(wanted, pictures, around)?;
     let seating = Seating::new([SeatChoice::Bot, SeatChoice::Bot], &[])?;
-    session(plan, seating, lineup, pictures)?.figures().context("no picture came onto the semantic driver's screen")
+    let timings = session(plan, seating, lineup, pictures, &speakers::Options::null())?;
+    timings.figures().context("no picture came onto the semantic driver's screen")
 }
 
 /// What a session has around what is driven.
@@ -166,7 +171,14 @@ fn opened(wanted: Wanted, pictures: &Pictures, around: Around) -> anyhow::Result
 }
 
 /// Opens the windows and drives until the operators, or the plan, have had enough.
-fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) -> anyhow::Result<Timings> {
+fn session(
+    plan: Plan,
+    seating: Seating,
+    lineup: Lineup,
+    pictures: &Pictures,
+    sound: &speakers::Options,
+) -> anyhow::Result<Timings> {
+    let (_speakers, sound) = speakers::open(sound)?;
     let windows = Windows::new()?;
     let (outbox, inbox) = mpsc::channel();
     let (board, clock) = (Arc::new(Board::default()), SessionClock::starting_now());
@@ -179,6 +191,7 @@ fn session(plan: Plan, seating: Seating, lineup: Lineup, pictures: &Pictures) ->
         outbox: outbox.clone(),
         wake: Box::new(move |what| wake.wake(what)),
         clock,
+        sound,
         interrupt: Interrupt::listen(),
     };
     let simulation = Simulation::new(plan, seating, links)?;

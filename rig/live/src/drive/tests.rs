@@ -19,6 +19,7 @@ use super::seating::Seating;
 use super::simulation::{Links, Simulation};
 use super::stage::{Dialog, Pause, Press, Stage};
 use super::{Around, Wanted, opened};
+use crate::speakers::Sound;
 use crate::units::source::{AxisRange, DeviceInfo, RawEvent, Simulated};
 use crate::units::testing::LAYOUT;
 use crate::units::{SeatChoice, Seats};
@@ -101,6 +102,7 @@ impl Bench {
             outbox: outbox.clone(),
             wake: Box::new(|_| {}),
             clock: SessionClock::starting_now(),
+            sound: Sound::default(),
             interrupt: Interrupt::listen(),
         };
         let simulation = Simulation::new(plan, Seating::of(seats, choices), links).unwrap();

@@ -19,6 +19,8 @@ pub struct Timings {
     /// From the tick of a frame to its picture on the screen, for each picture of the semantic driver
     /// and of the safety driver, microseconds.
     age_us: [Vec<u32>; 2],
+    /// How often samples of sound came too late.
+    sound_gaps: u64,
 }
 
 /// What a session came to.
@@ -42,6 +44,8 @@ pub struct LiveFigures {
     pub mask_age_ms: Option<Spread>,
     /// From the tick of a frame to its image on the screen, milliseconds.
     pub image_age_ms: Option<Spread>,
+    /// How often samples of what is heard came too late.
+    pub sound_gaps: u64,
 }
 
 impl Timings {
@@ -53,6 +57,11 @@ impl Timings {
     /// A picture came onto a driver's screen, so long after the tick it shows.
     pub fn shown(&mut self, seat: Seat, age_us: u64) {
         self.age_us[seat as usize].push(saturated(age_us));
+    }
+
+    /// So often samples of what is heard came too late.
+    pub fn sound(&mut self, gaps: u64) {
+        self.sound_gaps += gaps;
     }
 
     /// A run ended that took so long by the clock and fell so far behind it.
@@ -77,6 +86,7 @@ impl Timings {
             safety_fps: a_second(safety.len()),
             mask_age_ms: spread_ms(semantic),
             image_age_ms: spread_ms(safety),
+            sound_gaps: self.sound_gaps,
         })
     }
 }
@@ -95,7 +105,8 @@ impl fmt::Display for LiveFigures {
         if let Some(Spread { median, p99, .. }) = self.mask_age_ms {
             write!(f, " of age {median:.0} ms median, {p99:.0} ms p99")?;
         }
-        write!(f, "; {safety_fps:.1} images/s")
+        write!(f, "; {safety_fps:.1} images/s")?;
+        if self.sound_gaps > 0 { write!(f, "; {} gaps in the sound", self.sound_gaps) } else { Ok(()) }
     }
 }
 

@@ -36,6 +36,11 @@ impl Layer {
         }
     }
 
+    /// Whether its colours are those of classes.
+    pub fn shows_classes(self) -> bool {
+        matches!(self, Self::Seen | Self::Truth | Self::Prediction)
+    }
+
     /// What its colours mean.
     pub fn legend(self) -> &'static str {
         match self {

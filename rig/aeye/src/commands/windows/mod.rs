@@ -12,6 +12,7 @@ use drivers::film::Film;
 use kernel::Scenario;
 pub use live::drive::LiveFigures;
 use live::drive::{Options, Tell, Wanted};
+use live::speakers;
 use live::units::hardware::Hardware;
 use measures::RunFigures;
 use study::Protocol;
@@ -46,11 +47,21 @@ fn options(args: &DriveArgs, wanted: Wanted, tell: Tell) -> Options {
         seats: [args.semantic.clone(), args.safety.clone()].map(Option::unwrap_or_default),
         calibration: args.calibration.clone(),
         force: args.force,
+        sound: speakers::Options {
+            safety: sound(args.sound.as_deref(), "default"),
+            semantic: sound(args.semantic_sound.as_deref(), "off"),
+            semantic_hears_car: args.semantic_hears_car,
+        },
         foxglove: args.foxglove(),
         pictures: (&args.pictures).into(),
         record: args.record().to_owned(),
         tell,
     }
+}
+
+/// A device as it is asked for, or else this.
+fn sound(asked: Option<&str>, otherwise: &str) -> speakers::Choice {
+    speakers::Choice::from(asked.unwrap_or(otherwise))
 }
 
 /// Shows a recording or case until its window is closed.

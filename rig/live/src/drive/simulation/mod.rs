@@ -64,8 +64,8 @@ impl End {
 impl Simulation {
     /// Takes the seats and makes the first world.
     pub fn new(plan: Plan, seating: Seating, links: Links) -> anyhow::Result<Self> {
-        let Links { board, inbox, outbox, wake, clock, interrupt } = links;
-        let session = Session::new(plan, seating, board, wake, outbox, clock)?;
+        let Links { board, inbox, outbox, wake, clock, sound, interrupt } = links;
+        let session = Session::new(plan, seating, board, wake, (outbox, clock, sound))?;
         Ok(Self { session, inbox, interrupt })
     }
 
@@ -95,7 +95,7 @@ impl Simulation {
         answered?;
         last?;
         cut?;
-        Ok(self.session.pace.timings())
+        Ok(self.session.timings())
     }
 
     fn listen_and_tick(&mut self) -> anyhow::Result<End> {
@@ -153,6 +153,9 @@ impl Simulation {
             session.voice.say(format_args!("run {number} was ended: the safety driver's unit is lost"));
             session.finish(None)?;
         }
+        if !session.runs.is_driving() {
+            session.sound.rest();
+        }
         match &session.runs.stage {
             Stage::Driving => {}
             // The jolt of the collision that ended the run fades.
@@ -192,6 +195,10 @@ fn obey(session: &mut Session, press: &Press, repeated: bool) -> anyhow::Result<
             session.force.toggle();
             session.show_status(Some(Wake::Centre));
         }
+        Wish::Mute => {
+            session.sound.toggle();
+            session.show_status(Some(Wake::Centre));
+        }
         Wish::Pause(why) => session.pause(why, None),
         Wish::Resume => session.resume(),
         Wish::BreakOff => session.break_off(),
@@ -214,6 +221,7 @@ fn tick(session: &mut Session, polled: &Polled) -> anyhow::Result<()> {
         events: &output.events,
     };
     session.force.drive(&driven, session.seating.armed_devices());
+    session.sound.tick(run.world(), &output);
     for event in &output.events {
         session.voice.note(words::event_at(output.tick, event));
     }

@@ -75,8 +75,9 @@ impl Pace {
         self.timings.run(self.pacing.driven_us(), self.pacing.slowed_us());
     }
 
-    /// How well the session kept real time.
-    pub fn timings(self) -> Timings {
+    /// How well the session kept real time, with so many gaps in what was heard.
+    pub fn timings(mut self, sound_gaps: u64) -> Timings {
+        self.timings.sound(sound_gaps);
         self.timings
     }
 }

@@ -14,6 +14,7 @@ use viewers::server::Endpoint;
 use super::agenda::{Agenda, Bill};
 use crate::drive::aftermath::Tell;
 use crate::drive::board::{About, Board, Message, Wake};
+use crate::speakers::Sound;
 
 /// What a session is about.
 pub struct Plan {
@@ -65,6 +66,8 @@ pub struct Links {
     pub wake: Box<dyn Fn(Wake) + Send>,
     /// Time since the session began.
     pub clock: SessionClock,
+    /// Who plays what is heard.
+    pub sound: Sound,
     /// Ctrl-C and SIGTERM.
     pub interrupt: Interrupt,
 }

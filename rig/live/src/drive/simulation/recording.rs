@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
 use anyhow::anyhow;
-use kernel::World;
+use kernel::{Seat, World};
 use replay::Manifest;
 
 use super::agenda::Bill;
@@ -12,9 +12,10 @@ use super::plan::Plan;
 use crate::drive::board::Message;
 use crate::drive::disk::{self, BackgroundFile};
 use crate::drive::seating::Seating;
+use crate::speakers::Sound;
 
 /// What the recording of a run says about itself: the world's scenario, who sits where, and the checkpoint.
-pub fn manifest(plan: &Plan, seating: &Seating, bill: &Bill, world: &World) -> Manifest {
+pub fn manifest(plan: &Plan, seating: &Seating, sound: &Sound, bill: &Bill, world: &World) -> Manifest {
     let swapped = || study::swapped(&plan.provenance);
     let mut provenance = if seating.is_swapped() { swapped() } else { plan.provenance.clone() };
     provenance.insert("live".into(), "true".into());
@@ -22,6 +23,12 @@ pub fn manifest(plan: &Plan, seating: &Seating, bill: &Bill, world: &World) -> M
     provenance.extend(plan.agenda.protocol().map(|protocol| protocol.provenance(bill.trial)).unwrap_or_default());
     provenance.extend(seating.provenance());
     provenance.extend(seating.tempers(world.scenario().seed));
+    let hears = sound.heard_by().into_iter().map(|seat| match seat {
+        Seat::Safety => "safety",
+        Seat::Semantic => "semantic",
+    });
+    let hears: Vec<&str> = hears.collect();
+    provenance.insert("sound".into(), if hears.is_empty() { "off".into() } else { hears.join(",") });
     Manifest::new(world.scenario(), &bill.map.network, bill.map.foreign.clone(), provenance)
 }
 

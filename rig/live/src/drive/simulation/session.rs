@@ -29,6 +29,8 @@ use crate::drive::force::Force;
 use crate::drive::run::Run;
 use crate::drive::seating::Seating;
 use crate::drive::stage::{Form, Pause, Stage};
+use crate::drive::timings::Timings;
+use crate::speakers::Sound;
 
 /// An unattended session that takes three times as long as it should, and this, has failed, microseconds.
 const PATIENCE_US: u64 = 30_000_000;
@@ -39,6 +41,7 @@ pub struct Session {
     pub display: Display,
     pub seating: Seating,
     pub force: Force,
+    pub sound: Sound,
     pub voice: Voice,
     pub runs: Runs,
     pub pace: Pace,
@@ -61,8 +64,7 @@ impl Session {
         seating: Seating,
         board: Arc<Board>,
         wake: Box<dyn Fn(Wake) + Send>,
-        outbox: Sender<Message>,
-        clock: SessionClock,
+        (outbox, clock, sound): (Sender<Message>, SessionClock, Sound),
     ) -> anyhow::Result<Self> {
         let voice = Voice::new(plan.unattended.is_none());
         seating.setup().iter().for_each(|line| voice.say(format_args!("{line}")));
@@ -73,6 +75,7 @@ impl Session {
             display: Display::new(board.clone(), wake),
             seating,
             force,
+            sound,
             voice,
             runs,
             pace: Pace::new(clock),
@@ -87,6 +90,11 @@ impl Session {
         };
         session.prepare()?;
         Ok(session)
+    }
+
+    /// How well it kept real time.
+    pub fn timings(self) -> Timings {
+        self.pace.timings(self.sound.late_count())
     }
 
     /// Whether people attend it.
@@ -158,7 +166,7 @@ impl Session {
         let seed = world.scenario().seed;
         let number = self.runs.number();
         let bill = self.runs.bill();
-        let manifest = recording::manifest(&self.plan, &self.seating, bill, &world);
+        let manifest = recording::manifest(&self.plan, &self.seating, &self.sound, bill, &world);
         maps::put_beside(bill.map.foreign.as_ref(), &self.plan.record)?;
         let (path, file) = recording::create(&self.plan.record, number, self.outbox.clone())?;
         self.voice.say(format_args!("run {number}: recording {}", path.display()));
@@ -339,8 +347,8 @@ impl Session {
 
     /// Shows how the session is, and has windows drawn anew.
     pub fn show_status(&self, wake: Option<Wake>) {
-        let Self { display, seating, force, voice, runs, pace, sights, rest, link, .. } = self;
-        let parts = Parts { rest, link: link.as_ref(), seating, force, voice, display, runs, pace, sights };
+        let Self { display, seating, force, sound, voice, runs, pace, sights, rest, link, .. } = self;
+        let parts = Parts { rest, link: link.as_ref(), seating, force, sound, voice, display, runs, pace, sights };
         display.show_status(parts.status(), wake);
     }
 }

@@ -11,6 +11,7 @@ use super::voice::Voice;
 use crate::drive::board::{About, Status};
 use crate::drive::force::Force;
 use crate::drive::seating::Seating;
+use crate::speakers::Sound;
 
 /// The parts of a session that have something to show.
 pub struct Parts<'a> {
@@ -18,6 +19,7 @@ pub struct Parts<'a> {
     pub link: Option<&'a String>,
     pub seating: &'a Seating,
     pub force: &'a Force,
+    pub sound: &'a Sound,
     pub voice: &'a Voice,
     pub display: &'a Display,
     pub runs: &'a Runs,
@@ -28,7 +30,7 @@ pub struct Parts<'a> {
 impl Parts<'_> {
     /// How the session is; nothing where no run is on and none waits.
     pub fn status(&self) -> Option<Status> {
-        let Self { rest, link, seating, force, voice, display, runs, pace, sights } = self;
+        let Self { rest, link, seating, force, sound, voice, display, runs, pace, sights } = self;
         let world = runs.world()?;
         let now_us = pace.now_us();
         let applied = display.last().map(|output| output.applied);
@@ -60,6 +62,7 @@ impl Parts<'_> {
             units_note: seating.note(),
             setup: seating.setup(),
             force: force.words(),
+            sound: sound.words(),
             about: runs.about().clone(),
         })
     }

@@ -40,6 +40,7 @@ impl Stage {
             Self::Labelling(dialog) => dialog.press(press, repeated),
             _ if repeated => Wish::Nothing,
             _ if is(press, 'f') => Wish::Force,
+            _ if is(press, 'm') => Wish::Mute,
             Self::Ready if is(press, 'n') => Wish::Start,
             Self::Ready if is(press, 'x') => Wish::Swap,
             Self::Ready | Self::Over if is(press, 'q') => Wish::Quit,
@@ -94,9 +95,13 @@ mod tests {
     }
 
     #[test]
-    fn forces_are_switched_off_at_any_time_but_not_by_a_comment() {
+    fn forces_and_sound_are_switched_off_at_any_time_but_not_by_a_comment() {
         assert_eq!(Stage::Driving.press(&text("f"), false), Wish::Force);
         assert_eq!(Stage::Driving.press(&text("f"), true), Wish::Nothing);
+        assert_eq!(
+            [Stage::Ready, Stage::Driving].map(|mut stage| stage.press(&text("m"), false)),
+            [Wish::Mute, Wish::Mute]
+        );
         let mut stage = Stage::Labelling(Dialog::of_case(None));
         enter(&mut stage, "1off");
     }

@@ -24,6 +24,8 @@ pub enum Wish {
     Swap,
     /// Switch force feedback off or on.
     Force,
+    /// Play no sound, or play it again.
+    Mute,
     /// Let time stand.
     Pause(Pause),
     /// Let time go on.

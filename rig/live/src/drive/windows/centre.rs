@@ -170,6 +170,7 @@ fn figures(ui: &mut Ui, status: &Status) {
         ("safety driver", status.units[1].clone()),
         ("intervention from", thresholds(status)),
         ("force feedback", status.force.clone()),
+        ("sound", status.sound.clone()),
         ("speed", format!("{} of {} km/h", kmh(status.hud.speed_mps), kmh(status.hud.limit_mps))),
         ("this run", exposure(status.odometer_mm, status.tick)),
         (

@@ -69,10 +69,11 @@ fn command(text: &str, place: PhysicalKey) -> Option<char> {
 }
 
 /// The operators' keys, each with its place on a US keyboard; what they do, labels among it, is in [`crate::drive::stage`].
-const COMMANDS: [(char, KeyCode); 13] = [
+const COMMANDS: [(char, KeyCode); 14] = [
     ('n', KeyCode::KeyN),
     ('x', KeyCode::KeyX),
     ('f', KeyCode::KeyF),
+    ('m', KeyCode::KeyM),
     ('q', KeyCode::KeyQ),
     ('p', KeyCode::KeyP),
     ('b', KeyCode::KeyB),

@@ -19,7 +19,8 @@ use winit::window::WindowId;
 
 use super::board::{Board, Message, Wake};
 use super::hud;
-use crate::desktop::{self, Layout, Pane, Picture};
+use super::stage::Stage;
+use crate::desktop::{self, Layout, Pane, Picture, legend};
 use centre::Centre;
 
 /// Titles, places and sizes (logical pixels) of the windows at first.
@@ -144,9 +145,18 @@ impl Panes {
 }
 
 impl Driver {
-    /// Paints the newest view, and gives it when it is new on the screen.
-    fn paint(&mut self, view: Option<Arc<View>>, hud: &desktop::HudText) -> Option<Arc<View>> {
-        self.pane.paint(|ui| self.picture.paint_with_hud(ui, view.as_ref().map(|view| &view.image), hud));
+    /// Paints the newest view, and gives it when it is new on the screen. Of a mask, the class under the mouse is named, and
+    /// all of them are listed where nobody drives by it.
+    fn paint(&mut self, view: Option<Arc<View>>, hud: &desktop::HudText, is_driving: bool) -> Option<Arc<View>> {
+        self.pane.paint(|ui| {
+            let rect = self.picture.paint_with_hud(ui, view.as_ref().map(|view| &view.image), hud);
+            if let Some(mask) = view.as_ref().filter(|view| view.mask.is_some()) {
+                if !is_driving {
+                    legend::column_in(ui.painter(), rect, &legend::classes(&mask.image));
+                }
+                legend::name_under_mouse(ui, &mask.image, rect);
+            }
+        });
         let view = view?;
         let is_new = self.shown.as_ref().is_none_or(|shown| !Arc::ptr_eq(shown, &view));
         self.shown = Some(view.clone());
@@ -168,12 +178,13 @@ impl Desk {
         let Some(status) = board.status.get() else { return };
         let of_this_run = |view: &Arc<View>| view.run == status.run;
         let hud = |seat| hud::text(&status, seat);
+        let is_driving = status.stage == Stage::Driving;
         let (seat, new) = if panes.semantic.pane.id() == id {
             let view = board.feed.semantic.get().filter(of_this_run);
-            (Seat::Semantic, panes.semantic.paint(view, &hud(Seat::Semantic)))
+            (Seat::Semantic, panes.semantic.paint(view, &hud(Seat::Semantic), is_driving))
         } else if panes.safety.pane.id() == id {
             let view = board.feed.safety.get().filter(of_this_run);
-            (Seat::Safety, panes.safety.paint(view, &hud(Seat::Safety)))
+            (Seat::Safety, panes.safety.paint(view, &hud(Seat::Safety), is_driving))
         } else {
             let (pane, centre) = &mut panes.centre;
             return pane.paint(|ui| centre.paint(ui, &status, board));

@@ -6,7 +6,7 @@ use egui::{Align, Color32, Layout, Panel, Rect, RichText, Sense, Ui, Vec2};
 
 use super::colours::ATTENTION;
 use super::{bar, facts};
-use crate::desktop::{HudText, Picture, overlay};
+use crate::desktop::{HudText, Picture, legend, overlay};
 use crate::view::hud;
 use crate::view::layers::Layer;
 use crate::view::projector::Shown;
@@ -61,13 +61,19 @@ impl Face {
                 }
             }
         });
-        ui.label(RichText::new(legend(i, viewing, shown)).weak());
+        ui.label(RichText::new(meaning(i, viewing, shown)).weak());
+        if let Some(Ok(image)) = shown.filter(|shown| shows_classes(shown, i)).map(|shown| &shown.views[i]) {
+            legend::list(ui, &legend::classes(image));
+        }
         let (into, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         match shown.map(|shown| &shown.views[i]) {
             Some(Ok(image)) => {
                 let rect = self.views[i].paint(ui, into, Some(image));
                 if let Some(hud) = shown.filter(|_| viewing.has_hud).and_then(|shown| hud(shown, i)) {
                     overlay::paint(ui.painter(), rect, &hud);
+                }
+                if shown.is_some_and(|shown| shows_classes(shown, i)) {
+                    legend::name_under_mouse(ui, image, rect);
                 }
             }
             Some(Err(reason)) => reason_instead(ui, into, reason),
@@ -80,8 +86,13 @@ const HELP: &str = "Space plays   arrows step (Shift: a frame) and change speed 
                     1-6, Shift 1-6: left, right view   V camera   K checkpoint   I O mark   C cut   \
                     S screenshot   H HUD   Q quits";
 
+/// Whether the picture that is shown has the colours of classes.
+fn shows_classes(shown: &Shown, i: usize) -> bool {
+    shown.request.layers[i].shows_classes()
+}
+
 /// What a view's colours mean, and whose they are.
-fn legend(i: usize, viewing: &Viewing, shown: Option<&Shown>) -> String {
+fn meaning(i: usize, viewing: &Viewing, shown: Option<&Shown>) -> String {
     let layer = viewing.layers[i];
     match layer {
         Layer::Prediction | Layer::Difference | Layer::Confidence => {

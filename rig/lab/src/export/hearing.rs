@@ -1,0 +1,64 @@
+//! What the safety driver heard in a window of a recording, as a WAV file.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+use base::output;
+use base::progress::Interrupt;
+use hound::{SampleFormat, WavSpec, WavWriter};
+use kernel::Seat;
+use kernel::time::TICK_HZ;
+use measures::footage::{Asked, Window};
+use replay::{Recording, Replayer};
+use sound::{Ear, Mixer, SAMPLE_HZ};
+
+use super::film::Counts;
+use super::options::{Export, Options};
+
+const SAMPLES_A_TICK: u32 = SAMPLE_HZ / TICK_HZ;
+/// A WAV file counts its bytes in 32 bits: so many ticks at most, 5 hours.
+const MOST_TICKS: u64 = 5 * 3600 * TICK_HZ as u64;
+
+/// Writes the file, unless it is there.
+pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) -> anyhow::Result<Export> {
+    let recording = Recording::open(file)?;
+    let (log, network) = (recording.log(), recording.network()?);
+    let window = Window::of(log, &Asked { fps: TICK_HZ, ..args.asked() })?;
+    let (from, to) = window.ticks.into_inner();
+    if to - from > MOST_TICKS {
+        bail!("a WAV file holds 5 hours; expected a shorter window by --last, --from and --to");
+    }
+    let mut replayer = Replayer::new(log, network)?;
+    replayer.seek(from)?;
+    let (mut ear, mut mixer) = (Ear::default(), Mixer::new(SAMPLE_HZ));
+    let spec = WavSpec { channels: 2, sample_rate: SAMPLE_HZ, bits_per_sample: 16, sample_format: SampleFormat::Int };
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = WavWriter::new(&mut bytes, spec)?;
+    let mut ticks = 0;
+    while replayer.world().tick() < to {
+        if interrupt.is_raised() {
+            bail!("interrupted; nothing of its export is kept");
+        }
+        let Some(output) = replayer.step()? else { break };
+        mixer.hear(&ear.hear(&replayer.world().scene(), &output.applied.controls, &output.events).by(Seat::Safety));
+        for _ in 0..SAMPLES_A_TICK {
+            for side in mixer.next() {
+                writer.write_sample((side * f32::from(i16::MAX)) as i16)?;
+            }
+        }
+        ticks += 1;
+    }
+    writer.finalize()?;
+    let bytes = bytes.into_inner();
+    let kept = match fs::read(&out) {
+        Ok(known) if known == bytes => true,
+        Ok(_) => bail!("{}: exists already and is no export of this; expected another place", out.display()),
+        Err(_) => false,
+    };
+    if !kept {
+        output::write_file(&out, &bytes)?;
+    }
+    Ok(Export { file: file.to_owned(), out, from, to, kept, counts: Counts { frames: 0, poses: ticks, events: 0 } })
+}
