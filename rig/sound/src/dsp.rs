@@ -2,6 +2,13 @@
 
 use std::f32::consts::{PI, TAU};
 
+/// What is smaller is nothing: numbers that shrink for ever become slow to compute with.
+const NOTHING: f32 = 1e-9;
+
+fn audible(value: f32) -> f32 {
+    if value.abs() < NOTHING { 0.0 } else { value }
+}
+
 /// A value that follows what it is set to, so that nothing clicks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Glide {
@@ -10,19 +17,29 @@ pub struct Glide {
 }
 
 impl Glide {
+    /// There from the start.
+    pub fn at(value: f32) -> Self {
+        Self { now: value, to: value }
+    }
+
     /// Follows this from now on.
     pub fn set(&mut self, to: f32) {
         self.to = to;
     }
 
-    /// Whether it comes down.
-    pub fn is_falling(&self) -> bool {
-        self.to < self.now
+    /// What it follows.
+    pub fn target(&self) -> f32 {
+        self.to
     }
 
     /// The value one sample later; it goes most of the way in so many seconds.
     pub fn next(&mut self, within_s: f32, sample_hz: f32) -> f32 {
-        self.now += (self.to - self.now) * (1.0 / (within_s * sample_hz)).min(1.0);
+        let missing = self.to - self.now;
+        self.now = if missing.abs() < NOTHING {
+            self.to
+        } else {
+            self.now + missing * (1.0 / (within_s * sample_hz)).min(1.0)
+        };
         self.now
     }
 }
@@ -84,8 +101,8 @@ impl Filter {
         let (a2, v3) = (g * a1, sample - self.second);
         let band = a1 * self.first + a2 * v3;
         let low = self.second + a2 * self.first + g * a2 * v3;
-        self.first = 2.0 * band - self.first;
-        self.second = 2.0 * low - self.second;
+        self.first = audible(2.0 * band - self.first);
+        self.second = audible(2.0 * low - self.second);
         Bands { low, band, high: sample - width * band - low }
     }
 }
@@ -102,7 +119,7 @@ impl Fall {
 
     /// The level one sample later, which falls to 37 % in so many seconds.
     pub fn next(&mut self, within_s: f32, sample_hz: f32) -> f32 {
-        self.0 *= 1.0 - 1.0 / (within_s * sample_hz);
+        self.0 = audible(self.0 * (1.0 - 1.0 / (within_s * sample_hz)));
         self.0
     }
 }

@@ -1,15 +1,20 @@
 //! All voices together, as two channels.
 
+use crate::dsp::Glide;
 use crate::heard::Heard;
 use crate::voices::{Cabin, Impacts, Motor, Others, Outside, Road, Signals};
 
 /// Samples a second where a device asks for no other rate: 800 a tick.
 pub const SAMPLE_HZ: u32 = 48_000;
 
+/// A change of volume takes so long, seconds.
+const VOLUME_S: f32 = 0.02;
+
 /// Turns what is heard into samples: the same ones whenever it hears the same.
 #[derive(Clone, Debug)]
 pub struct Mixer {
     sample_hz: f32,
+    volume: Glide,
     motor: Motor,
     road: Road,
     outside: Outside,
@@ -24,6 +29,7 @@ impl Mixer {
     pub fn new(sample_hz: u32) -> Self {
         Self {
             sample_hz: sample_hz as f32,
+            volume: Glide::at(1.0),
             motor: Motor::default(),
             road: Road::default(),
             outside: Outside::default(),
@@ -32,6 +38,11 @@ impl Mixer {
             others: Others::default(),
             signals: Signals::default(),
         }
+    }
+
+    /// How loud all of it is, [0, 1].
+    pub fn set_volume(&mut self, volume: f32) {
+        self.volume.set(volume);
     }
 
     /// Takes in what is heard from now on; cues are heard once.
@@ -45,13 +56,14 @@ impl Mixer {
         self.signals.hear(&heard.cues);
     }
 
-    /// The next sample on the left and on the right, within (-1, 1).
-    pub fn next(&mut self) -> [f32; 2] {
+    /// The next sample on the left and on the right, [-1, 1].
+    pub fn sample(&mut self) -> [f32; 2] {
         let hz = self.sample_hz;
         let middle = self.motor.next(hz) + self.road.next(hz) + self.outside.next(hz);
         let middle = middle + self.cabin.next(hz) + self.impacts.next(hz) + self.signals.next(hz);
         // What is too loud is rounded off.
-        self.others.next(hz).map(|side| (middle + side).tanh())
+        let volume = self.volume.next(VOLUME_S, hz);
+        self.others.next(hz).map(|side| volume * (middle + side).tanh())
     }
 }
 
@@ -70,12 +82,12 @@ mod tests {
     fn settled(heard: &Heard, seconds: f32) -> [Vec<f32>; 2] {
         let mut mixer = Mixer::new(SAMPLE_HZ);
         mixer.hear(heard);
-        (0..SAMPLE_HZ).for_each(|_| drop(mixer.next()));
+        samples(&mut mixer, 1.0);
         samples(&mut mixer, seconds)
     }
 
     fn samples(mixer: &mut Mixer, seconds: f32) -> [Vec<f32>; 2] {
-        let frames: Vec<[f32; 2]> = (0..(seconds * HZ) as usize).map(|_| mixer.next()).collect();
+        let frames: Vec<[f32; 2]> = (0..(seconds * HZ) as usize).map(|_| mixer.sample()).collect();
         [0, 1].map(|side| frames.iter().map(|frame| frame[side]).collect())
     }
 
@@ -163,8 +175,53 @@ mod tests {
         mixer.hear(&with(other(Size::Heavy, 4.0, 1.0)));
         assert!(power(&samples(&mut mixer, 1.0)[0]) > 1e-4);
         mixer.hear(&Heard::default());
-        drop(samples(&mut mixer, 1.0));
+        samples(&mut mixer, 1.0);
         assert_eq!(power(&samples(&mut mixer, 0.5)[0]), 0.0);
+    }
+
+    /// Bicycles that stand are silent from the first moment on.
+    #[test]
+    fn nobody_stays_who_is_silent() {
+        let mut mixer = Mixer::new(SAMPLE_HZ);
+        for id in 0..50 {
+            mixer.hear(&with(Around { id, speed_mps: 0.0, ..other(Size::Bicycle, 5.0, 1.0) }));
+            mixer.sample();
+        }
+        assert_eq!(mixer.others.count(), 0);
+    }
+
+    /// Numbers that shrink for ever would be slow to compute with.
+    #[test]
+    fn what_has_sounded_ends_in_silence() {
+        let mut mixer = Mixer::new(SAMPLE_HZ);
+        let loud = Heard { speed_mps: 20.0, rain: 1.0, wipes: true, cues: vec![Cue::Impact(9.0)], ..Heard::default() };
+        mixer.hear(&loud);
+        samples(&mut mixer, 0.5);
+        mixer.hear(&Heard::default());
+        samples(&mut mixer, 20.0);
+        assert_eq!(samples(&mut mixer, 0.5)[0].iter().filter(|sample| **sample != 0.0).count(), 0);
+    }
+
+    /// Somebody drives by, and the volume is turned down.
+    #[test]
+    fn who_passes_does_not_click_and_neither_does_a_mute() {
+        let steepest = |forward_m: fn(i16) -> f32, mute_at: Option<i16>| {
+            let mut mixer = Mixer::new(SAMPLE_HZ);
+            let (mut last, mut steepest) = (0.0, 0.0_f32);
+            for tick in 0..180 {
+                mixer.hear(&with(other(Size::Heavy, forward_m(tick), 2.5)));
+                mixer.set_volume(if mute_at.is_some_and(|at| tick >= at) { 0.0 } else { 1.0 });
+                for _ in 0..800 {
+                    let [left, _] = mixer.sample();
+                    steepest = if tick > 30 { steepest.max((left - last).abs()) } else { steepest };
+                    last = left;
+                }
+            }
+            steepest
+        };
+        let stays = steepest(|_| 0.1, None);
+        let passes = steepest(|tick| if tick % 2 == 0 { 0.1 } else { -0.1 }, None);
+        assert!(passes < 1.2 * stays && steepest(|_| 0.1, Some(90)) < 1.2 * stays, "{passes} {stays}");
     }
 
     #[test]
@@ -173,7 +230,7 @@ mod tests {
             let mut mixer = Mixer::new(SAMPLE_HZ);
             mixer.hear(&Heard { cues: vec![cue], ..Heard::default() });
             let first = power(&samples(&mut mixer, 0.3)[0]);
-            drop(samples(&mut mixer, 2.0));
+            samples(&mut mixer, 2.0);
             let later = power(&samples(&mut mixer, 0.3)[0]);
             assert!(first > 1e-3 && later < 1e-6, "{cue:?}: {first} {later}");
         }
@@ -211,7 +268,7 @@ mod tests {
             let (speed_mps, horn) = if is_odd { (20.0, true) } else { (0.0, false) };
             mixer.hear(&Heard { speed_mps, horn, load: 1.0, ..Heard::default() });
             for _ in 0..800 {
-                let [left, _] = mixer.next();
+                let [left, _] = mixer.sample();
                 steepest = steepest.max((left - last).abs());
                 last = left;
             }
@@ -262,7 +319,7 @@ mod tests {
                 let mut mixer = Mixer::new(sample_hz);
                 ticks.iter().flat_map(|heard| {
                     mixer.hear(heard);
-                    (0..800).map(|_| mixer.next()).collect::<Vec<_>>()
+                    (0..800).map(|_| mixer.sample()).collect::<Vec<_>>()
                 }).collect::<Vec<_>>()
             };
             for sample_hz in [8_000, 44_100, SAMPLE_HZ, 192_000] {

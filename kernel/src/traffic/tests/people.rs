@@ -188,7 +188,7 @@ fn so_often_is_jaywalked_as_is_asked_for_and_at_times_from_behind_a_parked_car()
     let network = bundled("city").expect("it is bundled");
     let (minutes, a_minute) = (10, 6.0);
     let (mut all, mut hidden) = (0, 0);
-    for seed in [2101, 2102] {
+    for seed in 2101..2105 {
         let counts = TrafficCounts { jaywalks_per_min: a_minute, ..counts(100) };
         let mut traffic = Traffic::spawn(&counts, seed, network.ways(), nowhere().position);
         let mut before = traffic.actors.clone();

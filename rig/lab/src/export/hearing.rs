@@ -12,14 +12,16 @@ use kernel::Seat;
 use kernel::time::TICK_HZ;
 use measures::footage::{Asked, Window};
 use replay::{Recording, Replayer};
-use sound::{Ear, Mixer, SAMPLE_HZ};
+use sound::{Ear, Heard, Mixer, SAMPLE_HZ};
 
 use super::film::Counts;
 use super::options::{Export, Options};
 
 const SAMPLES_A_TICK: u32 = SAMPLE_HZ / TICK_HZ;
-/// A WAV file counts its bytes in 32 bits: so many ticks at most, 5 hours.
-const MOST_TICKS: u64 = 5 * 3600 * TICK_HZ as u64;
+/// What sounded last rings on for so long, seconds.
+const TAIL_S: u32 = 1;
+/// The file is made in memory: so many ticks at most, an hour.
+const MOST_TICKS: u64 = 3600 * TICK_HZ as u64;
 
 /// Writes the file, unless it is there.
 pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) -> anyhow::Result<Export> {
@@ -28,14 +30,19 @@ pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) 
     let window = Window::of(log, &Asked { fps: TICK_HZ, ..args.asked() })?;
     let (from, to) = window.ticks.into_inner();
     if to - from > MOST_TICKS {
-        bail!("a WAV file holds 5 hours; expected a shorter window by --last, --from and --to");
+        bail!("a window of more than an hour; expected a shorter one by --last, --from and --to");
     }
     let mut replayer = Replayer::new(log, network)?;
-    replayer.seek(from)?;
+    // A tick is heard by what it comes from; the first of a log has nothing before it.
+    replayer.seek(from.saturating_sub(1)).or_else(|_| replayer.seek(from))?;
     let (mut ear, mut mixer) = (Ear::default(), Mixer::new(SAMPLE_HZ));
     let spec = WavSpec { channels: 2, sample_rate: SAMPLE_HZ, bits_per_sample: 16, sample_format: SampleFormat::Int };
     let mut bytes = Cursor::new(Vec::new());
     let mut writer = WavWriter::new(&mut bytes, spec)?;
+    let mut write = |mixer: &mut Mixer, samples: u32| {
+        let both = (0..samples).flat_map(|_| mixer.sample());
+        both.into_iter().try_for_each(|side| writer.write_sample((side * f32::from(i16::MAX)) as i16))
+    };
     let mut ticks = 0;
     while replayer.world().tick() < to {
         if interrupt.is_raised() {
@@ -43,13 +50,11 @@ pub fn export(args: &Options, file: &Path, out: PathBuf, interrupt: &Interrupt) 
         }
         let Some(output) = replayer.step()? else { break };
         mixer.hear(&ear.hear(&replayer.world().scene(), &output.applied.controls, &output.events).by(Seat::Safety));
-        for _ in 0..SAMPLES_A_TICK {
-            for side in mixer.next() {
-                writer.write_sample((side * f32::from(i16::MAX)) as i16)?;
-            }
-        }
+        write(&mut mixer, SAMPLES_A_TICK)?;
         ticks += 1;
     }
+    mixer.hear(&Heard::default());
+    write(&mut mixer, TAIL_S * SAMPLE_HZ)?;
     writer.finalize()?;
     let bytes = bytes.into_inner();
     let kept = match fs::read(&out) {

@@ -14,8 +14,9 @@ const SHADE: Color32 = Color32::from_black_alpha(190);
 /// The classes in a picture, those that cover most of it first.
 pub fn classes(image: &Image) -> Vec<SemanticTag> {
     let pixels = image.rgb.as_chunks::<3>().0;
-    // A step that is no divisor of the width looks at all columns.
-    let step = pixels.len().div_ceil(MOST_PIXELS) | 1;
+    // A step that has no divisor in common with the width looks at all columns.
+    let least = pixels.len().div_ceil(MOST_PIXELS).max(1);
+    let step = (least..).find(|step| gcd(*step, image.width) == 1).unwrap_or(1);
     let mut counts = [0_u32; SemanticTag::ALL.len()];
     for pixel in pixels.iter().step_by(step) {
         if let Some(index) = SemanticTag::ALL.iter().position(|tag| tag.colour() == *pixel) {
@@ -26,6 +27,10 @@ pub fn classes(image: &Image) -> Vec<SemanticTag> {
     found.retain(|(count, _)| *count > 0);
     found.sort_by_key(|(count, tag)| (std::cmp::Reverse(*count), *tag));
     found.into_iter().map(|(_, tag)| tag).collect()
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 /// The class at a place of a picture that fills a rectangle.
@@ -116,9 +121,9 @@ mod tests {
     #[test]
     fn every_column_of_a_large_picture_is_looked_at() {
         use SemanticTag::{Pole, Sky};
-        for width in [512, 600, 1024, 1280] {
+        for width in [512, 600, 800, 1024, 1280, 1600, 1920] {
             let row: Vec<SemanticTag> = (0..width).map(|x| if x == 77 { Pole } else { Sky }).collect();
-            assert_eq!(classes(&image(&vec![&row[..]; 500])), [Sky, Pole], "{width}");
+            assert_eq!(classes(&image(&vec![&row[..]; 600])), [Sky, Pole], "{width}");
         }
     }
 

@@ -178,8 +178,8 @@ fn session(
     pictures: &Pictures,
     sound: &speakers::Options,
 ) -> anyhow::Result<Timings> {
-    let (_speakers, sound) = speakers::open(sound)?;
     let windows = Windows::new()?;
+    let (_speakers, sound) = speakers::open(sound)?;
     let (outbox, inbox) = mpsc::channel();
     let (board, clock) = (Arc::new(Board::default()), SessionClock::starting_now());
     let _server = plan.foxglove.clone().map(|at| Server::bind(at, board.feed.clone(), clock)).transpose()?;

@@ -54,6 +54,9 @@ impl Device {
         let config = config.config();
         let stream = match format {
             SampleFormat::F32 => stream::<f32>(device, config, player),
+            SampleFormat::F64 => stream::<f64>(device, config, player),
+            SampleFormat::I24 => stream::<cpal::I24>(device, config, player),
+            SampleFormat::U32 => stream::<u32>(device, config, player),
             SampleFormat::I16 => stream::<i16>(device, config, player),
             SampleFormat::I32 => stream::<i32>(device, config, player),
             SampleFormat::U16 => stream::<u16>(device, config, player),
@@ -72,14 +75,16 @@ fn stream<T: SizedSample + FromSample<f32>>(
     mut player: Player,
 ) -> Result<Stream, cpal::Error> {
     let channels = usize::from(config.channels).max(1);
-    let late = player.outlet();
+    let outlet = player.outlet();
     let fill = move |samples: &mut [T], _: &cpal::OutputCallbackInfo| {
         player.play(samples.chunks_mut(channels), |frame, sides| put(frame, sides));
     };
     let failed = move |error: cpal::Error| match error.kind() {
-        cpal::ErrorKind::DeviceChanged | cpal::ErrorKind::RealtimeDenied => {}
-        cpal::ErrorKind::Xrun => late.is_late(),
-        _ => say(format_args!("sound: {error}; nothing more is heard of this device")),
+        cpal::ErrorKind::Xrun => outlet.is_late(),
+        cpal::ErrorKind::DeviceNotAvailable | cpal::ErrorKind::StreamInvalidated if outlet.lose() => {
+            say(format_args!("sound: {error}; nothing more is heard of this device"));
+        }
+        _ => {}
     };
     device.build_output_stream(config, fill, failed, None)
 }

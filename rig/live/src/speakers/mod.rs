@@ -79,7 +79,15 @@ pub fn open(options: &Options) -> anyhow::Result<(Speakers, Sound)> {
             Choice::Default => device::default(),
             Choice::Named(name) => Some(device::named(name)?),
         };
-        match found.map(|found| Device::open(&found, player)).transpose()? {
+        let opened = match (found.map(|found| Device::open(&found, player)).transpose(), choice) {
+            // Nobody asked for this one by its name.
+            (Err(error), Choice::Default) => {
+                say(format_args!("{error:#}"));
+                None
+            }
+            (opened, _) => opened?,
+        };
+        match opened {
             Some(device) => {
                 sound.seats.push(SeatSound { seat, hears_car, device: Some(device.name.clone()), outlet });
                 speakers._devices.push(device);
@@ -125,9 +133,10 @@ impl Sound {
         self.seats.iter().for_each(|seat| seat.outlet.mute(self.is_muted));
     }
 
-    /// Who hears the car, for the recording; nobody where it is only computed.
+    /// Who hears the car now, for the recording; nobody where it is only computed, muted, or its device is gone.
     pub fn heard_by(&self) -> Vec<Seat> {
-        let hears = self.seats.iter().filter(|seat| seat.hears_car && seat.device.is_some());
+        let plays = |seat: &&SeatSound| seat.device.is_some() && !self.is_muted && !seat.outlet.is_lost();
+        let hears = self.seats.iter().filter(plays).filter(|seat| seat.hears_car);
         hears.map(|seat| seat.seat).collect()
     }
 
@@ -138,8 +147,13 @@ impl Sound {
 
     /// How it is, in words.
     pub fn words(&self) -> String {
-        let devices = self.seats.iter().map(|seat| seat.device.as_deref().unwrap_or("nowhere"));
-        let devices: Vec<&str> = devices.collect();
+        let device = |seat: &SeatSound| match &seat.device {
+            Some(_) if seat.outlet.is_lost() => "a device that is gone".to_owned(),
+            Some(name) => name.clone(),
+            None => "nowhere".to_owned(),
+        };
+        let devices = self.seats.iter().map(device);
+        let devices: Vec<String> = devices.collect();
         match (devices.is_empty(), self.is_muted) {
             (true, _) if self.is_missing => "no device".into(),
             (true, _) => "off".into(),

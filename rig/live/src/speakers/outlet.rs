@@ -10,12 +10,16 @@ use sound::{Heard, Mixer};
 pub struct Outlet {
     newest: Mutex<Option<Heard>>,
     is_muted: AtomicBool,
+    is_lost: AtomicBool,
     late: AtomicU64,
 }
 
 impl Outlet {
     /// This is heard from now on. Cues of what nobody took in are not lost.
     pub fn put(&self, mut heard: Heard) {
+        if self.is_lost() {
+            return;
+        }
         let mut newest = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(missed) = newest.take() {
             heard.cues.splice(0..0, missed.cues);
@@ -26,6 +30,16 @@ impl Outlet {
     /// Plays nothing, or plays again.
     pub fn mute(&self, is_muted: bool) {
         self.is_muted.store(is_muted, Ordering::Relaxed);
+    }
+
+    /// Its device is gone; whether it was not before.
+    pub fn lose(&self) -> bool {
+        !self.is_lost.swap(true, Ordering::Relaxed)
+    }
+
+    /// Whether its device is gone.
+    pub fn is_lost(&self) -> bool {
+        self.is_lost.load(Ordering::Relaxed)
     }
 
     /// Samples came later than the device wanted them.
@@ -65,9 +79,9 @@ impl Player {
         if let Some(heard) = self.outlet.take() {
             self.mixer.hear(&heard);
         }
-        let volume = if self.outlet.is_muted.load(Ordering::Relaxed) { 0.0 } else { 1.0 };
+        self.mixer.set_volume(if self.outlet.is_muted.load(Ordering::Relaxed) { 0.0 } else { 1.0 });
         for frame in frames {
-            fill(frame, self.mixer.next().map(|sample| volume * sample));
+            fill(frame, self.mixer.sample());
         }
     }
 
@@ -107,9 +121,18 @@ mod tests {
         let mut player = Player::new(outlet.clone(), SAMPLE_HZ);
         outlet.put(Heard { speed_mps: 14.0, ..Heard::default() });
         outlet.mute(true);
-        assert_eq!(loudest(&mut player, 48_000), 0.0);
+        loudest(&mut player, 48_000);
+        assert_eq!(loudest(&mut player, 4800), 0.0);
         outlet.mute(false);
-        assert!(loudest(&mut player, 4800) > 0.01);
+        assert!(loudest(&mut player, 9600) > 0.01);
+    }
+
+    #[test]
+    fn what_nobody_plays_is_not_kept() {
+        let outlet = Outlet::default();
+        assert_eq!([outlet.lose(), outlet.lose()], [true, false], "it is said once");
+        outlet.put(Heard { cues: vec![Cue::Ended], ..Heard::default() });
+        assert_eq!(outlet.take(), None);
     }
 
     #[test]

@@ -48,6 +48,11 @@ impl Others {
         }
     }
 
+    #[cfg(test)]
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
     /// The next sample on the left and on the right.
     pub fn next(&mut self, sample_hz: f32) -> [f32; 2] {
         let sum = self.0.iter_mut().fold([0.0; 2], |[left, right], voice| {
@@ -69,7 +74,8 @@ struct Voice {
     speed_mps: Glide,
     /// By how much it sounds higher.
     higher: Glide,
-    dull: f32,
+    /// By how much it is duller.
+    dull: Glide,
     noise: Noise,
     tyres: Filter,
     motor: Phase,
@@ -79,7 +85,7 @@ struct Voice {
 
 impl Voice {
     fn new(id: u32) -> Self {
-        let [level, side, speed_mps, higher] = [Glide::default(); 4];
+        let [level, side, speed_mps, higher, dull] = [Glide::default(); 5];
         let (tyres, motor) = Default::default();
         Self {
             id,
@@ -88,7 +94,7 @@ impl Voice {
             side,
             speed_mps,
             higher,
-            dull: 1.0,
+            dull,
             noise: Noise::new(id.wrapping_add(100)),
             tyres,
             motor,
@@ -106,24 +112,24 @@ impl Voice {
         self.side.set(0.5 - 0.5 * other.left_m / distance_m);
         self.speed_mps.set(other.speed_mps);
         self.higher.set(SOUND_MPS / (SOUND_MPS - other.closing_mps.clamp(-100.0, 100.0)));
-        self.dull = if other.forward_m < 0.0 { BEHIND } else { 1.0 };
+        self.dull.set(if other.forward_m < 0.0 { BEHIND } else { 1.0 });
     }
 
     fn next(&mut self, sample_hz: f32) -> [f32; 2] {
         // It is where it is from its first sample on, and comes into hearing from silence.
         let within_s = if self.has_sounded { FOLLOWS_S } else { 1.0 / sample_hz };
         self.has_sounded = true;
-        let [side, speed_mps, higher] =
-            [&mut self.side, &mut self.speed_mps, &mut self.higher].map(|value| value.next(within_s, sample_hz));
+        let values = [&mut self.side, &mut self.speed_mps, &mut self.higher, &mut self.dull];
+        let [side, speed_mps, higher, dull] = values.map(|value| value.next(within_s, sample_hz));
         let level = self.level.next(FOLLOWS_S, sample_hz);
-        self.is_over = level < SILENT && self.level.is_falling();
+        self.is_over = level < SILENT && self.level.target() < SILENT;
         let (idle_hz, up_hz, tyres_hz, _) = timbre(self.size);
-        let tyres_hz = tyres_hz * higher * self.dull;
+        let tyres_hz = tyres_hz * higher * dull;
         let tyres = self.tyres.next(self.noise.next(), tyres_hz, 1.0, sample_hz).band;
         let phase = self.motor.next((idle_hz + up_hz * speed_mps) * higher, sample_hz);
         let motor =
             if idle_hz > 0.0 { phase.sin() + 0.5 * (2.0 * phase).sin() + 0.3 * (4.0 * phase).sin() } else { 0.0 };
-        let sample = level * (tyres + 0.35 * self.dull * motor);
+        let sample = level * (tyres + 0.35 * dull * motor);
         // As loud in the middle as at the sides.
         let angle_rad = std::f32::consts::FRAC_PI_2 * side;
         [sample * angle_rad.cos(), sample * angle_rad.sin()]

@@ -7,7 +7,7 @@ use crate::heard::Heard;
 const FLASHES_HZ: f32 = 1.5;
 /// The relay's clicks when the lamp comes on and goes off, hertz.
 const CLICK_HZ: [f32; 2] = [2100.0, 1500.0];
-const CLICK: f32 = 0.5;
+const CLICK: f32 = 0.25;
 const CLICK_S: f32 = 0.004;
 /// A wipe to one side, seconds, and its sound.
 const WIPE_S: f32 = 0.7;

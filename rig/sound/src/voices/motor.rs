@@ -17,6 +17,7 @@ const HUM_HZ: [f32; 2] = [180.0, 430.0];
 const HUM_UP_PER_MPS: f32 = 0.008 * 3.6;
 const HUM_LEVEL: f32 = 0.02;
 const HUM_TO_MPS: f32 = 5.6;
+const HUM_FADES_MPS: f32 = 1.5;
 
 /// What the motor does within a moment, seconds.
 const FOLLOWS_S: f32 = 0.03;
@@ -44,7 +45,7 @@ impl Motor {
         let orders = self.orders.iter_mut().zip(ORDERS);
         let motor: f32 = orders.map(|(phase, (order, share))| share * phase.next(order * hz, sample_hz).sin()).sum();
         let moves = (2.0 * speed_mps).min(1.0);
-        let hum_level = HUM_LEVEL * moves * (2.0 - speed_mps / HUM_TO_MPS).clamp(0.0, 1.0);
+        let hum_level = HUM_LEVEL * moves * (1.0 + (HUM_TO_MPS - speed_mps) / HUM_FADES_MPS).clamp(0.0, 1.0);
         let up = 1.0 + HUM_UP_PER_MPS * speed_mps;
         let hum: f32 = self.hum.iter_mut().zip(HUM_HZ).map(|(phase, hz)| phase.next(hz * up, sample_hz).sin()).sum();
         level * motor + hum_level * hum

@@ -79,6 +79,7 @@ impl Simulation {
     pub fn drive(mut self) -> anyhow::Result<Timings> {
         let end = self.listen_and_tick();
         let session = &mut self.session;
+        session.sound.rest();
         let answered = session.keep_answers();
         let network = session.runs.bill().map.network.clone();
         let unfinished = session.end_run(session.runs.said());

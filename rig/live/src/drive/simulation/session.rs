@@ -271,6 +271,7 @@ impl Session {
         let (number, trial) = (self.runs.number(), self.runs.bill().trial);
         let network = self.runs.bill().map.network.clone();
         let names = self.names();
+        self.sound.rest();
         let Some(path) = self.end_run(annotation)? else { return Ok(()) };
         self.note(format!("recorded {}", path.display()));
         if self.is_attended() {
