@@ -146,7 +146,8 @@ pub struct ExportArgs {
     #[arg(required = true, value_parser = file(), value_name = "FILE|DIR")]
     pub files: Vec<PathBuf>,
     /// As what: messages for viewers of robot logs, moving pictures, which but for apng take `ffmpeg` on the PATH, a story, a
-    /// trace of OSI, annotations of COCO, labels of OpenLABEL, a bag of ROS 2, or what was heard (default: by the ending of --out, else mcap).
+    /// trace of OSI, annotations of COCO, labels of OpenLABEL, a bag of ROS 2, or what was heard (default: by the
+    /// ending of --out, else mcap).
     #[arg(long, value_name = "mcap|apng|gif|mp4|openscenario|osi|coco|openlabel|ros2|wav")]
     pub format: Option<Format>,
     /// From where moving pictures are taken: as both drivers see, from behind the car, or from above, north up.

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
 use anyhow::anyhow;
-use kernel::{Seat, World};
+use base::words;
+use kernel::World;
 use replay::Manifest;
 
 use super::agenda::Bill;
@@ -23,11 +24,7 @@ pub fn manifest(plan: &Plan, seating: &Seating, sound: &Sound, bill: &Bill, worl
     provenance.extend(plan.agenda.protocol().map(|protocol| protocol.provenance(bill.trial)).unwrap_or_default());
     provenance.extend(seating.provenance());
     provenance.extend(seating.tempers(world.scenario().seed));
-    let hears = sound.heard_by().into_iter().map(|seat| match seat {
-        Seat::Safety => "safety",
-        Seat::Semantic => "semantic",
-    });
-    let hears: Vec<&str> = hears.collect();
+    let hears: Vec<&str> = sound.heard_by().into_iter().map(|seat| words::SEATS[seat as usize]).collect();
     provenance.insert("sound".into(), if hears.is_empty() { "off".into() } else { hears.join(",") });
     Manifest::new(world.scenario(), &bill.map.network, bill.map.foreign.clone(), provenance)
 }
